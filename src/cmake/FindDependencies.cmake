@@ -1,0 +1,16 @@
+# The packages that vdb_offset needs, for its own build and for those who link the installed library.
+# Debian keeps OpenVDB's find module beside its other files, not on CMake's module path.
+find_path(OPENVDB_MODULE_DIR FindOpenVDB.cmake PATH_SUFFIXES cmake/OpenVDB lib/cmake/OpenVDB
+          PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE} /usr/local)
+mark_as_advanced(OPENVDB_MODULE_DIR)
+if(OPENVDB_MODULE_DIR)
+  list(APPEND CMAKE_MODULE_PATH ${OPENVDB_MODULE_DIR})
+endif()
+find_package(TBB 2021 REQUIRED)
+find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
+find_package(OpenMesh REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+if(VDB_OFFSET_TOOLS)
+  find_package(CLI11 2 REQUIRED)
+endif()

@@ -1,0 +1,49 @@
+#include "vdb_offset/field.h"
+
+#include <openvdb/io/File.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/file_replace.h"
+
+namespace vdb_offset {
+
+FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& origin) {
+  FieldGrids grids;
+  grids.voxel_size = voxel_size;
+  grids.phi = openvdb::FloatGrid::create(static_cast<float>(background));
+  grids.closest = openvdb::Int32Grid::create(-1);
+  auto transform = openvdb::math::Transform::createLinearTransform(voxel_size);
+  transform->postTranslate(origin);
+  grids.phi->setName("phi");
+  grids.phi->setGridClass(openvdb::GRID_LEVEL_SET);
+  grids.closest->setName("closest_primitive");
+  for (openvdb::GridBase::Ptr grid : {openvdb::GridBase::Ptr(grids.phi), openvdb::GridBase::Ptr(grids.closest)})
+    grid->setTransform(transform);
+  return grids;
+}
+
+void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
+              const std::vector<std::pair<std::string, std::string>>& metadata) {
+  openvdb::initialize();  // registers the types that a file may hold; does nothing the second time
+  const auto phi = openvdb::gridPtrCast<openvdb::FloatGrid>(field.phi->deepCopyGrid());
+  // Inactive voxels and tiles inside a closed surface become -background, as level-set tools expect.
+  if (closed_surface) openvdb::tools::signedFloodFill(phi->tree());
+  const openvdb::GridBase::Ptr closest = field.closest->copyGrid();
+  for (const openvdb::GridBase::Ptr& grid : {openvdb::GridBase::Ptr(phi), closest}) {
+    for (const auto& [key, value] : metadata) grid->insertMeta(key, openvdb::StringMetadata(value));
+    grid->insertMeta("reach_inside", openvdb::DoubleMetadata(field.reach.inside));
+    grid->insertMeta("reach_outside", openvdb::DoubleMetadata(field.reach.outside));
+  }
+  replace_file(path, [&](const std::string& temporary) {
+    try {
+      openvdb::io::File file(temporary);
+      file.write(openvdb::GridPtrVec{phi, closest});
+      file.close();
+    } catch (const openvdb::IoError& error) {
+      throw WriteError(path + ": cannot be written: " + error.what());
+    }
+  });
+}
+
+}  // namespace vdb_offset

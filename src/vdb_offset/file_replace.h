@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace vdb_offset {
+
+/// Lets `write` make a file under a temporary name beside `path`, then renames it to `path`. Whatever happens,
+/// `path` is either what it was or complete, and no temporary file stays. `write` gets the temporary name.
+/// \throw WriteError if the rename fails, and whatever `write` throws.
+void replace_file(const std::string& path, const std::function<void(const std::string& temporary)>& write);
+
+/// Writes `bytes` to `path` through replace_file(). \throw WriteError
+void write_file(const std::string& path, const std::string& bytes);
+
+}  // namespace vdb_offset

@@ -1,0 +1,138 @@
+#include "vdb_offset/io/scanner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+#include "vdb_offset/error.h"
+
+namespace vdb_offset::io {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+/// A token as a message can show it: short, and without control bytes.
+std::string shown(std::string_view token) {
+  std::string text;
+  for (const char c : token.substr(0, 24)) text += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
+  return token.size() > 24 ? text + "..." : text;
+}
+
+bool parse_double(std::string_view token, double& value) {
+  const char* first = token.data();
+  const char* last = first + token.size();
+  if (first != last && *first == '+') ++first;
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (end != last || first == last) return false;
+  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(first, last).c_str(), nullptr);
+  return error != std::errc::invalid_argument;
+}
+
+}  // namespace
+
+bool is_word(std::string_view text, std::string_view word) {
+  return std::equal(text.begin(), text.end(), word.begin(), word.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+bool parse_integer(std::string_view token, std::int64_t& value) {
+  const char* first = token.data();
+  const char* last = first + token.size();
+  if (first != last && *first == '+') ++first;
+  const auto [end, error] = std::from_chars(first, last, value);
+  return error == std::errc() && end == last && first != last;
+}
+
+bool Scanner::is_break(std::size_t at) const {
+  return at >= text_.size() || text_[at] == '\n' || (comment_ && text_[at] == comment_);
+}
+
+std::size_t Scanner::continuation_length(std::size_t at) const {
+  if (!continues_ || text_[at] != '\\') return 0;
+  if (at + 1 < text_.size() && text_[at + 1] == '\n') return 2;
+  if (at + 2 < text_.size() && text_[at + 1] == '\r' && text_[at + 2] == '\n') return 3;
+  return 0;
+}
+
+void Scanner::skip_blanks() {
+  while (at_ < text_.size()) {
+    if (is_blank(text_[at_])) ++at_;
+    else if (const std::size_t length = continuation_length(at_)) at_ += length;
+    else return;
+  }
+}
+
+bool Scanner::at_line_end() {
+  skip_blanks();
+  return is_break(at_);
+}
+
+void Scanner::next_line() {
+  while (at_ < text_.size() && text_[at_] != '\n') at_ += std::max<std::size_t>(1, continuation_length(at_));
+  if (at_ < text_.size()) ++at_;
+}
+
+bool Scanner::at_text_end() {
+  while (at_line_end()) {
+    if (at_ >= text_.size()) return true;
+    next_line();
+  }
+  return false;
+}
+
+std::string_view Scanner::token() {
+  if (at_line_end()) return {};
+  const std::size_t begin = at_;
+  while (!is_break(at_) && !is_blank(text_[at_]) && !continuation_length(at_)) ++at_;
+  return text_.substr(begin, at_ - begin);
+}
+
+std::string_view Scanner::token_anywhere(const char* expected) {
+  if (at_text_end()) fail(expected);
+  return token();
+}
+
+double Scanner::number(const char* expected, std::uint64_t* at) {
+  const std::string_view text = token();
+  const std::size_t begin = at_ - text.size();
+  double value = 0;
+  if (text.empty() || !parse_double(text, value)) fail(expected, begin);
+  if (!std::isfinite(value)) fail(std::string(expected) + " that is finite", begin);
+  if (at) *at = begin;
+  return value;
+}
+
+std::int64_t Scanner::integer(const char* expected) {
+  const std::string_view text = token();
+  std::int64_t value = 0;
+  if (!parse_integer(text, value)) fail(expected, at_ - text.size());
+  return value;
+}
+
+std::int64_t Scanner::integer_anywhere(const char* expected) {
+  if (at_text_end()) fail(expected);
+  return integer(expected);
+}
+
+Vec3d Scanner::triple(const char* expected, NumberTriple& at) {
+  Vec3d value;
+  for (int k = 0; k < 3; ++k) value[k] = number(expected, &at.at[k]);
+  return value;
+}
+
+void Scanner::fail(const std::string& expected, std::size_t at) const {
+  at = std::min(at, text_.size());
+  const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  std::size_t end = at;
+  while (!is_break(end) && !is_blank(text_[end])) ++end;
+  const std::string found = at >= text_.size() ? "the end of the file"
+                            : end == at        ? "the end of the line"
+                                               : "'" + shown(text_.substr(at, end - at)) + "'";
+  throw InvalidInput(fmt::format("{}, line {}: expected {}, got {}", path_, line, expected, found));
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "vdb_offset/io/mesh_file.h"
+
+namespace vdb_offset::io {
+
+/// Walks over the text of a mesh file, token by token, and knows how to say where something is wrong.
+class Scanner {
+ public:
+  /// `continues`: a backslash at the end of a line joins it to the next one (OBJ).
+  /// `comment`: the character that starts a comment, which counts as the end of its line; 0 for none.
+  Scanner(const std::string& path, std::string_view text, std::size_t at = 0, bool continues = false, char comment = 0)
+      : path_(path), text_(text), at_(at), continues_(continues), comment_(comment) {}
+
+  std::size_t position() const { return at_; }
+  std::size_t remaining() const { return text_.size() - at_; }
+  bool at_end() const { return at_ >= text_.size(); }
+
+  /// Skips blanks; true if nothing but the end of the line (or text) follows.
+  bool at_line_end();
+  /// Goes to the start of the next line.
+  void next_line();
+  /// Skips blanks, line ends and comments; true if there is no token left.
+  bool at_text_end();
+
+  /// The next token of this line; empty at its end.
+  std::string_view token();
+  /// The next token wherever it stands. \throw InvalidInput at the end of the text.
+  std::string_view token_anywhere(const char* expected);
+
+  /// A finite number that is the whole next token of this line. `at` receives its first byte.
+  double number(const char* expected, std::uint64_t* at = nullptr);
+  std::int64_t integer(const char* expected);
+  /// As integer(), but of a count or index that may stand on a later line.
+  std::int64_t integer_anywhere(const char* expected);
+  Vec3d triple(const char* expected, NumberTriple& at);
+
+  /// \throw InvalidInput `path, line N: expected ..., got ...` about the token at `at`.
+  [[noreturn]] void fail(const std::string& expected, std::size_t at) const;
+  [[noreturn]] void fail(const std::string& expected) const { fail(expected, at_); }
+
+ private:
+  bool is_break(std::size_t at) const;
+  std::size_t continuation_length(std::size_t at) const;
+  void skip_blanks();
+
+  const std::string& path_;
+  std::string_view text_;
+  std::size_t at_;
+  bool continues_;
+  char comment_;
+};
+
+/// True if `text` is `word` in any case; `word` is lower case.
+bool is_word(std::string_view text, std::string_view word);
+
+/// Parses a whole token as an integer; false if it is none or does not fit.
+bool parse_integer(std::string_view token, std::int64_t& value);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "vdb_offset/field.h"
+
+namespace vdb_offset {
+
+/// Face f of a leaf node looks along axis f / 2, downwards for even f and upwards for odd f.
+inline constexpr int kFaces = 6;
+inline constexpr int opposite(int face) { return face ^ 1; }
+
+/// A leaf node of both field grids, its raw buffers (voxel (i, j, k) at i << 6 | j << 3 | k) and its neighbours.
+struct GraphLeaf {
+  openvdb::FloatTree::LeafNodeType* phi;
+  openvdb::Int32Tree::LeafNodeType* closest;
+  std::array<std::int32_t, kFaces> neighbour;  ///< Index in the graph, or -1.
+
+  openvdb::Coord origin() const { return phi->origin(); }
+  /// 0 or 1; leaf nodes that share a face differ.
+  int colour() const { return (origin()[0] + origin()[1] + origin()[2]) / kLeafWidth & 1; }
+};
+
+/// The leaf nodes of a field as an array, each knowing those across its faces, so that a stencil never has to
+/// walk the tree. Leaf nodes belong to the grids' trees.
+class LeafGraph {
+ public:
+  explicit LeafGraph(FieldGrids& grids);
+
+  std::size_t size() const { return leaves_.size(); }
+  const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
+
+  /// The neighbour across a face; made, without active voxels, if there is none. Not thread-safe.
+  std::int32_t touch_neighbour(std::int32_t leaf, int face);
+
+ private:
+  void append(openvdb::FloatTree::LeafNodeType* phi, openvdb::Int32Tree::LeafNodeType* closest);
+
+  FieldGrids& grids_;
+  std::vector<GraphLeaf> leaves_;
+  std::unordered_map<openvdb::Coord, std::int32_t> index_of_;
+};
+
+/// A leaf node's voxels with one more on every side, filled from the leaf nodes across its faces. Voxels beyond an
+/// edge or a corner of the leaf node are not filled: stencils here look along the axes only.
+inline constexpr int kPaddedWidth = kLeafWidth + 2;
+inline constexpr int kPaddedVoxels = kPaddedWidth * kPaddedWidth * kPaddedWidth;
+inline constexpr std::array<int, 3> kPaddedStride = {kPaddedWidth * kPaddedWidth, kPaddedWidth, 1};
+inline constexpr std::array<int, 3> kLeafStride = {64, 8, 1};
+inline constexpr int padded_index(int i, int j, int k) {
+  return (i + 1) * kPaddedStride[0] + (j + 1) * kPaddedStride[1] + (k + 1);
+}
+
+/// Calls visit(padded index, voxel number) for the 64 voxels of the neighbour across `face`: its voxels that touch
+/// the leaf node, and where they stand in the padded block.
+template <class Visit>
+void for_each_halo_voxel(int face, Visit&& visit) {
+  const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const int padded = face % 2 ? kLeafWidth + 1 : 0, there = face % 2 ? 0 : kLeafWidth - 1;
+  for (int a = 0; a < kLeafWidth; ++a)
+    for (int b = 0; b < kLeafWidth; ++b)
+      visit(padded * kPaddedStride[axis] + (a + 1) * kPaddedStride[u] + (b + 1) * kPaddedStride[v],
+            there * kLeafStride[axis] + a * kLeafStride[u] + b * kLeafStride[v]);
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "vdb_offset/mesh.h"
+#include "vdb_offset/plan.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/progress.h"
+#include "vdb_offset/propagate.h"
+#include "vdb_offset/surface.h"
+#include "vdb_offset/sweep.h"
+
+namespace vdb_offset {
+
+/// What happens where fronts meet.
+enum class Collision {
+  Merge,  ///< The paper's weak solution: every vertex goes as far as phi allows; faces there may fold or collapse.
+};
+
+struct OffsetOptions {
+  double distance = 0;  ///< World units; negative is inward, 0 leaves everything where it is.
+  GridOptions grid;
+  Solver solver = Solver::Closest;
+  Collision collision = Collision::Merge;
+  WeldOptions weld;
+  int threads = 0;             ///< 0: as many as the machine has.
+  std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
+  bool keep_field = false;     ///< Hand the distance field out with the result.
+  ProgressCallback progress;   ///< See progress.h; may cancel.
+};
+
+/// Figures of a run, beside its result.
+struct OffsetStatistics {
+  MeshFacts facts;
+  GridPlan plan;
+  int threads = 0;
+  std::size_t active_voxels = 0, leaf_nodes = 0;
+  std::size_t phi_bytes = 0, closest_bytes = 0, gradient_bytes = 0;
+  std::array<double, kStageCount> seconds{};  ///< By Stage.
+  std::array<std::size_t, kVertexStateCount> vertices_by_state{};
+  std::size_t straight_vertices = 0;
+};
+
+struct OffsetResult {
+  std::vector<Vec3d> positions;     ///< One per input vertex, in the input's order.
+  std::vector<VertexState> states;  ///< One per input vertex.
+  std::vector<double> achieved;     ///< Exact unsigned distance to the input surface, world units.
+  OffsetStatistics statistics;
+  std::shared_ptr<DistanceField> field;  ///< Only with keep_field and a distance other than 0.
+};
+
+/// Offsets a mesh: the same vertices and faces, each vertex at `distance` from the surface or as near to that as
+/// its state says. The faces need not be manifold, closed or oriented; only the positions are new.
+/// The result does not depend on the number of threads. Concurrent calls are independent of each other.
+/// \throw InvalidInput for a mesh or an option that cannot be used, OutOfBudget before work that would not fit,
+/// Cancelled when the progress callback asks for it.
+OffsetResult offset(PolygonView mesh, const OffsetOptions& options);
+
+/// The same for a half-edge mesh, whose points are replaced. \pre no deleted elements.
+OffsetResult offset(Mesh& mesh, const OffsetOptions& options);
+
+/// Diagonal of the bounding box of the vertices that faces use, which percentages of a distance refer to.
+double used_diagonal(PolygonView mesh);
+
+/// What offset() would do, without doing it: the mesh's facts and the plan of the grid.
+OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options);
+
+}  // namespace vdb_offset

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "vdb_offset/field.h"
+#include "vdb_offset/surface.h"
+
+namespace vdb_offset {
+
+/// How fine the grid is. At most one of the two may be set; with neither the size is chosen (see plan_grid).
+struct GridOptions {
+  std::optional<double> voxel_size;           ///< World units, > 0.
+  std::optional<double> voxels_per_distance;  ///< > 0; the voxel size is |distance| / this.
+};
+
+/// What a run will need, known before it starts.
+struct GridPlan {
+  double voxel_size = 0;  ///< World units.
+  std::string reason;     ///< Why this size, in words.
+  double band = 0;        ///< Width on each side that is rasterised exactly.
+  Reach reach{};          ///< Width on each side that the field covers.
+  std::size_t leaf_nodes = 0, voxels = 0, bytes = 0;  ///< Estimates; bytes is the peak of the whole run.
+  double seconds = 0;                                 ///< Rough estimate for `threads` threads.
+};
+
+/// Chooses the voxel size and estimates the cost.
+///
+/// The grid serves directions only, distances are exact without it, so its voxel size is a smoothing length: the
+/// distance itself, no finer than half the median edge or diagonal / 1024, no coarser than diagonal / 64 or
+/// distance / 16, whichever is larger, and coarser still where `max_memory` (bytes; 0 for no limit) asks for it.
+/// A size that the caller gives is taken as it is.
+/// \pre distance != 0. \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
+GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
+                   int threads);
+
+}  // namespace vdb_offset

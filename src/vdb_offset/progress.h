@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+
+namespace vdb_offset {
+
+/// The stages of a run, in the order in which they happen.
+enum class Stage { Read, Rasterise, Sweep, Propagate, Limit, Write };
+inline constexpr std::size_t kStageCount = 6;
+
+/// Name of a stage as reports and progress bars spell it.
+const char* name(Stage stage);
+
+/// Called with a stage and the share of it that is done, 0..1. Return false to cancel: the call that works
+/// then throws Cancelled. Calls never overlap, but come from whichever thread has something to tell.
+using ProgressCallback = std::function<bool(Stage, double)>;
+
+/// Carries one stage's progress from many threads to one callback.
+class Progress {
+ public:
+  /// `total` units of work make up the stage. An empty callback costs nothing and never cancels.
+  Progress(const ProgressCallback& callback, Stage stage, std::size_t total);
+
+  /// Reports `count` more units. \throw Cancelled once the callback has returned false.
+  void advance(std::size_t count);
+
+ private:
+  void tell(std::size_t done);
+
+  const ProgressCallback& callback_;
+  Stage stage_;
+  std::size_t total_;
+  std::atomic<std::size_t> done_{0};
+  std::atomic<bool> cancelled_{false};
+  std::mutex mutex_;
+};
+
+}  // namespace vdb_offset

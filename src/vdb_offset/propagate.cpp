@@ -1,0 +1,282 @@
+#include "vdb_offset/propagate.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+
+namespace vdb_offset {
+namespace {
+
+// The stop is solved far below the promised 1e-6, so that rounding on the way to a file does not use it up.
+constexpr double kStopTolerance = 1e-9;
+constexpr double kReachedTolerance = 1e-6;
+// How much longer than the faces around a vertex alone ask for a straight path may be.
+constexpr double kStraightTolerance = 1e-3;
+// Below this the faces around a vertex turn away from its normal so far that a straight path says little.
+constexpr double kLeastStraightSlope = 0.2;
+// A step never leaves the ball of radius phi that is free of surface.
+constexpr double kFreeShare = 0.9;
+constexpr double kStepVoxels = 0.5;
+// A path may run this far, in distances, without getting anywhere before it counts as stopped.
+constexpr double kPatience = 0.5;
+constexpr int kMaxSteps = 400;
+
+/// Where a vertex starts to: unit direction, and the least cosine between it and the normals of its faces.
+struct Start {
+  Vec3d direction;
+  double slope;
+};
+
+double least_cosine(const Surface& surface, std::uint32_t vertex, const Vec3d& n, std::uint32_t* worst = nullptr) {
+  double least = 1;
+  for (const auto t : surface.triangles_around(vertex)) {
+    const Vec3d& normal = surface.triangle_normals[t];
+    if (normal.lengthSqr() == 0) continue;
+    const double cosine = normal.dot(n);
+    if (cosine >= least) continue;
+    least = cosine;
+    if (worst) *worst = t;
+  }
+  return least;
+}
+
+/// The angle-weighted normal; where faces turn away from it, a direction that more of them face (the most visible
+/// one, found by leaning towards the worst face in ever smaller steps); where faces cancel, the first face's normal.
+Start start_of(const Surface& surface, std::uint32_t vertex) {
+  Vec3d n = surface.vertex_normals[vertex];
+  if (!(n.lengthSqr() > 1e-12)) {
+    for (const auto t : surface.triangles_around(vertex))
+      if (surface.triangle_normals[t].lengthSqr() > 0) return {surface.triangle_normals[t], 0};
+    return {Vec3d(0.0), 0};
+  }
+  n.normalize();
+  Start best{n, least_cosine(surface, vertex, n)};
+  constexpr double kWellSeen = 0.3;
+  for (int i = 0; i < 40 && best.slope < kWellSeen; ++i) {
+    std::uint32_t worst = kNone;
+    least_cosine(surface, vertex, n, &worst);
+    if (worst == kNone) break;
+    n += surface.triangle_normals[worst] * (1.0 / (i + 2));
+    if (!(n.lengthSqr() > 1e-12)) break;
+    n.normalize();
+    const double slope = least_cosine(surface, vertex, n);
+    if (slope > best.slope) best = {n, slope};
+  }
+  return best;
+}
+
+/// One vertex on its way.
+class Traveller {
+ public:
+  Traveller(const ClosestQuery& query, const DirectionField& field, const DirectionSampler& sampler, double distance,
+            std::uint32_t vertex)
+      : query_(query),
+        sampler_(sampler),
+        surface_(query.surface()),
+        vertex_(vertex),
+        side_(distance < 0 ? -1 : 1),
+        target_(std::abs(distance)),
+        h_(field.voxel_size),
+        sided_(surface_.facts.closed() && surface_.facts.oriented()),
+        origin_(surface_.vertices[vertex]),
+        hint_(surface_.triangles_around(vertex).front()) {
+    const Start start = start_of(surface_, vertex);
+    normal_ = start.direction * side_;
+    slope_ = start.slope;
+  }
+
+  struct Arrival {
+    Vec3d position;
+    bool straight = false, outside_field = false;
+  };
+
+  Arrival run() {
+    if (normal_.lengthSqr() == 0) return {origin_};
+    if (const auto end = go_straight()) return {*end, true};
+    return march();
+  }
+
+ private:
+  struct Sample {
+    Vec3d x;
+    double phi;
+    Vec3d away;  // from the closest point to x, not normalised
+  };
+
+  Sample measure(const Vec3d& x) {
+    const Closest closest = query_(x, hint_);
+    hint_ = closest.triangle;
+    feature_ = closest.feature;
+    return {x, closest.distance, x - closest.point};
+  }
+  bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
+
+  /// The point at distance d on the line along the normal, if nothing but the faces around the vertex decides phi
+  /// on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
+  std::optional<Vec3d> go_straight() {
+    if (slope_ < kLeastStraightSlope) return std::nullopt;
+    const double longest = target_ / slope_ * (1 + kStraightTolerance);
+    double t = target_, before = 0, phi_before = 0;
+    for (int i = 0; i < 8; ++i) {
+      const double phi = measure(origin_ + normal_ * t).phi;
+      if (arrived(phi)) return nothing_in_the_way(t) ? std::optional(origin_ + normal_ * t) : std::nullopt;
+      if (phi < slope_ * t * (1 - kStraightTolerance) || phi <= phi_before) return std::nullopt;
+      const double next = t + (target_ - phi) * (t - before) / (phi - phi_before);
+      if (!(next > before) || next > longest) return std::nullopt;
+      before = t;
+      phi_before = phi;
+      t = next;
+    }
+    return std::nullopt;
+  }
+
+  /// Covers the line back to the vertex with balls that hold no surface. A line of length d needs none: it lies in
+  /// the ball around its end.
+  bool nothing_in_the_way(double t) {
+    constexpr double kNothingLeft = 1e-9;
+    for (t -= target_; t > kNothingLeft * target_;) {
+      const double phi = measure(origin_ + normal_ * t).phi;
+      if (phi < kFreeShare * slope_ * t) return false;
+      t -= phi * (1 - 1e-12);
+    }
+    return true;
+  }
+
+  /// The first point off the surface, on the side asked for.
+  std::optional<Sample> leave_surface() {
+    for (double step = 0.1 * std::min(target_, h_); step > 1e-7 * target_; step *= 0.25) {
+      const Sample sample = measure(origin_ + normal_ * step);
+      const bool free = sample.phi > kFreeShare * std::max(slope_, 0.02) * step;
+      const bool right = !sided_ || side_ * surface_.pseudonormal(hint_, feature_).dot(sample.away) > 0;
+      if (free && right) return sample;
+    }
+    return std::nullopt;
+  }
+
+  /// Unit velocity at x, a point whose distance to the surface is about phi: the vertex normal on the surface, the
+  /// smooth gradient from one voxel on, where its stencil no longer reaches across.
+  Vec3d velocity(const Vec3d& x, double phi, const Vec3d& fallback) {
+    Vec3d gradient;
+    if (!sampler_(x, side_, phi, gradient)) {
+      outside_ = true;
+      return fallback;
+    }
+    const double s = std::clamp(phi / h_, 0.0, 1.0), weight = s * s * (3 - 2 * s);
+    Vec3d v = gradient * (side_ * weight) + normal_ * (1 - weight);
+    return v.lengthSqr() > 1e-8 ? v.unit() : fallback;
+  }
+
+  Vec3d runge_kutta(const Sample& from, double step) {
+    const Vec3d fallback = from.phi > 0 ? from.away / from.phi : normal_;
+    const Vec3d k1 = velocity(from.x, from.phi, fallback), k2 = velocity(from.x + k1 * (step / 2), from.phi + step / 2, k1),
+                k3 = velocity(from.x + k2 * (step / 2), from.phi + step / 2, k2),
+                k4 = velocity(from.x + k3 * step, from.phi + step, k3);
+    const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
+    return from.x + (v.lengthSqr() > 1e-8 ? v : fallback) * step;
+  }
+
+  /// Between a point short of the target and one at or past it: Illinois' false position on the exact distance.
+  Vec3d cut(const Sample& near, const Sample& far) {
+    double a = 0, b = 1, fa = near.phi - target_, fb = far.phi - target_;
+    Vec3d x = far.x;
+    for (int i = 0; i < 100 && !arrived(fb + target_); ++i) {
+      const double t = (a * fb - b * fa) / (fb - fa);
+      x = near.x + (far.x - near.x) * t;
+      const double f = measure(x).phi - target_;
+      if (arrived(f + target_)) return x;
+      if ((f > 0) == (fb > 0)) {
+        b = t;
+        fb = f;
+        fa /= 2;
+      } else {
+        a = b;
+        fa = fb;
+        b = t;
+        fb = f;
+      }
+    }
+    return x;
+  }
+
+  Arrival march() {
+    const auto first = leave_surface();
+    if (!first) return {origin_};
+    Sample here = *first, best = here;
+    double since_best = 0;
+    for (int i = 0; i < kMaxSteps && since_best < kPatience * target_; ++i) {
+      if (here.phi >= target_) return {cut({origin_, 0, normal_}, here), false, outside_};
+      const double step = std::min({kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, 1e-3 * target_)});
+      const Sample next = measure(runge_kutta(here, step));
+      if (arrived(next.phi)) return {next.x, false, outside_};
+      if (next.phi > target_) return {cut(here, next), false, outside_};
+      since_best += step;
+      if (next.phi > best.phi * (1 + 1e-9)) {
+        if (next.phi - best.phi > 0.01 * step) since_best = 0;
+        best = next;
+      }
+      here = next;
+    }
+    return {best.x, false, outside_};
+  }
+
+  const ClosestQuery& query_;
+  const DirectionSampler& sampler_;
+  const Surface& surface_;
+  std::uint32_t vertex_;
+  int side_;
+  double target_, h_;
+  bool sided_;
+  Vec3d origin_, normal_;  // of the vertex; the normal points to the side asked for
+  double slope_;
+  std::uint32_t hint_;
+  Feature feature_ = Feature::Face;
+  bool outside_ = false;
+};
+
+}  // namespace
+
+const char* name(VertexState state) {
+  constexpr const char* kNames[kVertexStateCount] = {"reached", "collision", "limited", "outside_field", "unused"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+Paths propagate(const ClosestQuery& query, const DirectionField& directions, const PropagateOptions& options,
+                const ProgressCallback& callback) {
+  const Surface& surface = query.surface();
+  const std::size_t count = surface.vertices.size();
+  const double target = std::abs(options.distance), quantum = std::ldexp(1.0, std::ilogb(target) - 36);
+  Progress progress(callback, Stage::Propagate, count);
+  Paths paths;
+  paths.displacement.resize(count);
+  paths.achieved.resize(count);
+  paths.state.resize(count);
+  std::atomic<std::size_t> straight{0};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
+    const DirectionSampler sampler(directions);
+    std::size_t straight_here = 0;
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      const auto vertex = static_cast<std::uint32_t>(v);
+      const auto arrival = Traveller(query, directions, sampler, options.distance, vertex).run();
+      // Rounding the way, not the place, makes the result independent of where the mesh stands.
+      Vec3d way = (arrival.position - surface.vertices[v]) / quantum;
+      for (int k = 0; k < 3; ++k) way[k] = std::nearbyint(way[k]) * quantum;
+      paths.displacement[v] = way;
+      paths.achieved[v] = query(surface.vertices[v] + way, surface.triangles_around(vertex).front()).distance;
+      const bool reached = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target;
+      paths.state[v] = reached                 ? VertexState::Reached
+                       : arrival.outside_field ? VertexState::OutsideField
+                                               : VertexState::Collision;
+      straight_here += arrival.straight;
+    }
+    straight += straight_here;
+    progress.advance(range.size());
+  });
+  paths.straight = straight;
+  return paths;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/closest.h"
+#include "vdb_offset/directions.h"
+#include "vdb_offset/progress.h"
+
+namespace vdb_offset {
+
+/// What became of a vertex.
+enum class VertexState : std::uint8_t {
+  Reached,       ///< Its exact distance is the target's, to 1e-6 of it and the rounding of the coordinates.
+  Collision,     ///< Stopped short where the distance grows no further: at the medial axis, or closed in.
+  Limited,       ///< Held back to keep the result valid.
+  OutsideField,  ///< Left the voxels that the field covers before it arrived.
+  Unused,        ///< In no face; it stays where it is.
+};
+inline constexpr std::size_t kVertexStateCount = 5;
+const char* name(VertexState state);
+
+struct PropagateOptions {
+  double distance;  ///< World units, not 0; negative is inward.
+};
+
+/// Where each surface vertex went.
+struct Paths {
+  std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 |distance|.
+  std::vector<double> achieved;     ///< Exact unsigned distance of the end point to the surface.
+  std::vector<VertexState> state;
+  std::size_t straight = 0;  ///< Vertices whose whole path is one characteristic of the surface around them.
+};
+
+/// Moves every surface vertex to distance |d| from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
+/// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls).
+///
+/// A vertex whose straight path along its normal is a characteristic of the faces around it takes that path: one or
+/// two exact distances prove it, phi being 1-Lipschitz. All others march by RK4 along the smooth directions, in
+/// steps no longer than the exact distance, so that no path can cross the surface. The last step is cut where the
+/// exact distance is d; where the distance falls and does not recover, the path ends at its largest.
+/// The result does not depend on the number of threads.
+Paths propagate(const ClosestQuery& query, const DirectionField& directions, const PropagateOptions& options,
+                const ProgressCallback& progress = {});
+
+}  // namespace vdb_offset

@@ -1,0 +1,125 @@
+#include "vdb_offset/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "vdb_offset/memory.h"
+
+namespace vdb_offset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
+  const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+Json facts_json(const MeshFacts& facts) {
+  Json by_corners = Json::object();
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) {
+    by_corners[std::to_string(corners)] = count;
+    faces += count;
+  }
+  return {{"vertices", facts.vertices},
+          {"vertices_unused", facts.unused_vertices},
+          {"vertices_welded", facts.welded_vertices},
+          {"faces", faces},
+          {"faces_by_corners", by_corners},
+          {"components", facts.components},
+          {"boundary_edges", facts.boundary_edges},
+          {"non_manifold_edges", facts.non_manifold_edges},
+          {"degenerate_faces", facts.degenerate_faces},
+          {"orientation_conflicts", facts.orientation_conflicts},
+          {"closed", facts.closed()},
+          {"lower", {facts.lower[0], facts.lower[1], facts.lower[2]}},
+          {"upper", {facts.upper[0], facts.upper[1], facts.upper[2]}},
+          {"diagonal", facts.diagonal},
+          {"area", facts.area},
+          {"median_edge", facts.median_edge}};
+}
+
+Json grids_json(const OffsetStatistics& statistics) {
+  return {{"active_voxels", statistics.active_voxels},
+          {"leaf_nodes", statistics.leaf_nodes},
+          {"bytes",
+           {{"phi", statistics.phi_bytes}, {"closest_primitive", statistics.closest_bytes}, {"gradient", statistics.gradient_bytes}}},
+          {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
+          {"estimated_bytes", statistics.plan.bytes}};
+}
+
+}  // namespace
+
+const char* version() { return VDB_OFFSET_VERSION; }
+
+AchievedSummary summarise(const OffsetResult& result, double distance) {
+  AchievedSummary summary;
+  const double target = std::abs(distance);
+  std::vector<double> achieved;
+  std::size_t reached = 0;
+  for (std::size_t v = 0; v < result.states.size(); ++v) {
+    if (result.states[v] == VertexState::Unused) continue;
+    achieved.push_back(result.achieved[v]);
+    if (result.states[v] != VertexState::Reached) continue;
+    ++reached;
+    if (target > 0)
+      summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(result.achieved[v] - target) / target);
+  }
+  summary.vertices = achieved.size();
+  if (achieved.empty()) return summary;
+  summary.share_reached = static_cast<double>(reached) / static_cast<double>(achieved.size());
+  double sum = 0;
+  for (const double x : achieved) sum += x;
+  summary.mean = sum / static_cast<double>(achieved.size());
+  const auto [least, most] = std::minmax_element(achieved.begin(), achieved.end());
+  summary.least = *least;
+  summary.most = *most;
+  summary.quantile_01 = quantile(achieved, 0.01);
+  summary.quantile_05 = quantile(achieved, 0.05);
+  summary.median = quantile(achieved, 0.5);
+  return summary;
+}
+
+std::string report_json(const OffsetResult& result, const RunFacts& run) {
+  const OffsetStatistics& statistics = result.statistics;
+  Json options = Json::object(), seconds = Json::object(), states = Json::object();
+  for (const auto& [key, value] : run.options) options[key] = value;
+  for (std::size_t s = 0; s < kStageCount; ++s) seconds[name(static_cast<Stage>(s))] = statistics.seconds[s];
+  seconds["total"] = run.total_seconds;
+  for (std::size_t s = 0; s < kVertexStateCount; ++s)
+    states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
+  const AchievedSummary achieved = summarise(result, run.distance);
+  const Json report = {
+      {"version", version()},
+      {"input", run.input},
+      {"output", run.output},
+      {"options", options},
+      {"distance", run.distance},
+      {"distance_as_given", run.distance_text},
+      {"voxel_size", statistics.plan.voxel_size},
+      {"voxel_size_reason", statistics.plan.reason},
+      {"threads", statistics.threads},
+      {"mesh", facts_json(statistics.facts)},
+      {"grid", grids_json(statistics)},
+      {"seconds", seconds},
+      {"peak_memory_bytes", peak_memory()},
+      {"vertices_by_state", states},
+      {"vertices_straight", statistics.straight_vertices},
+      {"achieved",
+       {{"vertices", achieved.vertices},
+        {"share_reached", achieved.share_reached},
+        {"least", achieved.least},
+        {"quantile_01", achieved.quantile_01},
+        {"quantile_05", achieved.quantile_05},
+        {"median", achieved.median},
+        {"mean", achieved.mean},
+        {"most", achieved.most},
+        {"worst_reached_error", achieved.worst_reached_error}}}};
+  return report.dump(2) + "\n";
+}
+
+}  // namespace vdb_offset

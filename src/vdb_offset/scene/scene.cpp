@@ -1,0 +1,277 @@
+#include "vdb_offset/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/scene/shapes.h"
+
+namespace vdb_offset::scene {
+namespace {
+
+using nlohmann::json;
+
+/// An object of the scene. Every key must be asked for by the time finish() is called, so that a mistyped one is
+/// told and not ignored.
+class Reader {
+ public:
+  Reader(const std::string& path, std::string where, const json& object) : path_(path), where_(std::move(where)), object_(object) {
+    if (!object.is_object()) fail("an object");
+  }
+  [[noreturn]] void fail(const std::string& expected) const {
+    throw InvalidInput(fmt::format("{}: expected {} at '{}'", path_, expected, where_));
+  }
+  const json* find(const char* key) {
+    asked_.insert(key);
+    const auto at = object_.find(key);
+    return at == object_.end() ? nullptr : &*at;
+  }
+  Reader object(const char* key) {
+    const json* value = find(key);
+    return {path_, below(key), value ? *value : fail_missing(key, "an object")};
+  }
+  double number(const char* key) {
+    const json* value = find(key);
+    if (!value || !value->is_number()) fail_missing(key, "a number");
+    return value->get<double>();
+  }
+  double number(const char* key, double otherwise) { return find(key) ? number(key) : otherwise; }
+  std::optional<double> optional_number(const char* key) { return find(key) ? std::optional(number(key)) : std::nullopt; }
+  int count(const char* key) {
+    const json* value = find(key);
+    if (!value || !value->is_number_integer()) fail_missing(key, "a whole number");
+    const auto wide = value->get<std::int64_t>();
+    if (wide < 0 || wide > 1000000000) fail_missing(key, "a whole number from 0 to 1e9");
+    return static_cast<int>(wide);
+  }
+  std::string text(const char* key) {
+    const json* value = find(key);
+    if (!value || !value->is_string()) fail_missing(key, "a text");
+    return value->get<std::string>();
+  }
+  bool flag(const char* key, bool otherwise) {
+    const json* value = find(key);
+    if (!value) return otherwise;
+    if (!value->is_boolean()) fail_missing(key, "true or false");
+    return value->get<bool>();
+  }
+  Vec3d vector(const char* key) {
+    const json* value = find(key);
+    if (!value || !value->is_array() || value->size() != 3) fail_missing(key, "three numbers");
+    Vec3d v;
+    for (int k = 0; k < 3; ++k) {
+      if (!(*value)[static_cast<std::size_t>(k)].is_number()) fail_missing(key, "three numbers");
+      v[k] = (*value)[static_cast<std::size_t>(k)].get<double>();
+    }
+    return v;
+  }
+  void finish() const {
+    for (const auto& [key, value] : object_.items())
+      if (!asked_.contains(key)) throw InvalidInput(fmt::format("{}: expected no key '{}'", path_, below(key)));
+  }
+  [[noreturn]] const json& fail_missing(const std::string& key, const std::string& expected) const {
+    throw InvalidInput(fmt::format("{}: expected {} at '{}'", path_, expected, below(key)));
+  }
+
+ private:
+  std::string below(const std::string& key) const { return where_.empty() ? key : where_ + "." + key; }
+
+  const std::string& path_;
+  std::string where_;
+  const json& object_;
+  std::set<std::string, std::less<>> asked_;
+};
+
+Polygons make_shape(Reader shape) {
+  static const std::map<std::string, std::function<Polygons(Reader&)>> kMakers = {
+      {"icosphere", [](Reader& r) { return icosphere(r.number("radius"), r.count("subdivisions")); }},
+      {"uv_sphere", [](Reader& r) { return uv_sphere(r.number("radius"), r.count("segments"), r.count("rings")); }},
+      {"cube",
+       [](Reader& r) { return box(Vec3d(r.number("side")), r.count("divisions"), r.flag("triangles", false)); }},
+      {"torus",
+       [](Reader& r) { return torus(r.number("major"), r.number("minor"), r.count("segments"), r.count("sides")); }},
+      {"cylinder",
+       [](Reader& r) {
+         return cylinder(r.number("radius"), r.number("height"), r.count("segments"), r.count("stacks"), r.count("rings"));
+       }},
+      {"plates",
+       [](Reader& r) { return plates(r.number("width"), r.number("thickness"), r.number("gap"), r.count("divisions")); }},
+      {"wedge",
+       [](Reader& r) { return wedge(r.number("angle"), r.number("length"), r.number("width"), r.count("divisions")); }},
+      {"room_corner", [](Reader& r) { return room_corner(r.number("side"), r.count("divisions")); }},
+      {"diffuser",
+       [](Reader& r) { return diffuser(r.number("inlet"), r.number("outlet"), r.number("length"), r.count("divisions")); }},
+      {"naca_wing",
+       [](Reader& r) {
+         return naca_wing(r.text("digits"), r.number("chord"), r.number("span"), r.count("points"), r.count("stacks"));
+       }},
+      {"gear",
+       [](Reader& r) {
+         return gear(r.count("teeth"), r.number("root_radius"), r.number("tip_radius"), r.number("bore_radius"),
+                     r.number("thickness"), r.count("stacks"));
+       }},
+      {"bumpy_sphere",
+       [](Reader& r) {
+         return bumpy_sphere(r.number("radius"), r.number("amplitude"), r.number("frequency"),
+                             static_cast<unsigned>(r.count("seed")), r.count("subdivisions"));
+       }},
+      {"hollow_box", [](Reader& r) { return hollow_box(r.number("side"), r.number("wall"), r.count("divisions")); }},
+      {"patch", [](Reader& r) { return patch(r.number("side"), r.number("amplitude", 0), r.count("divisions")); }},
+  };
+  const std::string type = shape.text("type");
+  const auto maker = kMakers.find(type);
+  if (maker == kMakers.end()) {
+    std::vector<std::string> names;
+    for (const auto& known : kMakers) names.push_back(known.first);
+    shape.fail(fmt::format("a type among {}, not '{}',", fmt::join(names, ", "), type));
+  }
+  Polygons mesh = maker->second(shape);
+  shape.finish();
+  return mesh;
+}
+
+Answer read_answer(Reader reader) {
+  const std::string form = reader.text("form");
+  Answer answer;
+  if (form == "sphere") {
+    answer.form = Answer::Form::Sphere;
+    answer.radius = reader.number("radius");
+  } else if (form == "box") {
+    answer.form = Answer::Form::Box;
+    answer.half = reader.vector("half");
+  } else if (form == "torus") {
+    answer.form = Answer::Form::Torus;
+    answer.major = reader.number("major");
+    answer.minor = reader.number("minor");
+  } else if (form == "shift") {
+    answer.form = Answer::Form::Shift;
+    answer.shift = reader.vector("shift");
+  } else {
+    reader.fail("a form among sphere, box, torus, shift");
+  }
+  reader.finish();
+  return answer;
+}
+
+Expectations read_expectations(Reader reader) {
+  Expectations expect;
+  expect.min_reached = reader.optional_number("min_reached");
+  expect.max_reached = reader.optional_number("max_reached");
+  expect.max_position_error = reader.optional_number("max_position_error");
+  if (reader.find("answer")) expect.answer = read_answer(reader.object("answer"));
+  if (expect.max_position_error && !expect.answer) reader.fail("an answer to measure 'max_position_error' against");
+  reader.finish();
+  return expect;
+}
+
+Distance read_distance(Reader& offset) {
+  const json* value = offset.find("distance");
+  if (value && value->is_string()) return parse_distance(value->get<std::string>());
+  return {offset.number("distance"), false};
+}
+
+json parse_file(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw ReadError(path + ": cannot be opened");
+  try {
+    return json::parse(file);
+  } catch (const json::exception& error) {
+    throw InvalidInput(fmt::format("{}: expected JSON: {}", path, error.what()));
+  }
+}
+
+}  // namespace
+
+Distance parse_distance(const std::string& text) {
+  Distance distance;
+  std::string_view number = text;
+  if (number.ends_with('%')) {
+    distance.percent = true;
+    number.remove_suffix(1);
+  }
+  if (number.starts_with('+')) number.remove_prefix(1);
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), distance.value);
+  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(distance.value))
+    throw InvalidInput(fmt::format("distance: expected a number of world units, or of percent as in '1.5%', got '{}'", text));
+  return distance;
+}
+
+Vec3d Answer::operator()(const Vec3d& source) const {
+  switch (form) {
+    case Form::Sphere: return source.unit() * radius;
+    case Form::Box: {
+      Vec3d clamped;
+      for (int k = 0; k < 3; ++k) clamped[k] = std::clamp(source[k], -half[k], half[k]);
+      return clamped;
+    }
+    case Form::Torus: {
+      const Vec3d centre = Vec3d(source[0], source[1], 0).unit() * major;
+      return centre + (source - centre).unit() * minor;
+    }
+    case Form::Shift: break;
+  }
+  return source + shift;
+}
+
+bool is_scene(const std::string& path) { return path.ends_with(".json") || path.ends_with(".JSON"); }
+
+Scene read_scene(const std::string& path) {
+  const json document = parse_file(path);
+  Reader root(path, "", document);
+  Scene scene;
+  scene.path = path;
+  if (root.find("description")) scene.description = root.text("description");
+  if (root.find("file"))
+    scene.mesh_path = (std::filesystem::path(path).parent_path() / root.text("file")).string();
+  else
+    scene.shape = make_shape(root.object("shape"));
+  Reader offset = root.object("offset");
+  scene.distance = read_distance(offset);
+  offset.finish();
+  if (root.find("grid")) {
+    Reader grid = root.object("grid");
+    scene.grid.voxel_size = grid.optional_number("voxel_size");
+    scene.grid.voxels_per_distance = grid.optional_number("voxels_per_distance");
+    if (grid.find("solver")) {
+      const std::string solver = grid.text("solver");
+      if (solver != "closest" && solver != "eikonal") grid.fail("a solver among closest, eikonal");
+      scene.solver = solver == "eikonal" ? Solver::Eikonal : Solver::Closest;
+    }
+    grid.finish();
+  }
+  if (root.find("expect")) scene.expect = read_expectations(root.object("expect"));
+  root.finish();
+  return scene;
+}
+
+std::vector<std::string> unmet(const Expectations& expect, PolygonView source, const OffsetResult& result) {
+  std::size_t used = 0, reached = 0;
+  double worst = 0;
+  for (std::size_t v = 0; v < result.states.size(); ++v) {
+    if (result.states[v] == VertexState::Unused) continue;
+    ++used;
+    if (result.states[v] != VertexState::Reached) continue;
+    ++reached;
+    if (expect.answer) worst = std::max(worst, (result.positions[v] - (*expect.answer)(source.positions[v])).length());
+  }
+  const double share = used ? static_cast<double>(reached) / static_cast<double>(used) : 0;
+  std::vector<std::string> failed;
+  if (expect.min_reached && share < *expect.min_reached)
+    failed.push_back(fmt::format("expected a share reached of at least {}, got {:.6f}", *expect.min_reached, share));
+  if (expect.max_reached && share > *expect.max_reached)
+    failed.push_back(fmt::format("expected a share reached of at most {}, got {:.6f}", *expect.max_reached, share));
+  if (expect.max_position_error && worst > *expect.max_position_error)
+    failed.push_back(fmt::format("expected positions within {} of the answer, got {:.3g}", *expect.max_position_error, worst));
+  return failed;
+}
+
+}  // namespace vdb_offset::scene

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/offset.h"
+
+namespace vdb_offset::scene {
+
+/// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
+/// use ("1.5%").
+struct Distance {
+  double value = 0;
+  bool percent = false;
+
+  double in_world_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
+};
+/// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
+Distance parse_distance(const std::string& text);
+
+/// Where every reached vertex should be, in closed form.
+struct Answer {
+  enum class Form {
+    Sphere,  ///< At `radius` from the origin, on the ray from there.
+    Box,     ///< The source vertex, clamped to the box of half sizes `half` around the origin.
+    Torus,   ///< At `minor` from the circle of radius `major` around the z axis, on the ray from its centre.
+    Shift,   ///< The source vertex plus `shift`.
+  };
+  Form form = Form::Sphere;
+  double radius = 0, major = 0, minor = 0;
+  Vec3d half{0.0}, shift{0.0};
+
+  Vec3d operator()(const Vec3d& source) const;
+};
+
+struct Expectations {
+  std::optional<double> min_reached, max_reached;  ///< Share of the vertices in use.
+  std::optional<double> max_position_error;        ///< World units; needs an answer.
+  std::optional<Answer> answer;
+};
+
+/// A shape or a file, an offset, a grid, and what is expected: `scenes/*.json`, described in the README.
+struct Scene {
+  std::string path, description;
+  std::string mesh_path;  ///< Of a scene that names a file; else empty and `shape` holds the mesh.
+  Polygons shape;
+  Distance distance;
+  GridOptions grid;
+  Solver solver = Solver::Closest;
+  Expectations expect;
+};
+
+/// True of file names that end in .json.
+bool is_scene(const std::string& path);
+
+/// \throw ReadError if the file cannot be opened, InvalidInput (file, key, what was expected) for what is no scene.
+Scene read_scene(const std::string& path);
+
+/// What a result does not fulfil, in words; empty if all is as expected.
+std::vector<std::string> unmet(const Expectations& expect, PolygonView source, const OffsetResult& result);
+
+}  // namespace vdb_offset::scene

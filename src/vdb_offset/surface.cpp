@@ -1,0 +1,308 @@
+#include "vdb_offset/surface.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/triangulate.h"
+
+namespace vdb_offset {
+namespace {
+
+template <class Work>
+void for_each_index(std::size_t count, Work&& work) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 2048), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+  });
+}
+
+void check(PolygonView polygons) {
+  if (polygons.face_count() == 0) throw InvalidInput("mesh: expected at least one face, got none");
+  // The guard leaves room for the two triangles fewer than corners that each face gives.
+  if (polygons.corners.size() >= (std::size_t{1} << 31) / 3)
+    throw InvalidInput("mesh: expected fewer than 2^31 half-edges, got " + std::to_string(polygons.corners.size()) +
+                       " face corners");
+  if (polygons.face_begin.front() != 0 || polygons.face_begin.back() != polygons.corners.size())
+    throw InvalidInput("mesh: expected face_begin to run from 0 to the number of corners");
+  for (std::size_t f = 0; f < polygons.face_count(); ++f)
+    if (polygons.face_begin[f] > polygons.face_begin[f + 1] || polygons.face_begin[f + 1] - polygons.face_begin[f] < 3)
+      throw InvalidInput("mesh: expected at least 3 corners in face " + std::to_string(f));
+  for (const auto v : polygons.corners)
+    if (v >= polygons.positions.size())
+      throw InvalidInput("mesh: expected vertex indices below " + std::to_string(polygons.positions.size()) + ", got " +
+                         std::to_string(v));
+  for (const auto v : polygons.corners)
+    if (!polygons.positions[v].isFinite())
+      throw InvalidInput("mesh: expected finite coordinates, got a NaN or an infinity at vertex " + std::to_string(v));
+}
+
+std::uint64_t mix(std::uint64_t x) {
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93ULL;
+  x ^= x >> 32;
+  return x;
+}
+
+/// Finds the first vertex that stands where another one does. Open addressing over vertex numbers.
+class Welder {
+ public:
+  Welder(std::span<const Vec3d> positions, const WeldOptions& options, std::size_t count)
+      : positions_(positions), tolerance_(options.tolerance), slots_(std::bit_ceil(2 * count + 16), kNone) {}
+
+  /// The first vertex seen within the tolerance of vertex v: v itself if there is none.
+  std::uint32_t first_at(std::uint32_t v) {
+    if (tolerance_ > 0)
+      if (const std::uint32_t near = search_around(v); near != kNone) return near;
+    const auto key = cell(positions_[v]);
+    std::size_t slot = hash(key) & (slots_.size() - 1);
+    for (; slots_[slot] != kNone; slot = (slot + 1) & (slots_.size() - 1))
+      if (tolerance_ == 0 && positions_[slots_[slot]] == positions_[v]) return slots_[slot];
+    return slots_[slot] = v;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+
+  /// The position's bits for exact welding (with -0 as 0), else the cell of side `tolerance` around it.
+  Cell cell(const Vec3d& p) const {
+    Cell c;
+    for (int k = 0; k < 3; ++k)
+      c[k] = tolerance_ > 0 ? static_cast<std::int64_t>(std::floor(p[k] / tolerance_)) : std::bit_cast<std::int64_t>(p[k] + 0.0);
+    return c;
+  }
+  static std::size_t hash(const Cell& c) {
+    return mix(static_cast<std::uint64_t>(c[0]) + mix(static_cast<std::uint64_t>(c[1]) + mix(static_cast<std::uint64_t>(c[2]))));
+  }
+  std::uint32_t search_around(std::uint32_t v) const {
+    const Cell centre = cell(positions_[v]);
+    std::uint32_t best = kNone;
+    for (int n = 0; n < 27; ++n) {
+      const Cell c = {centre[0] + n / 9 - 1, centre[1] + n / 3 % 3 - 1, centre[2] + n % 3 - 1};
+      for (std::size_t s = hash(c) & (slots_.size() - 1); slots_[s] != kNone; s = (s + 1) & (slots_.size() - 1))
+        if (slots_[s] < best && cell(positions_[slots_[s]]) == c &&
+            (positions_[slots_[s]] - positions_[v]).length() <= tolerance_)
+          best = slots_[s];
+    }
+    return best;
+  }
+
+  std::span<const Vec3d> positions_;
+  double tolerance_;
+  std::vector<std::uint32_t> slots_;
+};
+
+void check(PolygonView polygons, const WeldOptions& options) {
+  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
+    throw InvalidInput("weld: expected a tolerance >= 0, got " + std::to_string(options.tolerance));
+  if (options.tolerance == 0) return;
+  for (const auto v : polygons.corners)
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(polygons.positions[v][k]) > 0x1p52 * options.tolerance)
+        throw InvalidInput("weld: expected a tolerance above the rounding of the coordinates (use bit-equal welding)");
+}
+
+void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
+  check(polygons, options);
+  const std::size_t count = polygons.positions.size();
+  std::vector<std::uint8_t> used(count, 0);
+  for (const auto v : polygons.corners) used[v] = 1;
+  surface.welded.assign(count, kNone);
+  Welder welder(polygons.positions, options, options.enabled ? count : 0);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    if (!used[v]) continue;
+    const std::uint32_t first = options.enabled ? welder.first_at(v) : v;
+    if (first == v) {
+      surface.welded[v] = static_cast<std::uint32_t>(surface.vertices.size());
+      surface.vertices.push_back(polygons.positions[v]);
+      surface.representative.push_back(v);
+    } else {
+      surface.welded[v] = surface.welded[first];
+    }
+  }
+  surface.facts.vertices = count;
+  surface.facts.unused_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+  surface.facts.welded_vertices = surface.vertices.size();
+}
+
+/// Triangulates every face and remembers, for counting, which polygon a triangle came from.
+std::vector<std::uint32_t> split_faces(PolygonView polygons, Surface& surface) {
+  std::vector<std::uint32_t> face_of, face;
+  surface.triangles.reserve(polygons.corners.size() - 2 * polygons.face_count());
+  face_of.reserve(surface.triangles.capacity());
+  for (std::size_t f = 0; f < polygons.face_count(); ++f) {
+    face.clear();
+    for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
+    ++surface.facts.faces_by_corners[face.size()];
+    triangulate(surface.vertices, face, surface.triangles);
+    face_of.resize(surface.triangles.size(), static_cast<std::uint32_t>(f));
+  }
+  return face_of;
+}
+
+std::uint32_t from(const Surface& s, std::uint32_t half_edge) { return s.triangles[half_edge / 3][half_edge % 3]; }
+std::uint32_t to(const Surface& s, std::uint32_t half_edge) { return s.triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
+
+/// Half-edges bucketed by their smaller end, in order; in a bucket, those with the same larger end make an edge.
+template <class Visit>
+void for_each_edge(const Surface& surface, Visit&& visit) {
+  const auto half_edges = static_cast<std::uint32_t>(3 * surface.triangles.size());
+  std::vector<std::uint32_t> begin(surface.vertices.size() + 2, 0), bucket(half_edges);
+  const auto smaller = [&](std::uint32_t e) { return std::min(from(surface, e), to(surface, e)); };
+  const auto larger = [&](std::uint32_t e) { return std::max(from(surface, e), to(surface, e)); };
+  for (std::uint32_t e = 0; e < half_edges; ++e) ++begin[smaller(e) + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (std::uint32_t e = 0; e < half_edges; ++e) bucket[begin[smaller(e) + 1]++] = e;
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+    const auto first = bucket.begin() + begin[v], last = bucket.begin() + begin[v + 1];
+    std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(larger(a), a) < std::pair(larger(b), b);
+    });
+    for (auto run = first; run != last;) {
+      auto end = run;
+      while (end != last && larger(*end) == larger(*run)) ++end;
+      if (larger(*run) != v) visit(std::span<const std::uint32_t>(run, end));  // a repeated corner makes no edge
+      run = end;
+    }
+  }
+}
+
+std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t x) {
+  while (parent[x] != x) x = parent[x] = parent[parent[x]];
+  return x;
+}
+
+void join(Surface& surface, const std::vector<std::uint32_t>& face_of, std::size_t face_count) {
+  MeshFacts& facts = surface.facts;
+  surface.next_around_edge.resize(3 * surface.triangles.size());
+  std::iota(surface.next_around_edge.begin(), surface.next_around_edge.end(), 0u);
+  std::vector<std::uint32_t> parent(face_count);
+  std::iota(parent.begin(), parent.end(), 0u);
+  std::vector<double> lengths;
+  lengths.reserve(surface.triangles.size() * 3 / 2);
+  for_each_edge(surface, [&](std::span<const std::uint32_t> edge) {
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      surface.next_around_edge[edge[i]] = edge[(i + 1) % edge.size()];
+      parent[root(parent, face_of[edge[i] / 3])] = root(parent, face_of[edge[0] / 3]);
+    }
+    facts.boundary_edges += edge.size() == 1;
+    facts.non_manifold_edges += edge.size() > 2;
+    facts.orientation_conflicts += edge.size() == 2 && from(surface, edge[0]) == from(surface, edge[1]);
+    lengths.push_back((surface.vertices[from(surface, edge[0])] - surface.vertices[to(surface, edge[0])]).length());
+  });
+  for (std::uint32_t f = 0; f < face_count; ++f) facts.components += parent[f] == f;
+  if (!lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    facts.median_edge = *middle;
+  }
+}
+
+void list_incident_triangles(Surface& surface) {
+  auto& begin = surface.incident_begin;
+  begin.assign(surface.vertices.size() + 2, 0);
+  for (const auto& t : surface.triangles)
+    for (const auto v : t) ++begin[v + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  surface.incident.resize(3 * surface.triangles.size());
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    for (const auto v : surface.triangles[t]) surface.incident[begin[v + 1]++] = t;
+  begin.pop_back();
+}
+
+struct TriangleShape {
+  Vec3d normal;  // unit, or zero for a needle
+  double area;
+};
+
+TriangleShape shape_of(const Surface& surface, std::size_t t) {
+  const auto& [i, j, k] = surface.triangles[t];
+  const Vec3d ab = surface.vertices[j] - surface.vertices[i], ac = surface.vertices[k] - surface.vertices[i],
+              bc = ac - ab, n = ab.cross(ac);
+  if (is_needle(n.lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}))) return {Vec3d(0.0), 0};
+  const double twice = n.length();
+  return {n / twice, twice / 2};
+}
+
+void measure(PolygonView polygons, const std::vector<std::uint32_t>& face_of, Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  facts.lower = facts.upper = surface.vertices.front();
+  for (const Vec3d& p : surface.vertices) {
+    facts.lower = openvdb::math::minComponent(facts.lower, p);
+    facts.upper = openvdb::math::maxComponent(facts.upper, p);
+  }
+  facts.diagonal = (facts.upper - facts.lower).length();
+  if (!std::isfinite(facts.diagonal))
+    throw InvalidInput("mesh: expected a bounding box with a finite diagonal, got coordinates too far apart");
+  std::vector<std::uint8_t> degenerate(polygons.face_count(), 1);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const double area = shape_of(surface, t).area;
+    facts.area += area;
+    if (area > 0) degenerate[face_of[t]] = 0;
+  }
+  std::vector<std::uint32_t> face;
+  for (std::size_t f = 0; f < polygons.face_count(); ++f) {
+    face.clear();
+    for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
+    std::sort(face.begin(), face.end());
+    if (std::adjacent_find(face.begin(), face.end()) != face.end()) degenerate[f] = 1;
+  }
+  facts.degenerate_faces = static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
+}
+
+double angle_at(const Vec3d& tip, const Vec3d& a, const Vec3d& b) {
+  const Vec3d u = a - tip, v = b - tip;
+  return std::atan2(u.cross(v).length(), u.dot(v));
+}
+
+}  // namespace
+
+Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
+  if (feature == Feature::Face) return triangle_normals[triangle];
+  const auto f = static_cast<std::uint32_t>(feature);
+  if (f < 3) return vertex_normals[triangles[triangle][f]];
+  const std::uint32_t first = 3 * triangle + (f - 3);
+  Vec3d sum = triangle_normals[triangle];
+  for (std::uint32_t e = next_around_edge[first]; e != first; e = next_around_edge[e]) sum += triangle_normals[e / 3];
+  return sum;
+}
+
+Surface build_surface(PolygonView polygons, const WeldOptions& options) {
+  check(polygons);
+  Surface surface;
+  weld(polygons, options, surface);
+  const std::vector<std::uint32_t> face_of = split_faces(polygons, surface);
+  join(surface, face_of, polygons.face_count());
+  list_incident_triangles(surface);
+  measure(polygons, face_of, surface);
+  return surface;
+}
+
+void place(Surface& surface, double voxel_size) {
+  const double leaf = 8 * voxel_size;
+  for (int k = 0; k < 3; ++k) surface.origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);
+  for_each_index(surface.vertices.size(), [&](std::size_t v) { surface.vertices[v] -= surface.origin; });
+  surface.triangle_normals.resize(surface.triangles.size());
+  for_each_index(surface.triangles.size(),
+                 [&](std::size_t t) { surface.triangle_normals[t] = shape_of(surface, t).normal; });
+  surface.vertex_normals.resize(surface.vertices.size());
+  for_each_index(surface.vertices.size(), [&](std::size_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    Vec3d sum(0.0);
+    for (const auto t : surface.triangles_around(vertex)) {
+      const auto& corners = surface.triangles[t];
+      for (int k = 0; k < 3; ++k)
+        if (corners[k] == vertex)
+          sum += surface.triangle_normals[t] * angle_at(surface.vertices[vertex], surface.vertices[corners[(k + 1) % 3]],
+                                                        surface.vertices[corners[(k + 2) % 3]]);
+    }
+    surface.vertex_normals[v] = sum;
+  });
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "vdb_offset/point_triangle.h"
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset {
+
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Which vertices move as one. Bit-equal positions (hard edges, UV seams, STL corners) by default.
+struct WeldOptions {
+  bool enabled = true;
+  double tolerance = 0;  ///< World units, >= 0. Vertices closer than this are taken to stand where the first stands.
+};
+
+/// What a mesh is made of, counted on its polygons after welding.
+struct MeshFacts {
+  std::size_t vertices = 0;         ///< As in the input.
+  std::size_t unused_vertices = 0;  ///< In no face.
+  std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
+  std::map<std::size_t, std::size_t> faces_by_corners;
+  std::size_t components = 0;            ///< Of faces, joined over edges.
+  std::size_t boundary_edges = 0;        ///< With one face.
+  std::size_t non_manifold_edges = 0;    ///< With three faces or more.
+  std::size_t degenerate_faces = 0;      ///< With a repeated corner or no area.
+  std::size_t orientation_conflicts = 0; ///< Edges whose two faces run through it in the same direction.
+  Vec3d lower{0.0}, upper{0.0};          ///< Bounding box of the vertices in use, world units.
+  double diagonal = 0;                   ///< Of that box.
+  double area = 0;
+  double median_edge = 0;  ///< Median edge length of the triangulated surface.
+
+  bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
+  bool oriented() const { return orientation_conflicts == 0 && non_manifold_edges == 0; }
+};
+
+/// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
+///
+/// Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t. Lengths are in world units; positions are
+/// relative to `origin`, which place() puts on the voxel grid, so that every later figure is the same for a mesh
+/// that is moved by whole voxels.
+struct Surface {
+  Vec3d origin{0.0};
+  std::vector<Vec3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// The next half-edge around the same edge, cyclic: itself at a border, the twin on a manifold.
+  std::vector<std::uint32_t> next_around_edge;
+  std::vector<Vec3d> triangle_normals;  ///< Unit length; zero for a needle (see is_needle).
+  std::vector<Vec3d> vertex_normals;    ///< Sum of the incident triangles' normals times their angles there.
+  /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
+  std::vector<std::uint32_t> incident, incident_begin;
+  std::vector<std::uint32_t> representative;  ///< The input vertex whose position each surface vertex has.
+  std::vector<std::uint32_t> welded;          ///< Surface vertex of each input vertex; kNone if no face uses it.
+  MeshFacts facts;
+
+  std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
+    return std::span(incident).subspan(incident_begin[vertex], incident_begin[vertex + 1] - incident_begin[vertex]);
+  }
+  TrianglePoint closest_on(std::uint32_t triangle, const Vec3d& x) const {
+    const auto& t = triangles[triangle];
+    return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+  }
+  /// Not normalised; its dot product with x - closest point has the sign of the side that x lies on
+  /// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005).
+  Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;
+};
+
+/// Welds, triangulates, joins and counts. Origin and normals are left to place().
+/// \throw InvalidInput if there is no face, an index is out of range, a coordinate is not finite, or there are
+/// 2^31 triangles or more.
+Surface build_surface(PolygonView polygons, const WeldOptions& weld);
+
+/// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
+/// box, and computes its normals there. \pre voxel_size > 0, called once.
+void place(Surface& surface, double voxel_size);
+
+}  // namespace vdb_offset

@@ -1,0 +1,169 @@
+#include "args.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/memory.h"
+#include "vdb_offset/report.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+constexpr const char* kAbout =
+    "Offsets a mesh by a distance and keeps its topology: the same vertices in the same order, the same faces,\n"
+    "texture coordinates, groups and materials; only positions (and normals) change.";
+
+constexpr const char* kMore = R"(
+INPUT and OUTPUT end in .obj, .ply, .stl or .off; INPUT may also be a scene (.json), which brings its distance.
+D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
+below zero it is inward. Write --distance=-1% or --distance -1%.
+
+Examples:
+  vdb_offset bunny.obj bigger.obj --distance 1%         enlarge by 1 % of the diagonal
+  vdb_offset part.stl clearance.stl --distance -0.2     shrink by 0.2 units
+  vdb_offset wing.ply out.ply --distance 0.5% --report out.json --strict
+  vdb_offset big.obj out.obj --distance 2 --dry-run     what would it take?
+  vdb_offset scenes/torus.json torus.obj                a procedural scene
+
+Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
+met), 4 output; after Ctrl-C the process ends by that signal, and no output is left.
+Report keys, library and guarantees: see the README.)";
+
+/// Bytes with an optional suffix K, M, G or T (binary), as in "4G" or "1.5 GiB".
+std::size_t parse_size(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::string suffix;
+  for (const char* c = end; c != text.data() + text.size(); ++c)
+    if (*c != ' ') suffix += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
+  static const std::map<std::string, double> kUnits = {
+      {"", 1},        {"B", 1},         {"K", 0x1p10},   {"KB", 0x1p10},  {"KIB", 0x1p10}, {"M", 0x1p20},  {"MB", 0x1p20},
+      {"MIB", 0x1p20}, {"G", 0x1p30},    {"GB", 0x1p30},  {"GIB", 0x1p30}, {"T", 0x1p40},   {"TB", 0x1p40}, {"TIB", 0x1p40}};
+  const auto unit = kUnits.find(suffix);
+  if (error != std::errc() || unit == kUnits.end() || !(value > 0) || value * unit->second > 0x1p60)
+    throw UsageError(fmt::format("--max-memory: expected a size such as 4G or 512M, got '{}'", text));
+  return static_cast<std::size_t>(value * unit->second);
+}
+
+WeldOptions parse_weld(const std::string& text) {
+  WeldOptions weld;
+  if (text == "exact") return weld;
+  if (text == "none") {
+    weld.enabled = false;
+    return weld;
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), weld.tolerance);
+  if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) || !std::isfinite(weld.tolerance))
+    throw UsageError(fmt::format("--weld: expected 'none', 'exact' or a tolerance >= 0 in world units, got '{}'", text));
+  return weld;
+}
+
+/// What CLI11 fills in before it is checked.
+struct Raw {
+  std::string distance, max_memory, weld = "exact", collision = "merge", solver = "closest";
+  std::optional<double> voxel_size, voxels_per_distance;
+  int threads = 0;
+};
+
+void declare(CLI::App& app, Arguments& args, Raw& raw) {
+  app.add_option("INPUT", args.input, "Mesh to offset (.obj .ply .stl .off), or a scene (.json)")->required();
+  app.add_option("OUTPUT", args.output, "Mesh to write, by extension; may be the input")->required();
+  app.add_option("-d,--distance", raw.distance, "Distance: world units, or percent of the diagonal as in 1.5%; negative is inward")
+      ->type_name("D");
+  app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")->type_name("H");
+  app.add_option("--voxels-per-distance", raw.voxels_per_distance, "The same as D / N")->type_name("N");
+  app.add_option("--collision", raw.collision, "Where fronts meet: 'merge' lets vertices go as far as the distance grows [merge]")
+      ->type_name("MODE");
+  app.add_option("--solver", raw.solver, "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]")
+      ->type_name("NAME");
+  app.add_option("--weld", raw.weld, "Vertices that move as one: 'exact' (equal positions), 'none', or within TOL world units [exact]")
+      ->type_name("MODE");
+  app.add_option("--threads", raw.threads, "Threads; 0 takes all; the result is the same for any number [0]")->type_name("N");
+  app.add_option("--max-memory", raw.max_memory, "Refuse work that would need more, as in 4G [80 % of what is free]")->type_name("SIZE");
+  app.add_option("--report", args.report, "Write what happened as JSON")->type_name("FILE");
+  app.add_option("--save-vdb", args.vdb, "Write phi and the closest triangles as OpenVDB grids")->type_name("FILE");
+  app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use falls short of the distance");
+  app.add_flag("--dry-run", args.dry_run, "Read the input, print what would be done, write nothing");
+  app.add_flag("-q,--quiet", args.quiet, "Print nothing but errors");
+  app.add_flag("-v,--verbose", args.verbose, "Print the mesh's facts and the seconds of each stage");
+}
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw UsageError(message);
+}
+
+void check_names(const Arguments& args) {
+  require(scene::is_scene(args.input) || io::format_of(args.input),
+          args.input + ": expected an input that ends in .obj, .ply, .stl, .off or .json");
+  require(io::format_of(args.output).has_value(), args.output + ": expected an output that ends in .obj, .ply, .stl or .off");
+}
+
+void check(const Raw& raw, Arguments& args) {
+  check_names(args);
+  if (!raw.distance.empty()) {
+    try {
+      args.distance = scene::parse_distance(raw.distance);
+    } catch (const InvalidInput& error) {
+      throw UsageError(std::string("--") + error.what());
+    }
+    args.distance_text = raw.distance;
+  }
+  require(args.distance || scene::is_scene(args.input), "--distance: expected a distance (a scene alone brings its own)");
+  require(!(raw.voxel_size && raw.voxels_per_distance), "--voxel-size: expected it or --voxels-per-distance, got both");
+  for (const auto& [name, value] : {std::pair{"--voxel-size", raw.voxel_size}, {"--voxels-per-distance", raw.voxels_per_distance}})
+    require(!value || (*value > 0 && std::isfinite(*value)), fmt::format("{}: expected a number above 0", name));
+  args.options.grid = {raw.voxel_size, raw.voxels_per_distance};
+  require(raw.collision != "limit", "--collision: 'limit' is not available yet; expected 'merge'");
+  require(raw.collision == "merge", fmt::format("--collision: expected 'merge', got '{}'", raw.collision));
+  require(raw.solver == "closest" || raw.solver == "eikonal",
+          fmt::format("--solver: expected 'closest' or 'eikonal', got '{}'", raw.solver));
+  args.options.solver = raw.solver == "eikonal" ? Solver::Eikonal : Solver::Closest;
+  args.options.weld = parse_weld(raw.weld);
+  require(raw.threads >= 0 && raw.threads <= 4096, fmt::format("--threads: expected 0 to 4096, got {}", raw.threads));
+  args.options.threads = raw.threads;
+  require(!(args.quiet && args.verbose), "--quiet: expected it or --verbose, got both");
+  args.options.max_memory = raw.max_memory.empty() ? available_memory() / 5 * 4 : parse_size(raw.max_memory);
+}
+
+void note_options(const Raw& raw, Arguments& args) {
+  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "automatic"; };
+  args.in_force = {{"distance", raw.distance.empty() ? "from the scene" : raw.distance},
+                   {"voxel-size", number(raw.voxel_size)},
+                   {"voxels-per-distance", number(raw.voxels_per_distance)},
+                   {"collision", raw.collision},
+                   {"solver", raw.solver},
+                   {"weld", raw.weld},
+                   {"threads", fmt::format("{}", raw.threads)},
+                   {"max-memory", fmt::format("{}", args.options.max_memory)},
+                   {"strict", args.strict ? "true" : "false"}};
+}
+
+}  // namespace
+
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
+  CLI::App app(kAbout, "vdb_offset");
+  app.footer(kMore);
+  app.set_version_flag("-V,--version", std::string("vdb_offset ") + version());
+  Arguments args;
+  Raw raw;
+  declare(app, args, raw);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    app.exit(success);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(fmt::format("{} (--help lists the options)", error.what()));
+  }
+  check(raw, args);
+  note_options(raw, args);
+  return args;
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/scene/scene.h"
+
+namespace vdb_offset::tool {
+
+/// What the command line asks for.
+struct Arguments {
+  std::string input, output;
+  std::optional<scene::Distance> distance;  ///< Empty only for a scene, which brings its own.
+  std::string distance_text;
+  OffsetOptions options;  ///< All but the distance, which may need the mesh's diagonal, and progress.
+  std::string report, vdb;
+  bool strict = false, dry_run = false, quiet = false, verbose = false;
+  /// Every option's name and value in force, for the report.
+  std::vector<std::pair<std::string, std::string>> in_force;
+};
+
+/// A command line that cannot be carried out.
+struct UsageError : Error {
+  using Error::Error;
+};
+
+/// Parses the command line. Empty if it asked only for help or the version, which are then printed.
+/// \throw UsageError with one line that says what is wrong.
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv);
+
+}  // namespace vdb_offset::tool

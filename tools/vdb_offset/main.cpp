@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "args.h"
+#include "terminal.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/field.h"
+#include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/report.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 };
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// A mesh to offset: from a file, or made by a scene.
+struct Source {
+  std::optional<scene::Scene> scene;
+  std::optional<io::MeshFile> file;
+
+  PolygonView view() const { return file ? file->polygons.view() : scene->shape.view(); }
+};
+
+Source read_source(const std::string& path) {
+  Source source;
+  if (scene::is_scene(path)) source.scene = scene::read_scene(path);
+  if (!source.scene) source.file = io::read_mesh(path);
+  else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
+  return source;
+}
+
+/// Takes from a scene what the command line leaves open, and turns percent into world units.
+void settle_options(const Source& source, Arguments& args) {
+  if (source.scene) {
+    const scene::Scene& scene = *source.scene;
+    if (!args.distance) args.distance = scene.distance;
+    if (!args.options.grid.voxel_size && !args.options.grid.voxels_per_distance) args.options.grid = scene.grid;
+    if (scene.solver != Solver::Closest) args.options.solver = scene.solver;
+  }
+  const double diagonal = args.distance->percent ? used_diagonal(source.view()) : 0;
+  args.options.distance = args.distance->in_world_units(diagonal);
+  if (args.distance_text.empty())
+    args.distance_text = fmt::format("{}{}", args.distance->value, args.distance->percent ? "%" : "");
+}
+
+void print_facts(const OffsetStatistics& statistics) {
+  const MeshFacts& facts = statistics.facts;
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
+  fmt::print("mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n", facts.vertices,
+             facts.welded_vertices, facts.unused_vertices, faces, facts.components, facts.components == 1 ? "" : "s",
+             facts.diagonal);
+  fmt::print("           {} boundary edges, {} non-manifold edges, {} degenerate faces, {} orientation conflicts\n",
+             facts.boundary_edges, facts.non_manifold_edges, facts.degenerate_faces, facts.orientation_conflicts);
+}
+
+void print_plan(const OffsetStatistics& statistics, double distance) {
+  const GridPlan& plan = statistics.plan;
+  fmt::print("distance   {:.9g}\n", distance);
+  if (distance == 0) return;
+  fmt::print("voxel size {:.6g} ({})\n", plan.voxel_size, plan.reason);
+  fmt::print("estimate   {} leaf nodes, {} voxels, {:.1f} MiB, {:.2g} s on {} thread{}\n", plan.leaf_nodes, plan.voxels,
+             static_cast<double>(plan.bytes) / 1048576.0, plan.seconds, statistics.threads, statistics.threads == 1 ? "" : "s");
+}
+
+void print_summary(const Arguments& args, const OffsetResult& result, double total_seconds) {
+  const AchievedSummary achieved = summarise(result, args.options.distance);
+  const auto& states = result.statistics.vertices_by_state;
+  const auto in = [&](VertexState state) { return states[static_cast<std::size_t>(state)]; };
+  if (args.verbose) {
+    print_facts(result.statistics);
+    print_plan(result.statistics, args.options.distance);
+    for (std::size_t s = 0; s < kStageCount; ++s)
+      fmt::print("{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), result.statistics.seconds[s]);
+  }
+  fmt::print("{}: {} vertices at {:.6g}: {:.3f} % reached", args.output, achieved.vertices, args.options.distance,
+             100 * achieved.share_reached);
+  if (in(VertexState::Collision)) fmt::print(", {} stopped by collision", in(VertexState::Collision));
+  if (in(VertexState::OutsideField)) fmt::print(", {} outside the field", in(VertexState::OutsideField));
+  fmt::print(" ({:.2f} s)\n", total_seconds);
+}
+
+void write_outputs(const Arguments& args, const Source& source, OffsetResult& result, Clock::time_point start, double read_seconds) {
+  const auto writing = Clock::now();
+  std::string lost;
+  if (source.file) {
+    lost = io::write_mesh(args.output, *source.file, result.positions);
+  } else {
+    Polygons made = source.scene->shape;
+    made.positions = result.positions;
+    io::write_mesh(args.output, made.view());
+  }
+  result.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
+  result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!lost.empty() && !args.quiet) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, lost);
+  if (!args.vdb.empty() && result.field)
+    save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
+             {{"source", args.input}, {"offset_distance", fmt::format("{}", args.options.distance)}, {"made_by", std::string("vdb_offset ") + version()}});
+  if (args.report.empty()) return;
+  RunFacts facts;
+  facts.input = args.input;
+  facts.output = args.output;
+  facts.distance = args.options.distance;
+  facts.distance_text = args.distance_text;
+  facts.total_seconds = seconds_since(start);
+  facts.options = args.in_force;
+  write_file(args.report, report_json(result, facts));
+}
+
+int run(Arguments args) {
+  const auto start = Clock::now();
+  ProgressBar bar(!args.quiet);
+  args.options.progress = [&](Stage stage, double share) {
+    bar.show(stage, share);
+    return interrupted() == 0;
+  };
+  const Source source = read_source(args.input);
+  settle_options(source, args);
+  const double read_seconds = seconds_since(start);
+  if (args.dry_run) {
+    const OffsetStatistics statistics = plan_offset(source.view(), args.options);
+    print_facts(statistics);
+    print_plan(statistics, args.options.distance);
+    return kDone;
+  }
+  args.options.keep_field = !args.vdb.empty();
+  OffsetResult result = offset(source.view(), args.options);
+  bar.clear();
+  if (interrupted()) throw Cancelled();
+  write_outputs(args, source, result, start, read_seconds);
+  if (!args.quiet) print_summary(args, result, seconds_since(start));
+
+  const std::vector<std::string> failed =
+      source.scene ? scene::unmet(source.scene->expect, source.view(), result) : std::vector<std::string>{};
+  for (const std::string& expectation : failed) fmt::print(stderr, "vdb_offset: {}: {}\n", args.input, expectation);
+  if (!failed.empty()) return kProcessing;
+  const AchievedSummary achieved = summarise(result, args.options.distance);
+  if (!args.strict || achieved.share_reached == 1) return kDone;
+  fmt::print(stderr, "vdb_offset: --strict: {:.4f} % of the vertices fall short of the distance\n",
+             100 * (1 - achieved.share_reached));
+  return kProcessing;
+}
+
+int fail(ExitCode code, const char* message) {
+  fmt::print(stderr, "vdb_offset: {}\n", message);
+  return code;
+}
+
+/// Ends the way an uncaught signal would have, so that shells and scripts see it.
+int end_by_signal() {
+  std::signal(interrupted(), SIG_DFL);
+  std::raise(interrupted());
+  return kProcessing;
+}
+
+int guarded(int argc, char** argv) {
+  try {
+    auto args = parse_arguments(argc, argv);
+    return args ? run(std::move(*args)) : kDone;
+  } catch (const UsageError& error) {
+    return fail(kUsage, error.what());
+  } catch (const InvalidInput& error) {
+    return fail(kInput, error.what());
+  } catch (const ReadError& error) {
+    return fail(kInput, error.what());
+  } catch (const WriteError& error) {
+    return fail(kOutput, error.what());
+  } catch (const Cancelled&) {
+    return end_by_signal();
+  } catch (const std::bad_alloc&) {
+    return fail(kProcessing, "out of memory (see --max-memory and --voxel-size)");
+  } catch (const std::exception& error) {
+    return fail(kProcessing, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace vdb_offset::tool
+
+int main(int argc, char** argv) {
+  vdb_offset::tool::catch_interrupts();
+  return vdb_offset::tool::guarded(argc, argv);
+}

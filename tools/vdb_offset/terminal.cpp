@@ -1,0 +1,47 @@
+#include "terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+namespace vdb_offset::tool {
+namespace {
+
+volatile std::sig_atomic_t caught = 0;
+
+// The second signal ends the process at once: the handler is taken away by the first.
+void remember(int signal) { caught = signal; }
+
+}  // namespace
+
+ProgressBar::ProgressBar(bool wanted) : active_(wanted && isatty(STDERR_FILENO)) {}
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::show(Stage stage, double share) {
+  if (!active_) return;
+  constexpr int kWidth = 40;
+  const int filled = static_cast<int>(share * kWidth);
+  std::string line = fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);
+  if (line == shown_) return;
+  shown_ = std::move(line);
+  fmt::print(stderr, "\r{}", shown_);
+  std::fflush(stderr);
+}
+
+void ProgressBar::clear() {
+  if (!shown_.empty()) fmt::print(stderr, "\r{:{}}\r", "", shown_.size());
+  shown_.clear();
+}
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = remember;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+}
+
+int interrupted() { return caught; }
+
+}  // namespace vdb_offset::tool
