@@ -32,7 +32,7 @@ class ClosestQuery {
   const Surface& surface() const { return surface_; }
 
  private:
-  static constexpr int kWidth = 8;            // children of a box; two SSE or one AVX register of floats
+  static constexpr int kWidth = 8;               // children of a box; two SSE or one AVX register of floats
   static constexpr std::uint32_t kLeafSize = 4;  // triangles in a lowest box
 
   /// The boxes of eight siblings, coordinate by coordinate.

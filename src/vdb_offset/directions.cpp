@@ -23,7 +23,8 @@ struct PhiBlock {
     for (int face = 0; face < kFaces; ++face) {
       const auto neighbour = leaf.neighbour[static_cast<std::size_t>(face)];
       if (neighbour >= 0)
-        for_each_halo_voxel(face, [&](int padded, int n) { copy(graph[static_cast<std::size_t>(neighbour)], n, padded); });
+        for_each_halo_voxel(face,
+                            [&](int padded, int n) { copy(graph[static_cast<std::size_t>(neighbour)], n, padded); });
     }
   }
 

@@ -29,12 +29,14 @@ void replace_file(const std::string& path, const std::function<void(const std::s
   if (std::filesystem::is_directory(target)) throw WriteError(path + ": expected a file to write, got a folder");
   // A device or a pipe cannot be replaced by a rename; it is written to as it is.
   std::error_code ignored;
-  if (std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored)) return write(path);
+  if (std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored))
+    return write(path);
   // The ending stays last: writers that choose a format by it must see the same one.
   const std::string name = ".tmp-" + std::to_string(::getpid()) + "-" + target.filename().string();
   Remover temporary{(target.parent_path() / name).string()};
   write(temporary.path);
-  if (std::rename(temporary.path.c_str(), path.c_str()) != 0) throw WriteError(path + ": cannot be replaced: " + reason());
+  if (std::rename(temporary.path.c_str(), path.c_str()) != 0)
+    throw WriteError(path + ": cannot be replaced: " + reason());
   temporary.path.clear();
 }
 

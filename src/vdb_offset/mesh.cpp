@@ -13,8 +13,7 @@ Polygons to_polygons(const Mesh& mesh) {
   }
   polygons.face_begin.reserve(mesh.n_faces() + 1);
   for (const auto face : mesh.all_faces()) {
-    for (const auto vertex : mesh.fv_range(face))
-      polygons.corners.push_back(static_cast<std::uint32_t>(vertex.idx()));
+    for (const auto vertex : mesh.fv_range(face)) polygons.corners.push_back(static_cast<std::uint32_t>(vertex.idx()));
     polygons.close_face();
   }
   return polygons;

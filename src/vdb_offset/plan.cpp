@@ -12,8 +12,9 @@ namespace {
 
 // Trilinear samples at phi <= d need nodes within sqrt(3) voxels of there.
 constexpr double kHaloVoxels = 2.0;
-// The band holds both ends of every grid edge that the surface crosses, and so all of phi's sign changes.
-constexpr double kBandVoxels = 1.0;
+// The band holds both ends of every grid edge that the surface crosses, and so all of phi's sign changes; a little
+// more than one voxel, for the neighbours of a voxel that lies on the surface and so on neither side.
+constexpr double kBandVoxels = 1.01;
 // Leaf coordinates are packed in 21 bits each; 2^23 voxels keep clear of that.
 constexpr double kMaxVoxelsAcross = 8388608;
 

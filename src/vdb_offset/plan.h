@@ -17,10 +17,10 @@ struct GridOptions {
 
 /// What a run will need, known before it starts.
 struct GridPlan {
-  double voxel_size = 0;  ///< World units.
-  std::string reason;     ///< Why this size, in words.
-  double band = 0;        ///< Width on each side that is rasterised exactly.
-  Reach reach{};          ///< Width on each side that the field covers.
+  double voxel_size = 0;                              ///< World units.
+  std::string reason;                                 ///< Why this size, in words.
+  double band = 0;                                    ///< Width on each side that is rasterised exactly.
+  Reach reach{};                                      ///< Width on each side that the field covers.
   std::size_t leaf_nodes = 0, voxels = 0, bytes = 0;  ///< Estimates; bytes is the peak of the whole run.
   double seconds = 0;                                 ///< Rough estimate for `threads` threads.
 };

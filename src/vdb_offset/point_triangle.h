@@ -38,8 +38,8 @@ inline TrianglePoint closest_on_segment(const Vec3d& x, const Vec3d& a, const Ve
 inline TrianglePoint closest_on_edges(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using enum Feature;
   TrianglePoint best = closest_on_segment(x, a, b, Vertex0, Vertex1, Edge0);
-  for (const TrianglePoint& other : {closest_on_segment(x, b, c, Vertex1, Vertex2, Edge1),
-                                     closest_on_segment(x, c, a, Vertex2, Vertex0, Edge2)})
+  for (const TrianglePoint& other :
+       {closest_on_segment(x, b, c, Vertex1, Vertex2, Edge1), closest_on_segment(x, c, a, Vertex2, Vertex0, Edge2)})
     if (other.squared_distance < best.squared_distance) best = other;
   return best;
 }

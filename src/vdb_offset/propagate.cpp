@@ -24,6 +24,18 @@ constexpr double kStepVoxels = 0.5;
 // A path may run this far, in distances, without getting anywhere before it counts as stopped.
 constexpr double kPatience = 0.5;
 constexpr int kMaxSteps = 400;
+// Below this length the interpolated gradient is the rest of opposite ones and says nothing.
+constexpr double kLeastGradient = 1e-3;
+
+// Cosine-like agreement of gradient and vertex normal near the surface: from none of the former to all of it.
+constexpr double kLeaked = 0.0, kTrusted = 0.2;
+// How near, in voxels, that agreement matters. Farther out the two may well differ, at a medial axis for one.
+constexpr double kLeakVoxels = 0.3;
+
+double smooth_step(double x, double from, double to) {
+  const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
 
 /// Where a vertex starts to: unit direction, and the least cosine between it and the normals of its faces.
 struct Start {
@@ -91,29 +103,8 @@ class Traveller {
 
   struct Arrival {
     Vec3d position;
-    bool straight = false, outside_field = false;
+    bool outside_field = false;
   };
-
-  Arrival run() {
-    if (normal_.lengthSqr() == 0) return {origin_};
-    if (const auto end = go_straight()) return {*end, true};
-    return march();
-  }
-
- private:
-  struct Sample {
-    Vec3d x;
-    double phi;
-    Vec3d away;  // from the closest point to x, not normalised
-  };
-
-  Sample measure(const Vec3d& x) {
-    const Closest closest = query_(x, hint_);
-    hint_ = closest.triangle;
-    feature_ = closest.feature;
-    return {x, closest.distance, x - closest.point};
-  }
-  bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
 
   /// The point at distance d on the line along the normal, if nothing but the faces around the vertex decides phi
   /// on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
@@ -133,6 +124,44 @@ class Traveller {
     }
     return std::nullopt;
   }
+
+  /// Where the smooth directions lead.
+  Arrival march() {
+    const auto first = leave_surface();
+    if (!first) return {origin_};
+    Sample here = *first, best = here;
+    double since_best = 0;
+    for (int i = 0; i < kMaxSteps && since_best < kPatience * target_; ++i) {
+      if (here.phi >= target_) return {cut({origin_, 0, normal_}, here), outside_};
+      const double step =
+          std::min({kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, 1e-3 * target_)});
+      const Sample next = measure(runge_kutta(here, step));
+      if (arrived(next.phi)) return {next.x, outside_};
+      if (next.phi > target_) return {cut(here, next), outside_};
+      since_best += step;
+      if (next.phi > best.phi * (1 + 1e-9)) {
+        if (next.phi - best.phi > 0.01 * step) since_best = 0;
+        best = next;
+      }
+      here = next;
+    }
+    return {best.x, outside_};
+  }
+
+ private:
+  struct Sample {
+    Vec3d x;
+    double phi;
+    Vec3d away;  // from the closest point to x, not normalised
+  };
+
+  Sample measure(const Vec3d& x) {
+    const Closest closest = query_(x, hint_);
+    hint_ = closest.triangle;
+    feature_ = closest.feature;
+    return {x, closest.distance, x - closest.point};
+  }
+  bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
 
   /// Covers the line back to the vertex with balls that hold no surface. A line of length d needs none: it lies in
   /// the ball around its end.
@@ -157,26 +186,32 @@ class Traveller {
     return std::nullopt;
   }
 
-  /// Unit velocity at x, a point whose distance to the surface is about phi: the vertex normal on the surface, the
-  /// smooth gradient from one voxel on, where its stencil no longer reaches across.
+  /// Unit velocity at x, a point whose distance to the surface is about phi: the smooth gradient, or `fallback`
+  /// where there is none or where it vanishes. Just off the surface, a gradient that does not agree with the
+  /// vertex normal has leaked through a wall thinner than its stencil, and gives way to that normal.
   Vec3d velocity(const Vec3d& x, double phi, const Vec3d& fallback) {
     Vec3d gradient;
     if (!sampler_(x, side_, phi, gradient)) {
       outside_ = true;
       return fallback;
     }
-    const double s = std::clamp(phi / h_, 0.0, 1.0), weight = s * s * (3 - 2 * s);
-    Vec3d v = gradient * (side_ * weight) + normal_ * (1 - weight);
-    return v.lengthSqr() > 1e-8 ? v.unit() : fallback;
+    gradient *= side_;
+    const double away = phi / (kLeakVoxels * h_);
+    if (away < 1) {
+      const double agreement = smooth_step(gradient.dot(normal_), kLeaked, kTrusted);
+      gradient += normal_ * ((1 - agreement) * (1 - std::max(away, 0.0)));
+    }
+    return gradient.lengthSqr() > kLeastGradient * kLeastGradient ? gradient.unit() : fallback;
   }
 
   Vec3d runge_kutta(const Sample& from, double step) {
     const Vec3d fallback = from.phi > 0 ? from.away / from.phi : normal_;
-    const Vec3d k1 = velocity(from.x, from.phi, fallback), k2 = velocity(from.x + k1 * (step / 2), from.phi + step / 2, k1),
+    const Vec3d k1 = velocity(from.x, from.phi, fallback),
+                k2 = velocity(from.x + k1 * (step / 2), from.phi + step / 2, k1),
                 k3 = velocity(from.x + k2 * (step / 2), from.phi + step / 2, k2),
                 k4 = velocity(from.x + k3 * step, from.phi + step, k3);
     const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
-    return from.x + (v.lengthSqr() > 1e-8 ? v : fallback) * step;
+    return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
   }
 
   /// Between a point short of the target and one at or past it: Illinois' false position on the exact distance.
@@ -202,27 +237,6 @@ class Traveller {
     return x;
   }
 
-  Arrival march() {
-    const auto first = leave_surface();
-    if (!first) return {origin_};
-    Sample here = *first, best = here;
-    double since_best = 0;
-    for (int i = 0; i < kMaxSteps && since_best < kPatience * target_; ++i) {
-      if (here.phi >= target_) return {cut({origin_, 0, normal_}, here), false, outside_};
-      const double step = std::min({kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, 1e-3 * target_)});
-      const Sample next = measure(runge_kutta(here, step));
-      if (arrived(next.phi)) return {next.x, false, outside_};
-      if (next.phi > target_) return {cut(here, next), false, outside_};
-      since_best += step;
-      if (next.phi > best.phi * (1 + 1e-9)) {
-        if (next.phi - best.phi > 0.01 * step) since_best = 0;
-        best = next;
-      }
-      here = next;
-    }
-    return {best.x, false, outside_};
-  }
-
   const ClosestQuery& query_;
   const DirectionSampler& sampler_;
   const Surface& surface_;
@@ -237,6 +251,35 @@ class Traveller {
   bool outside_ = false;
 };
 
+/// Tries the straight paths of all vertices; a component of which one vertex has none has none at all.
+/// Returns, by component, whether all of its vertices have arrived that way.
+std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const DirectionField& directions, double distance,
+                                      std::vector<Vec3d>& arrival) {
+  const Surface& surface = query.surface();
+  // A flag only ever falls; who sees it late does work that is not used.
+  std::vector<std::atomic<std::uint8_t>> straight(surface.facts.components);
+  for (auto& flag : straight) flag = 1;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.vertices.size(), 256), [&](const auto& range) {
+    const DirectionSampler sampler(directions);
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      auto& flag = straight[surface.component[v]];
+      if (!flag.load(std::memory_order_relaxed)) continue;
+      const auto end = Traveller(query, directions, sampler, distance, static_cast<std::uint32_t>(v)).go_straight();
+      if (end) arrival[v] = *end;
+      else flag.store(0, std::memory_order_relaxed);
+    }
+  });
+  return {straight.begin(), straight.end()};
+}
+
+/// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
+/// the result independent of where the mesh stands.
+Vec3d round_way(const Vec3d& way, double target) {
+  const double quantum = std::ldexp(1.0, std::ilogb(target) - 36);
+  return {std::nearbyint(way[0] / quantum) * quantum, std::nearbyint(way[1] / quantum) * quantum,
+          std::nearbyint(way[2] / quantum) * quantum};
+}
+
 }  // namespace
 
 const char* name(VertexState state) {
@@ -248,34 +291,31 @@ Paths propagate(const ClosestQuery& query, const DirectionField& directions, con
                 const ProgressCallback& callback) {
   const Surface& surface = query.surface();
   const std::size_t count = surface.vertices.size();
-  const double target = std::abs(options.distance), quantum = std::ldexp(1.0, std::ilogb(target) - 36);
+  const double target = std::abs(options.distance);
   Progress progress(callback, Stage::Propagate, count);
   Paths paths;
   paths.displacement.resize(count);
   paths.achieved.resize(count);
   paths.state.resize(count);
-  std::atomic<std::size_t> straight{0};
+  std::vector<Vec3d> arrival(count);
+  const std::vector<std::uint8_t> straight = go_straight(query, directions, options.distance, arrival);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
     const DirectionSampler sampler(directions);
-    std::size_t straight_here = 0;
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
       const auto vertex = static_cast<std::uint32_t>(v);
-      const auto arrival = Traveller(query, directions, sampler, options.distance, vertex).run();
-      // Rounding the way, not the place, makes the result independent of where the mesh stands.
-      Vec3d way = (arrival.position - surface.vertices[v]) / quantum;
-      for (int k = 0; k < 3; ++k) way[k] = std::nearbyint(way[k]) * quantum;
-      paths.displacement[v] = way;
-      paths.achieved[v] = query(surface.vertices[v] + way, surface.triangles_around(vertex).front()).distance;
-      const bool reached = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target;
-      paths.state[v] = reached                 ? VertexState::Reached
-                       : arrival.outside_field ? VertexState::OutsideField
-                                               : VertexState::Collision;
-      straight_here += arrival.straight;
+      const auto end = straight[surface.component[v]]
+                           ? Traveller::Arrival{arrival[v]}
+                           : Traveller(query, directions, sampler, options.distance, vertex).march();
+      paths.displacement[v] = round_way(end.position - surface.vertices[v], target);
+      paths.achieved[v] =
+          query(surface.vertices[v] + paths.displacement[v], surface.triangles_around(vertex).front()).distance;
+      paths.state[v] = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target ? VertexState::Reached
+                       : end.outside_field                                                ? VertexState::OutsideField
+                                                                                          : VertexState::Collision;
     }
-    straight += straight_here;
     progress.advance(range.size());
   });
-  paths.straight = straight;
+  for (std::size_t v = 0; v < count; ++v) paths.straight += straight[surface.component[v]];
   return paths;
 }
 

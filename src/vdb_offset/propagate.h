@@ -29,17 +29,18 @@ struct Paths {
   std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 |distance|.
   std::vector<double> achieved;     ///< Exact unsigned distance of the end point to the surface.
   std::vector<VertexState> state;
-  std::size_t straight = 0;  ///< Vertices whose whole path is one characteristic of the surface around them.
+  std::size_t straight = 0;  ///< Vertices of components that moved along their normals alone.
 };
 
 /// Moves every surface vertex to distance |d| from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
 /// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls).
 ///
-/// A vertex whose straight path along its normal is a characteristic of the faces around it takes that path: one or
-/// two exact distances prove it, phi being 1-Lipschitz. All others march by RK4 along the smooth directions, in
-/// steps no longer than the exact distance, so that no path can cross the surface. The last step is cut where the
-/// exact distance is d; where the distance falls and does not recover, the path ends at its largest.
-/// The result does not depend on the number of threads.
+/// Where the straight paths along the normals of all vertices of a component are characteristics of the faces around
+/// them, they are the exact offset: one or two exact distances a vertex prove it, phi being 1-Lipschitz. The vertices
+/// of any other component all march by RK4 along the smooth directions, since neighbours of which one goes straight
+/// and one follows the field lose their order. Steps are no longer than the exact distance, so that no path can
+/// cross the surface; the last is cut where the exact distance is d; where the distance falls and does not recover,
+/// the path ends at its largest. The result does not depend on the number of threads.
 Paths propagate(const ClosestQuery& query, const DirectionField& directions, const PropagateOptions& options,
                 const ProgressCallback& progress = {});
 

@@ -8,7 +8,7 @@ namespace vdb_offset {
 
 struct RasteriseOptions {
   double voxel_size;  ///< World units, > 0.
-  double band;        ///< World units, >= voxel_size, so that no grid edge crosses the surface unseen.
+  double band;        ///< World units, > voxel_size, so that no grid edge crosses the surface unseen.
 };
 
 /// Makes every voxel within `band` of the surface active and gives it its exact distance (float) and closest

@@ -47,7 +47,9 @@ Json grids_json(const OffsetStatistics& statistics) {
   return {{"active_voxels", statistics.active_voxels},
           {"leaf_nodes", statistics.leaf_nodes},
           {"bytes",
-           {{"phi", statistics.phi_bytes}, {"closest_primitive", statistics.closest_bytes}, {"gradient", statistics.gradient_bytes}}},
+           {{"phi", statistics.phi_bytes},
+            {"closest_primitive", statistics.closest_bytes},
+            {"gradient", statistics.gradient_bytes}}},
           {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
           {"estimated_bytes", statistics.plan.bytes}};
 }
@@ -67,7 +69,8 @@ AchievedSummary summarise(const OffsetResult& result, double distance) {
     if (result.states[v] != VertexState::Reached) continue;
     ++reached;
     if (target > 0)
-      summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(result.achieved[v] - target) / target);
+      summary.worst_reached_error =
+          std::max(summary.worst_reached_error, std::abs(result.achieved[v] - target) / target);
   }
   summary.vertices = achieved.size();
   if (achieved.empty()) return summary;
@@ -93,32 +96,31 @@ std::string report_json(const OffsetResult& result, const RunFacts& run) {
   for (std::size_t s = 0; s < kVertexStateCount; ++s)
     states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
   const AchievedSummary achieved = summarise(result, run.distance);
-  const Json report = {
-      {"version", version()},
-      {"input", run.input},
-      {"output", run.output},
-      {"options", options},
-      {"distance", run.distance},
-      {"distance_as_given", run.distance_text},
-      {"voxel_size", statistics.plan.voxel_size},
-      {"voxel_size_reason", statistics.plan.reason},
-      {"threads", statistics.threads},
-      {"mesh", facts_json(statistics.facts)},
-      {"grid", grids_json(statistics)},
-      {"seconds", seconds},
-      {"peak_memory_bytes", peak_memory()},
-      {"vertices_by_state", states},
-      {"vertices_straight", statistics.straight_vertices},
-      {"achieved",
-       {{"vertices", achieved.vertices},
-        {"share_reached", achieved.share_reached},
-        {"least", achieved.least},
-        {"quantile_01", achieved.quantile_01},
-        {"quantile_05", achieved.quantile_05},
-        {"median", achieved.median},
-        {"mean", achieved.mean},
-        {"most", achieved.most},
-        {"worst_reached_error", achieved.worst_reached_error}}}};
+  const Json report = {{"version", version()},
+                       {"input", run.input},
+                       {"output", run.output},
+                       {"options", options},
+                       {"distance", run.distance},
+                       {"distance_as_given", run.distance_text},
+                       {"voxel_size", statistics.plan.voxel_size},
+                       {"voxel_size_reason", statistics.plan.reason},
+                       {"threads", statistics.threads},
+                       {"mesh", facts_json(statistics.facts)},
+                       {"grid", grids_json(statistics)},
+                       {"seconds", seconds},
+                       {"peak_memory_bytes", peak_memory()},
+                       {"vertices_by_state", states},
+                       {"vertices_straight", statistics.straight_vertices},
+                       {"achieved",
+                        {{"vertices", achieved.vertices},
+                         {"share_reached", achieved.share_reached},
+                         {"least", achieved.least},
+                         {"quantile_01", achieved.quantile_01},
+                         {"quantile_05", achieved.quantile_05},
+                         {"median", achieved.median},
+                         {"mean", achieved.mean},
+                         {"most", achieved.most},
+                         {"worst_reached_error", achieved.worst_reached_error}}}};
   return report.dump(2) + "\n";
 }
 

@@ -73,11 +73,13 @@ class Welder {
   Cell cell(const Vec3d& p) const {
     Cell c;
     for (int k = 0; k < 3; ++k)
-      c[k] = tolerance_ > 0 ? static_cast<std::int64_t>(std::floor(p[k] / tolerance_)) : std::bit_cast<std::int64_t>(p[k] + 0.0);
+      c[k] = tolerance_ > 0 ? static_cast<std::int64_t>(std::floor(p[k] / tolerance_))
+                            : std::bit_cast<std::int64_t>(p[k] + 0.0);
     return c;
   }
   static std::size_t hash(const Cell& c) {
-    return mix(static_cast<std::uint64_t>(c[0]) + mix(static_cast<std::uint64_t>(c[1]) + mix(static_cast<std::uint64_t>(c[2]))));
+    return mix(static_cast<std::uint64_t>(c[0]) +
+               mix(static_cast<std::uint64_t>(c[1]) + mix(static_cast<std::uint64_t>(c[2]))));
   }
   std::uint32_t search_around(std::uint32_t v) const {
     const Cell centre = cell(positions_[v]);
@@ -146,7 +148,9 @@ std::vector<std::uint32_t> split_faces(PolygonView polygons, Surface& surface) {
 }
 
 std::uint32_t from(const Surface& s, std::uint32_t half_edge) { return s.triangles[half_edge / 3][half_edge % 3]; }
-std::uint32_t to(const Surface& s, std::uint32_t half_edge) { return s.triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
+std::uint32_t to(const Surface& s, std::uint32_t half_edge) {
+  return s.triangles[half_edge / 3][(half_edge % 3 + 1) % 3];
+}
 
 /// Half-edges bucketed by their smaller end, in order; in a bucket, those with the same larger end make an edge.
 template <class Visit>
@@ -160,9 +164,8 @@ void for_each_edge(const Surface& surface, Visit&& visit) {
   for (std::uint32_t e = 0; e < half_edges; ++e) bucket[begin[smaller(e) + 1]++] = e;
   for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
     const auto first = bucket.begin() + begin[v], last = bucket.begin() + begin[v + 1];
-    std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(larger(a), a) < std::pair(larger(b), b);
-    });
+    std::sort(first, last,
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(larger(a), a) < std::pair(larger(b), b); });
     for (auto run = first; run != last;) {
       auto end = run;
       while (end != last && larger(*end) == larger(*run)) ++end;
@@ -175,6 +178,19 @@ void for_each_edge(const Surface& surface, Visit&& visit) {
 std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t x) {
   while (parent[x] != x) x = parent[x] = parent[parent[x]];
   return x;
+}
+
+/// Numbers the components in the order of their first face and hands them to the vertices; one that several
+/// components share by a corner belongs to the last of them.
+void number_components(Surface& surface, const std::vector<std::uint32_t>& face_of,
+                       std::vector<std::uint32_t>& parent) {
+  std::vector<std::uint32_t> number(parent.size(), kNone);
+  surface.component.resize(surface.vertices.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    auto& component = number[root(parent, face_of[t])];
+    if (component == kNone) component = static_cast<std::uint32_t>(surface.facts.components++);
+    for (const auto v : surface.triangles[t]) surface.component[v] = component;
+  }
 }
 
 void join(Surface& surface, const std::vector<std::uint32_t>& face_of, std::size_t face_count) {
@@ -195,7 +211,7 @@ void join(Surface& surface, const std::vector<std::uint32_t>& face_of, std::size
     facts.orientation_conflicts += edge.size() == 2 && from(surface, edge[0]) == from(surface, edge[1]);
     lengths.push_back((surface.vertices[from(surface, edge[0])] - surface.vertices[to(surface, edge[0])]).length());
   });
-  for (std::uint32_t f = 0; f < face_count; ++f) facts.components += parent[f] == f;
+  number_components(surface, face_of, parent);
   if (!lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
@@ -298,8 +314,9 @@ void place(Surface& surface, double voxel_size) {
       const auto& corners = surface.triangles[t];
       for (int k = 0; k < 3; ++k)
         if (corners[k] == vertex)
-          sum += surface.triangle_normals[t] * angle_at(surface.vertices[vertex], surface.vertices[corners[(k + 1) % 3]],
-                                                        surface.vertices[corners[(k + 2) % 3]]);
+          sum +=
+              surface.triangle_normals[t] * angle_at(surface.vertices[vertex], surface.vertices[corners[(k + 1) % 3]],
+                                                     surface.vertices[corners[(k + 2) % 3]]);
     }
     surface.vertex_normals[v] = sum;
   });

@@ -25,13 +25,13 @@ struct MeshFacts {
   std::size_t unused_vertices = 0;  ///< In no face.
   std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
   std::map<std::size_t, std::size_t> faces_by_corners;
-  std::size_t components = 0;            ///< Of faces, joined over edges.
-  std::size_t boundary_edges = 0;        ///< With one face.
-  std::size_t non_manifold_edges = 0;    ///< With three faces or more.
-  std::size_t degenerate_faces = 0;      ///< With a repeated corner or no area.
-  std::size_t orientation_conflicts = 0; ///< Edges whose two faces run through it in the same direction.
-  Vec3d lower{0.0}, upper{0.0};          ///< Bounding box of the vertices in use, world units.
-  double diagonal = 0;                   ///< Of that box.
+  std::size_t components = 0;             ///< Of faces, joined over edges.
+  std::size_t boundary_edges = 0;         ///< With one face.
+  std::size_t non_manifold_edges = 0;     ///< With three faces or more.
+  std::size_t degenerate_faces = 0;       ///< With a repeated corner or no area.
+  std::size_t orientation_conflicts = 0;  ///< Edges whose two faces run through it in the same direction.
+  Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
+  double diagonal = 0;                    ///< Of that box.
   double area = 0;
   double median_edge = 0;  ///< Median edge length of the triangulated surface.
 
@@ -54,6 +54,7 @@ struct Surface {
   std::vector<Vec3d> vertex_normals;    ///< Sum of the incident triangles' normals times their angles there.
   /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
   std::vector<std::uint32_t> incident, incident_begin;
+  std::vector<std::uint32_t> component;       ///< Of each surface vertex, 0 .. facts.components - 1.
   std::vector<std::uint32_t> representative;  ///< The input vertex whose position each surface vertex has.
   std::vector<std::uint32_t> welded;          ///< Surface vertex of each input vertex; kNone if no face uses it.
   MeshFacts facts;

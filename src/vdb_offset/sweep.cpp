@@ -22,7 +22,7 @@ constexpr std::uint8_t kSeen = 0, kUnseen = 1, kFirstPass = 2;
 
 /// One leaf node and its halo, unpacked for sweeping. Sizes of phi and signs are kept apart.
 struct Block {
-  float size[kPaddedVoxels];            // |phi|, kUnset where nothing is known
+  float size[kPaddedVoxels];  // |phi|, kUnset where nothing is known
   std::int8_t sign[kPaddedVoxels];
   std::int32_t closest[kPaddedVoxels];
   std::uint8_t changed[kPaddedVoxels];  // number of the pass that last changed the voxel
@@ -191,14 +191,16 @@ class Sweeper {
       fresh |= block.changed[n - stride] + 1 >= pass || block.changed[n + stride] + 1 >= pass;
     if (!fresh) return false;
     const Upwind up = upwind(block, n);
-    const int nearest = up.size[0] <= up.size[1] ? (up.size[0] <= up.size[2] ? 0 : 2) : (up.size[1] <= up.size[2] ? 1 : 2);
+    const int nearest =
+        up.size[0] <= up.size[1] ? (up.size[0] <= up.size[2] ? 0 : 2) : (up.size[1] <= up.size[2] ? 1 : 2);
     if (up.size[nearest] == kUnset) return false;
     float sorted[3] = {up.size[0], up.size[1], up.size[2]};
     std::sort(std::begin(sorted), std::end(sorted));
     const auto distance = static_cast<float>(godunov(sorted[0], sorted[1], sorted[2], h_));
     const int from = up.from[nearest];
     // Below a millionth of a voxel a gain is rounding; chasing it would sweep for ever.
-    if (!(distance < block.size[n] - static_cast<float>(h_) * 1e-6f) || distance > reach(block.sign[from])) return false;
+    if (!(distance < block.size[n] - static_cast<float>(h_) * 1e-6f) || distance > reach(block.sign[from]))
+      return false;
     block.size[n] = distance;
     block.sign[n] = block.sign[from];
     block.closest[n] = block.closest[from];
@@ -214,7 +216,8 @@ class Sweeper {
           const int padded = padded_index(i, j, k);
           if (block.changed[padded] == kSeen || block.closest[padded] < 0) continue;
           if (at >= front_leaves_ || !frozen_[at].isOn(static_cast<openvdb::Index>(n))) {
-            leaf.phi->setValueOn(static_cast<openvdb::Index>(n), block.sign[padded] < 0 ? -block.size[padded] : block.size[padded]);
+            leaf.phi->setValueOn(static_cast<openvdb::Index>(n),
+                                 block.sign[padded] < 0 ? -block.size[padded] : block.size[padded]);
             leaf.closest->setValueOn(static_cast<openvdb::Index>(n), block.closest[padded]);
           }
           if (block.size[padded] >= reach(block.sign[padded])) continue;
@@ -245,7 +248,8 @@ void remove_empty_leaves(FieldGrids& grids) {
 
 }  // namespace
 
-DistanceField sweep(Front front, const Surface& surface, const SweepOptions& options, const ProgressCallback& progress) {
+DistanceField sweep(Front front, const Surface& surface, const SweepOptions& options,
+                    const ProgressCallback& progress) {
   if (front.phi->activeVoxelCount() == 0)
     throw InvalidInput("sweep: expected a front with active voxels, got none (was it rasterised?)");
   if (!(options.reach.inside >= front.band) || !(options.reach.outside >= front.band))

@@ -7,8 +7,8 @@
 namespace vdb_offset {
 
 enum class Solver {
-  Closest,   ///< Hands the closest triangle on from voxel to voxel: phi is a distance to a triangle, to rounding.
-  Eikonal,   ///< Godunov's update of |grad phi| = 1 on phi alone: first order, the paper's method.
+  Closest,  ///< Hands the closest triangle on from voxel to voxel: phi is a distance to a triangle, to rounding.
+  Eikonal,  ///< Godunov's update of |grad phi| = 1 on phi alone: first order, the paper's method.
 };
 
 struct SweepOptions {

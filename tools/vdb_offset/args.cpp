@@ -43,8 +43,9 @@ std::size_t parse_size(const std::string& text) {
   for (const char* c = end; c != text.data() + text.size(); ++c)
     if (*c != ' ') suffix += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
   static const std::map<std::string, double> kUnits = {
-      {"", 1},        {"B", 1},         {"K", 0x1p10},   {"KB", 0x1p10},  {"KIB", 0x1p10}, {"M", 0x1p20},  {"MB", 0x1p20},
-      {"MIB", 0x1p20}, {"G", 0x1p30},    {"GB", 0x1p30},  {"GIB", 0x1p30}, {"T", 0x1p40},   {"TB", 0x1p40}, {"TIB", 0x1p40}};
+      {"", 1},         {"B", 1},       {"K", 0x1p10},   {"KB", 0x1p10}, {"KIB", 0x1p10},
+      {"M", 0x1p20},   {"MB", 0x1p20}, {"MIB", 0x1p20}, {"G", 0x1p30},  {"GB", 0x1p30},
+      {"GIB", 0x1p30}, {"T", 0x1p40},  {"TB", 0x1p40},  {"TIB", 0x1p40}};
   const auto unit = kUnits.find(suffix);
   if (error != std::errc() || unit == kUnits.end() || !(value > 0) || value * unit->second > 0x1p60)
     throw UsageError(fmt::format("--max-memory: expected a size such as 4G or 512M, got '{}'", text));
@@ -59,8 +60,10 @@ WeldOptions parse_weld(const std::string& text) {
     return weld;
   }
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), weld.tolerance);
-  if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) || !std::isfinite(weld.tolerance))
-    throw UsageError(fmt::format("--weld: expected 'none', 'exact' or a tolerance >= 0 in world units, got '{}'", text));
+  if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) ||
+      !std::isfinite(weld.tolerance))
+    throw UsageError(
+        fmt::format("--weld: expected 'none', 'exact' or a tolerance >= 0 in world units, got '{}'", text));
   return weld;
 }
 
@@ -74,18 +77,25 @@ struct Raw {
 void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("INPUT", args.input, "Mesh to offset (.obj .ply .stl .off), or a scene (.json)")->required();
   app.add_option("OUTPUT", args.output, "Mesh to write, by extension; may be the input")->required();
-  app.add_option("-d,--distance", raw.distance, "Distance: world units, or percent of the diagonal as in 1.5%; negative is inward")
+  app.add_option("-d,--distance", raw.distance,
+                 "Distance: world units, or percent of the diagonal as in 1.5%; negative is inward")
       ->type_name("D");
-  app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")->type_name("H");
+  app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")
+      ->type_name("H");
   app.add_option("--voxels-per-distance", raw.voxels_per_distance, "The same as D / N")->type_name("N");
-  app.add_option("--collision", raw.collision, "Where fronts meet: 'merge' lets vertices go as far as the distance grows [merge]")
+  app.add_option("--collision", raw.collision,
+                 "Where fronts meet: 'merge' lets vertices go as far as the distance grows [merge]")
       ->type_name("MODE");
-  app.add_option("--solver", raw.solver, "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]")
+  app.add_option("--solver", raw.solver,
+                 "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]")
       ->type_name("NAME");
-  app.add_option("--weld", raw.weld, "Vertices that move as one: 'exact' (equal positions), 'none', or within TOL world units [exact]")
+  app.add_option("--weld", raw.weld,
+                 "Vertices that move as one: 'exact' (equal positions), 'none', or within TOL world units [exact]")
       ->type_name("MODE");
-  app.add_option("--threads", raw.threads, "Threads; 0 takes all; the result is the same for any number [0]")->type_name("N");
-  app.add_option("--max-memory", raw.max_memory, "Refuse work that would need more, as in 4G [80 % of what is free]")->type_name("SIZE");
+  app.add_option("--threads", raw.threads, "Threads; 0 takes all; the result is the same for any number [0]")
+      ->type_name("N");
+  app.add_option("--max-memory", raw.max_memory, "Refuse work that would need more, as in 4G [80 % of what is free]")
+      ->type_name("SIZE");
   app.add_option("--report", args.report, "Write what happened as JSON")->type_name("FILE");
   app.add_option("--save-vdb", args.vdb, "Write phi and the closest triangles as OpenVDB grids")->type_name("FILE");
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use falls short of the distance");
@@ -101,7 +111,8 @@ void require(bool holds, const std::string& message) {
 void check_names(const Arguments& args) {
   require(scene::is_scene(args.input) || io::format_of(args.input),
           args.input + ": expected an input that ends in .obj, .ply, .stl, .off or .json");
-  require(io::format_of(args.output).has_value(), args.output + ": expected an output that ends in .obj, .ply, .stl or .off");
+  require(io::format_of(args.output).has_value(),
+          args.output + ": expected an output that ends in .obj, .ply, .stl or .off");
 }
 
 void check(const Raw& raw, Arguments& args) {
@@ -114,9 +125,11 @@ void check(const Raw& raw, Arguments& args) {
     }
     args.distance_text = raw.distance;
   }
-  require(args.distance || scene::is_scene(args.input), "--distance: expected a distance (a scene alone brings its own)");
+  require(args.distance || scene::is_scene(args.input),
+          "--distance: expected a distance (a scene alone brings its own)");
   require(!(raw.voxel_size && raw.voxels_per_distance), "--voxel-size: expected it or --voxels-per-distance, got both");
-  for (const auto& [name, value] : {std::pair{"--voxel-size", raw.voxel_size}, {"--voxels-per-distance", raw.voxels_per_distance}})
+  for (const auto& [name, value] :
+       {std::pair{"--voxel-size", raw.voxel_size}, {"--voxels-per-distance", raw.voxels_per_distance}})
     require(!value || (*value > 0 && std::isfinite(*value)), fmt::format("{}: expected a number above 0", name));
   args.options.grid = {raw.voxel_size, raw.voxels_per_distance};
   require(raw.collision != "limit", "--collision: 'limit' is not available yet; expected 'merge'");
@@ -132,7 +145,9 @@ void check(const Raw& raw, Arguments& args) {
 }
 
 void note_options(const Raw& raw, Arguments& args) {
-  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "automatic"; };
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "automatic";
+  };
   args.in_force = {{"distance", raw.distance.empty() ? "from the scene" : raw.distance},
                    {"voxel-size", number(raw.voxel_size)},
                    {"voxels-per-distance", number(raw.voxels_per_distance)},

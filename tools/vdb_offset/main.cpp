@@ -56,9 +56,9 @@ void print_facts(const OffsetStatistics& statistics) {
   const MeshFacts& facts = statistics.facts;
   std::size_t faces = 0;
   for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
-  fmt::print("mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n", facts.vertices,
-             facts.welded_vertices, facts.unused_vertices, faces, facts.components, facts.components == 1 ? "" : "s",
-             facts.diagonal);
+  fmt::print("mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n",
+             facts.vertices, facts.welded_vertices, facts.unused_vertices, faces, facts.components,
+             facts.components == 1 ? "" : "s", facts.diagonal);
   fmt::print("           {} boundary edges, {} non-manifold edges, {} degenerate faces, {} orientation conflicts\n",
              facts.boundary_edges, facts.non_manifold_edges, facts.degenerate_faces, facts.orientation_conflicts);
 }
@@ -69,7 +69,8 @@ void print_plan(const OffsetStatistics& statistics, double distance) {
   if (distance == 0) return;
   fmt::print("voxel size {:.6g} ({})\n", plan.voxel_size, plan.reason);
   fmt::print("estimate   {} leaf nodes, {} voxels, {:.1f} MiB, {:.2g} s on {} thread{}\n", plan.leaf_nodes, plan.voxels,
-             static_cast<double>(plan.bytes) / 1048576.0, plan.seconds, statistics.threads, statistics.threads == 1 ? "" : "s");
+             static_cast<double>(plan.bytes) / 1048576.0, plan.seconds, statistics.threads,
+             statistics.threads == 1 ? "" : "s");
 }
 
 void print_summary(const Arguments& args, const OffsetResult& result, double total_seconds) {
@@ -89,7 +90,8 @@ void print_summary(const Arguments& args, const OffsetResult& result, double tot
   fmt::print(" ({:.2f} s)\n", total_seconds);
 }
 
-void write_outputs(const Arguments& args, const Source& source, OffsetResult& result, Clock::time_point start, double read_seconds) {
+void write_outputs(const Arguments& args, const Source& source, OffsetResult& result, Clock::time_point start,
+                   double read_seconds) {
   const auto writing = Clock::now();
   std::string lost;
   if (source.file) {
@@ -104,7 +106,9 @@ void write_outputs(const Arguments& args, const Source& source, OffsetResult& re
   if (!lost.empty() && !args.quiet) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, lost);
   if (!args.vdb.empty() && result.field)
     save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
-             {{"source", args.input}, {"offset_distance", fmt::format("{}", args.options.distance)}, {"made_by", std::string("vdb_offset ") + version()}});
+             {{"source", args.input},
+              {"offset_distance", fmt::format("{}", args.options.distance)},
+              {"made_by", std::string("vdb_offset ") + version()}});
   if (args.report.empty()) return;
   RunFacts facts;
   facts.input = args.input;

@@ -23,7 +23,8 @@ void ProgressBar::show(Stage stage, double share) {
   if (!active_) return;
   constexpr int kWidth = 40;
   const int filled = static_cast<int>(share * kWidth);
-  std::string line = fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);
+  std::string line =
+      fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);
   if (line == shown_) return;
   shown_ = std::move(line);
   fmt::print(stderr, "\r{}", shown_);

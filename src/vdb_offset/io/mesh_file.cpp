@@ -47,7 +47,9 @@ void append_number(std::string& text, double value) {
 }
 
 /// What a binary file can hold of a number.
-double as_stored(double value, std::uint8_t bytes) { return bytes == 4 ? static_cast<double>(static_cast<float>(value)) : value; }
+double as_stored(double value, std::uint8_t bytes) {
+  return bytes == 4 ? static_cast<double>(static_cast<float>(value)) : value;
+}
 
 std::vector<Vec3d> as_stored(std::span<const Vec3d> positions, std::uint8_t bytes) {
   std::vector<Vec3d> stored(positions.begin(), positions.end());
@@ -89,7 +91,8 @@ class NormalUpdate {
   std::uint32_t normal_of(std::size_t face, std::size_t corner, std::uint32_t vertex) const {
     if (source_.format == Format::Stl) return static_cast<std::uint32_t>(face);
     if (source_.format == Format::Obj)
-      return source_.corner_normal.empty() ? kNoNormal : source_.corner_normal[source_.polygons.face_begin[face] + corner];
+      return source_.corner_normal.empty() ? kNoNormal
+                                           : source_.corner_normal[source_.polygons.face_begin[face] + corner];
     return vertex;
   }
   void add_corner(std::size_t f, std::size_t k, std::span<const std::uint32_t> face, bool face_moved) {
@@ -128,7 +131,9 @@ std::vector<Patch> find_patches(const MeshFile& source, std::span<const Vec3d> p
   return patches;
 }
 
-bool ends_number(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f' || c == '\\' || c == '#'; }
+bool ends_number(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f' || c == '\\' || c == '#';
+}
 
 std::string patch_text(const std::string& bytes, const std::vector<Patch>& patches) {
   std::string text;
@@ -226,10 +231,14 @@ std::string to_stl(PolygonView mesh) {
 
 std::string encode(Format format, PolygonView mesh) {
   switch (format) {
-    case Format::Obj: return to_obj(mesh);
-    case Format::Off: return to_off(mesh);
-    case Format::Ply: return to_ply(mesh);
-    case Format::Stl: break;
+    case Format::Obj:
+      return to_obj(mesh);
+    case Format::Off:
+      return to_off(mesh);
+    case Format::Ply:
+      return to_ply(mesh);
+    case Format::Stl:
+      break;
   }
   return to_stl(mesh);
 }
@@ -278,10 +287,18 @@ MeshFile read_mesh(const std::string& path) {
   file.bytes = read_bytes(path);
   if (file.bytes.empty()) throw InvalidInput(path + ", byte 0: expected a mesh, got an empty file");
   switch (file.format) {
-    case Format::Obj: parse_obj(file); break;
-    case Format::Off: parse_off(file); break;
-    case Format::Ply: parse_ply(file); break;
-    case Format::Stl: parse_stl(file); break;
+    case Format::Obj:
+      parse_obj(file);
+      break;
+    case Format::Off:
+      parse_off(file);
+      break;
+    case Format::Ply:
+      parse_ply(file);
+      break;
+    case Format::Stl:
+      parse_stl(file);
+      break;
   }
   return file;
 }
@@ -298,6 +315,8 @@ std::string write_mesh(const std::string& path, const MeshFile& source, std::spa
   return {};
 }
 
-void write_mesh(const std::string& path, PolygonView polygons) { write_file(path, encode(require_format(path), polygons)); }
+void write_mesh(const std::string& path, PolygonView polygons) {
+  write_file(path, encode(require_format(path), polygons));
+}
 
 }  // namespace vdb_offset::io

@@ -40,7 +40,7 @@ struct MeshFile {
   std::vector<NumberTriple> normal_at;
   /// OBJ: the normal that each face corner names, kNoNormal where it names none. Empty if no corner does.
   std::vector<std::uint32_t> corner_normal;
-  std::vector<std::string> extras;  ///< What the file holds besides positions and faces, in words.
+  std::vector<std::string> extras;                    ///< What the file holds besides positions and faces, in words.
   std::uint8_t position_bytes = 0, normal_bytes = 0;  ///< Size of a binary number: 4 or 8; 0 for text.
 };
 inline constexpr std::uint32_t kNoNormal = 0xffffffff;

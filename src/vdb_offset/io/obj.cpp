@@ -83,7 +83,8 @@ class ObjParser {
     for (std::size_t f = 0; f < face_at_.size(); ++f)
       for (auto c = file_.polygons.face_begin[f]; c < file_.polygons.face_begin[f + 1]; ++c) {
         if (file_.polygons.corners[c] >= file_.polygons.positions.size())
-          scanner_.fail(fmt::format("vertex indices up to {} in the face", file_.polygons.positions.size()), face_at_[f]);
+          scanner_.fail(fmt::format("vertex indices up to {} in the face", file_.polygons.positions.size()),
+                        face_at_[f]);
         if (file_.corner_normal[c] != kNoNormal && file_.corner_normal[c] >= file_.normal_at.size())
           scanner_.fail(fmt::format("normal indices up to {} in the face", file_.normal_at.size()), face_at_[f]);
       }
@@ -99,7 +100,8 @@ class ObjParser {
     else note("other lines");
   }
   void note(const char* what) {
-    if (std::find(file_.extras.begin(), file_.extras.end(), what) == file_.extras.end()) file_.extras.emplace_back(what);
+    if (std::find(file_.extras.begin(), file_.extras.end(), what) == file_.extras.end())
+      file_.extras.emplace_back(what);
   }
 
   MeshFile& file_;

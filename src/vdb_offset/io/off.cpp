@@ -29,7 +29,8 @@ bool has_normals(const Scanner& scanner, std::string_view keyword, MeshFile& fil
 std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
   const std::int64_t value = scanner.integer_anywhere(what);
   if (value < 0 || static_cast<std::uint64_t>(value) > scanner.remaining() / least + 1)
-    scanner.fail(fmt::format("{} that the rest of the file can hold ({} bytes), not {},", what, scanner.remaining(), value));
+    scanner.fail(
+        fmt::format("{} that the rest of the file can hold ({} bytes), not {},", what, scanner.remaining(), value));
   return static_cast<std::size_t>(value);
 }
 
@@ -39,7 +40,8 @@ void parse_off(MeshFile& file) {
   Scanner scanner(file.path, file.bytes, 0, false, '#');
   const bool normals = has_normals(scanner, scanner.token_anywhere("the keyword OFF"), file);
   if (is_word(Scanner(scanner).token(), "binary")) scanner.fail("a text OFF file, not a binary one,");
-  const std::size_t vertices = count(scanner, "a number of vertices", 6), faces = count(scanner, "a number of faces", 8);
+  const std::size_t vertices = count(scanner, "a number of vertices", 6),
+                    faces = count(scanner, "a number of faces", 8);
   if (!scanner.at_line_end()) scanner.integer("a number of edges");
   for (std::size_t v = 0; v < vertices; ++v) {
     if (scanner.at_text_end()) scanner.fail(fmt::format("vertex {} of {}", v + 1, vertices));

@@ -32,8 +32,9 @@ struct Element {
 
 std::optional<Type> type_of(std::string_view name) {
   constexpr std::pair<std::string_view, Type> kTypes[] = {
-      {"char", {'i', 1}},  {"int8", {'i', 1}},   {"uchar", {'u', 1}}, {"uint8", {'u', 1}},   {"short", {'i', 2}},  {"int16", {'i', 2}},
-      {"ushort", {'u', 2}}, {"uint16", {'u', 2}}, {"int", {'i', 4}},   {"int32", {'i', 4}},   {"uint", {'u', 4}},   {"uint32", {'u', 4}},
+      {"char", {'i', 1}},  {"int8", {'i', 1}},    {"uchar", {'u', 1}},  {"uint8", {'u', 1}},
+      {"short", {'i', 2}}, {"int16", {'i', 2}},   {"ushort", {'u', 2}}, {"uint16", {'u', 2}},
+      {"int", {'i', 4}},   {"int32", {'i', 4}},   {"uint", {'u', 4}},   {"uint32", {'u', 4}},
       {"float", {'f', 4}}, {"float32", {'f', 4}}, {"double", {'f', 8}}, {"float64", {'f', 8}}};
   for (const auto& [known, type] : kTypes)
     if (known == name) return type;
@@ -92,7 +93,8 @@ Header read_header(const MeshFile& file) {
       const std::int64_t count = scanner.integer("a number of elements");
       // A row of one byte is the least there is; a row without properties takes none and is of no use.
       if (count < 0 || static_cast<std::uint64_t>(count) > file.bytes.size())
-        scanner.fail(fmt::format("a number of '{}' that {} bytes can hold, not {},", element.name, file.bytes.size(), count));
+        scanner.fail(
+            fmt::format("a number of '{}' that {} bytes can hold, not {},", element.name, file.bytes.size(), count));
       element.count = static_cast<std::size_t>(count);
     } else if (keyword == "property") {
       if (header.elements.empty()) scanner.fail("an element before its properties");
@@ -149,8 +151,13 @@ class Body {
     if (encoding_ == Encoding::BigEndian) std::reverse(raw.begin(), raw.begin() + type.bytes);
     at_ += type.bytes;
     if (type.kind == 'f') return type.bytes == 4 ? load<float>(raw) : load<double>(raw);
-    if (type.kind == 'u') return type.bytes == 1 ? load<std::uint8_t>(raw) : type.bytes == 2 ? load<std::uint16_t>(raw) : load<std::uint32_t>(raw);
-    return type.bytes == 1 ? load<std::int8_t>(raw) : type.bytes == 2 ? load<std::int16_t>(raw) : load<std::int32_t>(raw);
+    if (type.kind == 'u')
+      return type.bytes == 1   ? load<std::uint8_t>(raw)
+             : type.bytes == 2 ? load<std::uint16_t>(raw)
+                               : load<std::uint32_t>(raw);
+    return type.bytes == 1   ? load<std::int8_t>(raw)
+           : type.bytes == 2 ? load<std::int16_t>(raw)
+                             : load<std::int32_t>(raw);
   }
   template <class T>
   static double load(const std::array<char, 8>& raw) {
@@ -228,7 +235,8 @@ class PlyParser {
     }
     if ((found & 7) != 7) missing("vertex properties x, y and z");
     for (std::size_t i = 0; i < component.size(); ++i)
-      if (component[i] >= 0 && element.properties[i].type.bytes != (component[i] < 3 ? file_.position_bytes : file_.normal_bytes))
+      if (component[i] >= 0 &&
+          element.properties[i].type.bytes != (component[i] < 3 ? file_.position_bytes : file_.normal_bytes))
         missing("one type for all coordinates");
     const bool normals = (found & 56) == 56;
     if (normals) file_.extras.emplace_back("normals");

@@ -97,7 +97,8 @@ void parse_binary(MeshFile& file) {
       std::memcpy(xyz, file.bytes.data() + corner, sizeof xyz);
       for (std::size_t k = 0; k < 3; ++k)
         if (!std::isfinite(xyz[k]))
-          throw InvalidInput(fmt::format("{}, byte {}: expected a finite coordinate, got {}", file.path, corner + 4 * k, xyz[k]));
+          throw InvalidInput(
+              fmt::format("{}, byte {}: expected a finite coordinate, got {}", file.path, corner + 4 * k, xyz[k]));
       file.polygons.positions.emplace_back(xyz[0], xyz[1], xyz[2]);
       file.position_at.push_back({{corner, corner + 4, corner + 8}});
     }
@@ -119,9 +120,9 @@ void parse_stl(MeshFile& file) {
   if (!holds_header)
     throw InvalidInput(fmt::format("{}, byte 0: expected 'solid' or a binary STL header of 84 bytes, got {} bytes",
                                    file.path, bytes.size()));
-  throw InvalidInput(fmt::format("{}, byte 80: expected {} facets, which take {} bytes, got a file of {} bytes", file.path,
-                                 promised_facets(file), kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)},
-                                 bytes.size()));
+  throw InvalidInput(fmt::format("{}, byte 80: expected {} facets, which take {} bytes, got a file of {} bytes",
+                                 file.path, promised_facets(file),
+                                 kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)}, bytes.size()));
 }
 
 }  // namespace vdb_offset::io

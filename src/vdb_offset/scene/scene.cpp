@@ -24,7 +24,8 @@ using nlohmann::json;
 /// told and not ignored.
 class Reader {
  public:
-  Reader(const std::string& path, std::string where, const json& object) : path_(path), where_(std::move(where)), object_(object) {
+  Reader(const std::string& path, std::string where, const json& object)
+      : path_(path), where_(std::move(where)), object_(object) {
     if (!object.is_object()) fail("an object");
   }
   [[noreturn]] void fail(const std::string& expected) const {
@@ -45,7 +46,9 @@ class Reader {
     return value->get<double>();
   }
   double number(const char* key, double otherwise) { return find(key) ? number(key) : otherwise; }
-  std::optional<double> optional_number(const char* key) { return find(key) ? std::optional(number(key)) : std::nullopt; }
+  std::optional<double> optional_number(const char* key) {
+    return find(key) ? std::optional(number(key)) : std::nullopt;
+  }
   int count(const char* key) {
     const json* value = find(key);
     if (!value || !value->is_number_integer()) fail_missing(key, "a whole number");
@@ -101,15 +104,20 @@ Polygons make_shape(Reader shape) {
        [](Reader& r) { return torus(r.number("major"), r.number("minor"), r.count("segments"), r.count("sides")); }},
       {"cylinder",
        [](Reader& r) {
-         return cylinder(r.number("radius"), r.number("height"), r.count("segments"), r.count("stacks"), r.count("rings"));
+         return cylinder(r.number("radius"), r.number("height"), r.count("segments"), r.count("stacks"),
+                         r.count("rings"));
        }},
       {"plates",
-       [](Reader& r) { return plates(r.number("width"), r.number("thickness"), r.number("gap"), r.count("divisions")); }},
+       [](Reader& r) {
+         return plates(r.number("width"), r.number("thickness"), r.number("gap"), r.count("divisions"));
+       }},
       {"wedge",
        [](Reader& r) { return wedge(r.number("angle"), r.number("length"), r.number("width"), r.count("divisions")); }},
       {"room_corner", [](Reader& r) { return room_corner(r.number("side"), r.count("divisions")); }},
       {"diffuser",
-       [](Reader& r) { return diffuser(r.number("inlet"), r.number("outlet"), r.number("length"), r.count("divisions")); }},
+       [](Reader& r) {
+         return diffuser(r.number("inlet"), r.number("outlet"), r.number("length"), r.count("divisions"));
+       }},
       {"naca_wing",
        [](Reader& r) {
          return naca_wing(r.text("digits"), r.number("chord"), r.number("span"), r.count("points"), r.count("stacks"));
@@ -201,13 +209,15 @@ Distance parse_distance(const std::string& text) {
   if (number.starts_with('+')) number.remove_prefix(1);
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), distance.value);
   if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(distance.value))
-    throw InvalidInput(fmt::format("distance: expected a number of world units, or of percent as in '1.5%', got '{}'", text));
+    throw InvalidInput(
+        fmt::format("distance: expected a number of world units, or of percent as in '1.5%', got '{}'", text));
   return distance;
 }
 
 Vec3d Answer::operator()(const Vec3d& source) const {
   switch (form) {
-    case Form::Sphere: return source.unit() * radius;
+    case Form::Sphere:
+      return source.unit() * radius;
     case Form::Box: {
       Vec3d clamped;
       for (int k = 0; k < 3; ++k) clamped[k] = std::clamp(source[k], -half[k], half[k]);
@@ -217,7 +227,8 @@ Vec3d Answer::operator()(const Vec3d& source) const {
       const Vec3d centre = Vec3d(source[0], source[1], 0).unit() * major;
       return centre + (source - centre).unit() * minor;
     }
-    case Form::Shift: break;
+    case Form::Shift:
+      break;
   }
   return source + shift;
 }
@@ -230,10 +241,8 @@ Scene read_scene(const std::string& path) {
   Scene scene;
   scene.path = path;
   if (root.find("description")) scene.description = root.text("description");
-  if (root.find("file"))
-    scene.mesh_path = (std::filesystem::path(path).parent_path() / root.text("file")).string();
-  else
-    scene.shape = make_shape(root.object("shape"));
+  if (root.find("file")) scene.mesh_path = (std::filesystem::path(path).parent_path() / root.text("file")).string();
+  else scene.shape = make_shape(root.object("shape"));
   Reader offset = root.object("offset");
   scene.distance = read_distance(offset);
   offset.finish();
@@ -270,7 +279,8 @@ std::vector<std::string> unmet(const Expectations& expect, PolygonView source, c
   if (expect.max_reached && share > *expect.max_reached)
     failed.push_back(fmt::format("expected a share reached of at most {}, got {:.6f}", *expect.max_reached, share));
   if (expect.max_position_error && worst > *expect.max_position_error)
-    failed.push_back(fmt::format("expected positions within {} of the answer, got {:.3g}", *expect.max_position_error, worst));
+    failed.push_back(
+        fmt::format("expected positions within {} of the answer, got {:.3g}", *expect.max_position_error, worst));
   return failed;
 }
 

@@ -23,7 +23,8 @@ void require_count(const char* what, int value, int least) {
     throw InvalidInput(fmt::format("shape: expected {} from {} to {}, got {}", what, least, kMostDivisions, value));
 }
 void require_length(const char* what, double value) {
-  if (!(value > 0) || !std::isfinite(value)) throw InvalidInput(fmt::format("shape: expected {} > 0, got {}", what, value));
+  if (!(value > 0) || !std::isfinite(value))
+    throw InvalidInput(fmt::format("shape: expected {} > 0, got {}", what, value));
 }
 
 /// Collects faces over points; points at one position become one vertex.
@@ -61,7 +62,9 @@ class Builder {
 
 /// The six sides of a box; `inward` turns all faces round.
 void add_box(Builder& builder, const Vec3d& lower, const Vec3d& upper, int divisions, bool inward = false) {
-  const auto at = [&](int axis, int n) { return n == divisions ? upper[axis] : lower[axis] + (upper[axis] - lower[axis]) * n / divisions; };
+  const auto at = [&](int axis, int n) {
+    return n == divisions ? upper[axis] : lower[axis] + (upper[axis] - lower[axis]) * n / divisions;
+  };
   for (int axis = 0; axis < 3; ++axis)
     for (const bool top : {false, true}) {
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -97,7 +100,8 @@ void add_extrusion(Builder& builder, int points, double height, int stacks, Oute
   builder.grid(points, stacks, [&](int i, int k) { return outer(i, level(k)); });
   builder.grid(stacks, points, [&](int k, int i) { return inner(i, level(k)); });
   for (int i = 0; i < points; ++i) {
-    builder.face({outer(i, level(stacks)), outer(i + 1, level(stacks)), inner(i + 1, level(stacks)), inner(i, level(stacks))});
+    builder.face(
+        {outer(i, level(stacks)), outer(i + 1, level(stacks)), inner(i + 1, level(stacks)), inner(i, level(stacks))});
     builder.face({outer(i + 1, level(0)), outer(i, level(0)), inner(i, level(0)), inner(i + 1, level(0))});
   }
 }
@@ -110,17 +114,29 @@ Polygons icosphere(double radius, int subdivisions) {
     throw InvalidInput(fmt::format("shape: expected subdivisions from 0 to 10, got {}", subdivisions));
   const double g = std::numbers::phi;
   Polygons mesh;
-  for (const auto& p : {Vec3d{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                        {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}})
+  for (const auto& p : {Vec3d{-1, g, 0},
+                        {1, g, 0},
+                        {-1, -g, 0},
+                        {1, -g, 0},
+                        {0, -1, g},
+                        {0, 1, g},
+                        {0, -1, -g},
+                        {0, 1, -g},
+                        {g, 0, -1},
+                        {g, 0, 1},
+                        {-g, 0, -1},
+                        {-g, 0, 1}})
     mesh.positions.push_back(p.unit() * radius);
   using Triangle = std::array<std::uint32_t, 3>;
-  std::vector<Triangle> triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                     {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                                     {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  std::vector<Triangle> triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                     {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int level = 0; level < subdivisions; ++level) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, added] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
+      const auto [at, added] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
       if (added) mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]).unit() * radius);
       return at->second;
     };
@@ -176,7 +192,8 @@ Polygons cylinder(double radius, double height, int segments, int stacks, int ri
   require_count("stacks", stacks, 1);
   require_count("rings", rings, 1);
   Builder builder;
-  builder.grid(segments, stacks, [&](int i, int k) { return on_circle(radius, i, segments, -height / 2 + height * k / stacks); });
+  builder.grid(segments, stacks,
+               [&](int i, int k) { return on_circle(radius, i, segments, -height / 2 + height * k / stacks); });
   const auto ring = [&](int j) { return j == rings ? radius : radius * j / rings; };
   builder.grid(segments, rings, [&](int i, int j) { return on_circle(ring(j), i, segments, -height / 2); });
   builder.grid(segments, rings, [&](int i, int j) { return on_circle(ring(rings - j), i, segments, height / 2); });
@@ -230,14 +247,18 @@ Polygons diffuser(double inlet, double outlet, double length, int divisions) {
   require_length("a length", length);
   require_count("divisions", divisions, 1);
   Builder builder;
-  const auto half_width = [&](double x) { return (inlet + (outlet - inlet) * std::clamp(3 * x / length - 1, 0.0, 1.0)) / 2; };
+  const auto half_width = [&](double x) {
+    return (inlet + (outlet - inlet) * std::clamp(3 * x / length - 1, 0.0, 1.0)) / 2;
+  };
   constexpr int kAround[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
   for (int wall = 0; wall < 4; ++wall)
     builder.grid(3 * divisions, divisions, [&](int i, int j) {
       const double x = length * i / (3 * divisions), r = half_width(x);
       const auto at = [&](int k) {
-        return j == 0 ? r * kAround[wall][k] : j == divisions ? r * kAround[wall + 1][k]
-               : r * (kAround[wall][k] + (kAround[wall + 1][k] - kAround[wall][k]) * (static_cast<double>(j) / divisions));
+        return j == 0           ? r * kAround[wall][k]
+               : j == divisions ? r * kAround[wall + 1][k]
+                                : r * (kAround[wall][k] + (kAround[wall + 1][k] - kAround[wall][k]) *
+                                                              (static_cast<double>(j) / divisions));
       };
       return Vec3d(x, at(0), at(1));
     });
@@ -257,7 +278,10 @@ Polygons naca_wing(const std::string& digits, double chord, double span, int poi
   // Upper (side = 1) or lower side at the i-th of points + 1 places from nose to trailing edge, dense at both.
   const auto section = [&](int i, int side, double y) {
     const double x = (1 - std::cos(pi * i / points)) / 2;
-    const double t = i == points ? 0 : 5 * thickness * (0.2969 * std::sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
+    const double t =
+        i == points
+            ? 0
+            : 5 * thickness * (0.2969 * std::sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
     double z = 0, slope = 0;
     if (camber > 0 && camber_at > 0) {
       const double p = camber_at, c = x < p ? camber / (p * p) : camber / ((1 - p) * (1 - p));
@@ -312,7 +336,8 @@ Polygons bumpy_sphere(double radius, double amplitude, double frequency, unsigne
   std::vector<Wave> waves;
   for (int i = 0; i < 12; ++i) {
     const double z = 2 * random() - 1, angle = 2 * pi * random(), r = std::sqrt(1 - z * z);
-    waves.push_back({Vec3d(r * std::cos(angle), r * std::sin(angle), z) * (frequency * (0.5 + random())), 2 * pi * random()});
+    waves.push_back(
+        {Vec3d(r * std::cos(angle), r * std::sin(angle), z) * (frequency * (0.5 + random())), 2 * pi * random()});
   }
   for (Vec3d& p : mesh.positions) {
     const Vec3d n = p.unit();
