@@ -25,6 +25,9 @@ std::uint64_t spread(std::uint64_t x) {
   return x;
 }
 
+// More than the rounding of a squared height over a unit normal.
+constexpr double kPlaneSlack = 1 - 1e-12;
+
 }  // namespace
 
 ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
@@ -103,7 +106,7 @@ void ClosestQuery::build_level(const std::vector<Siblings>& below, std::size_t n
 
 Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
   std::uint32_t best_triangle = hint;
-  TrianglePoint best = surface_.closest_on(hint, x);
+  TrianglePoint best = surface_.walk_to_closest(x, best_triangle);
   const float fx[3] = {static_cast<float>(x[0] * scale_), static_cast<float>(x[1] * scale_),
                        static_cast<float>(x[2] * scale_)};
   // A box is left out only if it is farther than the best by more than float rounding can hide.
@@ -147,6 +150,10 @@ Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
       if (leaf.squared_distance > limit) continue;
       const std::size_t end = std::min<std::size_t>((std::size_t{leaf.block} + 1) * kLeafSize, order_.size());
       for (std::size_t i = std::size_t{leaf.block} * kLeafSize; i < end; ++i) {
+        // A triangle is no nearer than its plane.
+        const double height =
+            surface_.triangle_normals[order_[i]].dot(x - surface_.vertices[surface_.triangles[order_[i]][0]]);
+        if (height * height * kPlaneSlack > best.squared_distance) continue;
         const TrianglePoint candidate = surface_.closest_on(order_[i], x);
         if (candidate.squared_distance < best.squared_distance) {
           best = candidate;

@@ -1,5 +1,6 @@
 #include "vdb_offset/field.h"
 
+#include <fmt/format.h>
 #include <openvdb/io/File.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
@@ -7,14 +8,20 @@
 #include "vdb_offset/file_replace.h"
 
 namespace vdb_offset {
+namespace {
+
+/// OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+bool can_hold(double voxel_size) { return voxel_size * voxel_size * voxel_size > 3.1e-15; }
+
+}  // namespace
 
 FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& origin) {
   FieldGrids grids;
   grids.voxel_size = voxel_size;
   grids.phi = openvdb::FloatGrid::create(static_cast<float>(background));
   grids.closest = openvdb::Int32Grid::create(-1);
-  auto transform = openvdb::math::Transform::createLinearTransform(voxel_size);
-  transform->postTranslate(origin);
+  auto transform = openvdb::math::Transform::createLinearTransform(can_hold(voxel_size) ? voxel_size : 1.0);
+  if (can_hold(voxel_size)) transform->postTranslate(origin);
   grids.phi->setName("phi");
   grids.phi->setGridClass(openvdb::GRID_LEVEL_SET);
   grids.closest->setName("closest_primitive");
@@ -25,6 +32,11 @@ FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& o
 
 void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
               const std::vector<std::pair<std::string, std::string>>& metadata) {
+  if (!can_hold(field.voxel_size))
+    throw WriteError(
+        fmt::format("{}: expected a voxel size above 1.5e-5, which OpenVDB's transforms need, got {:.6g} "
+                    "(scale the model up)",
+                    path, field.voxel_size));
   openvdb::initialize();  // registers the types that a file may hold; does nothing the second time
   const auto phi = openvdb::gridPtrCast<openvdb::FloatGrid>(field.phi->deepCopyGrid());
   // Inactive voxels and tiles inside a closed surface become -background, as level-set tools expect.

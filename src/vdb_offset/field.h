@@ -34,11 +34,12 @@ struct DistanceField : FieldGrids {
   Reach reach{};
 };
 
-/// Empty grids of the right class, transform and names.
+/// Empty grids of the right class, transform and names. OpenVDB holds no transform for voxels smaller than about
+/// 1.5e-5; such grids keep the unit transform, as the stages never ask for it.
 FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& origin);
 
 /// Writes phi and closest as a .vdb file; `metadata` is added to both grids as strings.
-/// The file is written under a temporary name and renamed. \throw WriteError
+/// The file is written under a temporary name and renamed. \throw WriteError, also for voxels below 1.5e-5.
 void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
               const std::vector<std::pair<std::string, std::string>>& metadata);
 

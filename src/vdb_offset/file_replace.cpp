@@ -24,6 +24,13 @@ std::string reason() { return std::strerror(errno); }
 
 }  // namespace
 
+void require_writable(const std::string& path) {
+  const std::filesystem::path target(path);
+  if (std::filesystem::is_directory(target)) throw WriteError(path + ": expected a file to write, got a folder");
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) throw WriteError(path + ": cannot be written: " + reason());
+}
+
 void replace_file(const std::string& path, const std::function<void(const std::string&)>& write) {
   const std::filesystem::path target(path);
   if (std::filesystem::is_directory(target)) throw WriteError(path + ": expected a file to write, got a folder");

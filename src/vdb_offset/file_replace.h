@@ -10,6 +10,9 @@ namespace vdb_offset {
 /// \throw WriteError if the rename fails, and whatever `write` throws.
 void replace_file(const std::string& path, const std::function<void(const std::string& temporary)>& write);
 
+/// Finds out before a long run whether `path` could be written. \throw WriteError
+void require_writable(const std::string& path);
+
 /// Writes `bytes` to `path` through replace_file(). \throw WriteError
 void write_file(const std::string& path, const std::string& bytes);
 

@@ -24,6 +24,12 @@ constexpr double kStepVoxels = 0.5;
 // A path may run this far, in distances, without getting anywhere before it counts as stopped.
 constexpr double kPatience = 0.5;
 constexpr int kMaxSteps = 400;
+// Shortest step, in voxels or distances, unless the surface is nearer.
+constexpr double kLeastStep = 0.1;
+// A path on which the distance grows by less than this share of a step gets nowhere.
+constexpr double kSlowest = 0.01;
+// Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.
+constexpr int kRidgeSteps = 14;
 // Below this length the interpolated gradient is the rest of opposite ones and says nothing.
 constexpr double kLeastGradient = 1e-3;
 
@@ -129,23 +135,26 @@ class Traveller {
   Arrival march() {
     const auto first = leave_surface();
     if (!first) return {origin_};
-    Sample here = *first, best = here;
-    double since_best = 0;
-    for (int i = 0; i < kMaxSteps && since_best < kPatience * target_; ++i) {
+    Sample here = *first;
+    Peak peak{{origin_, 0, normal_}, here, here};
+    double since_peak = 0;
+    for (int i = 0; i < kMaxSteps && since_peak < kPatience * target_; ++i) {
       if (here.phi >= target_) return {cut({origin_, 0, normal_}, here), outside_};
-      const double step =
-          std::min({kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, 1e-3 * target_)});
+      // Not far beyond the target, which the last step is cut at; not much less than a voxel, for a slow climb.
+      const double step = std::min(
+          {kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, kLeastStep * std::min(h_, target_))});
       const Sample next = measure(runge_kutta(here, step));
       if (arrived(next.phi)) return {next.x, outside_};
       if (next.phi > target_) return {cut(here, next), outside_};
-      since_best += step;
-      if (next.phi > best.phi * (1 + 1e-9)) {
-        if (next.phi - best.phi > 0.01 * step) since_best = 0;
-        best = next;
+      since_peak += step;
+      if (peak.at.x == here.x) peak.after = next;
+      if (next.phi > peak.at.phi) {
+        if (next.phi - peak.at.phi > kSlowest * step) since_peak = 0;
+        peak = {here, next, next};
       }
       here = next;
     }
-    return {best.x, outside_};
+    return {climb(peak), outside_};
   }
 
  private:
@@ -153,6 +162,10 @@ class Traveller {
     Vec3d x;
     double phi;
     Vec3d away;  // from the closest point to x, not normalised
+  };
+  /// The largest distance on a path, and the steps before and after it.
+  struct Peak {
+    Sample before, at, after;
   };
 
   Sample measure(const Vec3d& x) {
@@ -235,6 +248,35 @@ class Traveller {
       }
     }
     return x;
+  }
+
+  /// The ridge between the steps around the largest distance seen, by golden section: near it the distance rises to
+  /// one side and falls to the other. Ends beyond the peak only if that is no nearer.
+  Vec3d climb(const Peak& peak) {
+    const auto on_path = [&](double t) {  // -1 .. 0 .. 1 from before through at to after
+      return t < 0 ? peak.at.x + (peak.before.x - peak.at.x) * -t : peak.at.x + (peak.after.x - peak.at.x) * t;
+    };
+    constexpr double kGolden = 0.6180339887498949;
+    double low = -1, high = 1, a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+    Sample at_a = measure(on_path(a)), at_b = measure(on_path(b)), best = peak.at;
+    for (int i = 0; i < kRidgeSteps; ++i) {
+      if (at_a.phi > at_b.phi) {
+        high = b;
+        b = a;
+        at_b = at_a;
+        a = high - kGolden * (high - low);
+        at_a = measure(on_path(a));
+      } else {
+        low = a;
+        a = b;
+        at_a = at_b;
+        b = low + kGolden * (high - low);
+        at_b = measure(on_path(b));
+      }
+      for (const Sample& sample : {at_a, at_b})
+        if (sample.phi > best.phi && sample.phi <= target_ * (1 + kStopTolerance)) best = sample;
+    }
+    return best.x;
   }
 
   const ClosestQuery& query_;

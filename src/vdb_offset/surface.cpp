@@ -288,6 +288,22 @@ Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
   return sum;
 }
 
+TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const {
+  TrianglePoint best = closest_on(triangle, x);
+  for (std::uint32_t from = kNone; from != triangle;) {
+    from = triangle;
+    for (std::uint32_t edge = 3 * from; edge < 3 * from + 3; ++edge) {
+      const std::uint32_t other = next_around_edge[edge] / 3;
+      if (other == from) continue;
+      const TrianglePoint candidate = closest_on(other, x);
+      if (candidate.squared_distance >= best.squared_distance) continue;
+      best = candidate;
+      triangle = other;
+    }
+  }
+  return best;
+}
+
 Surface build_surface(PolygonView polygons, const WeldOptions& options) {
   check(polygons);
   Surface surface;

@@ -174,12 +174,13 @@ class Sweeper {
         if (triangle < 0 || block.changed[m] + 1 < pass || triangle == block.closest[n]) continue;
         // phi changes by at most h from voxel to voxel, so that triangle cannot be nearer than this.
         if (block.size[m] - static_cast<float>(h_) * 1.0001f >= block.size[n]) continue;
-        const auto distance = static_cast<float>(
-            std::sqrt(surface_.closest_on(static_cast<std::uint32_t>(triangle), x).squared_distance));
+        // The neighbour's triangle is near the closest one, which a walk over the mesh then finds.
+        auto closest = static_cast<std::uint32_t>(triangle);
+        const auto distance = static_cast<float>(std::sqrt(surface_.walk_to_closest(x, closest).squared_distance));
         if (distance >= block.size[n] || distance > reach(block.sign[m])) continue;
         block.size[n] = distance;
         block.sign[n] = block.sign[m];
-        block.closest[n] = triangle;
+        block.closest[n] = static_cast<std::int32_t>(closest);
         improved = true;
       }
     return improved;

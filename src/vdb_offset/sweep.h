@@ -7,7 +7,7 @@
 namespace vdb_offset {
 
 enum class Solver {
-  Closest,  ///< Hands the closest triangle on from voxel to voxel: phi is a distance to a triangle, to rounding.
+  Closest,  ///< Hands the closest triangle on from voxel to voxel, each walking on from there over the mesh.
   Eikonal,  ///< Godunov's update of |grad phi| = 1 on phi alone: first order, the paper's method.
 };
 

@@ -39,10 +39,12 @@ Source read_source(const std::string& path) {
 }
 
 /// Takes from a scene what the command line leaves open, and turns percent into world units.
-void settle_options(const Source& source, Arguments& args) {
+void settle_options(Source& source, Arguments& args) {
   if (source.scene) {
     const scene::Scene& scene = *source.scene;
-    if (!args.distance) args.distance = scene.distance;
+    // What a scene expects holds for its own distance.
+    if (args.distance) source.scene->expect = {};
+    else args.distance = scene.distance;
     if (!args.options.grid.voxel_size && !args.options.grid.voxels_per_distance) args.options.grid = scene.grid;
     if (scene.solver != Solver::Closest) args.options.solver = scene.solver;
   }
@@ -127,7 +129,10 @@ int run(Arguments args) {
     bar.show(stage, share);
     return interrupted() == 0;
   };
-  const Source source = read_source(args.input);
+  if (!args.dry_run)
+    for (const std::string& path : {args.output, args.report, args.vdb})
+      if (!path.empty()) require_writable(path);
+  Source source = read_source(args.input);
   settle_options(source, args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {

@@ -221,7 +221,7 @@ std::string to_stl(PolygonView mesh) {
   append_binary(bytes, static_cast<std::uint32_t>(triangles.size()));
   for (const auto& [a, b, c] : triangles) {
     Vec3d normal = (stored[b] - stored[a]).cross(stored[c] - stored[a]);
-    if (normal.lengthSqr() > 0) normal.normalize();
+    if (normal.length() > 0) normal /= normal.length();
     for (const Vec3d& row : {normal, stored[a], stored[b], stored[c]})
       for (int k = 0; k < 3; ++k) append_binary(bytes, static_cast<float>(row[k]));
     append_binary(bytes, std::uint16_t{0});

@@ -1,0 +1,81 @@
+#include "vdb_offset/closest.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "oracles.h"
+#include "vdb_offset/scene/shapes.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+/// Largest difference from brute force at random points in and around the mesh, with random hints.
+double worst_difference(const Polygons& mesh, int points, double margin) {
+  Surface surface = build_surface(mesh.view(), {});
+  place(surface, surface.facts.diagonal / 50);
+  const ClosestQuery query(surface);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double worst = 0;
+  for (int i = 0; i < points; ++i) {
+    Vec3d x;
+    for (int k = 0; k < 3; ++k)
+      x[k] = surface.facts.lower[k] - margin +
+             (surface.facts.upper[k] - surface.facts.lower[k] + 2 * margin) * unit(random);
+    const auto hint = static_cast<std::uint32_t>(random() % surface.triangles.size());
+    const Closest closest = query(x - surface.origin, hint);
+    worst = std::max(worst, std::abs(closest.distance - test::brute_force_distance(mesh.view(), x)));
+    worst = std::max(worst, std::abs((closest.point + surface.origin - x).length() - closest.distance));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("closest: equals brute force", "[closest]") {
+  // 1e-12 of the diagonal: rounding of coordinates of size 1 and a few operations on them.
+  CHECK(worst_difference(scene::bumpy_sphere(1, 0.3, 1.5, 3, 4), 400, 0.5) < 4e-12);
+  CHECK(worst_difference(scene::plates(1, 0.01, 0.001, 20), 400, 0.2) < 2e-12);
+  CHECK(worst_difference(scene::naca_wing("0012", 1, 1, 40, 10), 400, 0.1) < 2e-12);
+  CHECK(worst_difference(scene::box(Vec3d(1, 100, 0.001), 1, true), 400, 1) < 1e-10);
+}
+
+TEST_CASE("closest: equals brute force at any scale and place", "[closest]") {
+  for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) {
+    Polygons mesh = scene::icosphere(scale, 3);
+    CHECK(worst_difference(mesh, 100, scale) < 4e-12 * scale);
+  }
+  Polygons far = scene::icosphere(1, 3);
+  for (Vec3d& p : far.positions) p += Vec3d(1e6, -2e6, 3e6);
+  CHECK(worst_difference(far, 100, 1) < 1e-8);  // the coordinates themselves are rounded to 5e-10
+}
+
+TEST_CASE("closest: a triangle without area is its edges", "[closest]") {
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.25, 0, 0}, {0, 1, 0}};
+  mesh.add_face({0, 1, 2});
+  CHECK(worst_difference(mesh, 200, 1) < 1e-12);
+  mesh.add_face({0, 0, 3});
+  CHECK(worst_difference(mesh, 200, 1) < 1e-12);
+}
+
+TEST_CASE("closest: the feature is the one that the point lies on", "[closest]") {
+  const Vec3d a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+  CHECK(closest_on_triangle({0.2, 0.2, 1}, a, b, c).feature == Feature::Face);
+  CHECK(closest_on_triangle({0.5, -1, 0}, a, b, c).feature == Feature::Edge0);
+  CHECK(closest_on_triangle({1, 1, 0.3}, a, b, c).feature == Feature::Edge1);
+  CHECK(closest_on_triangle({-1, 0.5, 0}, a, b, c).feature == Feature::Edge2);
+  CHECK(closest_on_triangle({-1, -1, 2}, a, b, c).feature == Feature::Vertex0);
+  CHECK(closest_on_triangle({3, -0.5, 0}, a, b, c).feature == Feature::Vertex1);
+  CHECK(closest_on_triangle({-0.5, 3, 0}, a, b, c).feature == Feature::Vertex2);
+}
+
+TEST_CASE("oracle: brute force rejects a wrong distance", "[closest][oracle]") {
+  const Polygons cube = scene::box(Vec3d(2), 2, true);
+  CHECK(test::brute_force_distance(cube.view(), {3, 0, 0}) == Approx(2).epsilon(1e-14));
+  CHECK(test::brute_force_distance(cube.view(), {2, 2, 2}) == Approx(std::sqrt(3)).epsilon(1e-14));
+  CHECK_FALSE(test::brute_force_distance(cube.view(), {3.001, 0, 0}) == Approx(2).epsilon(1e-6));
+  CHECK(test::is_inside(cube.view(), {0.9, 0.1, 0.2}));
+  CHECK_FALSE(test::is_inside(cube.view(), {1.1, 0.1, 0.2}));
+}

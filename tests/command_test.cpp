@@ -1,0 +1,207 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/scene/shapes.h"
+
+using namespace vdb_offset;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Run {
+  int code;  ///< Exit code, or 128 + signal.
+  std::string out, err;
+};
+
+/// A folder with a sphere in it, and the command run inside.
+class Shell {
+ public:
+  Shell() {
+    fs::create_directories(path_);
+    io::write_mesh(file("sphere.obj"), scene::icosphere(1, 3).view());
+  }
+  ~Shell() { fs::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  bool has(const std::string& name) const { return fs::exists(path_ / name); }
+  std::size_t count() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
+  }
+
+  Run operator()(const std::string& arguments) const {
+    const std::string err = (fs::temp_directory_path() / ("vdb_offset_err_" + std::to_string(::getpid()))).string(),
+                      out = err + "_out";
+    const int status = std::system(
+        ("cd '" + path_.string() + "' && exec '" COMMAND "' " + arguments + " >" + out + " 2>" + err + " </dev/null")
+            .c_str());
+    Run run{WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), slurp(out), slurp(err)};
+    fs::remove(err);
+    fs::remove(out);
+    return run;
+  }
+  std::string slurp(const std::string& path) const {
+    std::ifstream in(path);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+ private:
+  fs::path path_ = fs::temp_directory_path() / ("vdb_offset_command_test_" + std::to_string(::getpid()));
+};
+
+/// Exit code and message of a call that must fail and leave nothing behind.
+void check_failure(const Shell& shell, const std::string& arguments, int code, const std::string& message) {
+  INFO(arguments);
+  const std::size_t before = shell.count();
+  const Run run = shell(arguments);
+  CHECK(run.code == code);
+  CHECK_THAT(run.err, Catch::StartsWith("vdb_offset: ") && Catch::Contains(message));
+  CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+  CHECK(run.out.empty());
+  CHECK(shell.count() == before);
+}
+
+}  // namespace
+
+TEST_CASE("command: 0 and an output when all is well", "[command]") {
+  const Shell shell;
+  const Run run = shell("sphere.obj out.obj --distance 0.1");
+  CHECK(run.code == 0);
+  CHECK(run.err.empty());
+  CHECK_THAT(run.out, Catch::Contains("100.000 % reached"));
+  const io::MeshFile source = io::read_mesh(shell.file("sphere.obj")), out = io::read_mesh(shell.file("out.obj"));
+  CHECK(out.polygons.corners == source.polygons.corners);
+  CHECK(out.polygons.positions[0].length() == Approx(1.1).epsilon(1e-3));
+  CHECK(shell.count() == 2);
+  CHECK(shell("sphere.obj out.obj --distance=-1% --quiet").out.empty());
+  CHECK(shell("sphere.obj sphere.obj -d -1% -q").code == 0);  // in place
+}
+
+TEST_CASE("command: help and version", "[command]") {
+  const Shell shell;
+  const Run help = shell("--help");
+  CHECK(help.code == 0);
+  for (const char* word : {"--distance", "--voxel-size", "--voxels-per-distance", "--collision", "--solver", "--weld",
+                           "--threads", "--max-memory", "--report", "--save-vdb", "--strict", "--dry-run", "--quiet",
+                           "--verbose", "Examples", "Exit codes"})
+    CHECK_THAT(help.out, Catch::Contains(word));
+  CHECK_THAT(shell("--version").out, Catch::StartsWith("vdb_offset "));
+}
+
+TEST_CASE("command: 1 for wrong usage", "[command]") {
+  const Shell shell;
+  check_failure(shell, "", 1, "INPUT");
+  check_failure(shell, "sphere.obj", 1, "OUTPUT");
+  check_failure(shell, "sphere.obj out.obj", 1, "--distance");
+  check_failure(shell, "sphere.obj out.obj --distance abc", 1, "'abc'");
+  check_failure(shell, "sphere.obj out.obj --distance nan", 1, "'nan'");
+  check_failure(shell, "sphere.obj out.xyz --distance 1", 1, "out.xyz");
+  check_failure(shell, "sphere.xyz out.obj --distance 1", 1, "sphere.xyz");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --nonsense", 1, "--nonsense");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 0", 1, "--voxel-size");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 1 --voxels-per-distance 1", 1, "both");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --collision limit", 1, "not available");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --collision bounce", 1, "'bounce'");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --solver magic", 1, "'magic'");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --weld some", 1, "'some'");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --threads -1", 1, "--threads");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --max-memory lots", 1, "'lots'");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --quiet --verbose", 1, "both");
+}
+
+TEST_CASE("command: 2 for input that cannot be read", "[command]") {
+  const Shell shell;
+  check_failure(shell, "none.obj out.obj --distance 1", 2, "none.obj: cannot be opened");
+  std::ofstream(shell.file("broken.obj")) << "v 0 0 0\nf 1 2 3\n";
+  check_failure(shell, "broken.obj out.obj --distance 1", 2, "broken.obj, line 2");
+  std::ofstream(shell.file("broken.json")) << "{}";
+  check_failure(shell, "broken.json out.obj", 2, "broken.json: expected");
+}
+
+TEST_CASE("command: 3 for work that is refused or falls short", "[command]") {
+  const Shell shell;
+  check_failure(shell, "sphere.obj out.obj --distance 0.1 --voxel-size 1e-4 --max-memory 100M", 3, "would fit");
+  const std::string plates = std::string(SCENE_DIR) + "/plates_closing.json";
+  CHECK(shell("'" + plates + "' out.obj").code == 0);
+  const Run strict = shell("'" + plates + "' out.obj --strict");
+  CHECK(strict.code == 3);
+  CHECK_THAT(strict.err, Catch::Contains("--strict") && Catch::Contains("fall short"));
+  CHECK(shell.has("out.obj"));  // told, but made
+  std::ofstream(shell.file("scene.json")) << R"({"shape": {"type": "icosphere", "radius": 1, "subdivisions": 2},
+    "offset": {"distance": 0.1}, "expect": {"max_reached": 0.5}})";
+  const Run unmet = shell("scene.json out.obj");
+  CHECK(unmet.code == 3);
+  CHECK_THAT(unmet.err, Catch::Contains("expected a share reached of at most"));
+  CHECK(shell("scene.json out.obj --distance 0.2").code == 0);  // another distance, other expectations
+}
+
+TEST_CASE("command: 4 for output that cannot be written", "[command]") {
+  const Shell shell;
+  check_failure(shell, "sphere.obj no/such/out.obj --distance 0.1", 4, "cannot be written");
+  check_failure(shell, "sphere.obj out.obj --distance 0.1 --report no/such/report.json", 4, "report.json");
+}
+
+TEST_CASE("command: a dry run tells the plan and writes nothing", "[command]") {
+  const Shell shell;
+  const Run run = shell("sphere.obj out.obj --distance 1% --dry-run --report r.json");
+  CHECK(run.code == 0);
+  for (const char* word : {"voxel size", "leaf nodes", "voxels", "MiB", "s on"})
+    CHECK_THAT(run.out, Catch::Contains(word));
+  CHECK(shell.count() == 1);
+}
+
+TEST_CASE("command: the report has the keys that scripts rely on", "[command]") {
+  const Shell shell;
+  REQUIRE(shell("sphere.obj out.obj --distance 5% --report report.json --save-vdb field.vdb").code == 0);
+  const auto report = nlohmann::json::parse(shell.slurp(shell.file("report.json")));
+  CHECK(report["distance"].get<double>() == Approx(0.05 * report["mesh"]["diagonal"].get<double>()));
+  CHECK(report["voxel_size"].get<double>() > 0);
+  CHECK(report["threads"].get<int>() >= 1);
+  for (const char* stage : {"read", "rasterise", "sweep", "propagate", "limit", "write", "total"})
+    CHECK(report["seconds"][stage].get<double>() >= 0);
+  for (const char* state : {"reached", "collision", "limited", "outside_field", "unused"})
+    CHECK(report["vertices_by_state"].contains(state));
+  CHECK(report["vertices_by_state"]["reached"] == 642);
+  CHECK(report["peak_memory_bytes"].get<std::size_t>() > 1000000);
+  CHECK(report["options"]["distance"] == "5%");
+  CHECK(report["mesh"]["faces_by_corners"]["3"] == 1280);
+  CHECK(report["grid"]["bytes"]["phi"].get<std::size_t>() > 0);
+  CHECK(fs::file_size(shell.file("field.vdb")) > 1000);
+}
+
+TEST_CASE("command: same bytes for any number of threads", "[command]") {
+  const Shell shell;
+  REQUIRE(shell("sphere.obj one.obj --distance=-3% --threads 1").code == 0);
+  REQUIRE(shell("sphere.obj two.obj --distance=-3% --threads 2").code == 0);
+  CHECK(shell.slurp(shell.file("one.obj")) == shell.slurp(shell.file("two.obj")));
+}
+
+TEST_CASE("command: an interrupt ends it by that signal and leaves nothing", "[command]") {
+  const Shell shell;
+  io::write_mesh(shell.file("big.obj"), scene::bumpy_sphere(1, 0.4, 2, 1, 7).view());
+  const std::size_t before = shell.count();
+  const std::string input = shell.file("big.obj"), output = shell.file("out.obj");
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    execl(COMMAND, COMMAND, input.c_str(), output.c_str(), "-d", "-4%", "--threads", "1", "-q", nullptr);
+    _exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  CHECK(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == SIGINT);
+  CHECK(shell.count() == before);
+}

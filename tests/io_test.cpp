@@ -1,0 +1,282 @@
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/scene/shapes.h"
+
+using namespace vdb_offset;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder of its own for each test case.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("vdb_offset_io_test_" + std::to_string(::getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+  std::string file(const std::string& name) const { return (path / name).string(); }
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary) << bytes;
+    return file(name);
+  }
+};
+
+std::string slurp(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+template <class T>
+std::string raw(T value, bool swap = false) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  if (swap) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+std::vector<Vec3d> shifted(std::vector<Vec3d> positions, const Vec3d& by) {
+  for (Vec3d& p : positions) p += by;
+  return positions;
+}
+
+/// Writes the bytes to a file of that name, reads it, moves every vertex and gives what is then written.
+std::string moved(const Folder& folder, const std::string& name, const std::string& bytes, const Vec3d& by) {
+  const io::MeshFile file = io::read_mesh(folder.write(name, bytes));
+  io::write_mesh(folder.file("out_" + name), file, shifted(file.polygons.positions, by));
+  return slurp(folder.file("out_" + name));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+const std::string kObj =
+    "# a comment\r\nmtllib x.mtl\nv 0 0 0 0.5 0.5 0.5\nv  1.50 0 \t0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\no "
+    "part\n"
+    "usemtl red\ns 1\nf 1/1/1 2/2/1 3/1/1 # face\nf -3//1 \\\n -1//1 -2//1\nl 1 2\nunknown stuff 1 2 3";
+
+const std::string kPlyHeader =
+    "comment made by hand\nelement vertex 3\nproperty float x\nproperty uchar red\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nproperty float quality\nend_header\n";
+
+std::string binary_ply(bool big) {
+  std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + kPlyHeader;
+  const float xyz[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (const auto& p : xyz) bytes += raw(p[0], big) + raw(std::uint8_t{200}) + raw(p[1], big) + raw(p[2], big);
+  bytes += raw(std::uint8_t{3});
+  for (const std::int32_t v : {0, 1, 2}) bytes += raw(v, big);
+  return bytes + raw(0.25f, big);
+}
+
+std::string binary_stl() {
+  std::string bytes(80, 'h');
+  bytes += raw(std::uint32_t{1});
+  for (const float x : {9.f, 9.f, 9.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) bytes += raw(x);
+  return bytes + raw(std::uint16_t{0xabcd});
+}
+
+const std::string kStl =
+    "solid my part\n  facet normal inf -inf word\n    outer loop\n      vertex 0 0 0\n      vertex 1 0 0\n"
+    "      vertex 0 1 0\n    endloop\n  endfacet\nendsolid my part\n";
+
+}  // namespace
+
+TEST_CASE("obj: only coordinates of moved vertices change", "[io]") {
+  const Folder folder;
+  const std::string once = moved(folder, "a.obj", kObj, {0, 0, 0});
+  CHECK(once == kObj);
+  std::string expected = replaced(kObj, "v 0 0 0 0.5", "v 0 0 2 0.5");
+  expected = replaced(expected, "v  1.50 0 \t0", "v  1.5 0 \t2");
+  expected = replaced(expected, "v 0 1 0\n", "v 0 1 2\n");
+  expected = replaced(expected, "v 1 1 0\n", "v 1 1 2\n");
+  CHECK(moved(folder, "a.obj", kObj, {0, 0, 2}) == expected);
+}
+
+TEST_CASE("obj: faces, negative indices and continued lines are read", "[io]") {
+  const Folder folder;
+  const io::MeshFile file = io::read_mesh(folder.write("a.obj", kObj));
+  CHECK(file.polygons.positions.size() == 4);
+  CHECK(file.polygons.corners == std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2});
+  CHECK(file.corner_normal == std::vector<std::uint32_t>(6, 0));
+}
+
+TEST_CASE("obj: normals of faces that turned are computed anew", "[io]") {
+  const Folder folder;
+  const io::MeshFile file =
+      io::read_mesh(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n"));
+  std::vector<Vec3d> turned = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  io::write_mesh(folder.file("b.obj"), file, turned);
+  CHECK(slurp(folder.file("b.obj")) == "v 0 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\n");
+}
+
+TEST_CASE("off: header variants, comments and colours stay", "[io]") {
+  const Folder folder;
+  const std::string off =
+      "COFF # colours\n# counts\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 255 255\n3 0 1 2 0.5\n";
+  CHECK(moved(folder, "a.off", off, {0, 0, 0}) == off);
+  CHECK(moved(folder, "a.off", off, {1, 0, 0}) ==
+        "COFF # colours\n# counts\n3 1 0\n1 0 0 255 0 0 255\n2 0 0 0 255 0 255\n1 1 0 0 0 255 255\n3 0 1 2 0.5\n");
+  CHECK(io::read_mesh(folder.write("b.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2")).polygons.face_count() == 1);
+}
+
+TEST_CASE("ply: all properties, elements and bytes stay in every encoding", "[io]") {
+  const Folder folder;
+  for (const bool big : {false, true}) {
+    const std::string before = binary_ply(big), after = moved(folder, "a.ply", before, {0, 0, 0.5});
+    CHECK(moved(folder, "a.ply", before, {0, 0, 0}) == before);
+    REQUIRE(after.size() == before.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) different += after[i] != before[i];
+    CHECK(different == 3);  // 0 and 0.5 differ in one byte of a float
+    CHECK(io::read_mesh(folder.file("out_a.ply")).polygons.positions[1] == Vec3d(1, 0, 0));
+  }
+  const std::string text = "ply\r\nformat ascii 1.0\n" + kPlyHeader + "0 200 0 0\n1 200 0 0\n0 200 1 0\n3 0 1 2 0.25\n";
+  CHECK(moved(folder, "b.ply", text, {0, 0, 0}) == text);
+  CHECK_THAT(moved(folder, "b.ply", text, {0, 0, 0.1}),
+             Catch::Contains("0 200 0 0.1\n1 200 0 0.1\n0 200 1 0.1\n3 0 1 2 0.25\n"));
+}
+
+TEST_CASE("ply: a moved vertex gets a new normal", "[io]") {
+  const Folder folder;
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nproperty "
+      "float nx\n"
+      "property float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+      "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
+  const io::MeshFile file = io::read_mesh(folder.write("a.ply", text));
+  io::write_mesh(folder.file("b.ply"), file, std::vector<Vec3d>{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  CHECK_THAT(slurp(folder.file("b.ply")), Catch::EndsWith("0 0 0 1 0 0\n0 1 0 1 0 0\n0 0 1 1 0 0\n3 0 1 2\n"));
+}
+
+TEST_CASE("stl: names, headers and attribute bytes stay", "[io]") {
+  const Folder folder;
+  CHECK(moved(folder, "a.stl", kStl, {0, 0, 0}) == kStl);
+  const std::string text = moved(folder, "a.stl", kStl, {0, 0, 0.1});
+  CHECK_THAT(text, Catch::StartsWith("solid my part\n  facet normal 0 0 1\n") && Catch::Contains("vertex 1 0 0.1\n"));
+  const std::string before = binary_stl(), after = moved(folder, "b.stl", before, {0, 0, 0.1});
+  CHECK(after.substr(0, 84) == before.substr(0, 84));
+  CHECK(after.substr(after.size() - 2) == before.substr(before.size() - 2));
+  CHECK(io::read_mesh(folder.file("out_b.stl")).polygons.positions[2] == Vec3d(0, 1, static_cast<double>(0.1f)));
+  CHECK(moved(folder, "b.stl", before, {0, 0, 0}) == before);
+}
+
+TEST_CASE("io: numbers in text read back to the same double", "[io]") {
+  const Folder folder;
+  Polygons mesh = scene::icosphere(1.0 / 3, 2);
+  for (const char* name : {"a.obj", "a.off", "a.ply"}) {
+    io::write_mesh(folder.file(name), mesh.view());
+    const io::MeshFile back = io::read_mesh(folder.file(name));
+    CHECK(back.polygons.positions == mesh.positions);
+    CHECK(back.polygons.corners == mesh.corners);
+    CHECK(back.polygons.face_begin == mesh.face_begin);
+  }
+}
+
+TEST_CASE("io: conversion keeps positions and faces and says what is lost", "[io]") {
+  const Folder folder;
+  const io::MeshFile file = io::read_mesh(folder.write("a.obj", kObj));
+  const std::string lost = io::write_mesh(folder.file("a.off"), file, file.polygons.positions);
+  for (const char* what : {"texture coordinates", "normals", "materials", "groups", "smoothing", "weights or colours"})
+    CHECK_THAT(lost, Catch::Contains(what));
+  CHECK(io::read_mesh(folder.file("a.off")).polygons.corners == file.polygons.corners);
+
+  const Polygons cube = scene::box(Vec3d(1), 2, false);
+  io::write_mesh(folder.file("cube.obj"), cube.view());
+  const io::MeshFile quads = io::read_mesh(folder.file("cube.obj"));
+  CHECK_THAT(io::write_mesh(folder.file("cube.stl"), quads, quads.polygons.positions),
+             Catch::Contains("split into triangles"));
+  CHECK(io::read_mesh(folder.file("cube.stl")).polygons.face_count() == 2 * cube.face_count());
+  CHECK(io::write_mesh(folder.file("cube.ply"), quads, quads.polygons.positions).empty());
+}
+
+TEST_CASE("io: faulty content is refused with its place", "[io]") {
+  const Folder folder;
+  struct Case {
+    const char *name, *bytes, *place, *fault;
+  };
+  const Case cases[] = {
+      {"a.obj", "", "byte 0", "empty"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "line 4", "at least one face"},
+      {"a.obj", "v 0 0 nan\n", "line 1", "finite"},
+      {"a.obj", "v 0 0\n", "line 1", "the end of the line"},
+      {"a.obj", "v 0 0 1,5\n", "line 1", "'1,5'"},
+      {"a.obj", "v 0 0 0\nf 1 1 0\n", "line 2", "from 1 on"},
+      {"a.obj", "v 0 0 0\nf 1 1 2\n", "line 2", "up to 1"},
+      {"a.obj", "v 0 0 0\nf 1 1 -2\n", "line 2", "'-2'"},
+      {"a.obj", "v 0 0 0\nf 1 1\n", "line 2", "3 corners"},
+      {"a.obj", "v 0 0 0\nf 1 1 x\n", "line 2", "'x'"},
+      {"a.obj", "v 0 0 0\nf 1//1 1//1 1//1\n", "line 2", "normal indices"},
+      {"a.obj", "\x01\x02\x03 zz\n", "line 1", "a line of an OBJ file"},
+      {"a.off", "OFX\n", "line 1", "OFF"},
+      {"a.off", "OFF\n353535235358 1 0\n", "line 2", "rest of the file"},
+      {"a.off", "OFF\n-1 1 0\n", "line 2", "not -1"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "line 5", "vertex 3 of 3"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6", "below 3"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "line 6", "3 corners"},
+      {"a.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "line 6", "at least one face"},
+      {"a.ply", "plx\n", "line 1", "ply"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 99999999\n", "line 3", "can hold"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n", "line 4", "PLY type"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n", "header", "face"},
+      {"a.ply", "ply\nformat ascii 1.0\n", "line 3", "end_header"},
+      {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 a\n", "line 4", "'a'"},
+      {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop\n", "line 6", "'vertex'"},
+      {"a.stl", "solid x\nendsolid x\n", "line 3", "at least one facet"},
+      {"a.stl", "solid x\nfacet normal 0 0 1\n", "line 3", "'outer'"},
+      {"a.stl", "neither nor", "byte 0", "84 bytes"},
+  };
+  for (const Case& c : cases) {
+    INFO(c.name << ": " << c.bytes);
+    const std::string path = folder.write(c.name, c.bytes);
+    CHECK_THROWS_AS(io::read_mesh(path), InvalidInput);
+    CHECK_THROWS_WITH(io::read_mesh(path),
+                      Catch::StartsWith(path) && Catch::Contains(c.place) && Catch::Contains(c.fault));
+  }
+}
+
+TEST_CASE("io: truncated and lying binaries are refused without reading beyond", "[io]") {
+  const Folder folder;
+  for (const std::string& whole : {binary_ply(false), binary_ply(true)})
+    for (std::size_t cut = 1; cut < whole.size(); ++cut)
+      CHECK_THROWS_AS(io::read_mesh(folder.write("a.ply", whole.substr(0, cut))), InvalidInput);
+  const std::string stl = binary_stl();
+  for (std::size_t cut = 1; cut < stl.size(); ++cut)
+    CHECK_THROWS_AS(io::read_mesh(folder.write("a.stl", stl.substr(0, cut))), InvalidInput);
+  std::string lying = stl;
+  lying.replace(80, 4, raw(std::uint32_t{4000000000u}));
+  CHECK_THROWS_WITH(io::read_mesh(folder.write("b.stl", lying)), Catch::Contains("4000000000 facets"));
+}
+
+TEST_CASE("io: files that are not there, or cannot be written, are told", "[io]") {
+  const Folder folder;
+  CHECK_THROWS_AS(io::read_mesh(folder.file("none.obj")), ReadError);
+  CHECK_THROWS_AS(io::read_mesh(folder.path.string() + "/x.xyz"), InvalidInput);
+  fs::create_directory(folder.path / "folder.obj");
+  CHECK_THROWS_AS(io::read_mesh(folder.file("folder.obj")), ReadError);
+  const Polygons cube = scene::box(Vec3d(1), 1, false);
+  CHECK_THROWS_AS(io::write_mesh(folder.file("folder.obj"), cube.view()), WriteError);
+  CHECK_THROWS_AS(io::write_mesh(folder.file("no/such/folder.obj"), cube.view()), WriteError);
+  CHECK_THROWS_AS(io::write_mesh(folder.file("x.xyz"), cube.view()), InvalidInput);
+}
+
+TEST_CASE("io: a write that fails half-way leaves the old file and nothing else", "[io]") {
+  const Folder folder;
+  const std::string path = folder.write("a.obj", "old");
+  CHECK_THROWS_AS(replace_file(path,
+                               [](const std::string& temporary) {
+                                 std::ofstream(temporary) << "half";
+                                 throw WriteError("disk full");
+                               }),
+                  WriteError);
+  CHECK(slurp(path) == "old");
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}

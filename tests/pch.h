@@ -1,0 +1,5 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <catch2/catch.hpp>

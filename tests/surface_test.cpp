@@ -1,0 +1,167 @@
+#include "vdb_offset/surface.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/mesh.h"
+#include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/triangulate.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+/// Every face with corners of its own, as STL stores them.
+Polygons torn(const Polygons& mesh) {
+  Polygons soup;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    for (const auto v : mesh.view().face(f)) {
+      soup.corners.push_back(static_cast<std::uint32_t>(soup.positions.size()));
+      soup.positions.push_back(mesh.positions[v]);
+    }
+    soup.close_face();
+  }
+  return soup;
+}
+
+double area_of(const std::vector<Vec3d>& p, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  double sum = 0;
+  for (const auto& [a, b, c] : triangles) sum += (p[b] - p[a]).cross(p[c] - p[a])[2] / 2;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("triangulate: a convex polygon becomes the fan around its first corner", "[surface]") {
+  const std::vector<Vec3d> p = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangulate(p, std::vector<std::uint32_t>{0, 1, 2, 3}, triangles);
+  CHECK(triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}});
+}
+
+TEST_CASE("triangulate: a concave polygon is covered once", "[surface]") {
+  // An L of area 3 whose fan around corner 0 would turn both ways.
+  const std::vector<Vec3d> p = {{1, 1, 0}, {1, 2, 0}, {0, 2, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}};
+  const std::vector<std::uint32_t> corners = {1, 2, 3, 4, 5, 0};
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangulate(p, corners, triangles);
+  REQUIRE(triangles.size() == 4);
+  for (const auto& t : triangles) CHECK(area_of(p, {t}) > 0);
+  CHECK(area_of(p, triangles) == Approx(3));
+}
+
+TEST_CASE("triangulate: a polygon with a bridge to a hole leaves the hole open", "[surface]") {
+  // A square of side 3 with a hole of side 1, joined by a bridge that is run through twice.
+  const std::vector<Vec3d> p = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}};
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangulate(p, std::vector<std::uint32_t>{0, 1, 2, 3, 0, 4, 5, 6, 7, 4}, triangles);
+  REQUIRE(triangles.size() == 8);
+  for (const auto& t : triangles) CHECK(area_of(p, {t}) >= 0);
+  CHECK(area_of(p, triangles) == Approx(8));
+}
+
+TEST_CASE("surface: facts of known shapes", "[surface]") {
+  SECTION("closed") {
+    const Surface cube = build_surface(scene::box(Vec3d(1), 4, false).view(), {});
+    CHECK(cube.facts.closed());
+    CHECK(cube.facts.oriented());
+    CHECK(cube.facts.components == 1);
+    CHECK(cube.facts.faces_by_corners == std::map<std::size_t, std::size_t>{{4, 96}});
+    CHECK(cube.facts.area == Approx(6));
+    CHECK(cube.facts.diagonal == Approx(std::sqrt(3)));
+    CHECK(cube.triangles.size() == 192);
+  }
+  SECTION("open") {
+    const Surface patch = build_surface(scene::patch(1, 0, 8).view(), {});
+    CHECK(patch.facts.boundary_edges == 32);
+    CHECK_FALSE(patch.facts.closed());
+  }
+  SECTION("two components") { CHECK(build_surface(scene::plates(1, 0.1, 0.1, 3).view(), {}).facts.components == 2); }
+  SECTION("three faces on an edge, and one turned against its neighbour") {
+    Polygons fins;
+    fins.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+    fins.add_face({0, 1, 2});
+    fins.add_face({0, 1, 3});
+    CHECK(build_surface(fins.view(), {}).facts.orientation_conflicts == 1);
+    fins.add_face({0, 1, 4});
+    const MeshFacts facts = build_surface(fins.view(), {}).facts;
+    CHECK(facts.non_manifold_edges == 1);
+    CHECK(facts.boundary_edges == 6);
+  }
+  SECTION("degenerate faces and unused vertices") {
+    Polygons mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {9, 9, 9}};
+    mesh.add_face({0, 1, 2});
+    mesh.add_face({0, 1, 1});
+    mesh.add_face({0, 1, 3});
+    const MeshFacts facts = build_surface(mesh.view(), {}).facts;
+    CHECK(facts.degenerate_faces == 2);
+    CHECK(facts.unused_vertices == 1);
+    CHECK(facts.upper == Vec3d(2, 1, 0));  // the unused vertex does not count
+  }
+}
+
+TEST_CASE("surface: welding joins a torn mesh, and only when asked", "[surface]") {
+  const Polygons soup = torn(scene::box(Vec3d(1), 3, true));
+  CHECK(build_surface(soup.view(), {}).facts.closed());
+  CHECK(build_surface(soup.view(), {}).facts.welded_vertices == 56);
+  CHECK(build_surface(soup.view(), {false, 0}).facts.boundary_edges == 3 * soup.face_count());
+
+  Polygons shaken = soup;
+  for (std::size_t v = 0; v < shaken.positions.size(); ++v)
+    shaken.positions[v][static_cast<int>(v % 3)] += 1e-7 * (v % 5);
+  CHECK_FALSE(build_surface(shaken.view(), {}).facts.closed());
+  CHECK(build_surface(shaken.view(), {true, 1e-6}).facts.closed());
+}
+
+TEST_CASE("surface: minus zero stands where zero stands", "[surface]") {
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, -0.0, 0}, {0, 1, -0.0}, {-1, 0, 0}};
+  mesh.add_face({0, 1, 2});
+  mesh.add_face({3, 4, 5});
+  CHECK(build_surface(mesh.view(), {}).facts.welded_vertices == 4);
+}
+
+TEST_CASE("surface: every broken precondition is told", "[surface]") {
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  CHECK_THROWS_WITH(build_surface(mesh.view(), {}), Catch::Contains("at least one face"));
+  mesh.add_face({0, 1, 3});
+  CHECK_THROWS_WITH(build_surface(mesh.view(), {}), Catch::Contains("below 3, got 3"));
+  mesh.corners[2] = 2;
+  CHECK_THROWS_WITH(build_surface(mesh.view(), {true, -1}), Catch::Contains("tolerance"));
+  CHECK_THROWS_WITH(build_surface(mesh.view(), {true, 1e-300}), Catch::Contains("above the rounding"));
+  mesh.positions[1][1] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(build_surface(mesh.view(), {}),
+                    Catch::Contains("finite coordinates") && Catch::Contains("vertex 1"));
+  mesh.positions[1][1] = 0;
+  mesh.add_face({0, 1});
+  CHECK_THROWS_WITH(build_surface(mesh.view(), {}), Catch::Contains("3 corners in face 1"));
+}
+
+TEST_CASE("surface: pseudonormals tell the side at faces, edges and vertices", "[surface]") {
+  Surface cube = build_surface(scene::box(Vec3d(2), 2, true).view(), {});
+  place(cube, 0.1);
+  for (const Vec3d& outside : {Vec3d(3, 0.1, 0.2), Vec3d(2, 2, 0.1), Vec3d(2, 2, 2), Vec3d(1.1, -1.1, 1.05)})
+    for (const double scale : {1.0, 0.3}) {  // outside, and the same direction inside
+      const Vec3d x = outside * scale - cube.origin;
+      std::uint32_t best = 0;
+      for (std::uint32_t t = 1; t < cube.triangles.size(); ++t)
+        if (cube.closest_on(t, x).squared_distance < cube.closest_on(best, x).squared_distance) best = t;
+      const TrianglePoint at = cube.closest_on(best, x);
+      CHECK((cube.pseudonormal(best, at.feature).dot(x - at.point) > 0) == (scale == 1.0));
+    }
+}
+
+TEST_CASE("mesh: a half-edge mesh goes there and back unchanged", "[surface]") {
+  const Polygons cube = scene::box(Vec3d(1), 3, false);
+  const Polygons back = to_polygons(to_mesh(cube.view()));
+  CHECK(back.positions == cube.positions);
+  CHECK(back.corners == cube.corners);
+  CHECK(back.face_begin == cube.face_begin);
+  Polygons fins;
+  fins.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+  for (const std::uint32_t tip : {2u, 3u, 4u}) fins.add_face({0, 1, tip});
+  CHECK_THROWS_AS(to_mesh(fins.view()), InvalidInput);
+}
