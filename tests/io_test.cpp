@@ -86,7 +86,7 @@ std::string binary_stl() {
 
 const std::string kStl =
     "solid my part\n  facet normal inf -inf word\n    outer loop\n      vertex 0 0 0\n      vertex 1 0 0\n"
-    "      vertex 0 1 0\n    endloop\n  endfacet\nendsolid my part\n";
+    "      vertex 0 1 0\n    endloop foo\n  endfacet blah\nendsolid my part\n";
 
 }  // namespace
 
@@ -218,7 +218,7 @@ TEST_CASE("io: faulty content is refused with its place", "[io]") {
       {"a.obj", "\x01\x02\x03 zz\n", "line 1", "a line of an OBJ file"},
       {"a.off", "OFX\n", "line 1", "OFF"},
       {"a.off", "OFF\n353535235358 1 0\n", "line 2", "rest of the file"},
-      {"a.off", "OFF\n-1 1 0\n", "line 2", "not -1"},
+      {"a.off", "OFF\n-1 1 0\n", "line 2", "rest of the file"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "line 5", "vertex 3 of 3"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6", "below 3"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "line 6", "3 corners"},

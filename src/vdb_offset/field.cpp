@@ -25,8 +25,8 @@ FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& o
   grids.phi->setName("phi");
   grids.phi->setGridClass(openvdb::GRID_LEVEL_SET);
   grids.closest->setName("closest_primitive");
-  for (openvdb::GridBase::Ptr grid : {openvdb::GridBase::Ptr(grids.phi), openvdb::GridBase::Ptr(grids.closest)})
-    grid->setTransform(transform);
+  grids.phi->setTransform(transform);
+  grids.closest->setTransform(transform);
   return grids;
 }
 

@@ -1,6 +1,7 @@
 #include "vdb_offset/file_replace.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,7 +40,7 @@ void replace_file(const std::string& path, const std::function<void(const std::s
   if (std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored))
     return write(path);
   // The ending stays last: writers that choose a format by it must see the same one.
-  const std::string name = ".tmp-" + std::to_string(::getpid()) + "-" + target.filename().string();
+  const std::string name = fmt::format(".tmp-{}-{}", ::getpid(), target.filename().string());
   Remover temporary{(target.parent_path() / name).string()};
   write(temporary.path);
   if (std::rename(temporary.path.c_str(), path.c_str()) != 0)

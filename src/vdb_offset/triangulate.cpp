@@ -1,5 +1,6 @@
 #include "vdb_offset/triangulate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -28,6 +29,18 @@ bool fan_turns_one_way(std::span<const Vec3d> positions, std::span<const std::ui
   for (std::size_t k = 2; k < polygon.size(); ++k)
     if ((positions[polygon[k - 1]] - base).cross(positions[polygon[k]] - base).dot(area) < 0) return false;
   return true;
+}
+
+/// True if no corner is farther from the plane of the area vector than a thousandth of the polygon's size.
+bool is_flat(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon, const Vec3d& area) {
+  double lowest = 0, highest = 0;
+  for (const auto v : polygon) {
+    const double height = (positions[v] - positions[polygon[0]]).dot(area);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  constexpr double kFlat = 1e-3;
+  return highest - lowest <= kFlat * area.length() * std::sqrt(area.length());
 }
 
 /// The corners seen along the area vector's largest component, counter-clockwise.
@@ -98,12 +111,8 @@ class EarClipper {
 
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                  std::vector<Triangle>& triangles) {
-  if (polygon.size() == 3) {
-    triangles.push_back({polygon[0], polygon[1], polygon[2]});
-    return;
-  }
   const Vec3d area = area_vector(positions, polygon);
-  if (fan_turns_one_way(positions, polygon, area)) {
+  if (polygon.size() <= 4 || !is_flat(positions, polygon, area) || fan_turns_one_way(positions, polygon, area)) {
     for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
     return;
   }

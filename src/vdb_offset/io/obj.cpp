@@ -48,7 +48,7 @@ class ObjParser {
     const std::size_t begin = scanner_.position();
     std::size_t corners = 0;
     for (; !scanner_.at_line_end(); ++corners) corner(scanner_.token());
-    if (corners < 3) scanner_.fail(fmt::format("at least 3 corners in a face, not {},", corners));
+    if (corners < 3) scanner_.fail_with("at least 3 corners in a face", fmt::format("{}", corners), begin);
     face_at_.push_back(begin);
     file_.polygons.close_face();
   }

@@ -29,8 +29,8 @@ bool has_normals(const Scanner& scanner, std::string_view keyword, MeshFile& fil
 std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
   const std::int64_t value = scanner.integer_anywhere(what);
   if (value < 0 || static_cast<std::uint64_t>(value) > scanner.remaining() / least + 1)
-    scanner.fail(
-        fmt::format("{} that the rest of the file can hold ({} bytes), not {},", what, scanner.remaining(), value));
+    scanner.fail(fmt::format("{} that the rest of the file ({} bytes) can hold", what, scanner.remaining()),
+                 scanner.last_token());
   return static_cast<std::size_t>(value);
 }
 
@@ -39,7 +39,8 @@ std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
 void parse_off(MeshFile& file) {
   Scanner scanner(file.path, file.bytes, 0, false, '#');
   const bool normals = has_normals(scanner, scanner.token_anywhere("the keyword OFF"), file);
-  if (is_word(Scanner(scanner).token(), "binary")) scanner.fail("a text OFF file, not a binary one,");
+  if (is_word(Scanner(scanner).token(), "binary"))
+    scanner.fail_with("a text OFF file", "a binary one", scanner.position());
   const std::size_t vertices = count(scanner, "a number of vertices", 6),
                     faces = count(scanner, "a number of faces", 8);
   if (!scanner.at_line_end()) scanner.integer("a number of edges");
@@ -52,11 +53,11 @@ void parse_off(MeshFile& file) {
   for (std::size_t f = 0; f < faces; ++f) {
     if (scanner.at_text_end()) scanner.fail(fmt::format("face {} of {}", f + 1, faces));
     const std::int64_t corners = scanner.integer("a number of corners");
-    if (corners < 3) scanner.fail(fmt::format("at least 3 corners in a face, not {},", corners));
+    if (corners < 3) scanner.fail("at least 3 corners in a face", scanner.last_token());
     for (std::int64_t k = 0; k < corners; ++k) {
       const std::int64_t v = scanner.integer("a vertex index");
       if (v < 0 || static_cast<std::size_t>(v) >= vertices)
-        scanner.fail(fmt::format("a vertex index below {}, not {},", vertices, v));
+        scanner.fail(fmt::format("a vertex index below {}", vertices), scanner.last_token());
       file.polygons.corners.push_back(static_cast<std::uint32_t>(v));
     }
     file.polygons.close_face();

@@ -82,7 +82,7 @@ Header read_header(const MeshFile& file) {
   bool has_format = false;
   for (;;) {
     scanner.next_line();
-    if (scanner.at_end()) scanner.fail("a header line, or 'end_header',");
+    if (scanner.at_end()) scanner.fail("a header line or 'end_header'");
     const std::string_view keyword = scanner.token();
     if (keyword == "format") {
       header.encoding = read_encoding(scanner);
@@ -138,9 +138,9 @@ class Body {
     if (count > (file_.bytes.size() - at_) / type.bytes) truncated(what);
     at_ += count * type.bytes;
   }
-  [[noreturn]] void fail(const std::string& expected, std::uint64_t at) const {
-    if (encoding_ == Encoding::Ascii) text_.fail(expected, at);
-    throw InvalidInput(fmt::format("{}, byte {}: expected {}", file_.path, at, expected));
+  [[noreturn]] void fail(const std::string& expected, const std::string& found, std::uint64_t at) const {
+    if (encoding_ == Encoding::Ascii) text_.fail_with(expected, found, at);
+    throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", file_.path, at, expected, found));
   }
 
  private:
@@ -215,7 +215,7 @@ class PlyParser {
     std::uint64_t at = 0;
     if (!property.count) return body_.skip(property.type, 1, "a property");
     const double count = body_.take(*property.count, "the length of a list", at);
-    if (count < 0) body_.fail("a list length from 0 on", at);
+    if (count < 0) body_.fail("a list length from 0 on", fmt::format("{}", count), at);
     body_.skip(property.type, static_cast<std::size_t>(count), "an item of a list");
   }
 
@@ -251,7 +251,7 @@ class PlyParser {
         const auto c = static_cast<std::size_t>(component[i]);
         const double value = body_.take(element.properties[i].type, "a coordinate", at[c / 3].at[c % 3]);
         if (c >= 3) continue;
-        if (!std::isfinite(value)) body_.fail(fmt::format("a finite coordinate, got {}", value), at[0].at[c]);
+        if (!std::isfinite(value)) body_.fail("a finite coordinate", fmt::format("{}", value), at[0].at[c]);
         position[static_cast<int>(c)] = value;
       }
       file_.polygons.positions.push_back(position);
@@ -279,10 +279,10 @@ class PlyParser {
   void read_corners(const Property& property, std::size_t f) {
     std::uint64_t at = 0;
     const double count = body_.take(*property.count, "the number of a face's corners", at);
-    if (count < 3) body_.fail(fmt::format("at least 3 corners in face {}, got {}", f, count), at);
+    if (count < 3) body_.fail(fmt::format("at least 3 corners in face {}", f), fmt::format("{}", count), at);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const double v = body_.take(property.type, "a vertex index", at);
-      if (v < 0 || v > static_cast<double>(kMostVertices)) body_.fail(fmt::format("a vertex index, got {}", v), at);
+      if (v < 0 || v > static_cast<double>(kMostVertices)) body_.fail("a vertex index", fmt::format("{}", v), at);
       file_.polygons.corners.push_back(static_cast<std::uint32_t>(v));
     }
     file_.polygons.close_face();

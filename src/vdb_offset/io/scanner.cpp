@@ -86,7 +86,7 @@ bool Scanner::at_text_end() {
 
 std::string_view Scanner::token() {
   if (at_line_end()) return {};
-  const std::size_t begin = at_;
+  const std::size_t begin = last_token_ = at_;
   while (!is_break(at_) && !is_blank(text_[at_]) && !continuation_length(at_)) ++at_;
   return text_.substr(begin, at_ - begin);
 }
@@ -126,12 +126,18 @@ Vec3d Scanner::triple(const char* expected, NumberTriple& at) {
 
 void Scanner::fail(const std::string& expected, std::size_t at) const {
   at = std::min(at, text_.size());
-  const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   std::size_t end = at;
   while (!is_break(end) && !is_blank(text_[end])) ++end;
-  const std::string found = at >= text_.size() ? "the end of the file"
-                            : end == at        ? "the end of the line"
-                                               : "'" + shown(text_.substr(at, end - at)) + "'";
+  fail_with(expected,
+            at >= text_.size() ? "the end of the file"
+            : end == at        ? "the end of the line"
+                               : "'" + shown(text_.substr(at, end - at)) + "'",
+            at);
+}
+
+void Scanner::fail_with(const std::string& expected, const std::string& found, std::size_t at) const {
+  const auto before = text_.begin() + static_cast<std::ptrdiff_t>(std::min(at, text_.size()));
+  const auto line = 1 + std::count(text_.begin(), before, '\n');
   throw InvalidInput(fmt::format("{}, line {}: expected {}, got {}", path_, line, expected, found));
 }
 

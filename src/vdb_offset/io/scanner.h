@@ -40,7 +40,11 @@ class Scanner {
   std::int64_t integer_anywhere(const char* expected);
   Vec3d triple(const char* expected, NumberTriple& at);
 
-  /// \throw InvalidInput `path, line N: expected ..., got ...` about the token at `at`.
+  /// First byte of the token that was taken last.
+  std::size_t last_token() const { return last_token_; }
+
+  /// \throw InvalidInput `path, line N: expected ..., got ...` about the token at `at`, or about `found`.
+  [[noreturn]] void fail_with(const std::string& expected, const std::string& found, std::size_t at) const;
   [[noreturn]] void fail(const std::string& expected, std::size_t at) const;
   [[noreturn]] void fail(const std::string& expected) const { fail(expected, at_); }
 
@@ -52,6 +56,7 @@ class Scanner {
   const std::string& path_;
   std::string_view text_;
   std::size_t at_;
+  std::size_t last_token_ = 0;
   bool continues_;
   char comment_;
 };

@@ -51,8 +51,15 @@ class AsciiStlParser {
       if (!scanner_.at_line_end()) scanner_.fail("the end of the line after three coordinates");
     }
     expect("endloop");
+    skip_remark();
     expect("endfacet");
+    skip_remark();
     add_facet(file_);
+  }
+  /// Some writers put words of their own behind the end of a loop or a facet.
+  void skip_remark() {
+    const std::string_view next = Scanner(scanner_).token();
+    if (!next.starts_with("end") && !next.starts_with("END") && !is_word(next, "facet")) scanner_.next_line();
   }
   /// The normal is replaced, never used; words and infinities in its place are common.
   void normal() {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -138,8 +139,8 @@ Polygons make_shape(Reader shape) {
   const std::string type = shape.text("type");
   const auto maker = kMakers.find(type);
   if (maker == kMakers.end()) {
-    std::vector<std::string> names;
-    for (const auto& known : kMakers) names.push_back(known.first);
+    std::vector<std::string> names(kMakers.size());
+    std::transform(kMakers.begin(), kMakers.end(), names.begin(), [](const auto& known) { return known.first; });
     shape.fail(fmt::format("a type among {}, not '{}',", fmt::join(names, ", "), type));
   }
   Polygons mesh = maker->second(shape);
