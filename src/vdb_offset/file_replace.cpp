@@ -58,7 +58,7 @@ void write_file(const std::string& path, const std::string& bytes) {
       if (count < 0) {
         const std::string why = reason();
         ::close(file);
-        throw WriteError(path + ": cannot be written: " + why);
+        throw WriteError(fmt::format("{}: cannot be written: {}", path, why));
       }
       at += static_cast<std::size_t>(count);
     }

@@ -23,6 +23,8 @@ constexpr std::size_t kLeafVoxels = 512;
 constexpr std::size_t kLeafBytes = kLeafVoxels * (4 + 4 + 12) + 3 * 128 + 64;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
 constexpr std::size_t kTriangleBytes = 200, kVertexBytes = 300;
+// The process itself: code, libraries, allocator.
+constexpr double kProcessBytes = 48 << 20;
 // Measured on two cores at 2.6 GHz, one thread; only for the estimate that is shown.
 constexpr double kLeafSeconds = 1.2e-4, kTriangleSeconds = 1.5e-6, kVertexSeconds = 8e-6;
 
@@ -49,7 +51,7 @@ GridPlan estimate(const Surface& surface, double distance, double h, int threads
   const double leaves = count_leaf_nodes(surface.facts, plan.reach, 8 * h);
   const double vertices = static_cast<double>(surface.facts.vertices),
                triangles = static_cast<double>(surface.triangles.size());
-  const double bytes = leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes;
+  const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes;
   if (bytes > 0x1p62) {  // only to be refused; the casts below must not overflow
     plan.bytes = plan.leaf_nodes = plan.voxels = std::size_t{1} << 62;
     return plan;

@@ -132,6 +132,7 @@ int run(Arguments args) {
   if (!args.dry_run)
     for (const std::string& path : {args.output, args.report, args.vdb})
       if (!path.empty()) require_writable(path);
+  bar.show(Stage::Read, 0);
   Source source = read_source(args.input);
   settle_options(source, args);
   const double read_seconds = seconds_since(start);
@@ -143,9 +144,10 @@ int run(Arguments args) {
   }
   args.options.keep_field = !args.vdb.empty();
   OffsetResult result = offset(source.view(), args.options);
-  bar.clear();
+  bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
   write_outputs(args, source, result, start, read_seconds);
+  bar.clear();
   if (!args.quiet) print_summary(args, result, seconds_since(start));
 
   const std::vector<std::string> failed =
