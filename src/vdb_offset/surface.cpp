@@ -290,15 +290,21 @@ Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
 
 TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const {
   TrianglePoint best = closest_on(triangle, x);
-  for (std::uint32_t from = kNone; from != triangle;) {
+  const auto try_out = [&](std::uint32_t other) {
+    const TrianglePoint candidate = closest_on(other, x);
+    if (candidate.squared_distance >= best.squared_distance) return;
+    best = candidate;
+    triangle = other;
+  };
+  for (std::uint32_t from = kNone; from != triangle && best.feature != Feature::Face;) {
     from = triangle;
-    for (std::uint32_t edge = 3 * from; edge < 3 * from + 3; ++edge) {
-      const std::uint32_t other = next_around_edge[edge] / 3;
-      if (other == from) continue;
-      const TrianglePoint candidate = closest_on(other, x);
-      if (candidate.squared_distance >= best.squared_distance) continue;
-      best = candidate;
-      triangle = other;
+    const auto feature = static_cast<std::uint32_t>(best.feature);
+    if (feature < 3) {
+      for (const auto other : triangles_around(triangles[from][feature]))
+        if (other != from) try_out(other);
+    } else {
+      const std::uint32_t edge = 3 * from + (feature - 3);
+      for (std::uint32_t e = next_around_edge[edge]; e != edge; e = next_around_edge[e]) try_out(e / 3);
     }
   }
   return best;

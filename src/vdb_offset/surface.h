@@ -66,8 +66,9 @@ struct Surface {
     const auto& t = triangles[triangle];
     return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
   }
-  /// Goes from triangle to triangle over their edges for as long as that leads nearer to x: a local minimum of the
-  /// distance. `triangle` is where to start, and becomes where it ended.
+  /// Goes from triangle to triangle, across the edge or around the vertex that the closest point lies on, for as long
+  /// as that leads nearer to x: a local minimum of the distance. `triangle` is where to start, and becomes where the
+  /// walk ended.
   TrianglePoint walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const;
   /// Not normalised; its dot product with x - closest point has the sign of the side that x lies on
   /// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005).

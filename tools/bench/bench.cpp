@@ -201,7 +201,7 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     fmt::print(stderr, "vdb_offset_bench: {}\n", error.what());
     return 2;
   }
