@@ -22,6 +22,9 @@ constexpr std::uint8_t kAllFaces = (1 << kFaces) - 1;
 // A triangle that cannot be nearer by more than this many voxels is not looked at: a directions field needs no more.
 constexpr float kTolerance = 0.01f;
 
+// How much nearer, in voxels, the surface around a neighbour's triangle must promise to be before it is searched.
+constexpr float kWorthAWalk = 0.05f;
+
 // A gain of fewer voxels than this is rounding; chasing it would sweep for ever.
 constexpr float kRounding = 1e-5f;
 
@@ -31,7 +34,7 @@ constexpr std::uint8_t kSeen = 0, kUnseen = 1, kFirstPass = 2;
 /// One leaf node and its halo, unpacked for sweeping. Lengths are in voxels, positions relative to voxel (0, 0, 0) of
 /// the leaf node: floats of size 10 or so, and a voxel's own position is its indices.
 struct Block {
-  float size[kPaddedVoxels];   // |phi|, kUnset where nothing is known
+  float size[kPaddedVoxels];      // |phi|, kUnset where nothing is known
   float point[3][kPaddedVoxels];  // closest point on the surface (closest solver only)
   std::int8_t sign[kPaddedVoxels];
   std::int32_t closest[kPaddedVoxels];
@@ -145,7 +148,31 @@ class Sweeper {
     // Passes in the eight orders of (+-i, +-j, +-k) in turn, until one changes nothing.
     for (std::uint8_t pass = kFirstPass; pass < 255; ++pass)
       if (!sweep_once(at, block, pass)) break;
+    if (options_.solver == Solver::Closest) settle(at, block);
     return store(at, block);
+  }
+
+  /// Lets the voxels that changed walk over the mesh to the closest triangle: neighbours handed on one close to it.
+  void settle(std::size_t at, Block& block) const {
+    const openvdb::Coord origin = graph_[at].origin();
+    for (int i = 0; i < kLeafWidth; ++i)
+      for (int j = 0; j < kLeafWidth; ++j)
+        for (int k = 0; k < kLeafWidth; ++k) {
+          const int n = padded_index(i, j, k);
+          if (block.changed[n] < kFirstPass) continue;
+          auto triangle = static_cast<std::uint32_t>(block.closest[n]);
+          const auto from = triangle;
+          const TrianglePoint nearest =
+              surface_.walk_to_closest((origin + openvdb::Coord(i, j, k)).asVec3d() * h_, triangle);
+          if (triangle != from) set_closest(block, n, triangle, nearest, origin);
+        }
+  }
+
+  void set_closest(Block& block, int n, std::uint32_t triangle, const TrianglePoint& nearest,
+                   const openvdb::Coord& origin) const {
+    block.size[n] = static_cast<float>(std::sqrt(nearest.squared_distance) / h_);
+    block.closest[n] = static_cast<std::int32_t>(triangle);
+    for (int k = 0; k < 3; ++k) block.point[k][n] = static_cast<float>(nearest.point[k] / h_ - origin[k]);
   }
 
   /// Unpacks voxel n of a leaf node whose voxels stand `shift` voxels farther along `axis` than those of the block.
@@ -158,7 +185,8 @@ class Sweeper {
     block.closest[padded] = triangle;
     if (options_.solver != Solver::Closest) return;
     for (int k = 0; k < 3; ++k)
-      block.point[k][padded] = (*points_[leaf])[static_cast<std::size_t>(k * kLeafVoxels + n)] + (k == axis ? shift : 0.0f);
+      block.point[k][padded] =
+          (*points_[leaf])[static_cast<std::size_t>(k * kLeafVoxels + n)] + (k == axis ? shift : 0.0f);
   }
 
   /// Marks as changed what this leaf node has not seen: everything at its first visit, else the faces that woke it.
@@ -244,13 +272,17 @@ class Sweeper {
       const auto& [squared, lower, m] = candidates[i];
       if (lower >= block.size[n] - kTolerance || block.closest[m] == block.closest[n]) continue;
       auto triangle = static_cast<std::uint32_t>(block.closest[m]);
-      const TrianglePoint nearest = surface_.walk_to_closest((origin + ijk).asVec3d() * h_, triangle);
-      const float distance = static_cast<float>(std::sqrt(nearest.squared_distance) / h_);
+      const Vec3d centre = (origin + ijk).asVec3d() * h_;
+      TrianglePoint nearest = surface_.closest_on(triangle, centre);
+      float distance = static_cast<float>(std::sqrt(nearest.squared_distance) / h_);
+      // Triangles much smaller than a voxel: the closest one is far along the surface, and worth the walk.
+      if (std::min(distance, block.size[n]) > lower + kWorthAWalk) {
+        nearest = surface_.walk_to_closest(centre, triangle);
+        distance = static_cast<float>(std::sqrt(nearest.squared_distance) / h_);
+      }
       if (!(distance < block.size[n] - kRounding) || distance > reach(block.sign[m])) continue;
-      block.size[n] = distance;
       block.sign[n] = block.sign[m];
-      block.closest[n] = static_cast<std::int32_t>(triangle);
-      for (int k = 0; k < 3; ++k) block.point[k][n] = static_cast<float>(nearest.point[k] / h_ - origin[k]);
+      set_closest(block, n, triangle, nearest, origin);
       improved = true;
     }
     return improved;
@@ -269,8 +301,7 @@ class Sweeper {
     std::sort(std::begin(sorted), std::end(sorted));
     const auto distance = static_cast<float>(godunov(sorted[0], sorted[1], sorted[2]));
     const int from = up.from[nearest];
-    if (!(distance < block.size[n] - kRounding) || distance > reach(block.sign[from]))
-      return false;
+    if (!(distance < block.size[n] - kRounding) || distance > reach(block.sign[from])) return false;
     block.size[n] = distance;
     block.sign[n] = block.sign[from];
     block.closest[n] = block.closest[from];
