@@ -184,6 +184,15 @@ TEST_CASE("offset: cavities move into their hole when the solid grows", "[offset
   check_guarantee(box.view(), result, 0.05, 211);
 }
 
+TEST_CASE("offset: faces turned the wrong way change nothing but themselves", "[offset]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.3, 1.5, 6, 3);
+  Polygons muddled = mesh;
+  for (std::size_t f = 0; f < mesh.face_count(); f += 7) std::swap(muddled.corners[3 * f], muddled.corners[3 * f + 1]);
+  const OffsetResult clean = offset(mesh.view(), by(0.1)), mended = offset(muddled.view(), by(0.1));
+  CHECK(share(mended, VertexState::Reached) == share(clean, VertexState::Reached));
+  check_guarantee(mesh.view(), mended, 0.1, 17);
+}
+
 TEST_CASE("offset: two sheets back to back do not stop the run", "[offset]") {
   Polygons sheet = scene::patch(1, 0, 10);
   const std::size_t faces = sheet.face_count();

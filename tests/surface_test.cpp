@@ -83,7 +83,10 @@ TEST_CASE("surface: facts of known shapes", "[surface]") {
     fins.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
     fins.add_face({0, 1, 2});
     fins.add_face({0, 1, 3});
-    CHECK(build_surface(fins.view(), {}).facts.orientation_conflicts == 1);
+    const MeshFacts pair = build_surface(fins.view(), {}).facts;
+    CHECK(pair.orientation_conflicts == 1);
+    CHECK(pair.turned_triangles == 1);
+    CHECK(pair.unsettled_conflicts == 0);
     fins.add_face({0, 1, 4});
     const MeshFacts facts = build_surface(fins.view(), {}).facts;
     CHECK(facts.non_manifold_edges == 1);
@@ -138,6 +141,45 @@ TEST_CASE("surface: every broken precondition is told", "[surface]") {
   mesh.positions[1][1] = 0;
   mesh.add_face({0, 1});
   CHECK_THROWS_WITH(build_surface(mesh.view(), {}), Catch::Contains("3 corners in face 1"));
+}
+
+TEST_CASE("surface: a few faces turned the wrong way are turned back, inside only", "[surface]") {
+  const Polygons cube = scene::box(Vec3d(1), 4, true);
+  Polygons muddled = cube;
+  for (std::size_t f = 0; f < cube.face_count(); f += 5) std::swap(muddled.corners[3 * f], muddled.corners[3 * f + 1]);
+  Surface good = build_surface(cube.view(), {}), mended = build_surface(muddled.view(), {});
+  CHECK(mended.facts.orientation_conflicts > 0);
+  CHECK(mended.facts.turned_triangles == (cube.face_count() + 4) / 5);
+  CHECK(mended.facts.oriented());
+  place(good, 0.1);
+  place(mended, 0.1);
+  for (std::size_t t = 0; t < good.triangles.size(); ++t)
+    CHECK((good.triangle_normals[t] - mended.triangle_normals[t]).length() < 1e-12);
+  for (std::uint32_t e = 0; e < mended.next_around_edge.size(); ++e) {
+    const std::uint32_t twin = mended.next_around_edge[e];
+    CHECK(mended.next_around_edge[twin] == e);
+    CHECK(mended.triangles[e / 3][e % 3] == mended.triangles[twin / 3][(twin % 3 + 1) % 3]);
+  }
+}
+
+TEST_CASE("surface: a strip with one side only is left as it is, and told", "[surface]") {
+  Polygons moebius;
+  const int steps = 40;
+  for (int i = 0; i < steps; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / steps;
+    for (const double w : {-0.3, 0.3})
+      moebius.positions.push_back(Vec3d(std::cos(angle) * (1 + w * std::cos(angle / 2)),
+                                        std::sin(angle) * (1 + w * std::cos(angle / 2)), w * std::sin(angle / 2)));
+  }
+  for (std::uint32_t i = 0; i < steps; ++i) {
+    const std::uint32_t next = (i + 1) % steps, a = 2 * i, b = a + 1, crossed = next == 0;
+    moebius.add_face({a, 2 * next + crossed, 2 * next + 1 - crossed, b});
+  }
+  const MeshFacts facts = build_surface(moebius.view(), {}).facts;
+  CHECK(facts.boundary_edges == 2 * steps);
+  CHECK(facts.unsettled_conflicts == 1);
+  CHECK(facts.turned_triangles == 0);
+  CHECK_FALSE(facts.oriented());
 }
 
 TEST_CASE("surface: pseudonormals tell the side at faces, edges and vertices", "[surface]") {

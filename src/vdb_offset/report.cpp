@@ -35,6 +35,8 @@ Json facts_json(const MeshFacts& facts) {
           {"non_manifold_edges", facts.non_manifold_edges},
           {"degenerate_faces", facts.degenerate_faces},
           {"orientation_conflicts", facts.orientation_conflicts},
+          {"turned_triangles", facts.turned_triangles},
+          {"unsettled_conflicts", facts.unsettled_conflicts},
           {"closed", facts.closed()},
           {"lower", {facts.lower[0], facts.lower[1], facts.lower[2]}},
           {"upper", {facts.upper[0], facts.upper[1], facts.upper[2]}},

@@ -219,18 +219,6 @@ void join(Surface& surface, const std::vector<std::uint32_t>& face_of, std::size
   }
 }
 
-void list_incident_triangles(Surface& surface) {
-  auto& begin = surface.incident_begin;
-  begin.assign(surface.vertices.size() + 2, 0);
-  for (const auto& t : surface.triangles)
-    for (const auto v : t) ++begin[v + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  surface.incident.resize(3 * surface.triangles.size());
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
-    for (const auto v : surface.triangles[t]) surface.incident[begin[v + 1]++] = t;
-  begin.pop_back();
-}
-
 struct TriangleShape {
   Vec3d normal;  // unit, or zero for a needle
   double area;
@@ -243,6 +231,87 @@ TriangleShape shape_of(const Surface& surface, std::size_t t) {
   if (is_needle(n.lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}))) return {Vec3d(0.0), 0};
   const double twice = n.length();
   return {n / twice, twice / 2};
+}
+
+/// Triangles that hang together over edges with two faces, and which of them agree with the first.
+struct Patch {
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint8_t> agrees;
+  bool orientable = true;
+};
+
+/// The patch around a triangle that no patch holds yet. `state`: 0 not seen, 1 agrees with the seed, 2 does not.
+Patch collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
+  Patch patch;
+  patch.triangles.push_back(seed);
+  state[seed] = 1;
+  for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
+    const std::uint32_t t = patch.triangles[i];
+    for (std::uint32_t e = 3 * t; e < 3 * t + 3; ++e) {
+      const std::uint32_t twin = surface.next_around_edge[e], other = twin / 3;
+      if (twin == e || surface.next_around_edge[twin] != e) continue;
+      const bool conflict = from(surface, e) == from(surface, twin);
+      const auto wanted = static_cast<std::uint8_t>(conflict ? 3 - state[t] : state[t]);
+      if (state[other] == 0) {
+        state[other] = wanted;
+        patch.triangles.push_back(other);
+      } else if (state[other] != wanted) {
+        patch.orientable = false;
+      }
+    }
+  }
+  for (const auto t : patch.triangles) patch.agrees.push_back(state[t] == 1);
+  return patch;
+}
+
+/// Half-edge k of a triangle whose last two corners change places becomes half-edge 2 - k.
+std::uint32_t renamed(std::uint32_t half_edge, const std::vector<std::uint8_t>& turned) {
+  return turned[half_edge / 3] ? 3 * (half_edge / 3) + 2 - half_edge % 3 : half_edge;
+}
+
+void turn_round(Surface& surface, const std::vector<std::uint8_t>& turned) {
+  std::vector<std::uint32_t> next(surface.next_around_edge.size());
+  for (std::uint32_t e = 0; e < next.size(); ++e)
+    next[renamed(e, turned)] = renamed(surface.next_around_edge[e], turned);
+  surface.next_around_edge = std::move(next);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (turned[t]) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+}
+
+void settle_orientation(Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  if (facts.orientation_conflicts == 0) return;
+  const std::size_t count = surface.triangles.size();
+  std::vector<std::uint8_t> state(count, 0), turned(count, 0);
+  for (std::uint32_t seed = 0; seed < count; ++seed) {
+    if (state[seed] != 0) continue;
+    const Patch patch = collect_patch(surface, seed, state);
+    if (!patch.orientable) continue;
+    double area[2] = {0, 0};
+    for (std::size_t i = 0; i < patch.triangles.size(); ++i)
+      area[patch.agrees[i]] += shape_of(surface, patch.triangles[i]).area;
+    const std::uint8_t kept = area[1] >= area[0];
+    for (std::size_t i = 0; i < patch.triangles.size(); ++i) turned[patch.triangles[i]] = patch.agrees[i] != kept;
+  }
+  facts.turned_triangles = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), 1));
+  turn_round(surface, turned);
+  for (std::uint32_t e = 0; e < 3 * count; ++e) {
+    const std::uint32_t twin = surface.next_around_edge[e];
+    facts.unsettled_conflicts +=
+        twin > e && surface.next_around_edge[twin] == e && from(surface, e) == from(surface, twin);
+  }
+}
+
+void list_incident_triangles(Surface& surface) {
+  auto& begin = surface.incident_begin;
+  begin.assign(surface.vertices.size() + 2, 0);
+  for (const auto& t : surface.triangles)
+    for (const auto v : t) ++begin[v + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  surface.incident.resize(3 * surface.triangles.size());
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    for (const auto v : surface.triangles[t]) surface.incident[begin[v + 1]++] = t;
+  begin.pop_back();
 }
 
 void measure(PolygonView polygons, const std::vector<std::uint32_t>& face_of, Surface& surface) {
@@ -316,6 +385,7 @@ Surface build_surface(PolygonView polygons, const WeldOptions& options) {
   weld(polygons, options, surface);
   const std::vector<std::uint32_t> face_of = split_faces(polygons, surface);
   join(surface, face_of, polygons.face_count());
+  settle_orientation(surface);
   list_incident_triangles(surface);
   measure(polygons, face_of, surface);
   return surface;

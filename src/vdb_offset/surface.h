@@ -30,13 +30,15 @@ struct MeshFacts {
   std::size_t non_manifold_edges = 0;     ///< With three faces or more.
   std::size_t degenerate_faces = 0;       ///< With a repeated corner or no area.
   std::size_t orientation_conflicts = 0;  ///< Edges whose two faces run through it in the same direction.
+  std::size_t turned_triangles = 0;       ///< Turned round, for the distance's sign alone, to settle such conflicts.
+  std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
   Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
   double diagonal = 0;                    ///< Of that box.
   double area = 0;
   double median_edge = 0;  ///< Median edge length of the triangulated surface.
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
-  bool oriented() const { return orientation_conflicts == 0 && non_manifold_edges == 0; }
+  bool oriented() const { return unsettled_conflicts == 0 && non_manifold_edges == 0; }
 };
 
 /// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
@@ -75,9 +77,10 @@ struct Surface {
   Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;
 };
 
-/// Welds, triangulates, joins and counts. Origin and normals are left to place().
-/// \throw InvalidInput if there is no face, an index is out of range, a coordinate is not finite, or there are
-/// 2^31 triangles or more.
+/// Welds, triangulates, joins and counts. Where neighbours disagree about the outside, the smaller part by area of
+/// each orientable patch (of faces joined over edges with two faces) is turned to agree with the rest. Origin and
+/// normals are left to place(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
+/// finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld);
 
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
