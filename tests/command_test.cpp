@@ -117,6 +117,9 @@ TEST_CASE("command: 1 for wrong usage", "[command]") {
   check_failure(shell, "sphere.obj out.obj --distance 1 --threads -1", 1, "--threads");
   check_failure(shell, "sphere.obj out.obj --distance 1 --max-memory lots", 1, "'lots'");
   check_failure(shell, "sphere.obj out.obj --distance 1 --quiet --verbose", 1, "both");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --report sphere.obj", 1, "file of its own");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --save-vdb ./out.obj", 1, "file of its own");
+  check_failure(shell, "sphere.obj out.obj --distance 0 --save-vdb f.vdb", 1, "other than 0");
 }
 
 TEST_CASE("command: 2 for input that cannot be read", "[command]") {
@@ -149,6 +152,7 @@ TEST_CASE("command: 4 for output that cannot be written", "[command]") {
   const Shell shell;
   check_failure(shell, "sphere.obj no/such/out.obj --distance 0.1", 4, "cannot be written");
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --report no/such/report.json", 4, "report.json");
+  check_failure(shell, "sphere.obj out.obj --distance 0.1 --report /dev/full", 4, "cannot be written");
 }
 
 TEST_CASE("command: a dry run tells the plan and writes nothing", "[command]") {

@@ -118,6 +118,13 @@ TEST_CASE("obj: normals of faces that turned are computed anew", "[io]") {
   CHECK(slurp(folder.file("b.obj")) == "v 0 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\n");
 }
 
+TEST_CASE("obj: a comment that ends in a backslash ends with its line", "[io]") {
+  const Folder folder;
+  const std::string text = "\xef\xbb\xbf# C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  CHECK(io::read_mesh(folder.write("a.obj", text)).polygons.positions.size() == 3);
+  CHECK_THAT(moved(folder, "a.obj", text, {0, 0, 1}), Catch::EndsWith("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n"));
+}
+
 TEST_CASE("off: header variants, comments and colours stay", "[io]") {
   const Folder folder;
   const std::string off =
@@ -151,7 +158,7 @@ TEST_CASE("ply: a moved vertex gets a new normal", "[io]") {
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nproperty "
       "float nx\n"
       "property float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
-      "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
+      "0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
   const io::MeshFile file = io::read_mesh(folder.write("a.ply", text));
   io::write_mesh(folder.file("b.ply"), file, std::vector<Vec3d>{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}});
   CHECK_THAT(slurp(folder.file("b.ply")), Catch::EndsWith("0 0 0 1 0 0\n0 1 0 1 0 0\n0 0 1 1 0 0\n3 0 1 2\n"));

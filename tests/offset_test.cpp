@@ -277,6 +277,16 @@ TEST_CASE("offset: nearly the same after a rotation, a scale, and far from the o
   CHECK(share(rotated, VertexState::Reached) == share(here, VertexState::Reached));
 }
 
+TEST_CASE("offset: states are honest where coordinates are too coarse for the distance", "[offset]") {
+  const Polygons cube = transformed(scene::box(Vec3d(1), 2, true), [](const Vec3d& p) { return p + Vec3d(1e10); });
+  const OffsetResult result = offset(cube.view(), by(1e-3));  // a coordinate's last bit is worth 2e-6 here
+  const auto errors = judge(cube.view(), result, 1e-3, 1, false);
+  CHECK(errors.worst_reached <= 1e-6);
+  CHECK(errors.worst_told <= 1e-9);
+  CHECK(errors.worst_beyond < 1e-2);  // the rounding itself
+  CHECK(share(result, VertexState::Reached) < 1);
+}
+
 TEST_CASE("offset: vertices at one position stay together", "[offset]") {
   // A cube of six separate sides, as exported with hard edges.
   const Polygons cube = scene::box(Vec3d(1), 6, false);

@@ -53,11 +53,34 @@ TEST_CASE("plan: an automatic size grows until it fits", "[plan]") {
   CHECK_THAT(tight.reason, Catch::Contains("memory"));
 }
 
+TEST_CASE("plan: lengths that single precision cannot hold are refused", "[plan]") {
+  const Surface sphere = surface_of(scene::icosphere(1, 2));
+  CHECK_THROWS_AS(plan_grid(sphere, 1e160, {}, 0, 1), InvalidInput);
+  CHECK_THROWS_AS(plan_grid(sphere, 1e-160, {}, 0, 1), InvalidInput);
+  CHECK_THROWS_AS(plan_grid(sphere, 0.1, {1e200, {}}, 0, 1), InvalidInput);
+  CHECK_THROWS_AS(plan_grid(sphere, 0.1, {{}, 1e-300}, 0, 1), InvalidInput);
+  CHECK_THROWS_AS(plan_grid(surface_of(scene::icosphere(1e40, 2)), 1e39, {}, 0, 1), InvalidInput);
+}
+
 TEST_CASE("plan: a mesh without extent is refused", "[plan]") {
   Polygons point;
   point.positions = {{1, 1, 1}};
   point.add_face({0, 0, 0});
   CHECK_THROWS_AS(plan_grid(surface_of(point), 0.1, {}, 0, 1), InvalidInput);
+}
+
+/// Small parts far apart, whose leaf nodes their area says nothing of.
+static Polygons debris() {
+  Polygons all;
+  for (int i = 0; i < 200; ++i) {
+    const Polygons part = scene::icosphere(0.002, 0);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    const Vec3d place(i * 37 % 200, i * 91 % 200, i * 53 % 200);
+    for (const Vec3d& p : part.positions) all.positions.push_back(p + place / 100.0);
+    for (std::size_t f = 0; f < part.face_count(); ++f)
+      all.add_face({first + part.corners[3 * f], first + part.corners[3 * f + 1], first + part.corners[3 * f + 2]});
+  }
+  return all;
 }
 
 TEST_CASE("plan: leaf nodes are estimated within a factor of two", "[plan]") {
@@ -69,7 +92,8 @@ TEST_CASE("plan: leaf nodes are estimated within a factor of two", "[plan]") {
                         {scene::icosphere(1, 4), -0.1},
                         {scene::box(Vec3d(1), 8, true), 0.02},
                         {scene::plates(1, 0.02, 0.3, 8), 0.05},
-                        {scene::torus(1, 0.3, 64, 32), 0.05}}) {
+                        {scene::torus(1, 0.3, 64, 32), 0.05},
+                        {debris(), 0.004}}) {
     Surface surface = surface_of(c.mesh);
     const GridPlan plan = plan_grid(surface, c.distance, {}, 0, 1);
     place(surface, plan.voxel_size);

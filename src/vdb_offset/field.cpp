@@ -52,7 +52,11 @@ void save_vdb(const DistanceField& field, const std::string& path, bool closed_s
       openvdb::io::File file(temporary);
       file.write(openvdb::GridPtrVec{phi, closest});
       file.close();
-    } catch (const openvdb::IoError& error) {
+      // A full disk goes unnoticed by the writer; a reader finds out.
+      openvdb::io::File written(temporary);
+      written.open(false);
+      written.getGrids();
+    } catch (const openvdb::Exception& error) {
       throw WriteError(path + ": cannot be written: " + error.what());
     }
   });

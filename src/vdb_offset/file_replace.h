@@ -13,7 +13,7 @@ void replace_file(const std::string& path, const std::function<void(const std::s
 /// Finds out before a long run whether `path` could be written. \throw WriteError
 void require_writable(const std::string& path);
 
-/// Writes `bytes` to `path` through replace_file(). \throw WriteError
-void write_file(const std::string& path, const std::string& bytes);
+/// Writes `bytes` to `path` through replace_file(), and calls `before_rename` in between. \throw WriteError
+void write_file(const std::string& path, const std::string& bytes, const std::function<void()>& before_rename = {});
 
 }  // namespace vdb_offset

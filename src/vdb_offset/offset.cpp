@@ -32,7 +32,9 @@ class StageTimer {
 int thread_count(const OffsetOptions& options) {
   if (options.threads < 0)
     throw InvalidInput("offset: expected 0 threads or more, got " + std::to_string(options.threads));
-  return options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  // More than the machine has would only be asked for in vain.
+  const int most = tbb::info::default_concurrency();
+  return options.threads > 0 ? std::min(options.threads, most) : most;
 }
 
 void require_finite_distance(const OffsetOptions& options) {

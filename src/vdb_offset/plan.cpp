@@ -29,18 +29,71 @@ constexpr double kProcessBytes = 48 << 20;
 // Measured on two cores at 2.6 GHz, one thread; only for the estimate that is shown.
 constexpr double kLeafSeconds = 1.2e-4, kTriangleSeconds = 1.5e-6, kVertexSeconds = 8e-6;
 
-/// Leaf nodes that meet the slab of the given reach around the surface, at most those of its bounding box.
-double count_leaf_nodes(const MeshFacts& facts, const Reach& reach, double leaf) {
+/// A set of cells of a regular lattice over a box, one bit each.
+class CellSet {
+ public:
+  CellSet(const Vec3d& lower, const Vec3d& upper, double cell) : lower_(lower), cell_(cell) {
+    for (int k = 0; k < 3; ++k) size_[k] = static_cast<std::size_t>((upper[k] - lower[k]) / cell) + 1;
+    bits_.resize(size_[0] * size_[1] * size_[2]);
+  }
+  void add(const Vec3d& lower, const Vec3d& upper) {
+    std::size_t from[3], to[3];
+    for (int k = 0; k < 3; ++k) {
+      from[k] = clamp(lower[k], k);
+      to[k] = clamp(upper[k], k);
+    }
+    for (std::size_t i = from[0]; i <= to[0]; ++i)
+      for (std::size_t j = from[1]; j <= to[1]; ++j)
+        for (std::size_t k = from[2]; k <= to[2]; ++k) bits_[(i * size_[1] + j) * size_[2] + k] = true;
+  }
+  std::size_t count() const { return static_cast<std::size_t>(std::count(bits_.begin(), bits_.end(), true)); }
+
+ private:
+  std::size_t clamp(double x, int k) const {
+    const double index = std::clamp((x - lower_[k]) / cell_, 0.0, static_cast<double>(size_[k] - 1));
+    return static_cast<std::size_t>(index);
+  }
+  Vec3d lower_;
+  double cell_;
+  std::size_t size_[3];
+  std::vector<bool> bits_;
+};
+
+/// Adds the cells that the boxes of a triangle's pieces, none much longer than a cell, meet when widened by `reach`.
+void add_triangle(CellSet& cells, const Vec3d& a, const Vec3d& b, const Vec3d& c, double reach, double cell) {
+  const double ab = (b - a).lengthSqr(), bc = (c - b).lengthSqr(), ca = (a - c).lengthSqr();
+  const double longest = std::max({ab, bc, ca});
+  if (longest > 4 * cell * cell) {
+    if (ab < longest)
+      return bc < longest ? add_triangle(cells, c, a, b, reach, cell) : add_triangle(cells, b, c, a, reach, cell);
+    const Vec3d middle = (a + b) * 0.5;
+    add_triangle(cells, a, middle, c, reach, cell);
+    add_triangle(cells, middle, b, c, reach, cell);
+    return;
+  }
+  using openvdb::math::maxComponent, openvdb::math::minComponent;
+  cells.add(minComponent(minComponent(a, b), c) - Vec3d(reach), maxComponent(maxComponent(a, b), c) + Vec3d(reach));
+}
+
+/// Leaf nodes within reach of the surface. Counted, in cells as small as leaf nodes where those are not too many;
+/// else each coarser cell is taken to hold a sheet of them, or as many as the surface's area asks for.
+double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf) {
+  constexpr double kMostCellsAcross = 192, kMostReachInCells = 4;
+  const MeshFacts& facts = surface.facts;
+  const double far = std::max(reach.inside, reach.outside), near = std::min(reach.inside, reach.outside);
+  const double across = facts.diagonal + 2 * far;
+  double cell = leaf;
+  while (across / cell > kMostCellsAcross || far / cell > kMostReachInCells) cell *= 2;
+  CellSet cells(facts.lower - Vec3d(far), facts.upper + Vec3d(far), cell);
+  for (const auto& [a, b, c] : surface.triangles)
+    add_triangle(cells, surface.vertices[a], surface.vertices[b], surface.vertices[c], far, cell);
+  const double counted = static_cast<double>(cells.count()), ratio = cell / leaf;
+  if (ratio == 1) return counted;
   // A flat piece of a slab of thickness T meets area * (T + w) / leaf^3 cubes, w = 1.5 leaf the mean width of a
   // cube; curved outwards it has more area farther out.
   const double spread = 1 + 2 * reach.outside / facts.diagonal;
-  const double slab = facts.area * spread * spread * (reach.inside + reach.outside + 1.5 * leaf) / (leaf * leaf * leaf);
-  // A needle or a surface with no area to speak of is a line of leaf nodes.
-  const double width = 2 * reach.outside / leaf + 1;
-  const double line = (facts.diagonal / leaf + width) * width * width;
-  double box = 1;
-  for (int k = 0; k < 3; ++k) box *= std::ceil((facts.upper[k] - facts.lower[k] + 2 * reach.outside) / leaf) + 1;
-  return std::min(box, std::max(slab, line));
+  const double slab = facts.area * spread * spread * (far + near + 1.5 * leaf) / (leaf * leaf * leaf);
+  return std::min(counted * ratio * ratio * ratio, std::max(slab, counted * ratio));
 }
 
 GridPlan estimate(const Surface& surface, double distance, double h, int threads) {
@@ -49,7 +102,7 @@ GridPlan estimate(const Surface& surface, double distance, double h, int threads
   plan.band = kBandVoxels * h;
   const double far = std::abs(distance) + kHaloVoxels * h, near = kHaloVoxels * h;
   plan.reach = distance < 0 ? Reach{far, near} : Reach{near, far};
-  const double leaves = count_leaf_nodes(surface.facts, plan.reach, 8 * h);
+  const double leaves = count_leaf_nodes(surface, plan.reach, 8 * h);
   const double vertices = static_cast<double>(surface.facts.vertices),
                triangles = static_cast<double>(surface.triangles.size());
   const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes;
@@ -115,6 +168,14 @@ GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& o
   if (!std::isfinite(distance) || distance == 0)
     throw InvalidInput(fmt::format("plan: expected a finite distance other than 0, got {}", distance));
   if (!(facts.diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point");
+  // phi is stored in single precision.
+  for (const double length : {facts.diagonal, std::abs(distance), options.voxel_size.value_or(facts.diagonal),
+                              std::abs(distance) / options.voxels_per_distance.value_or(1)})
+    if (!(length > 1e-30 && length < 1e30))
+      throw InvalidInput(
+          fmt::format("plan: expected a diagonal, a distance and a voxel size from 1e-30 to 1e30, got "
+                      "{:.3g} (scale the model)",
+                      length));
   if (options.voxel_size && options.voxels_per_distance)
     throw InvalidInput("plan: expected a voxel size or voxels per distance, got both");
   for (const auto& given : {options.voxel_size, options.voxels_per_distance})

@@ -349,8 +349,9 @@ Paths propagate(const ClosestQuery& query, const DirectionField& directions, con
                            ? Traveller::Arrival{arrival[v]}
                            : Traveller(query, directions, sampler, options.distance, vertex).march();
       paths.displacement[v] = round_way(end.position - surface.vertices[v], target);
-      paths.achieved[v] =
-          query(surface.vertices[v] + paths.displacement[v], surface.triangles_around(vertex).front()).distance;
+      // Judged where the vertex will be: far from the origin its coordinates are rounded.
+      const Vec3d place = (surface.vertices[v] + surface.origin) + paths.displacement[v];
+      paths.achieved[v] = query(place - surface.origin, surface.triangles_around(vertex).front()).distance;
       paths.state[v] = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target ? VertexState::Reached
                        : end.outside_field                                                ? VertexState::OutsideField
                                                                                           : VertexState::Collision;

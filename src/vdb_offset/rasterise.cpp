@@ -121,6 +121,7 @@ class LeafCanvas {
   LeafCanvas(const Surface& surface, const RasteriseOptions& options, const Coord& origin)
       : surface_(surface), options_(options), origin_(origin) {
     std::fill(std::begin(squared_), std::end(squared_), std::numeric_limits<double>::infinity());
+    std::fill(std::begin(triangle_), std::end(triangle_), kNone);
   }
 
   void draw(std::uint32_t triangle) {
@@ -151,7 +152,7 @@ class LeafCanvas {
   bool store(PhiLeaf& phi, ClosestLeaf& closest) const {
     bool any = false;
     for (int n = 0; n < kLeafVoxels; ++n) {
-      if (!(squared_[n] <= options_.band * options_.band)) continue;
+      if (triangle_[n] == kNone || squared_[n] > options_.band * options_.band) continue;
       any = true;
       const Vec3d x = centre(n >> 6, n >> 3 & 7, n & 7);
       const TrianglePoint at = surface_.closest_on(triangle_[n], x);

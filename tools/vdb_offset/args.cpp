@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "vdb_offset/error.h"
@@ -49,7 +50,7 @@ std::size_t parse_size(const std::string& text) {
   const auto unit = kUnits.find(suffix);
   if (error != std::errc() || unit == kUnits.end() || !(value > 0) || value * unit->second > 0x1p60)
     throw UsageError(fmt::format("--max-memory: expected a size such as 4G or 512M, got '{}'", text));
-  return static_cast<std::size_t>(value * unit->second);
+  return std::max<std::size_t>(1, static_cast<std::size_t>(value * unit->second));
 }
 
 WeldOptions parse_weld(const std::string& text) {
@@ -69,7 +70,8 @@ WeldOptions parse_weld(const std::string& text) {
 
 /// What CLI11 fills in before it is checked.
 struct Raw {
-  std::string distance, max_memory, weld = "exact", collision = "merge", solver = "closest";
+  std::string distance, max_memory, weld = "exact", collision = "merge";
+  std::optional<std::string> solver;
   std::optional<double> voxel_size, voxels_per_distance;
   int threads = 0;
 };
@@ -108,6 +110,22 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw UsageError(message);
 }
 
+bool same_file(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  std::error_code unknown;
+  return !a.empty() && !b.empty() &&
+         fs::weakly_canonical(fs::absolute(a, unknown), unknown) ==
+             fs::weakly_canonical(fs::absolute(b, unknown), unknown);
+}
+
+/// The output may be the input; no other two files may be one.
+void check_apart(const Arguments& args) {
+  for (const auto& [name, path] : {std::pair{"--report", args.report}, {"--save-vdb", args.vdb}})
+    require(!same_file(path, args.input) && !same_file(path, args.output),
+            fmt::format("{}: expected a file of its own, got {}", name, path));
+  require(!same_file(args.report, args.vdb), "--report: expected a file of its own, got that of --save-vdb");
+}
+
 void check_names(const Arguments& args) {
   require(scene::is_scene(args.input) || io::format_of(args.input),
           args.input + ": expected an input that ends in .obj, .ply, .stl, .off or .json");
@@ -117,6 +135,7 @@ void check_names(const Arguments& args) {
 
 void check(const Raw& raw, Arguments& args) {
   check_names(args);
+  check_apart(args);
   if (!raw.distance.empty()) {
     try {
       args.distance = scene::parse_distance(raw.distance);
@@ -134,29 +153,17 @@ void check(const Raw& raw, Arguments& args) {
   args.options.grid = {raw.voxel_size, raw.voxels_per_distance};
   require(raw.collision != "limit", "--collision: 'limit' is not available yet; expected 'merge'");
   require(raw.collision == "merge", fmt::format("--collision: expected 'merge', got '{}'", raw.collision));
-  require(raw.solver == "closest" || raw.solver == "eikonal",
-          fmt::format("--solver: expected 'closest' or 'eikonal', got '{}'", raw.solver));
-  args.options.solver = raw.solver == "eikonal" ? Solver::Eikonal : Solver::Closest;
+  if (raw.solver) {
+    require(*raw.solver == "closest" || *raw.solver == "eikonal",
+            fmt::format("--solver: expected 'closest' or 'eikonal', got '{}'", *raw.solver));
+    args.solver = *raw.solver == "eikonal" ? Solver::Eikonal : Solver::Closest;
+  }
   args.options.weld = parse_weld(raw.weld);
   require(raw.threads >= 0 && raw.threads <= 4096, fmt::format("--threads: expected 0 to 4096, got {}", raw.threads));
   args.options.threads = raw.threads;
   require(!(args.quiet && args.verbose), "--quiet: expected it or --verbose, got both");
-  args.options.max_memory = raw.max_memory.empty() ? available_memory() / 5 * 4 : parse_size(raw.max_memory);
-}
-
-void note_options(const Raw& raw, Arguments& args) {
-  const auto number = [](const std::optional<double>& value) {
-    return value ? fmt::format("{}", *value) : "automatic";
-  };
-  args.in_force = {{"distance", raw.distance.empty() ? "from the scene" : raw.distance},
-                   {"voxel-size", number(raw.voxel_size)},
-                   {"voxels-per-distance", number(raw.voxels_per_distance)},
-                   {"collision", raw.collision},
-                   {"solver", raw.solver},
-                   {"weld", raw.weld},
-                   {"threads", fmt::format("{}", raw.threads)},
-                   {"max-memory", fmt::format("{}", args.options.max_memory)},
-                   {"strict", args.strict ? "true" : "false"}};
+  args.options.max_memory =
+      raw.max_memory.empty() ? std::max<std::size_t>(1, available_memory() / 5 * 4) : parse_size(raw.max_memory);
 }
 
 }  // namespace
@@ -177,7 +184,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
     throw UsageError(fmt::format("{} (--help lists the options)", error.what()));
   }
   check(raw, args);
-  note_options(raw, args);
+  args.weld_text = raw.weld;
   return args;
 }
 

@@ -46,12 +46,29 @@ void settle_options(Source& source, Arguments& args) {
     if (args.distance) source.scene->expect = {};
     else args.distance = scene.distance;
     if (!args.options.grid.voxel_size && !args.options.grid.voxels_per_distance) args.options.grid = scene.grid;
-    if (scene.solver != Solver::Closest) args.options.solver = scene.solver;
+    args.options.solver = scene.solver;
   }
+  if (args.solver) args.options.solver = *args.solver;
   const double diagonal = args.distance->percent ? used_diagonal(source.view()) : 0;
   args.options.distance = args.distance->in_world_units(diagonal);
   if (args.distance_text.empty())
     args.distance_text = fmt::format("{}{}", args.distance->value, args.distance->percent ? "%" : "");
+}
+
+/// Every option's name and value in force, once settle_options() has run.
+std::vector<std::pair<std::string, std::string>> options_in_force(const Arguments& args) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : std::string("automatic");
+  };
+  return {{"distance", args.distance_text},
+          {"voxel-size", number(args.options.grid.voxel_size)},
+          {"voxels-per-distance", number(args.options.grid.voxels_per_distance)},
+          {"collision", "merge"},
+          {"solver", args.options.solver == Solver::Eikonal ? "eikonal" : "closest"},
+          {"weld", args.weld_text},
+          {"threads", fmt::format("{}", args.options.threads)},
+          {"max-memory", fmt::format("{}", args.options.max_memory)},
+          {"strict", args.strict ? "true" : "false"}};
 }
 
 void print_facts(const OffsetStatistics& statistics) {
@@ -92,34 +109,38 @@ void print_summary(const Arguments& args, const OffsetResult& result, double tot
   fmt::print(" ({:.2f} s)\n", total_seconds);
 }
 
-void write_outputs(const Arguments& args, const Source& source, OffsetResult& result, Clock::time_point start,
-                   double read_seconds) {
-  const auto writing = Clock::now();
-  std::string lost;
-  if (source.file) {
-    lost = io::write_mesh(args.output, *source.file, result.positions);
-  } else {
-    Polygons made = source.scene->shape;
-    made.positions = result.positions;
-    io::write_mesh(args.output, made.view());
-  }
-  result.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
-  result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!lost.empty() && !args.quiet) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, lost);
-  if (!args.vdb.empty() && result.field)
-    save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
-             {{"source", args.input},
-              {"offset_distance", fmt::format("{}", args.options.distance)},
-              {"made_by", std::string("vdb_offset ") + version()}});
-  if (args.report.empty()) return;
+void write_report(const Arguments& args, const OffsetResult& result, Clock::time_point start) {
   RunFacts facts;
   facts.input = args.input;
   facts.output = args.output;
   facts.distance = args.options.distance;
   facts.distance_text = args.distance_text;
   facts.total_seconds = seconds_since(start);
-  facts.options = args.in_force;
+  facts.options = options_in_force(args);
   write_file(args.report, report_json(result, facts));
+}
+
+/// The mesh comes last: should anything else fail, its place holds what it held before.
+void write_outputs(const Arguments& args, const Source& source, OffsetResult& result, Clock::time_point start) {
+  if (result.field)
+    save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
+             {{"source", args.input},
+              {"offset_distance", fmt::format("{}", args.options.distance)},
+              {"made_by", std::string("vdb_offset ") + version()}});
+  const auto writing = Clock::now();
+  const auto before_rename = [&] {
+    result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+    if (!args.report.empty()) write_report(args, result, start);
+  };
+  std::string lost;
+  if (source.file) {
+    lost = io::write_mesh(args.output, *source.file, result.positions, before_rename);
+  } else {
+    Polygons made = source.scene->shape;
+    made.positions = result.positions;
+    io::write_mesh(args.output, made.view(), before_rename);
+  }
+  if (!lost.empty() && !args.quiet) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, lost);
 }
 
 int run(Arguments args) {
@@ -143,10 +164,13 @@ int run(Arguments args) {
     return kDone;
   }
   args.options.keep_field = !args.vdb.empty();
+  if (args.options.keep_field && args.options.distance == 0)
+    throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");
   OffsetResult result = offset(source.view(), args.options);
+  result.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
-  write_outputs(args, source, result, start, read_seconds);
+  write_outputs(args, source, result, start);
   bar.clear();
   if (!args.quiet) print_summary(args, result, seconds_since(start));
 

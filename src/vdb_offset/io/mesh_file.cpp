@@ -22,11 +22,11 @@ namespace vdb_offset::io {
 namespace {
 
 std::string read_bytes(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw ReadError(path + ": expected a file, got a folder");
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) throw ReadError(path + ": expected a file, got a folder");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) throw ReadError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
   std::string bytes;
-  std::error_code unknown;
   const auto size = std::filesystem::file_size(path, unknown);
   if (!unknown) bytes.reserve(size + 1);
   constexpr std::size_t kChunk = 1 << 20;
@@ -303,20 +303,23 @@ MeshFile read_mesh(const std::string& path) {
   return file;
 }
 
-std::string write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions) {
+std::string write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
+                       const std::function<void()>& before_rename) {
   const Format format = require_format(path);
   if (format != source.format) {
-    write_file(path, encode(format, {positions, source.polygons.corners, source.polygons.face_begin}));
+    write_file(path, encode(format, {positions, source.polygons.corners, source.polygons.face_begin}), before_rename);
     return lost_on_conversion(source, format);
   }
   const std::vector<Patch> patches = find_patches(source, positions);
-  write_file(path, source.encoding == Encoding::Ascii ? patch_text(source.bytes, patches)
-                                                      : patch_binary(source.bytes, patches, source.encoding));
+  write_file(path,
+             source.encoding == Encoding::Ascii ? patch_text(source.bytes, patches)
+                                                : patch_binary(source.bytes, patches, source.encoding),
+             before_rename);
   return {};
 }
 
-void write_mesh(const std::string& path, PolygonView polygons) {
-  write_file(path, encode(require_format(path), polygons));
+void write_mesh(const std::string& path, PolygonView polygons, const std::function<void()>& before_rename) {
+  write_file(path, encode(require_format(path), polygons), before_rename);
 }
 
 }  // namespace vdb_offset::io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,10 +56,12 @@ MeshFile read_mesh(const std::string& path);
 /// faces that moved, which are computed anew from the coordinates as written. In another format the file holds
 /// the positions and faces (STL: triangles). Returns what the target cannot hold, in words; empty if nothing.
 /// Text numbers have the fewest digits that read back to the same double; binary ones keep the source's width.
+/// `before_rename` runs when the file is complete and not yet in place; if it throws, nothing is.
 /// \pre one position a vertex. \throw InvalidInput for an unknown ending, WriteError.
-std::string write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions);
+std::string write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
+                       const std::function<void()>& before_rename = {});
 
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
-void write_mesh(const std::string& path, PolygonView polygons);
+void write_mesh(const std::string& path, PolygonView polygons, const std::function<void()>& before_rename = {});
 
 }  // namespace vdb_offset::io

@@ -12,7 +12,8 @@ namespace {
 /// Reads `v`, `vn` and `f` lines; all others stay what they are, bytes that are copied.
 class ObjParser {
  public:
-  explicit ObjParser(MeshFile& file) : file_(file), scanner_(file.path, file.bytes, 0, true, '#') {}
+  explicit ObjParser(MeshFile& file)
+      : file_(file), scanner_(file.path, file.bytes, byte_order_mark(file.bytes), true, '#') {}
 
   void run() {
     for (; !scanner_.at_end(); scanner_.next_line()) {
@@ -34,14 +35,7 @@ class ObjParser {
     if (!scanner_.at_line_end()) note("vertex weights or colours");
   }
   void normal() {
-    // Normals are only replaced, never used: what they hold is not checked beyond its place.
-    NumberTriple at{};
-    for (auto& byte : at.at) {
-      const std::string_view number = scanner_.token();
-      if (number.empty()) scanner_.fail("three numbers of a normal");
-      byte = scanner_.position() - number.size();
-    }
-    file_.normal_at.push_back(at);
+    scanner_.skip_triple("three numbers of a normal", file_.normal_at.emplace_back());
     note("normals");
   }
   void face() {

@@ -37,7 +37,7 @@ std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
 }  // namespace
 
 void parse_off(MeshFile& file) {
-  Scanner scanner(file.path, file.bytes, 0, false, '#');
+  Scanner scanner(file.path, file.bytes, byte_order_mark(file.bytes), false, '#');
   const bool normals = has_normals(scanner, scanner.token_anywhere("the keyword OFF"), file);
   if (is_word(Scanner(scanner).token(), "binary"))
     scanner.fail_with("a text OFF file", "a binary one", scanner.position());
@@ -47,7 +47,7 @@ void parse_off(MeshFile& file) {
   for (std::size_t v = 0; v < vertices; ++v) {
     if (scanner.at_text_end()) scanner.fail(fmt::format("vertex {} of {}", v + 1, vertices));
     file.polygons.positions.push_back(scanner.triple("a coordinate", file.position_at.emplace_back()));
-    if (normals) scanner.triple("a component of a normal", file.normal_at.emplace_back());
+    if (normals) scanner.skip_triple("three numbers of a normal", file.normal_at.emplace_back());
     scanner.next_line();
   }
   for (std::size_t f = 0; f < faces; ++f) {

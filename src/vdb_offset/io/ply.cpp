@@ -124,11 +124,19 @@ class Body {
       Scanner before = text_;
       const std::string_view word = before.token();
       at = before.position() - word.size();
-      // Numbers that are not looked at may be anything, a NaN in a colour for one.
       return type.kind == 'f' ? text_.number(what) : static_cast<double>(text_.integer(what));
     }
     at = at_;
     return take_binary(type, what);
+  }
+  /// First byte of a number whose value does not matter: a normal, which may be a NaN.
+  std::uint64_t place(Type type, const char* what) {
+    if (encoding_ == Encoding::Ascii) {
+      text_.token_anywhere(what);
+      return text_.last_token();
+    }
+    skip(type, 1, what);
+    return at_ - type.bytes;
   }
   void skip(Type type, std::size_t count, const char* what) {
     if (encoding_ == Encoding::Ascii) {
@@ -249,8 +257,11 @@ class PlyParser {
           continue;
         }
         const auto c = static_cast<std::size_t>(component[i]);
-        const double value = body_.take(element.properties[i].type, "a coordinate", at[c / 3].at[c % 3]);
-        if (c >= 3) continue;
+        if (c >= 3) {
+          at[1].at[c - 3] = body_.place(element.properties[i].type, "a component of a normal");
+          continue;
+        }
+        const double value = body_.take(element.properties[i].type, "a coordinate", at[0].at[c]);
         if (!std::isfinite(value)) body_.fail("a finite coordinate", fmt::format("{}", value), at[0].at[c]);
         position[static_cast<int>(c)] = value;
       }

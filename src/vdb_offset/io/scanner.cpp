@@ -72,7 +72,12 @@ bool Scanner::at_line_end() {
 }
 
 void Scanner::next_line() {
-  while (at_ < text_.size() && text_[at_] != '\n') at_ += std::max<std::size_t>(1, continuation_length(at_));
+  // A comment ends with its line, whatever its last character is.
+  bool comment = false;
+  while (at_ < text_.size() && text_[at_] != '\n') {
+    comment = comment || (comment_ && text_[at_] == comment_);
+    at_ += comment ? 1 : std::max<std::size_t>(1, continuation_length(at_));
+  }
   if (at_ < text_.size()) ++at_;
 }
 
@@ -122,6 +127,13 @@ Vec3d Scanner::triple(const char* expected, NumberTriple& at) {
   Vec3d value;
   for (int k = 0; k < 3; ++k) value[k] = number(expected, &at.at[k]);
   return value;
+}
+
+void Scanner::skip_triple(const char* expected, NumberTriple& at) {
+  for (auto& byte : at.at) {
+    if (token().empty()) fail(expected);
+    byte = last_token_;
+  }
 }
 
 void Scanner::fail(const std::string& expected, std::size_t at) const {

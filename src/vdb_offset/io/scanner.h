@@ -30,11 +30,15 @@ class Scanner {
 
   /// The next token of this line; empty at its end.
   std::string_view token();
+  /// The first five letters of the first token wherever it stands; empty at the end of the text.
+  std::string_view first_word() { return at_text_end() ? std::string_view() : token().substr(0, 5); }
   /// The next token wherever it stands. \throw InvalidInput at the end of the text.
   std::string_view token_anywhere(const char* expected);
 
   /// A finite number that is the whole next token of this line. `at` receives its first byte.
   double number(const char* expected, std::uint64_t* at = nullptr);
+  /// Three tokens of this line, whatever they hold: normals, which are replaced and never used.
+  void skip_triple(const char* expected, NumberTriple& at);
   std::int64_t integer(const char* expected);
   /// As integer(), but of a count or index that may stand on a later line.
   std::int64_t integer_anywhere(const char* expected);
@@ -60,6 +64,9 @@ class Scanner {
   bool continues_;
   char comment_;
 };
+
+/// Bytes that a UTF-8 byte order mark takes at the start of a text: 3 or 0.
+inline std::size_t byte_order_mark(std::string_view text) { return text.starts_with("\xef\xbb\xbf") ? 3 : 0; }
 
 /// True if `text` is `word` in any case; `word` is lower case.
 bool is_word(std::string_view text, std::string_view word);

@@ -61,16 +61,8 @@ class AsciiStlParser {
     const std::string_view next = Scanner(scanner_).token();
     if (!next.starts_with("end") && !next.starts_with("END") && !is_word(next, "facet")) scanner_.next_line();
   }
-  /// The normal is replaced, never used; words and infinities in its place are common.
-  void normal() {
-    NumberTriple at{};
-    for (auto& byte : at.at) {
-      const std::string_view number = scanner_.token();
-      if (number.empty()) scanner_.fail("three numbers of a normal");
-      byte = scanner_.position() - number.size();
-    }
-    file_.normal_at.push_back(at);
-  }
+  /// Words and infinities in the place of a normal are common.
+  void normal() { scanner_.skip_triple("three numbers of a normal", file_.normal_at.emplace_back()); }
   void expect(const char* word) {
     const std::string quoted = fmt::format("'{}'", word);
     const std::string_view found = scanner_.token_anywhere(quoted.c_str());
@@ -117,7 +109,7 @@ void parse_binary(MeshFile& file) {
 
 void parse_stl(MeshFile& file) {
   const std::string& bytes = file.bytes;
-  const bool says_solid = is_word(std::string_view(bytes).substr(0, 5), "solid");
+  const bool says_solid = is_word(Scanner(file.path, bytes).first_word(), "solid");
   const bool holds_header = bytes.size() >= kHeaderBytes;
   // Binary files may start with "solid" too; then their size tells. Bytes behind the last facet are kept.
   if (holds_header && (bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)} ||
