@@ -290,14 +290,7 @@ TEST_CASE("offset: states are honest where coordinates are too coarse for the di
 TEST_CASE("offset: vertices at one position stay together", "[offset]") {
   // A cube of six separate sides, as exported with hard edges.
   const Polygons cube = scene::box(Vec3d(1), 6, false);
-  Polygons sides;
-  for (std::size_t f = 0; f < cube.face_count(); ++f) {
-    for (const auto v : cube.view().face(f)) {
-      sides.corners.push_back(static_cast<std::uint32_t>(sides.positions.size()));
-      sides.positions.push_back(cube.positions[v]);
-    }
-    sides.close_face();
-  }
+  const Polygons sides = test::torn(cube);
   const OffsetResult whole = offset(cube.view(), by(0.1)), split = offset(sides.view(), by(0.1));
   REQUIRE(split.positions.size() == sides.positions.size());
   for (std::size_t c = 0; c < sides.corners.size(); ++c)

@@ -36,6 +36,18 @@ void for_each_triangle(PolygonView mesh, Visit&& visit) {
 
 }  // namespace
 
+Polygons torn(const Polygons& mesh) {
+  Polygons soup;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    for (const auto v : mesh.view().face(f)) {
+      soup.corners.push_back(static_cast<std::uint32_t>(soup.positions.size()));
+      soup.positions.push_back(mesh.positions[v]);
+    }
+    soup.close_face();
+  }
+  return soup;
+}
+
 double brute_force_distance(PolygonView mesh, const Vec3d& x) {
   double least = std::numeric_limits<double>::infinity();
   for_each_triangle(mesh, [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {

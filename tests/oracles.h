@@ -6,6 +6,9 @@
 
 namespace vdb_offset::test {
 
+/// Every face with corners of its own, as STL and hard-edge exports store them.
+Polygons torn(const Polygons& mesh);
+
 /// Distance from x to the nearest triangle of a fan-triangulated mesh, by trying them all in a way that shares
 /// nothing with the library: projection onto the plane and signed areas, else the three segments.
 double brute_force_distance(PolygonView mesh, const Vec3d& x);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "oracles.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh.h"
 #include "vdb_offset/scene/shapes.h"
@@ -11,19 +12,6 @@
 using namespace vdb_offset;
 
 namespace {
-
-/// Every face with corners of its own, as STL stores them.
-Polygons torn(const Polygons& mesh) {
-  Polygons soup;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    for (const auto v : mesh.view().face(f)) {
-      soup.corners.push_back(static_cast<std::uint32_t>(soup.positions.size()));
-      soup.positions.push_back(mesh.positions[v]);
-    }
-    soup.close_face();
-  }
-  return soup;
-}
 
 double area_of(const std::vector<Vec3d>& p, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   double sum = 0;
@@ -106,7 +94,7 @@ TEST_CASE("surface: facts of known shapes", "[surface]") {
 }
 
 TEST_CASE("surface: welding joins a torn mesh, and only when asked", "[surface]") {
-  const Polygons soup = torn(scene::box(Vec3d(1), 3, true));
+  const Polygons soup = test::torn(scene::box(Vec3d(1), 3, true));
   CHECK(build_surface(soup.view(), {}).facts.closed());
   CHECK(build_surface(soup.view(), {}).facts.welded_vertices == 56);
   CHECK(build_surface(soup.view(), {false, 0}).facts.boundary_edges == 3 * soup.face_count());

@@ -18,10 +18,9 @@ constexpr double kBandVoxels = 1.01;
 // Leaf coordinates are packed in 21 bits each; 2^23 voxels keep clear of that.
 constexpr double kMaxVoxelsAcross = 8388608;
 
-constexpr std::size_t kLeafVoxels = 512;
 // phi, closest triangle and direction of a voxel, the three leaf nodes' own bytes, and what the allocator keeps of the
 // sweep's closest points; measured: 12,400.
-constexpr std::size_t kLeafBytes = kLeafVoxels * (4 + 4 + 12) + 3 * 192 + 1700;
+constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
 constexpr std::size_t kTriangleBytes = 200, kVertexBytes = 300;
 // The process itself: code, libraries, allocator.
@@ -111,7 +110,7 @@ GridPlan estimate(const Surface& surface, double distance, double h, int threads
     return plan;
   }
   plan.leaf_nodes = static_cast<std::size_t>(leaves);
-  plan.voxels = plan.leaf_nodes * kLeafVoxels;
+  plan.voxels = plan.leaf_nodes * std::size_t{kLeafVoxels};
   plan.bytes = static_cast<std::size_t>(bytes);
   plan.seconds =
       (leaves * kLeafSeconds + triangles * kTriangleSeconds + vertices * kVertexSeconds) / std::max(1, threads);

@@ -95,7 +95,6 @@ class Traveller {
       : query_(query),
         sampler_(sampler),
         surface_(query.surface()),
-        vertex_(vertex),
         side_(distance < 0 ? -1 : 1),
         target_(std::abs(distance)),
         h_(field.voxel_size),
@@ -282,7 +281,6 @@ class Traveller {
   const ClosestQuery& query_;
   const DirectionSampler& sampler_;
   const Surface& surface_;
-  std::uint32_t vertex_;
   int side_;
   double target_, h_;
   bool sided_;
