@@ -77,10 +77,11 @@ class ObjParser {
     for (std::size_t f = 0; f < face_at_.size(); ++f)
       for (auto c = file_.polygons.face_begin[f]; c < file_.polygons.face_begin[f + 1]; ++c) {
         if (file_.polygons.corners[c] >= file_.polygons.positions.size())
-          scanner_.fail(fmt::format("vertex indices up to {} in the face", file_.polygons.positions.size()),
-                        face_at_[f]);
+          scanner_.fail_with(fmt::format("vertex indices up to {} in the face", file_.polygons.positions.size()),
+                             fmt::format("{}", file_.polygons.corners[c] + 1), face_at_[f]);
         if (file_.corner_normal[c] != kNoNormal && file_.corner_normal[c] >= file_.normal_at.size())
-          scanner_.fail(fmt::format("normal indices up to {} in the face", file_.normal_at.size()), face_at_[f]);
+          scanner_.fail_with(fmt::format("normal indices up to {} in the face", file_.normal_at.size()),
+                             fmt::format("{}", file_.corner_normal[c] + 1), face_at_[f]);
       }
   }
   void other(std::string_view keyword) {
