@@ -6,27 +6,17 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+
+#include "vdb_offset/lanes.h"
+#include "vdb_offset/morton.h"
 
 namespace vdb_offset {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// Spreads the low 21 bits of x so that two zeros follow each.
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffULL;
-  x = (x | x << 16) & 0x1f0000ff0000ffULL;
-  x = (x | x << 8) & 0x100f00f00f00f00fULL;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-  x = (x | x << 2) & 0x1249249249249249ULL;
-  return x;
-}
-
-// More than the rounding of a squared height over a unit normal.
-constexpr double kPlaneSlack = 1 - 1e-12;
 
 }  // namespace
 
@@ -37,48 +27,52 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   // Boxes hold coordinates of size 1 or so: their squares neither overflow nor vanish in a float.
   scale_ = reach > 0 ? std::ldexp(1.0, -std::ilogb(reach)) : 1.0;
   slack_ = static_cast<float>(reach * scale_ * 4e-7);
-  sort_triangles();
   build_lowest_level();
-  std::size_t nodes = (order_.size() + kLeafSize - 1) / kLeafSize;
+  std::size_t nodes = (surface_.triangles.size() + kLeafSize - 1) / kLeafSize;
   while (levels_.back().size() > 1) {
     nodes = (nodes + kWidth - 1) / kWidth;
     build_level(levels_.back(), nodes);
   }
 }
 
-void ClosestQuery::sort_triangles() {
-  const std::size_t count = surface_.triangles.size();
-  const Vec3d lower = surface_.facts.lower - surface_.origin;
-  const Vec3d extent = surface_.facts.upper - surface_.facts.lower;
-  const double longest = std::max({extent[0], extent[1], extent[2], std::numeric_limits<double>::min()});
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-    for (std::size_t t = range.begin(); t != range.end(); ++t) {
-      const auto& [a, b, c] = surface_.triangles[t];
-      const Vec3d centre = (surface_.vertices[a] + surface_.vertices[b] + surface_.vertices[c]) / 3.0 - lower;
-      std::uint64_t code = 0;
-      for (int k = 0; k < 3; ++k)
-        code |= spread(static_cast<std::uint64_t>(std::clamp(centre[k] / longest, 0.0, 1.0) * 2097151.0)) << k;
-      keys[t] = {code, static_cast<std::uint32_t>(t)};
+ClosestQuery::Discs ClosestQuery::discs_of(std::size_t leaf) const {
+  constexpr float kNowhere = 1e18f;
+  Discs discs{};
+  for (int i = 0; i < kLeafSize; ++i) {
+    const std::size_t t = leaf * kLeafSize + static_cast<std::size_t>(i);
+    if (t >= surface_.triangles.size()) {
+      discs.centre[0][i] = kNowhere;
+      continue;
     }
-  });
-  tbb::parallel_sort(keys.begin(), keys.end());
-  order_.resize(count);
-  std::transform(keys.begin(), keys.end(), order_.begin(), [](const auto& key) { return key.second; });
+    Vec3d corner[3];
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = surface_.vertices[surface_.triangles[t][k]] * scale_;
+    const Vec3d centre = (corner[0] + corner[1] + corner[2]) / 3.0;
+    double radius = 0;
+    for (const Vec3d& p : corner) radius = std::max(radius, (p - centre).length());
+    for (int k = 0; k < 3; ++k) {
+      discs.centre[k][i] = static_cast<float>(centre[k]);
+      discs.normal[k][i] = static_cast<float>(surface_.triangle_normals[t][k]);
+    }
+    discs.radius[i] = static_cast<float>(radius * (1 + 1e-6)) + slack_;
+  }
+  return discs;
 }
 
 void ClosestQuery::build_lowest_level() {
-  const std::size_t leaves = (order_.size() + kLeafSize - 1) / kLeafSize;
-  auto& level = levels_.emplace_back((leaves + kWidth - 1) / kWidth);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size() * kWidth, 512), [&](const auto& range) {
+  constexpr std::size_t kSize = kLeafSize, kSiblings = kWidth;
+  const std::size_t leaves = (surface_.triangles.size() + kSize - 1) / kSize;
+  discs_.resize(leaves);
+  auto& level = levels_.emplace_back((leaves + kSiblings - 1) / kSiblings);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size() * kSiblings, 512), [&](const auto& range) {
     for (std::size_t leaf = range.begin(); leaf != range.end(); ++leaf) {
-      Siblings& block = level[leaf / kWidth];
-      const std::size_t at = leaf % kWidth, end = std::min<std::size_t>((leaf + 1) * kLeafSize, order_.size());
+      if (leaf < leaves) discs_[leaf] = discs_of(leaf);
+      Siblings& block = level[leaf / kSiblings];
+      const std::size_t at = leaf % kSiblings, end = std::min((leaf + 1) * kSize, surface_.triangles.size());
       for (int k = 0; k < 3; ++k) {
         block.lower[k][at] = kInfinity;
         block.upper[k][at] = -kInfinity;
-        for (std::size_t i = leaf * kLeafSize; i < end; ++i)
-          for (const auto v : surface_.triangles[order_[i]]) {
+        for (std::size_t i = leaf * kSize; i < end; ++i)
+          for (const auto v : surface_.triangles[i]) {
             const auto x = static_cast<float>(surface_.vertices[v][k] * scale_);
             block.lower[k][at] = std::min(block.lower[k][at], x);
             block.upper[k][at] = std::max(block.upper[k][at], x);
@@ -104,66 +98,127 @@ void ClosestQuery::build_level(const std::vector<Siblings>& below, std::size_t n
   levels_.push_back(std::move(level));
 }
 
-Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
-  std::uint32_t best_triangle = hint;
-  TrianglePoint best = surface_.walk_to_closest(x, best_triangle);
-  const float fx[3] = {static_cast<float>(x[0] * scale_), static_cast<float>(x[1] * scale_),
-                       static_cast<float>(x[2] * scale_)};
-  // A box is left out only if it is farther than the best by more than float rounding can hide.
-  const float rounding = slack_ + 4e-7f * std::max({std::abs(fx[0]), std::abs(fx[1]), std::abs(fx[2])});
-  const auto bound = [&] {
-    const float reach = (static_cast<float>(std::sqrt(best.squared_distance) * scale_) + rounding) * 1.000001f;
-    return reach * reach;
-  };
-  float limit = bound();
+/// One query's descent through the tree, nearest boxes first.
+class ClosestQuery::Search {
+ public:
+  Search(const ClosestQuery& query, const Vec3d& x, std::uint32_t hint)
+      : query_(query), surface_(query.surface_), x_(x), triangle_(hint), best_(surface_.walk_to_closest(x, triangle_)) {
+    for (int k = 0; k < 3; ++k) local_[k] = static_cast<float>(x[k] * query.scale_);
+    rounding_ = query.slack_ + 4e-7f * std::max({std::abs(local_[0]), std::abs(local_[1]), std::abs(local_[2])});
+    tighten();
+  }
 
+  Closest run() {
+    stack_[depth_++] = {0.0f, static_cast<std::uint32_t>(query_.levels_.size() - 1), 0};
+    while (depth_ > 0) {
+      const Visit visit = stack_[--depth_];
+      if (visit.squared_distance > limit_) continue;
+      open(visit.level, visit.node);
+    }
+    return {std::sqrt(best_.squared_distance), triangle_, best_.feature, best_.point};
+  }
+
+ private:
+  /// The siblings `node` of level `level`, and how far away the box is that holds them.
   struct Visit {
     float squared_distance;
-    std::uint32_t level, block;
+    std::uint32_t level, node;
   };
-  std::array<Visit, kWidth * 12> stack;  // 8^12 leaves are far more than 2^31 triangles
-  std::size_t depth = 0;
-  stack[depth++] = {0.0f, static_cast<std::uint32_t>(levels_.size() - 1), 0};
-  while (depth > 0) {
-    const Visit visit = stack[--depth];
-    if (visit.squared_distance > limit) continue;
-    const Siblings& box = levels_[visit.level][visit.block];
+
+  /// A box is left out only if it is farther than the best by more than float rounding can hide.
+  void tighten() {
+    const float reach = (static_cast<float>(std::sqrt(best_.squared_distance) * query_.scale_) + rounding_) * 1.000001f;
+    limit_ = reach * reach;
+  }
+
+  /// Puts the siblings that are near enough on the stack, the nearest last, so that it is taken first; lowest boxes are
+  /// looked into at once, as by then the bound is tight and their order matters little.
+  void open(std::uint32_t level, std::uint32_t node) {
+    const Siblings& box = query_.levels_[level][node];
     float squared[kWidth];
-    for (int i = 0; i < kWidth; ++i) squared[i] = 0;
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < kWidth; ++i) {
-        const float below = box.lower[k][i] - fx[k], above = fx[k] - box.upper[k][i];
-        const float outside = std::max(std::max(below, above), 0.0f);
-        squared[i] += outside * outside;
+    unsigned near = 0;
+    for (int i = 0; i < kWidth; i += kLanes) {
+      Lanes sum{};
+      for (int k = 0; k < 3; ++k) {
+        const Lanes below = load_lanes(box.lower[k] + i) - local_[k], above = local_[k] - load_lanes(box.upper[k] + i);
+        const Lanes outside = max_lanes(max_lanes(below, above), Lanes{});
+        sum += outside * outside;
       }
-    // Nearest last, so that it is taken first.
-    const std::size_t base = depth;
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      if (!(squared[i] <= limit)) continue;
-      std::size_t at = depth++;
-      for (; at > base && stack[at - 1].squared_distance < squared[i]; --at) stack[at] = stack[at - 1];
-      stack[at] = {squared[i], visit.level - 1, visit.block * kWidth + i};
+      store_lanes(squared + i, sum);
+      near |= lane_bits(sum <= limit_ + Lanes{}) << i;
     }
-    if (visit.level > 0) continue;
-    for (; depth > base; --depth) {
-      const Visit& leaf = stack[depth - 1];
-      if (leaf.squared_distance > limit) continue;
-      const std::size_t end = std::min<std::size_t>((std::size_t{leaf.block} + 1) * kLeafSize, order_.size());
-      for (std::size_t i = std::size_t{leaf.block} * kLeafSize; i < end; ++i) {
-        // A triangle is no nearer than its plane.
-        const double height =
-            surface_.triangle_normals[order_[i]].dot(x - surface_.vertices[surface_.triangles[order_[i]][0]]);
-        if (height * height * kPlaneSlack > best.squared_distance) continue;
-        const TrianglePoint candidate = surface_.closest_on(order_[i], x);
-        if (candidate.squared_distance < best.squared_distance) {
-          best = candidate;
-          best_triangle = order_[i];
-          limit = bound();
-        }
+    if (level == 0) {
+      for (; near != 0; near &= near - 1) {
+        const int child = std::countr_zero(near);
+        if (squared[child] <= limit_) look_at_triangles(node * kWidth + static_cast<std::uint32_t>(child));
       }
+      return;
+    }
+    const std::size_t base = depth_;
+    for (; near != 0; near &= near - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(near));
+      std::size_t at = depth_++;
+      for (; at > base && stack_[at - 1].squared_distance < squared[child]; --at) stack_[at] = stack_[at - 1];
+      stack_[at] = {squared[child], level - 1, node * kWidth + child};
     }
   }
-  return {std::sqrt(best.squared_distance), best_triangle, best.feature, best.point};
+
+  /// A triangle is no nearer than its disc: with height h over the plane and lateral distance l from the centre,
+  /// h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
+  void look_at_triangles(std::uint32_t leaf) {
+    const Discs& discs = query_.discs_[leaf];
+    unsigned near = 0;
+    for (int i = 0; i < kLeafSize; i += kLanes) {
+      Lanes squared{}, height{};
+      for (int k = 0; k < 3; ++k) {
+        const Lanes away = local_[k] - load_lanes(discs.centre[k] + i);
+        squared += away * away;
+        height += away * load_lanes(discs.normal[k] + i);
+      }
+      const Lanes height2 = height * height, lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{})),
+                  beyond = max_lanes(lateral - load_lanes(discs.radius + i), Lanes{});
+      near |= lane_bits((height2 + beyond * beyond) * 0.999999f <= limit_ + Lanes{}) << i;
+    }
+    for (; near != 0; near &= near - 1) {
+      const std::uint32_t other = leaf * kLeafSize + static_cast<std::uint32_t>(std::countr_zero(near));
+      const TrianglePoint candidate = surface_.closest_on(other, x_);
+      if (candidate.squared_distance >= best_.squared_distance) continue;
+      best_ = candidate;
+      triangle_ = other;
+      tighten();
+    }
+  }
+
+  const ClosestQuery& query_;
+  const Surface& surface_;
+  const Vec3d& x_;
+  std::uint32_t triangle_;
+  TrianglePoint best_;
+  float local_[3];  // x in the tree's units
+  float rounding_, limit_ = 0;
+  std::array<Visit, kWidth * 12> stack_;  // 8^12 leaves are far more than 2^31 triangles
+  std::size_t depth_ = 0;
+};
+
+Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const { return Search(*this, x, hint).run(); }
+
+std::vector<Closest> closest_points(const ClosestQuery& query, std::span<const Vec3d> points) {
+  const MeshFacts& facts = query.surface().facts;
+  const MortonCurve curve(facts.lower - query.surface().origin, facts.upper - query.surface().origin);
+  std::vector<std::pair<std::uint64_t, std::size_t>> order(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { order[i] = {curve(points[i]), i}; });
+  tbb::parallel_sort(order.begin(), order.end());
+  std::vector<Closest> answers(points.size());
+  // Runs of one length, whatever the number of threads: an answer may depend on its hint.
+  constexpr std::size_t kRun = 256;
+  tbb::parallel_for(std::size_t{0}, (points.size() + kRun - 1) / kRun, [&](std::size_t run) {
+    std::uint32_t hint = 0;
+    for (std::size_t i = run * kRun; i < std::min(points.size(), (run + 1) * kRun); ++i) {
+      answers[order[i].second] = query(points[order[i].second], hint);
+      hint = answers[order[i].second].triangle;
+    }
+  });
+  return answers;
 }
 
 }  // namespace vdb_offset

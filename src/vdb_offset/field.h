@@ -11,6 +11,9 @@ namespace vdb_offset {
 inline constexpr int kLeafWidth = 8;
 inline constexpr int kLeafVoxels = 512;
 
+using PhiLeaf = openvdb::FloatTree::LeafNodeType;
+using ClosestLeaf = openvdb::Int32Tree::LeafNodeType;
+
 /// How far a field reaches on each side of the surface, world units, both > 0.
 struct Reach {
   double inside, outside;

@@ -1,7 +1,5 @@
 #include "vdb_offset/leaf_graph.h"
 
-#include <memory>
-
 namespace vdb_offset {
 namespace {
 
@@ -16,19 +14,31 @@ LeafGraph::LeafGraph(FieldGrids& grids) : grids_(grids) {
   const auto count = grids.phi->tree().leafCount();
   leaves_.reserve(count);
   index_of_.reserve(2 * count);
-  for (auto leaf = grids.phi->tree().beginLeaf(); leaf; ++leaf)
-    append(leaf.getLeaf(), grids.closest->tree().probeLeaf(leaf->origin()));
+  auto closest = grids.closest->tree().beginLeaf();
+  for (auto phi = grids.phi->tree().beginLeaf(); phi; ++phi, ++closest) append(phi.getLeaf(), closest.getLeaf());
 }
 
 std::int32_t LeafGraph::touch_neighbour(std::int32_t leaf, int face) {
   const auto known = leaves_[static_cast<std::size_t>(leaf)].neighbour[static_cast<std::size_t>(face)];
   if (known >= 0) return known;
   const openvdb::Coord origin = step(leaves_[static_cast<std::size_t>(leaf)].origin(), face);
-  append(grids_.phi->tree().touchLeaf(origin), grids_.closest->tree().touchLeaf(origin));
+  new_phi_.push_back(std::make_unique<PhiLeaf>(openvdb::PartialCreate(), origin, grids_.phi->background()));
+  new_closest_.push_back(std::make_unique<ClosestLeaf>(openvdb::PartialCreate(), origin, -1));
+  append(new_phi_.back().get(), new_closest_.back().get());
   return static_cast<std::int32_t>(leaves_.size() - 1);
 }
 
-void LeafGraph::append(openvdb::FloatTree::LeafNodeType* phi, openvdb::Int32Tree::LeafNodeType* closest) {
+void LeafGraph::attach_new_leaves() {
+  for (std::size_t i = 0; i < new_phi_.size(); ++i) {
+    if (new_phi_[i]->isEmpty()) continue;
+    grids_.phi->tree().addLeaf(new_phi_[i].release());
+    grids_.closest->tree().addLeaf(new_closest_[i].release());
+  }
+  new_phi_.clear();
+  new_closest_.clear();
+}
+
+void LeafGraph::append(PhiLeaf* phi, ClosestLeaf* closest) {
   const auto index = static_cast<std::int32_t>(leaves_.size());
   GraphLeaf added{phi, closest, {-1, -1, -1, -1, -1, -1}};
   for (int face = 0; face < kFaces; ++face) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -15,17 +16,17 @@ inline constexpr int opposite(int face) { return face ^ 1; }
 
 /// A leaf node of both field grids, its raw buffers (voxel (i, j, k) at i << 6 | j << 3 | k) and its neighbours.
 struct GraphLeaf {
-  openvdb::FloatTree::LeafNodeType* phi;
-  openvdb::Int32Tree::LeafNodeType* closest;
+  PhiLeaf* phi;
+  ClosestLeaf* closest;
   std::array<std::int32_t, kFaces> neighbour;  ///< Index in the graph, or -1.
 
-  openvdb::Coord origin() const { return phi->origin(); }
+  const openvdb::Coord& origin() const { return phi->origin(); }
   /// 0 or 1; leaf nodes that share a face differ.
   int colour() const { return (origin()[0] + origin()[1] + origin()[2]) / kLeafWidth & 1; }
 };
 
 /// The leaf nodes of a field as an array, each knowing those across its faces, so that a stencil never has to
-/// walk the tree. Leaf nodes belong to the grids' trees.
+/// walk the tree.
 class LeafGraph {
  public:
   explicit LeafGraph(FieldGrids& grids);
@@ -33,15 +34,22 @@ class LeafGraph {
   std::size_t size() const { return leaves_.size(); }
   const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
 
-  /// The neighbour across a face; made, without active voxels, if there is none. Not thread-safe.
+  /// The neighbour across a face; made if there is none, without active voxels and with buffers yet to be allocated
+  /// (LeafNode::allocate), which is better done in parallel. Not thread-safe.
   std::int32_t touch_neighbour(std::int32_t leaf, int face);
 
+  /// Hands those leaf nodes that touch_neighbour() made and that have active voxels to the grids' trees, and frees the
+  /// others: the graph is of no more use then.
+  void attach_new_leaves();
+
  private:
-  void append(openvdb::FloatTree::LeafNodeType* phi, openvdb::Int32Tree::LeafNodeType* closest);
+  void append(PhiLeaf* phi, ClosestLeaf* closest);
 
   FieldGrids& grids_;
   std::vector<GraphLeaf> leaves_;
   std::unordered_map<openvdb::Coord, std::int32_t> index_of_;
+  std::vector<std::unique_ptr<PhiLeaf>> new_phi_;
+  std::vector<std::unique_ptr<ClosestLeaf>> new_closest_;
 };
 
 /// A leaf node's voxels with one more on every side, filled from the leaf nodes across its faces. Voxels beyond an
@@ -53,17 +61,43 @@ inline constexpr std::array<int, 3> kLeafStride = {64, 8, 1};
 inline constexpr int padded_index(int i, int j, int k) {
   return (i + 1) * kPaddedStride[0] + (j + 1) * kPaddedStride[1] + (k + 1);
 }
+inline constexpr int padded_index(int n) { return padded_index(n >> 6, n >> 3 & 7, n & 7); }
 
-/// Calls visit(padded index, voxel number) for the 64 voxels of the neighbour across `face`: its voxels that touch
-/// the leaf node, and where they stand in the padded block.
-template <class Visit>
-void for_each_halo_voxel(int face, Visit&& visit) {
-  const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const int padded = face % 2 ? kLeafWidth + 1 : 0, there = face % 2 ? 0 : kLeafWidth - 1;
+namespace detail {
+template <int kFace, class Visit>
+void for_each_halo_voxel(Visit&& visit) {
+  constexpr int axis = kFace / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  constexpr int padded = kFace % 2 ? kLeafWidth + 1 : 0, there = kFace % 2 ? 0 : kLeafWidth - 1;
   for (int a = 0; a < kLeafWidth; ++a)
     for (int b = 0; b < kLeafWidth; ++b)
       visit(padded * kPaddedStride[axis] + (a + 1) * kPaddedStride[u] + (b + 1) * kPaddedStride[v],
             there * kLeafStride[axis] + a * kLeafStride[u] + b * kLeafStride[v]);
+}
+}  // namespace detail
+
+/// Calls visit(padded index, voxel number) for the 64 voxels of the neighbour across `face`: its voxels that touch
+/// the leaf node, and where they stand in the padded block. Strides are constants, for the compiler's sake.
+template <class Visit>
+void for_each_halo_voxel(int face, Visit&& visit) {
+  switch (face) {
+    case 0:
+      return detail::for_each_halo_voxel<0>(visit);
+    case 1:
+      return detail::for_each_halo_voxel<1>(visit);
+    case 2:
+      return detail::for_each_halo_voxel<2>(visit);
+    case 3:
+      return detail::for_each_halo_voxel<3>(visit);
+    case 4:
+      return detail::for_each_halo_voxel<4>(visit);
+    default:
+      return detail::for_each_halo_voxel<5>(visit);
+  }
+}
+
+/// Padded index of the voxel of the leaf node that touches halo voxel `padded` across `face`.
+inline constexpr int across(int face, int padded) {
+  return padded + (face % 2 ? -1 : 1) * kPaddedStride[static_cast<std::size_t>(face / 2)];
 }
 
 }  // namespace vdb_offset

@@ -35,44 +35,88 @@ inline TrianglePoint closest_on_segment(const Vec3d& x, const Vec3d& a, const Ve
   return {p, (x - p).lengthSqr(), between};
 }
 
-inline TrianglePoint closest_on_edges(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+inline TrianglePoint nearer(const TrianglePoint& one, const TrianglePoint& other) {
+  return other.squared_distance < one.squared_distance ? other : one;
+}
+
+}  // namespace detail
+
+namespace detail {
+
+/// For slivers: the sub-areas come from cross products at the nearest corner, the distance from the plane, which loses
+/// fewer digits than the general form; a triangle without area is the union of its edges.
+inline TrianglePoint closest_on_sliver(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using enum Feature;
-  TrianglePoint best = closest_on_segment(x, a, b, Vertex0, Vertex1, Edge0);
-  for (const TrianglePoint& other :
-       {closest_on_segment(x, b, c, Vertex1, Vertex2, Edge1), closest_on_segment(x, c, a, Vertex2, Vertex0, Edge2)})
-    if (other.squared_distance < best.squared_distance) best = other;
+  const Vec3d ab = b - a, bc = c - b, ca = a - c, normal = ab.cross(c - a);
+  const double area2 = normal.dot(normal);
+  const bool needle = is_needle(area2, std::max({ab.dot(ab), bc.dot(bc), ca.dot(ca)}));
+  const bool beyond_ab = needle || normal.dot(ab.cross(x - a)) <= 0,
+             beyond_bc = needle || normal.dot(bc.cross(x - b)) <= 0,
+             beyond_ca = needle || normal.dot(ca.cross(x - c)) <= 0;
+  if (!beyond_ab && !beyond_bc && !beyond_ca) {
+    const double height = (x - a).dot(normal);
+    return {x - normal * (height / area2), height * height / area2, Face};
+  }
+  TrianglePoint best{a, std::numeric_limits<double>::infinity(), Vertex0};
+  if (beyond_ab) best = closest_on_segment(x, a, b, Vertex0, Vertex1, Edge0);
+  if (beyond_bc) best = nearer(best, closest_on_segment(x, b, c, Vertex1, Vertex2, Edge1));
+  if (beyond_ca) best = nearer(best, closest_on_segment(x, c, a, Vertex2, Vertex0, Edge2));
   return best;
+}
+
+/// Plain components: openvdb's vector operators copy their operands, which costs more than the arithmetic here.
+struct Components {
+  double x, y, z;
+  static Components of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+  double dot(const Components& o) const { return x * o.x + y * o.y + z * o.z; }
+  Components cross(const Components& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
+};
+inline Components operator-(const Components& a, const Components& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+inline TrianglePoint at_corner(const Vec3d& corner, const Components& to_x, Feature vertex) {
+  return {corner, to_x.dot(to_x), vertex};
+}
+
+/// The point `share` of the way along an edge that starts at `from`.
+inline TrianglePoint on_edge(const Vec3d& from, const Components& edge, const Components& to_x, double share,
+                             Feature feature) {
+  const Components along{edge.x * share, edge.y * share, edge.z * share}, rest = to_x - along;
+  return {Vec3d(from[0] + along.x, from[1] + along.y, from[2] + along.z), rest.dot(rest), feature};
 }
 
 }  // namespace detail
 
 /// Closest point of triangle abc to x, by the Voronoi regions of its features (Ericson, Real-Time Collision
-/// Detection, 2005, 5.1.5). A triangle without area is the union of its edges.
+/// Detection, 2005, 5.1.5).
 inline TrianglePoint closest_on_triangle(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using enum Feature;
-  const Vec3d ab = b - a, ac = c - a, ax = x - a;
-  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
-  if (d1 <= 0 && d2 <= 0) return {a, ax.lengthSqr(), Vertex0};
-  const Vec3d bx = x - b;
-  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
-  if (d3 >= 0 && d4 <= d3) return {b, bx.lengthSqr(), Vertex1};
-  const Vec3d cx = x - c;
-  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
-  if (d6 >= 0 && d5 <= d6) return {c, cx.lengthSqr(), Vertex2};
+  using detail::Components, detail::on_edge, detail::at_corner;
+  const Components from_a = Components::of(a), ab = Components::of(b) - from_a, ac = Components::of(c) - from_a,
+                   ax = Components::of(x) - from_a;
+  const double ab_ab = ab.dot(ab), ac_ac = ac.dot(ac), ab_ac = ab.dot(ac);
+  // Sub-areas from products of projections lose digits as the square of length over height.
+  constexpr double kSliver = 1e-6;
+  const double longest = std::max(std::max(ab_ab, ac_ac), ab_ab + ac_ac - 2 * ab_ac);
+  if (!(ab_ab * ac_ac - ab_ac * ab_ac > kSliver * longest * longest)) return detail::closest_on_sliver(x, a, b, c);
 
-  // The normal form of the face region loses no digits where the barycentric form divides two small numbers:
-  // the sub-areas come from cross products at the nearest corner, the distance from the plane.
-  const Vec3d normal = ab.cross(ac);
-  const double area2 = normal.dot(normal);
-  if (is_needle(area2, std::max({ab.dot(ab), ac.dot(ac), (c - b).dot(c - b)})))
-    return detail::closest_on_edges(x, a, b, c);
-  const double over_ab = normal.dot(ab.cross(ax)), over_bc = normal.dot((c - b).cross(bx)),
-               over_ca = normal.dot((a - c).cross(cx));
-  if (over_ab > 0 && over_bc > 0 && over_ca > 0) {
-    const double height = ax.dot(normal);
-    return {x - normal * (height / area2), height * height / area2, Face};
-  }
-  return detail::closest_on_edges(x, a, b, c);
+  const double at_a_b = ab.dot(ax), at_a_c = ac.dot(ax);  // projections on ab and ac, from each corner
+  if (at_a_b <= 0 && at_a_c <= 0) return at_corner(a, ax, Vertex0);
+  const double at_b_b = at_a_b - ab_ab, at_b_c = at_a_c - ab_ac;
+  if (at_b_b >= 0 && at_b_c <= at_b_b) return at_corner(b, ax - ab, Vertex1);
+  const double at_c_b = at_a_b - ab_ac, at_c_c = at_a_c - ac_ac;
+  if (at_c_c >= 0 && at_c_b <= at_c_c) return at_corner(c, ax - ac, Vertex2);
+
+  const double over_ab = at_a_b * at_b_c - at_b_b * at_a_c;
+  if (over_ab <= 0 && at_a_b >= 0 && at_b_b <= 0) return on_edge(a, ab, ax, at_a_b / ab_ab, Edge0);
+  const double over_ca = at_c_b * at_a_c - at_a_b * at_c_c;
+  if (over_ca <= 0 && at_a_c >= 0 && at_c_c <= 0) return on_edge(a, ac, ax, at_a_c / ac_ac, Edge2);
+  const double over_bc = at_b_b * at_c_c - at_c_b * at_b_c;
+  const double from_b = at_b_c - at_b_b, from_c = at_c_b - at_c_c;
+  if (over_bc <= 0 && from_b >= 0 && from_c >= 0)
+    return on_edge(b, ac - ab, ax - ab, from_b / (from_b + from_c), Edge1);
+  const Components normal = ab.cross(ac);
+  const double height = ax.dot(normal), share = height / normal.dot(normal);
+  return {Vec3d(x[0] - normal.x * share, x[1] - normal.y * share, x[2] - normal.z * share), height * share, Face};
 }
 
 }  // namespace vdb_offset

@@ -13,8 +13,6 @@ namespace vdb_offset {
 namespace {
 
 using openvdb::Coord;
-using PhiLeaf = openvdb::FloatTree::LeafNodeType;
-using ClosestLeaf = openvdb::Int32Tree::LeafNodeType;
 
 constexpr std::int64_t kKeyBias = 1 << 20;
 
@@ -141,10 +139,9 @@ class LeafCanvas {
           if (std::abs(normal.dot(x - corner)) > band) continue;
           const int n = i << 6 | j << 3 | k;
           const double squared = surface_.closest_on(triangle, x).squared_distance;
-          if (squared < squared_[n]) {
-            squared_[n] = squared;
-            triangle_[n] = triangle;
-          }
+          if (!wins(triangle, squared, n)) continue;
+          squared_[n] = squared;
+          triangle_[n] = triangle;
         }
   }
 
@@ -165,6 +162,13 @@ class LeafCanvas {
   }
 
  private:
+  /// Of faces equally near, but for rounding, the input's first wins: where sheets lie back to back, one of them then
+  /// decides all along which side is outside.
+  bool wins(std::uint32_t triangle, double squared, int n) const {
+    constexpr double kTie = 1e-12;
+    if (squared < squared_[n] * (1 - kTie)) return true;
+    return squared <= squared_[n] * (1 + kTie) && surface_.face[triangle] < surface_.face[triangle_[n]];
+  }
   Vec3d centre(int i, int j, int k) const {
     return Vec3d(origin_[0] + i, origin_[1] + j, origin_[2] + k) * options_.voxel_size;
   }

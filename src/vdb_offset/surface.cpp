@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/morton.h"
 #include "vdb_offset/triangulate.h"
 
 namespace vdb_offset {
@@ -132,19 +134,82 @@ void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
   surface.facts.welded_vertices = surface.vertices.size();
 }
 
-/// Triangulates every face and remembers, for counting, which polygon a triangle came from.
-std::vector<std::uint32_t> split_faces(PolygonView polygons, Surface& surface) {
-  std::vector<std::uint32_t> face_of, face;
+void split_faces(PolygonView polygons, Surface& surface) {
+  std::vector<std::uint32_t> face;
   surface.triangles.reserve(polygons.corners.size() - 2 * polygons.face_count());
-  face_of.reserve(surface.triangles.capacity());
+  surface.face.reserve(surface.triangles.capacity());
   for (std::size_t f = 0; f < polygons.face_count(); ++f) {
     face.clear();
     for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
     ++surface.facts.faces_by_corners[face.size()];
     triangulate(surface.vertices, face, surface.triangles);
-    face_of.resize(surface.triangles.size(), static_cast<std::uint32_t>(f));
+    surface.face.resize(surface.triangles.size(), static_cast<std::uint32_t>(f));
   }
-  return face_of;
+}
+
+/// Numbers the vertices as the triangles come to use them.
+void renumber_vertices(Surface& surface) {
+  std::vector<std::uint32_t> number(surface.vertices.size(), kNone), order;
+  order.reserve(number.size());
+  for (auto& triangle : surface.triangles)
+    for (auto& v : triangle) {
+      if (number[v] == kNone) {
+        number[v] = static_cast<std::uint32_t>(order.size());
+        order.push_back(v);
+      }
+      v = number[v];
+    }
+  // A face may be in use and yet give no triangle.
+  for (std::uint32_t v = 0; v < number.size(); ++v)
+    if (number[v] == kNone) {
+      number[v] = static_cast<std::uint32_t>(order.size());
+      order.push_back(v);
+    }
+  std::vector<Vec3d> vertices(order.size());
+  std::vector<std::uint32_t> representative(order.size());
+  for_each_index(order.size(), [&](std::size_t i) {
+    vertices[i] = surface.vertices[order[i]];
+    representative[i] = surface.representative[order[i]];
+  });
+  surface.vertices = std::move(vertices);
+  surface.representative = std::move(representative);
+  for (auto& v : surface.welded)
+    if (v != kNone) v = number[v];
+}
+
+void find_bounds(Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  facts.lower = facts.upper = surface.vertices.front();
+  for (const Vec3d& p : surface.vertices) {
+    facts.lower = openvdb::math::minComponent(facts.lower, p);
+    facts.upper = openvdb::math::maxComponent(facts.upper, p);
+  }
+  facts.diagonal = (facts.upper - facts.lower).length();
+  if (!std::isfinite(facts.diagonal))
+    throw InvalidInput("mesh: expected a bounding box with a finite diagonal, got coordinates too far apart");
+}
+
+/// Sorts triangles and vertices along a space-filling curve: whoever works in one place finds them together in memory,
+/// however the file orders them.
+void sort_in_space(Surface& surface) {
+  const MortonCurve curve(surface.facts.lower, surface.facts.upper);
+  const std::size_t count = surface.triangles.size();
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> places(count);
+  for_each_index(count, [&](std::size_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3d centre = surface.vertices[a] / 3.0 + surface.vertices[b] / 3.0 + surface.vertices[c] / 3.0;
+    places[t] = {curve(centre), static_cast<std::uint32_t>(t)};
+  });
+  tbb::parallel_sort(places.begin(), places.end());
+  std::vector<std::array<std::uint32_t, 3>> triangles(count);
+  std::vector<std::uint32_t> faces(count);
+  for_each_index(count, [&](std::size_t i) {
+    triangles[i] = surface.triangles[places[i].second];
+    faces[i] = surface.face[places[i].second];
+  });
+  surface.triangles = std::move(triangles);
+  surface.face = std::move(faces);
+  renumber_vertices(surface);
 }
 
 std::uint32_t from(const Surface& s, std::uint32_t half_edge) { return s.triangles[half_edge / 3][half_edge % 3]; }
@@ -182,18 +247,17 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t x) {
 
 /// Numbers the components in the order of their first face and hands them to the vertices; one that several
 /// components share by a corner belongs to the last of them.
-void number_components(Surface& surface, const std::vector<std::uint32_t>& face_of,
-                       std::vector<std::uint32_t>& parent) {
+void number_components(Surface& surface, std::vector<std::uint32_t>& parent) {
   std::vector<std::uint32_t> number(parent.size(), kNone);
   surface.component.resize(surface.vertices.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    auto& component = number[root(parent, face_of[t])];
+    auto& component = number[root(parent, surface.face[t])];
     if (component == kNone) component = static_cast<std::uint32_t>(surface.facts.components++);
     for (const auto v : surface.triangles[t]) surface.component[v] = component;
   }
 }
 
-void join(Surface& surface, const std::vector<std::uint32_t>& face_of, std::size_t face_count) {
+void join(Surface& surface, std::size_t face_count) {
   MeshFacts& facts = surface.facts;
   surface.next_around_edge.resize(3 * surface.triangles.size());
   std::iota(surface.next_around_edge.begin(), surface.next_around_edge.end(), 0u);
@@ -204,14 +268,14 @@ void join(Surface& surface, const std::vector<std::uint32_t>& face_of, std::size
   for_each_edge(surface, [&](std::span<const std::uint32_t> edge) {
     for (std::size_t i = 0; i < edge.size(); ++i) {
       surface.next_around_edge[edge[i]] = edge[(i + 1) % edge.size()];
-      parent[root(parent, face_of[edge[i] / 3])] = root(parent, face_of[edge[0] / 3]);
+      parent[root(parent, surface.face[edge[i] / 3])] = root(parent, surface.face[edge[0] / 3]);
     }
     facts.boundary_edges += edge.size() == 1;
     facts.non_manifold_edges += edge.size() > 2;
     facts.orientation_conflicts += edge.size() == 2 && from(surface, edge[0]) == from(surface, edge[1]);
     lengths.push_back((surface.vertices[from(surface, edge[0])] - surface.vertices[to(surface, edge[0])]).length());
   });
-  number_components(surface, face_of, parent);
+  number_components(surface, parent);
   if (!lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
@@ -314,21 +378,13 @@ void list_incident_triangles(Surface& surface) {
   begin.pop_back();
 }
 
-void measure(PolygonView polygons, const std::vector<std::uint32_t>& face_of, Surface& surface) {
+void measure(PolygonView polygons, Surface& surface) {
   MeshFacts& facts = surface.facts;
-  facts.lower = facts.upper = surface.vertices.front();
-  for (const Vec3d& p : surface.vertices) {
-    facts.lower = openvdb::math::minComponent(facts.lower, p);
-    facts.upper = openvdb::math::maxComponent(facts.upper, p);
-  }
-  facts.diagonal = (facts.upper - facts.lower).length();
-  if (!std::isfinite(facts.diagonal))
-    throw InvalidInput("mesh: expected a bounding box with a finite diagonal, got coordinates too far apart");
   std::vector<std::uint8_t> degenerate(polygons.face_count(), 1);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const double area = shape_of(surface, t).area;
     facts.area += area;
-    if (area > 0) degenerate[face_of[t]] = 0;
+    if (area > 0) degenerate[surface.face[t]] = 0;
   }
   std::vector<std::uint32_t> face;
   for (std::size_t f = 0; f < polygons.face_count(); ++f) {
@@ -359,21 +415,45 @@ Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
 
 TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const {
   TrianglePoint best = closest_on(triangle, x);
-  const auto try_out = [&](std::uint32_t other) {
+  const auto is_nearer = [&](std::uint32_t other) {
     const TrianglePoint candidate = closest_on(other, x);
-    if (candidate.squared_distance >= best.squared_distance) return;
+    if (candidate.squared_distance >= best.squared_distance) return false;
     best = candidate;
     triangle = other;
+    return true;
   };
-  for (std::uint32_t from = kNone; from != triangle && best.feature != Feature::Face;) {
-    from = triangle;
+  // From a point p on an edge or a corner, a triangle leads nearer to x only if one of its corners w does:
+  // (w - p) . (x - p) > 0. Inside an edge x - p is at right angles to it, and the corner across decides.
+  for (bool moved = true; moved && best.feature != Feature::Face;) {
+    moved = false;
+    const std::uint32_t from = triangle;
     const auto feature = static_cast<std::uint32_t>(best.feature);
+    const Vec3d p = best.point, towards = x - p;
+    const auto lead = [&](std::uint32_t v) { return towards.dot(vertices[v] - p); };
     if (feature < 3) {
-      for (const auto other : triangles_around(triangles[from][feature]))
-        if (other != from) try_out(other);
+      // The one that leads nearest first: it is likely to be the only one to look at.
+      const std::uint32_t centre = triangles[from][feature];
+      const auto around = triangles_around(centre);
+      std::uint32_t first = from;
+      double most = 0;
+      for (const auto other : around) {
+        if (other == from) continue;
+        const auto& t = triangles[other];
+        const std::size_t corner = t[0] == centre ? 0 : t[1] == centre ? 1 : 2;
+        const double leads = std::max(lead(t[(corner + 1) % 3]), lead(t[(corner + 2) % 3]));
+        if (leads > most) {
+          most = leads;
+          first = other;
+        }
+      }
+      if (first == from) break;
+      moved = is_nearer(first);
+      for (std::size_t i = 0; !moved && i < around.size(); ++i)
+        moved = around[i] != from && around[i] != first && is_nearer(around[i]);
     } else {
       const std::uint32_t edge = 3 * from + (feature - 3);
-      for (std::uint32_t e = next_around_edge[edge]; e != edge; e = next_around_edge[e]) try_out(e / 3);
+      for (std::uint32_t e = next_around_edge[edge]; e != edge && !moved; e = next_around_edge[e])
+        moved = lead(triangles[e / 3][(e + 2) % 3]) > 0 && is_nearer(e / 3);
     }
   }
   return best;
@@ -383,11 +463,13 @@ Surface build_surface(PolygonView polygons, const WeldOptions& options) {
   check(polygons);
   Surface surface;
   weld(polygons, options, surface);
-  const std::vector<std::uint32_t> face_of = split_faces(polygons, surface);
-  join(surface, face_of, polygons.face_count());
+  find_bounds(surface);
+  split_faces(polygons, surface);
+  sort_in_space(surface);
+  join(surface, polygons.face_count());
   settle_orientation(surface);
   list_incident_triangles(surface);
-  measure(polygons, face_of, surface);
+  measure(polygons, surface);
   return surface;
 }
 

@@ -49,7 +49,8 @@ struct MeshFacts {
 struct Surface {
   Vec3d origin{0.0};
   std::vector<Vec3d> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Sorted along a space-filling curve, as are the vertices.
+  std::vector<std::uint32_t> face;                      ///< The input's face that each triangle is part of.
   /// The next half-edge around the same edge, cyclic: itself at a border, the twin on a manifold.
   std::vector<std::uint32_t> next_around_edge;
   std::vector<Vec3d> triangle_normals;  ///< Unit length; zero for a needle (see is_needle).

@@ -1,0 +1,366 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include "vdb_offset/lanes.h"
+#include "vdb_offset/sweep_solvers.h"
+
+namespace vdb_offset {
+namespace {
+
+// Coordinates of a closest point that is not known: its squared distance is more than any reach.
+constexpr float kFar = 1e15f;
+
+// Handed-on points are samples of the surface about a voxel apart: up to this many voxels too far away.
+constexpr float kSampling = 0.25f;
+
+// A squared distance is worth another visit if it falls below this share of what is known.
+constexpr float kWorthAVisit = 0.999f;
+
+// How much nearer, in voxels, a neighbour's closest point must be for the neighbour's triangle to be tried.
+constexpr double kTolerance = 0.002;
+
+/// Closest points of a leaf node's voxels, in voxels from its voxel (0, 0, 0).
+struct LeafPoints {
+  float p[3][kLeafVoxels];
+};
+
+/// A triangle and the side of it: as it is for phi >= 0, its complement for phi < 0.
+std::int32_t with_side(std::uint32_t triangle, bool inside) {
+  const auto index = static_cast<std::int32_t>(triangle);
+  return inside ? ~index : index;
+}
+std::uint32_t triangle_of(std::int32_t id) { return static_cast<std::uint32_t>(id < 0 ? ~id : id); }
+
+// The voxels of a row, four at once, are this far from the first of them.
+constexpr Lanes kCount = {0, 1, 2, 3};
+
+/// One leaf node and its halo, unpacked: a voxel's position is its indices.
+struct Block {
+  float limit[kPaddedVoxels];  // squared distance below which another point is nearer
+  float p[3][kPaddedVoxels];   // closest point
+  std::int32_t id[kPaddedVoxels];
+
+  /// Squared distance from voxel (i, j, k) to the closest point of voxel n.
+  float squared(int i, int j, int k, int n) const {
+    const float x = static_cast<float>(i) - p[0][n], y = static_cast<float>(j) - p[1][n],
+                z = static_cast<float>(k) - p[2][n];
+    return x * x + y * y + z * z;
+  }
+  /// From the voxels (i, j, k), (i, j, k + 1), .. to the closest points of voxels n, n + 1, ..
+  Lanes squared_lanes(int i, int j, int k, int n) const {
+    const Lanes x = static_cast<float>(i) - load_lanes(p[0] + n), y = static_cast<float>(j) - load_lanes(p[1] + n),
+                z = (static_cast<float>(k) + kCount) - load_lanes(p[2] + n);
+    return x * x + y * y + z * z;
+  }
+
+  /// Offers the closest points of row m to the eight voxels of row n, which lies at (i, j). True if one is nearer.
+  bool offer_row(int i, int j, int n, int m) {
+    bool taken = false;
+    for (int k = 0; k < kLeafWidth; k += kLanes, n += kLanes, m += kLanes) {
+      const Lanes offered = squared_lanes(i, j, k, m), known = load_lanes(limit + n);
+      const IntLanes nearer = offered < known;
+      if (!any(nearer)) continue;
+      taken = true;
+      store_lanes(limit + n, nearer ? offered : known);
+      for (auto& axis : p) store_lanes(axis + n, nearer ? load_lanes(axis + m) : load_lanes(axis + n));
+      store_lanes(id + n, nearer ? load_lanes(id + m) : load_lanes(id + n));
+    }
+    return taken;
+  }
+  void offer_along_row(int i, int j, int n) {
+    for (int k = 0; k < kLeafWidth; ++k) offer(i, j, k, n + k, n + k - 1);
+    for (int k = kLeafWidth - 1; k >= 0; --k) offer(i, j, k, n + k, n + k + 1);
+  }
+
+ private:
+  void offer(int i, int j, int k, int n, int m) {
+    const float offered = squared(i, j, k, m);
+    if (!(offered < limit[n])) return;
+    limit[n] = offered;
+    for (auto& axis : p) axis[n] = axis[m];
+    id[n] = id[m];
+  }
+};
+
+/// Calls work(i, j, padded index, voxel number) for the first voxel of each of a leaf node's rows along k.
+template <class Work>
+void for_each_row(Work&& work) {
+  for (int i = 0; i < kLeafWidth; ++i)
+    for (int j = 0; j < kLeafWidth; ++j) work(i, j, padded_index(i, j, 0), i << 6 | j << 3);
+}
+
+class ClosestSweep {
+ public:
+  ClosestSweep(DistanceField& field, const Surface& surface)
+      : surface_(surface),
+        graph_(field),
+        h_(field.voxel_size),
+        voxels_per_unit_(1 / h_),
+        per_voxel_(static_cast<float>(1 / h_)),
+        reach_(field.reach),
+        background_(field.phi->background()),
+        front_leaves_(graph_.size()) {
+    const auto squared_voxels = [&](double length) {
+      const auto voxels = static_cast<float>(length / h_) + kSampling;
+      return voxels * voxels;
+    };
+    reach_inside_ = squared_voxels(reach_.inside);
+    reach_outside_ = squared_voxels(reach_.outside);
+    points_.resize(front_leaves_);
+    frozen_.reserve(front_leaves_);
+    for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].phi->getValueMask());
+  }
+
+  void run(const ProgressCallback& callback) {
+    Progress progress(callback, Stage::Sweep, 16 * front_leaves_);
+    for_each_leaf(progress, [&](std::size_t leaf) { find_points_of_front(leaf); });
+    LeafRounds(graph_).run(
+        progress, [&](std::size_t leaves) { points_.resize(leaves); }, [&](std::size_t leaf) { return relax(leaf); });
+    for_each_leaf(progress, [&](std::size_t leaf) { settle(leaf); });
+    for (int colour = 0; colour < 2; ++colour)
+      for_each_leaf(progress, [&](std::size_t leaf) {
+        if (graph_[leaf].colour() == colour) compare_with_neighbours(leaf);
+      });
+    graph_.attach_new_leaves();
+  }
+
+ private:
+  template <class Work>
+  void for_each_leaf(Progress& progress, Work&& work) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, graph_.size(), 8), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+      progress.advance(range.size());
+    });
+  }
+
+  bool is_frozen(std::size_t leaf, int n) const {
+    return leaf < front_leaves_ && frozen_[leaf].isOn(static_cast<openvdb::Index>(n));
+  }
+  /// The frozen ones among the eight voxels from n on, as bits.
+  unsigned frozen_row(std::size_t leaf, int n) const {
+    return leaf < front_leaves_ ? frozen_[leaf].getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8)) : 0u;
+  }
+  float reach_squared(std::int32_t id) const { return id < 0 ? reach_inside_ : reach_outside_; }
+
+  void allocate(std::size_t leaf) {
+    points_[leaf] = std::make_unique<LeafPoints>();
+    for (auto& axis : points_[leaf]->p) std::fill(std::begin(axis), std::end(axis), kFar);
+    if (leaf < front_leaves_) return;
+    graph_[leaf].closest->allocate();
+    std::fill_n(graph_[leaf].closest->buffer().data(), kLeafVoxels, -1);
+  }
+
+  void set_point(std::size_t leaf, int n, const Vec3d& point) {
+    for (int k = 0; k < 3; ++k)
+      points_[leaf]->p[k][n] = static_cast<float>(point[k] * voxels_per_unit_ - graph_[leaf].origin()[k]);
+  }
+
+  Vec3d centre(std::size_t leaf, int n) const {
+    return (graph_[leaf].origin() + openvdb::Coord(n >> 6, n >> 3 & 7, n & 7)).asVec3d() * h_;
+  }
+
+  /// The closest points that the rasteriser's triangles stand for.
+  void find_points_of_front(std::size_t leaf) {
+    allocate(leaf);
+    std::int32_t* id = graph_[leaf].closest->buffer().data();
+    for (auto voxel = frozen_[leaf].beginOn(); voxel; ++voxel) {
+      const auto n = static_cast<int>(voxel.pos());
+      const auto triangle = static_cast<std::uint32_t>(id[n]);
+      set_point(leaf, n, surface_.closest_on(triangle, centre(leaf, n)).point);
+      id[n] = with_side(triangle, std::signbit(graph_[leaf].phi->buffer().data()[n]));
+    }
+  }
+
+  /// Hands closest points on within one leaf node. Returns the faces across which another would learn of a nearer one.
+  std::uint8_t relax(std::size_t leaf) {
+    if (!points_[leaf]) allocate(leaf);
+    Block block;
+    load(leaf, block);
+    const float farthest = std::max(reach_inside_, reach_outside_);
+    for_each_row([&](int i, int j, int padded, int n) {
+      for (int k = 0; k < kLeafWidth; k += kLanes) {
+        const Lanes known = block.squared_lanes(i, j, k, padded + k);
+        store_lanes(block.limit + padded + k, known < farthest ? known : farthest + Lanes{});
+      }
+      for (unsigned frozen = frozen_row(leaf, n); frozen != 0; frozen &= frozen - 1)
+        block.limit[padded + std::countr_zero(frozen)] = -1;
+    });
+    for (const bool down_i : {false, true})
+      for (const bool down_j : {false, true})
+        for (int a = 0; a < kLeafWidth; ++a)
+          for (int b = 0; b < kLeafWidth; ++b) {
+            const int i = down_i ? 7 - a : a, j = down_j ? 7 - b : b, n = padded_index(i, j, 0);
+            bool news = !down_i && !down_j;
+            news |= block.offer_row(i, j, n, down_i ? n + kPaddedStride[0] : n - kPaddedStride[0]);
+            news |= block.offer_row(i, j, n, down_j ? n + kPaddedStride[1] : n - kPaddedStride[1]);
+            if (news) block.offer_along_row(i, j, n);
+          }
+    store(leaf, block);
+    return find_news(block);
+  }
+
+  void load(std::size_t leaf, Block& block) const {
+    for (auto& axis : block.p) std::fill(std::begin(axis), std::end(axis), kFar);
+    const std::int32_t* id = graph_[leaf].closest->buffer().data();
+    for_each_row([&](int, int, int padded, int n) {
+      for (int axis = 0; axis < 3; ++axis) std::copy_n(points_[leaf]->p[axis] + n, kLeafWidth, block.p[axis] + padded);
+      std::copy_n(id + n, kLeafWidth, block.id + padded);
+    });
+    for (int face = 0; face < kFaces; ++face) {
+      const auto neighbour = graph_[leaf].neighbour[static_cast<std::size_t>(face)];
+      if (neighbour < 0 || !points_[static_cast<std::size_t>(neighbour)]) continue;
+      const LeafPoints& points = *points_[static_cast<std::size_t>(neighbour)];
+      const std::int32_t* ids = graph_[static_cast<std::size_t>(neighbour)].closest->buffer().data();
+      float shift[3] = {0, 0, 0};
+      shift[face / 2] = face % 2 ? kLeafWidth : -kLeafWidth;
+      for_each_halo_voxel(face, [&](int padded, int n) {
+        for (int axis = 0; axis < 3; ++axis) block.p[axis][padded] = points.p[axis][n] + shift[axis];
+        block.id[padded] = ids[n];
+      });
+    }
+  }
+
+  void store(std::size_t leaf, const Block& block) {
+    std::int32_t* id = graph_[leaf].closest->buffer().data();
+    for_each_row([&](int, int, int padded, int n) {
+      for (int axis = 0; axis < 3; ++axis) std::copy_n(block.p[axis] + padded, kLeafWidth, points_[leaf]->p[axis] + n);
+      std::copy_n(block.id + padded, kLeafWidth, id + n);
+    });
+  }
+
+  /// Faces across which a voxel would take over a closest point from here.
+  std::uint8_t find_news(const Block& block) const {
+    std::uint8_t news = 0;
+    for (int face = 0; face < 4; ++face) {  // rows along k lie in the face
+      const int axis = face / 2, out = face % 2 ? kLeafWidth : -1;
+      bool found = false;
+      for (int a = 0; a < kLeafWidth && !found; ++a)
+        for (int k = 0; k < kLeafWidth; k += kLanes) {
+          const int i = axis == 0 ? out : a, j = axis == 0 ? a : out, theirs = padded_index(i, j, k),
+                    mine = across(face, theirs);
+          const Lanes offered = block.squared_lanes(i, j, k, mine), known = block.squared_lanes(i, j, k, theirs);
+          const Lanes reach = load_lanes(block.id + mine) < 0 ? reach_inside_ + Lanes{} : reach_outside_ + Lanes{};
+          found |= any((offered < kWorthAVisit * known) & (offered <= reach));
+        }
+      news |= static_cast<std::uint8_t>(found << face);
+    }
+    for (int face = 4; face < kFaces; ++face) {
+      const int k = face % 2 ? kLeafWidth : -1;
+      bool found = false;
+      for_each_row([&](int i, int j, int, int) {
+        const int theirs = padded_index(i, j, k), mine = across(face, theirs);
+        const float offered = block.squared(i, j, k, mine);
+        found |= offered < kWorthAVisit * block.squared(i, j, k, theirs) && offered <= reach_squared(block.id[mine]);
+      });
+      news |= static_cast<std::uint8_t>(found << face);
+    }
+    return news;
+  }
+
+  /// Lets every voxel walk over the mesh to the closest triangle, from the one that it was handed or, where that
+  /// promises to be shorter, from where a neighbour's walk has ended.
+  void settle(std::size_t leaf) {
+    const GraphLeaf& at = graph_[leaf];
+    at.phi->allocate();
+    if (leaf >= front_leaves_) std::fill_n(at.phi->buffer().data(), kLeafVoxels, background_);
+    std::int32_t* id = at.closest->buffer().data();
+    for (int n = 0; n < kLeafVoxels; ++n)
+      if (is_frozen(leaf, n)) id[n] = static_cast<std::int32_t>(triangle_of(id[n]));
+      else if (points_[leaf]->p[0][n] == kFar || !settle_voxel(leaf, n)) forget(leaf, n);
+  }
+
+  bool settle_voxel(std::size_t leaf, int n) {
+    const GraphLeaf& at = graph_[leaf];
+    const std::int32_t* id = at.closest->buffer().data();
+    const bool inside = id[n] < 0;
+    auto triangle = triangle_of(id[n]);
+    float nearest_handed = squared_to_point(leaf, n, n);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int before = n - kLeafStride[static_cast<std::size_t>(axis)];
+      if ((n >> (6 - 3 * axis) & 7) == 0 || id[before] < 0) continue;
+      const float handed = squared_to_point(leaf, n, before);
+      if (!(handed < nearest_handed)) continue;
+      nearest_handed = handed;
+      triangle = static_cast<std::uint32_t>(id[before]);
+    }
+    const TrianglePoint nearest = surface_.walk_to_closest(centre(leaf, n), triangle);
+    const double distance = std::sqrt(nearest.squared_distance);
+    if (distance > (inside ? reach_.inside : reach_.outside)) return false;
+    set_point(leaf, n, nearest.point);
+    at.phi->setValueOn(static_cast<openvdb::Index>(n), static_cast<float>(inside ? -distance : distance));
+    at.closest->setValueOn(static_cast<openvdb::Index>(n), static_cast<std::int32_t>(triangle));
+    return true;
+  }
+
+  void forget(std::size_t leaf, int n) {
+    graph_[leaf].closest->buffer().data()[n] = -1;
+    points_[leaf]->p[0][n] = kFar;
+  }
+
+  float squared_to_point(std::size_t leaf, int n, int m) const {
+    const auto& p = points_[leaf]->p;
+    const float x = static_cast<float>(n >> 6) - p[0][m], y = static_cast<float>(n >> 3 & 7) - p[1][m],
+                z = static_cast<float>(n & 7) - p[2][m];
+    return x * x + y * y + z * z;
+  }
+
+  /// A last look at the neighbours' closest points: where surfaces compete, the samples may have chosen the wrong one.
+  void compare_with_neighbours(std::size_t leaf) {
+    if (graph_[leaf].phi->isEmpty()) return;
+    Block block;
+    load(leaf, block);
+    const auto tolerance = static_cast<float>(kTolerance);
+    for_each_row([&](int i, int j, int padded, int n) {
+      const float* phi = graph_[leaf].phi->buffer().data() + n;
+      const unsigned on = graph_[leaf].phi->getValueMask().getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8));
+      const unsigned open = on & ~frozen_row(leaf, n);
+      if (open == 0) return;
+      float limit[kLeafWidth];
+      for (int k = 0; k < kLeafWidth; ++k) {
+        const float size = std::max(std::abs(phi[k]) * per_voxel_ - tolerance, 0.0f);
+        limit[k] = open >> k & 1 ? size * size : -1;
+      }
+      for (const int stride : kPaddedStride)
+        for (const int m : {padded - stride, padded + stride})
+          for (int k = 0; k < kLeafWidth; k += kLanes) {
+            const IntLanes nearer = (block.squared_lanes(i, j, k, m + k) < load_lanes(limit + k)) &
+                                    (load_lanes(block.id + m + k) != load_lanes(block.id + padded + k));
+            if (!any(nearer)) continue;
+            for (int lane = 0; lane < kLanes; ++lane)
+              if (nearer[lane]) try_out(leaf, n + k + lane, block.id[m + k + lane]);
+          }
+    });
+  }
+
+  void try_out(std::size_t leaf, int n, std::int32_t id) {
+    auto triangle = static_cast<std::uint32_t>(id);
+    const TrianglePoint nearest = surface_.walk_to_closest(centre(leaf, n), triangle);
+    const double distance = std::sqrt(nearest.squared_distance);
+    float& phi = graph_[leaf].phi->buffer().data()[n];
+    if (distance >= std::abs(phi)) return;
+    phi = std::copysign(static_cast<float>(distance), phi);
+    graph_[leaf].closest->buffer().data()[n] = static_cast<std::int32_t>(triangle);
+    set_point(leaf, n, nearest.point);
+  }
+
+  const Surface& surface_;
+  LeafGraph graph_;
+  double h_, voxels_per_unit_;
+  float per_voxel_;
+  Reach reach_;
+  float background_;
+  float reach_inside_, reach_outside_;  // in voxels, squared, with room for the error of samples
+  std::size_t front_leaves_;
+  std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
+  std::vector<std::unique_ptr<LeafPoints>> points_;
+};
+
+}  // namespace
+
+void sweep_closest(DistanceField& field, const Surface& surface, const ProgressCallback& callback) {
+  ClosestSweep(field, surface).run(callback);
+}
+
+}  // namespace vdb_offset
