@@ -1,5 +1,7 @@
 #include "vdb_offset/closest.h"
 
+#include <tbb/task_arena.h>
+
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -49,6 +51,29 @@ TEST_CASE("closest: equals brute force at any scale and place", "[closest]") {
   Polygons far = scene::icosphere(1, 3);
   for (Vec3d& p : far.positions) p += Vec3d(1e6, -2e6, 3e6);
   CHECK(worst_difference(far, 100, 1) < 1e-8);  // the coordinates themselves are rounded to 5e-10
+}
+
+TEST_CASE("closest: many points at once have the answers of one by one, for any number of threads", "[closest]") {
+  Surface surface = build_surface(scene::bumpy_sphere(1, 0.3, 1.5, 3, 4).view(), {});
+  place(surface, 0.05);
+  const ClosestQuery query(surface);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(-1, 3);
+  std::vector<Vec3d> points(3000);
+  for (Vec3d& x : points) x = Vec3d(unit(random), unit(random), unit(random));
+  const std::vector<Closest> all = closest_points(query, points);
+  tbb::task_arena one(1);
+  one.execute([&] {
+    const std::vector<Closest> alone = closest_points(query, points);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      different += alone[i].distance != all[i].distance || alone[i].triangle != all[i].triangle;
+    CHECK(different == 0);
+  });
+  double worst = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    worst = std::max(worst, std::abs(all[i].distance - query(points[i], 0).distance));
+  CHECK(worst < 1e-14);
 }
 
 TEST_CASE("closest: a triangle without area is its edges", "[closest]") {

@@ -145,6 +145,51 @@ TEST_CASE("sweep: curved surfaces stay within a hundredth of a voxel", "[sweep]"
   CHECK(worst < 0.1);
 }
 
+TEST_CASE("sweep: walls, gaps and needles thinner than a voxel keep their distances", "[sweep]") {
+  Polygons needle;
+  needle.positions = {{0, 0, 0}, {0.004, 0, 0}, {0.002, 0.003, 0}, {0.1, 0.2, 2.5}};
+  needle.corners = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  needle.face_begin = {0, 3, 6, 9, 12};
+  const double h = 0.05;  // the walls are a fifth of it thick, the plates a tenth of it apart
+  for (const Polygons& mesh : {scene::hollow_box(1, 0.01, 3), scene::plates(1, 0.005, 0.005, 4), needle}) {
+    const DistanceField field = Fixture(mesh, h).field({2 * h, 0.3});
+    double worst = 0, sum = 0;
+    std::size_t count = 0, n = 0;
+    for (auto voxel = field.phi->cbeginValueOn(); voxel; ++voxel) {
+      if (n++ % 7 != 0) continue;
+      const double error =
+          std::abs(*voxel) - test::brute_force_distance(mesh.view(), field.phi->indexToWorld(voxel.getCoord()));
+      REQUIRE(error > -1e-7);
+      worst = std::max(worst, error / h);
+      sum += error * error / (h * h);
+      ++count;
+    }
+    CHECK(count > 200);
+    CHECK(worst < 0.1);
+    CHECK(std::sqrt(sum / static_cast<double>(count)) < 0.005);
+  }
+}
+
+TEST_CASE("sweep: the same voxels at any scale and place", "[sweep][invariant]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.3, 1.5, 8, 3);
+  const double h = 0.0625;
+  const DistanceField base = Fixture(mesh, h).field({2 * h, 0.3});
+  const auto compare_with_base = [&](double scale, const Vec3d& place, double tolerance) {
+    Polygons other = mesh;
+    for (Vec3d& p : other.positions) p = p * scale + place;
+    const DistanceField field = Fixture(other, h * scale).field({2 * h * scale, 0.3 * scale});
+    CHECK(field.phi->activeVoxelCount() == base.phi->activeVoxelCount());
+    auto values = field.phi->getConstAccessor();
+    double worst = 0;
+    for (auto voxel = base.phi->cbeginValueOn(); voxel; ++voxel)
+      worst = std::max(worst, std::abs(values.getValue(voxel.getCoord()) / scale - *voxel));
+    CHECK(worst < tolerance * h);
+  };
+  compare_with_base(1e-6, Vec3d(0), 1e-5);
+  compare_with_base(1e6, Vec3d(0), 1e-5);
+  compare_with_base(1, Vec3d(1e6, -1e6, 1e6), 1e-5);  // by whole leaf nodes, which are half a unit wide
+}
+
 TEST_CASE("sweep: voxels of the front keep their bits", "[sweep]") {
   const Fixture torus(scene::torus(1, 0.4, 48, 24), 0.05);
   for (const Solver solver : {Solver::Closest, Solver::Eikonal}) {

@@ -1,5 +1,7 @@
 #include "vdb_offset/leaf_graph.h"
 
+#include <bit>
+
 namespace vdb_offset {
 namespace {
 
@@ -10,10 +12,34 @@ openvdb::Coord step(openvdb::Coord origin, int face) {
 
 }  // namespace
 
+void LeafIndex::reserve(std::size_t count) {
+  if (2 * count <= slots_.size()) return;
+  std::vector<Slot> old(std::bit_ceil(2 * count));
+  old.swap(slots_);
+  for (const Slot& slot : old)
+    if (slot.leaf >= 0) slots_[slot_of(slot.origin)] = slot;
+}
+
+void LeafIndex::insert(const openvdb::Coord& origin, std::int32_t leaf) {
+  reserve(++taken_);
+  slots_[slot_of(origin)] = {origin, leaf};
+}
+
+std::int32_t LeafIndex::find(const openvdb::Coord& origin) const { return slots_[slot_of(origin)].leaf; }
+
+std::size_t LeafIndex::slot_of(const openvdb::Coord& origin) const {
+  std::uint64_t hash = 0;
+  for (int k = 0; k < 3; ++k)
+    hash = (hash ^ static_cast<std::uint32_t>(origin[k] / kLeafWidth)) * 0x9e3779b97f4a7c15ULL;
+  std::size_t slot = (hash ^ hash >> 32) & (slots_.size() - 1);
+  while (slots_[slot].leaf >= 0 && slots_[slot].origin != origin) slot = (slot + 1) & (slots_.size() - 1);
+  return slot;
+}
+
 LeafGraph::LeafGraph(FieldGrids& grids) : grids_(grids) {
   const auto count = grids.phi->tree().leafCount();
   leaves_.reserve(count);
-  index_of_.reserve(2 * count);
+  index_.reserve(2 * count);
   auto closest = grids.closest->tree().beginLeaf();
   for (auto phi = grids.phi->tree().beginLeaf(); phi; ++phi, ++closest) append(phi.getLeaf(), closest.getLeaf());
 }
@@ -42,13 +68,13 @@ void LeafGraph::append(PhiLeaf* phi, ClosestLeaf* closest) {
   const auto index = static_cast<std::int32_t>(leaves_.size());
   GraphLeaf added{phi, closest, {-1, -1, -1, -1, -1, -1}};
   for (int face = 0; face < kFaces; ++face) {
-    const auto found = index_of_.find(step(phi->origin(), face));
-    if (found == index_of_.end()) continue;
-    added.neighbour[static_cast<std::size_t>(face)] = found->second;
-    leaves_[static_cast<std::size_t>(found->second)].neighbour[static_cast<std::size_t>(opposite(face))] = index;
+    const std::int32_t found = index_.find(step(phi->origin(), face));
+    if (found < 0) continue;
+    added.neighbour[static_cast<std::size_t>(face)] = found;
+    leaves_[static_cast<std::size_t>(found)].neighbour[static_cast<std::size_t>(opposite(face))] = index;
   }
   leaves_.push_back(added);
-  index_of_.emplace(phi->origin(), index);
+  index_.insert(phi->origin(), index);
 }
 
 }  // namespace vdb_offset

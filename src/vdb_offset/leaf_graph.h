@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 #include "vdb_offset/field.h"
@@ -23,6 +22,25 @@ struct GraphLeaf {
   const openvdb::Coord& origin() const { return phi->origin(); }
   /// 0 or 1; leaf nodes that share a face differ.
   int colour() const { return (origin()[0] + origin()[1] + origin()[2]) / kLeafWidth & 1; }
+};
+
+/// Finds leaf nodes by their origin. Open addressing: a sweep asks six times for each leaf node that it makes.
+class LeafIndex {
+ public:
+  void reserve(std::size_t count);
+  void insert(const openvdb::Coord& origin, std::int32_t leaf);
+  /// -1 if there is none.
+  std::int32_t find(const openvdb::Coord& origin) const;
+
+ private:
+  struct Slot {
+    openvdb::Coord origin;
+    std::int32_t leaf = -1;
+  };
+  std::size_t slot_of(const openvdb::Coord& origin) const;
+
+  std::vector<Slot> slots_ = std::vector<Slot>(16);  // a power of two, at most half of them taken
+  std::size_t taken_ = 0;
 };
 
 /// The leaf nodes of a field as an array, each knowing those across its faces, so that a stencil never has to
@@ -47,7 +65,7 @@ class LeafGraph {
 
   FieldGrids& grids_;
   std::vector<GraphLeaf> leaves_;
-  std::unordered_map<openvdb::Coord, std::int32_t> index_of_;
+  LeafIndex index_;
   std::vector<std::unique_ptr<PhiLeaf>> new_phi_;
   std::vector<std::unique_ptr<ClosestLeaf>> new_closest_;
 };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 
 namespace vdb_offset {
 namespace {
@@ -16,13 +17,22 @@ using openvdb::Coord;
 
 constexpr std::int64_t kKeyBias = 1 << 20;
 
-/// A triangle that may lie within the band of a leaf node; sorting groups them by leaf node.
+/// A triangle that may lie within the band of a leaf node.
 struct Entry {
   std::uint64_t leaf;
   std::uint32_t triangle;
   bool operator<(const Entry& other) const {
     return leaf != other.leaf ? leaf < other.leaf : triangle < other.triangle;
   }
+};
+
+/// Triangles that lie together along the surface's curve, sorted by the leaf nodes, a few, that they share.
+using Chunk = std::vector<std::uint32_t>;
+/// Those of one chunk that may lie within the band of one leaf node.
+struct Run {
+  std::uint64_t leaf;
+  std::uint32_t chunk, begin, end;
+  bool operator<(const Run& other) const { return leaf != other.leaf ? leaf < other.leaf : chunk < other.chunk; }
 };
 
 /// Leaf coordinates (voxels / 8), 21 bits each; ordered by x, y, z.
@@ -91,26 +101,50 @@ class LeafFinder {
   const RasteriseOptions& options_;
 };
 
-std::vector<Entry> sort_into_leaf_nodes(const Surface& surface, const RasteriseOptions& options, Progress& progress) {
-  constexpr std::size_t kChunk = 4096;
+/// The triangles by leaf node: runs in the order of leaf nodes, and in that of triangles within one.
+struct Bins {
+  std::vector<Chunk> chunks;
+  std::vector<Run> runs;
+  std::vector<std::size_t> leaf_begin;  // into the runs, one more than there are leaf nodes
+
+  std::span<const std::uint32_t> triangles(const Run& run) const {
+    return std::span(chunks[run.chunk]).subspan(run.begin, run.end - run.begin);
+  }
+};
+
+std::vector<Run> sort_chunk(std::vector<Entry>& entries, std::uint32_t index, Chunk& chunk) {
+  std::sort(entries.begin(), entries.end());
+  std::vector<Run> runs;
+  chunk.reserve(entries.size());
+  for (const Entry& entry : entries) {
+    const auto at = static_cast<std::uint32_t>(chunk.size());
+    if (runs.empty() || runs.back().leaf != entry.leaf) runs.push_back({entry.leaf, index, at, at});
+    chunk.push_back(entry.triangle);
+    runs.back().end = at + 1;
+  }
+  return runs;
+}
+
+Bins sort_into_leaf_nodes(const Surface& surface, const RasteriseOptions& options, Progress& progress) {
+  constexpr std::size_t kChunk = 1024;
   const std::size_t count = surface.triangles.size(), chunks = (count + kChunk - 1) / kChunk;
-  std::vector<std::vector<Entry>> found(chunks);
+  Bins bins;
+  bins.chunks.resize(chunks);
+  std::vector<std::vector<Run>> runs(chunks);
   const LeafFinder finder(surface, options);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-    for (std::size_t t = chunk * kChunk; t < end; ++t) finder.find(static_cast<std::uint32_t>(t), found[chunk]);
+    std::vector<Entry> entries;
+    for (std::size_t t = chunk * kChunk; t < end; ++t) finder.find(static_cast<std::uint32_t>(t), entries);
+    runs[chunk] = sort_chunk(entries, static_cast<std::uint32_t>(chunk), bins.chunks[chunk]);
     progress.advance(end - chunk * kChunk);
   });
-  std::vector<Entry> entries;
-  std::size_t total = 0;
-  for (const auto& chunk : found) total += chunk.size();
-  entries.reserve(total);
-  for (auto& chunk : found) {
-    entries.insert(entries.end(), chunk.begin(), chunk.end());
-    std::vector<Entry>().swap(chunk);
-  }
-  tbb::parallel_sort(entries.begin(), entries.end());
-  return entries;
+  for (const auto& some : runs) bins.runs.insert(bins.runs.end(), some.begin(), some.end());
+  tbb::parallel_sort(bins.runs.begin(), bins.runs.end());
+  for (std::size_t i = 0; i < bins.runs.size(); ++i)
+    if (i == 0 || bins.runs[i].leaf != bins.runs[i - 1].leaf) bins.leaf_begin.push_back(i);
+  bins.leaf_begin.push_back(bins.runs.size());
+  return bins;
 }
 
 /// Distances of one leaf node's voxels while its triangles are drawn into it.
@@ -184,23 +218,19 @@ class LeafCanvas {
 
 Front rasterise(const Surface& surface, const RasteriseOptions& options, const ProgressCallback& callback) {
   Progress progress(callback, Stage::Rasterise, 2 * surface.triangles.size());
-  const std::vector<Entry> entries = sort_into_leaf_nodes(surface, options, progress);
-  std::vector<std::size_t> begin;
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    if (i == 0 || entries[i].leaf != entries[i - 1].leaf) begin.push_back(i);
-  begin.push_back(entries.size());
-
+  const Bins bins = sort_into_leaf_nodes(surface, options, progress);
   Front front;
   static_cast<FieldGrids&>(front) = make_field_grids(options.voxel_size, options.band, surface.origin);
   front.band = options.band;
-  const std::size_t leaves = begin.size() - 1;
+  const std::size_t leaves = bins.leaf_begin.size() - 1;
   std::vector<std::unique_ptr<PhiLeaf>> phi(leaves);
   std::vector<std::unique_ptr<ClosestLeaf>> closest(leaves);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves, 4), [&](const auto& range) {
     for (std::size_t leaf = range.begin(); leaf != range.end(); ++leaf) {
-      const Coord origin = unpack(entries[begin[leaf]].leaf);
+      const Coord origin = unpack(bins.runs[bins.leaf_begin[leaf]].leaf);
       LeafCanvas canvas(surface, options, origin);
-      for (std::size_t i = begin[leaf]; i < begin[leaf + 1]; ++i) canvas.draw(entries[i].triangle);
+      for (std::size_t run = bins.leaf_begin[leaf]; run < bins.leaf_begin[leaf + 1]; ++run)
+        for (const auto triangle : bins.triangles(bins.runs[run])) canvas.draw(triangle);
       auto phi_leaf = std::make_unique<PhiLeaf>(origin, front.phi->background());
       auto closest_leaf = std::make_unique<ClosestLeaf>(origin, -1);
       if (canvas.store(*phi_leaf, *closest_leaf)) {

@@ -135,9 +135,6 @@ class ClosestSweep {
     });
   }
 
-  bool is_frozen(std::size_t leaf, int n) const {
-    return leaf < front_leaves_ && frozen_[leaf].isOn(static_cast<openvdb::Index>(n));
-  }
   /// The frozen ones among the eight voxels from n on, as bits.
   unsigned frozen_row(std::size_t leaf, int n) const {
     return leaf < front_leaves_ ? frozen_[leaf].getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8)) : 0u;
@@ -173,8 +170,8 @@ class ClosestSweep {
     }
   }
 
-  /// Hands closest points on within one leaf node. Returns the faces across which another would learn of a nearer one.
-  std::uint8_t relax(std::size_t leaf) {
+  /// Hands closest points on within one leaf node, and tells what those across its faces would learn.
+  News relax(std::size_t leaf) {
     if (!points_[leaf]) allocate(leaf);
     Block block;
     load(leaf, block);
@@ -230,33 +227,43 @@ class ClosestSweep {
     });
   }
 
-  /// Faces across which a voxel would take over a closest point from here.
-  std::uint8_t find_news(const Block& block) const {
-    std::uint8_t news = 0;
-    for (int face = 0; face < 4; ++face) {  // rows along k lie in the face
-      const int axis = face / 2, out = face % 2 ? kLeafWidth : -1;
-      bool found = false;
-      for (int a = 0; a < kLeafWidth && !found; ++a)
-        for (int k = 0; k < kLeafWidth; k += kLanes) {
-          const int i = axis == 0 ? out : a, j = axis == 0 ? a : out, theirs = padded_index(i, j, k),
-                    mine = across(face, theirs);
-          const Lanes offered = block.squared_lanes(i, j, k, mine), known = block.squared_lanes(i, j, k, theirs);
-          const Lanes reach = load_lanes(block.id + mine) < 0 ? reach_inside_ + Lanes{} : reach_outside_ + Lanes{};
-          found |= any((offered < kWorthAVisit * known) & (offered <= reach));
-        }
-      news |= static_cast<std::uint8_t>(found << face);
-    }
-    for (int face = 4; face < kFaces; ++face) {
-      const int k = face % 2 ? kLeafWidth : -1;
-      bool found = false;
-      for_each_row([&](int i, int j, int, int) {
-        const int theirs = padded_index(i, j, k), mine = across(face, theirs);
-        const float offered = block.squared(i, j, k, mine);
-        found |= offered < kWorthAVisit * block.squared(i, j, k, theirs) && offered <= reach_squared(block.id[mine]);
-      });
-      news |= static_cast<std::uint8_t>(found << face);
+  /// What voxels across the faces would take over from here.
+  News find_news(const Block& block) const {
+    News news;
+    for (int face = 0; face < kFaces; ++face) {
+      const float squared = face < 4 ? nearest_row_news(block, face) : nearest_end_news(block, face);
+      news[static_cast<std::size_t>(face)] = std::sqrt(squared);  // of infinity, too
     }
     return news;
+  }
+
+  /// Across the faces along i and j, where rows lie in the face.
+  float nearest_row_news(const Block& block, int face) const {
+    const int axis = face / 2, out = face % 2 ? kLeafWidth : -1;
+    Lanes nearest = kNoNews + Lanes{};
+    for (int a = 0; a < kLeafWidth; ++a)
+      for (int k = 0; k < kLeafWidth; k += kLanes) {
+        const int i = axis == 0 ? out : a, j = axis == 0 ? a : out, theirs = padded_index(i, j, k),
+                  mine = across(face, theirs);
+        const Lanes offered = block.squared_lanes(i, j, k, mine), known = block.squared_lanes(i, j, k, theirs);
+        const Lanes reach = load_lanes(block.id + mine) < 0 ? reach_inside_ + Lanes{} : reach_outside_ + Lanes{};
+        const IntLanes improves = (offered < kWorthAVisit * known) & (offered <= reach) & (offered < nearest);
+        nearest = improves ? offered : nearest;
+      }
+    return std::min(std::min(nearest[0], nearest[1]), std::min(nearest[2], nearest[3]));
+  }
+
+  /// Across the faces along k, where rows end.
+  float nearest_end_news(const Block& block, int face) const {
+    const int k = face % 2 ? kLeafWidth : -1;
+    float nearest = kNoNews;
+    for_each_row([&](int i, int j, int, int) {
+      const int theirs = padded_index(i, j, k), mine = across(face, theirs);
+      const float offered = block.squared(i, j, k, mine);
+      if (offered < kWorthAVisit * block.squared(i, j, k, theirs) && offered <= reach_squared(block.id[mine]))
+        nearest = std::min(nearest, offered);
+    });
+    return nearest;
   }
 
   /// Lets every voxel walk over the mesh to the closest triangle, from the one that it was handed or, where that
@@ -264,46 +271,59 @@ class ClosestSweep {
   void settle(std::size_t leaf) {
     const GraphLeaf& at = graph_[leaf];
     at.phi->allocate();
-    if (leaf >= front_leaves_) std::fill_n(at.phi->buffer().data(), kLeafVoxels, background_);
+    float* phi = at.phi->buffer().data();
+    if (leaf >= front_leaves_) std::fill_n(phi, kLeafVoxels, background_);
     std::int32_t* id = at.closest->buffer().data();
-    for (int n = 0; n < kLeafVoxels; ++n)
-      if (is_frozen(leaf, n)) id[n] = static_cast<std::int32_t>(triangle_of(id[n]));
-      else if (points_[leaf]->p[0][n] == kFar || !settle_voxel(leaf, n)) forget(leaf, n);
+    auto& p = points_[leaf]->p;
+    openvdb::util::NodeMask<3> active = at.phi->getValueMask();
+    for_each_row([&](int i, int j, int, int row) {
+      const unsigned frozen = frozen_row(leaf, row);
+      for (int k = 0; k < kLeafWidth; ++k) {
+        const int n = row + k;
+        if (frozen >> k & 1) {
+          id[n] = static_cast<std::int32_t>(triangle_of(id[n]));
+          continue;
+        }
+        const bool inside = id[n] < 0;
+        if (p[0][n] != kFar) {
+          std::uint32_t triangle = best_start(p, id, i, j, k);
+          const TrianglePoint nearest = surface_.walk_to_closest(centre(leaf, n), triangle);
+          const double distance = std::sqrt(nearest.squared_distance);
+          if (distance <= (inside ? reach_.inside : reach_.outside)) {
+            set_point(leaf, n, nearest.point);
+            phi[n] = static_cast<float>(inside ? -distance : distance);
+            id[n] = static_cast<std::int32_t>(triangle);
+            active.setOn(static_cast<openvdb::Index>(n));
+            continue;
+          }
+        }
+        id[n] = -1;
+        p[0][n] = kFar;
+      }
+    });
+    at.phi->setValueMask(active);
+    at.closest->setValueMask(active);
   }
 
-  bool settle_voxel(std::size_t leaf, int n) {
-    const GraphLeaf& at = graph_[leaf];
-    const std::int32_t* id = at.closest->buffer().data();
-    const bool inside = id[n] < 0;
-    auto triangle = triangle_of(id[n]);
-    float nearest_handed = squared_to_point(leaf, n, n);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int before = n - kLeafStride[static_cast<std::size_t>(axis)];
-      if ((n >> (6 - 3 * axis) & 7) == 0 || id[before] < 0) continue;
-      const float handed = squared_to_point(leaf, n, before);
-      if (!(handed < nearest_handed)) continue;
-      nearest_handed = handed;
+  /// The triangle of voxel (i, j, k) itself, or of one of the three settled before it whose closest point is nearer.
+  static std::uint32_t best_start(const float (&p)[3][kLeafVoxels], const std::int32_t* id, int i, int j, int k) {
+    const int n = i << 6 | j << 3 | k, ijk[3] = {i, j, k};
+    const auto squared_to = [&](int m) {
+      const float x = static_cast<float>(i) - p[0][m], y = static_cast<float>(j) - p[1][m],
+                  z = static_cast<float>(k) - p[2][m];
+      return x * x + y * y + z * z;
+    };
+    std::uint32_t triangle = triangle_of(id[n]);
+    float nearest = squared_to(n);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int before = n - kLeafStride[axis];
+      if (ijk[axis] == 0 || id[before] < 0) continue;
+      const float squared = squared_to(before);
+      if (!(squared < nearest)) continue;
+      nearest = squared;
       triangle = static_cast<std::uint32_t>(id[before]);
     }
-    const TrianglePoint nearest = surface_.walk_to_closest(centre(leaf, n), triangle);
-    const double distance = std::sqrt(nearest.squared_distance);
-    if (distance > (inside ? reach_.inside : reach_.outside)) return false;
-    set_point(leaf, n, nearest.point);
-    at.phi->setValueOn(static_cast<openvdb::Index>(n), static_cast<float>(inside ? -distance : distance));
-    at.closest->setValueOn(static_cast<openvdb::Index>(n), static_cast<std::int32_t>(triangle));
-    return true;
-  }
-
-  void forget(std::size_t leaf, int n) {
-    graph_[leaf].closest->buffer().data()[n] = -1;
-    points_[leaf]->p[0][n] = kFar;
-  }
-
-  float squared_to_point(std::size_t leaf, int n, int m) const {
-    const auto& p = points_[leaf]->p;
-    const float x = static_cast<float>(n >> 6) - p[0][m], y = static_cast<float>(n >> 3 & 7) - p[1][m],
-                z = static_cast<float>(n & 7) - p[2][m];
-    return x * x + y * y + z * z;
+    return triangle;
   }
 
   /// A last look at the neighbours' closest points: where surfaces compete, the samples may have chosen the wrong one.

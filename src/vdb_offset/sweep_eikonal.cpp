@@ -60,8 +60,8 @@ class EikonalSweep {
 
  private:
   /// Solves one leaf node with its neighbours as they are, in the eight orders of (+-i, +-j, +-k) in turn until one
-  /// changes nothing. Returns the faces across which another may improve.
-  std::uint8_t relax(std::size_t leaf) {
+  /// changes nothing, and tells what those across its faces may learn.
+  News relax(std::size_t leaf) {
     Block block(leaf < front_leaves_ && !visited_[leaf]);
     if (leaf < front_leaves_) visited_[leaf] = 1;
     else if (graph_[leaf].phi->buffer().empty()) allocate(leaf);
@@ -145,18 +145,19 @@ class EikonalSweep {
 
   /// A neighbour may improve if one of its voxels lies farther out than one here that has changed. A voxel that is not
   /// set yet is out of reach if the least step, 1 / sqrt(3) of a voxel, leads beyond it.
-  std::uint8_t find_news(const Block& block) const {
+  News find_news(const Block& block) const {
     constexpr float kLeastStep = 0.57f;
-    std::uint8_t news = 0;
+    News news;
     for (int face = 0; face < kFaces; ++face) {
-      bool found = false;
+      float nearest = kNoNews;
       for_each_halo_voxel(face, [&](int padded, int) {
         const int mine = across(face, padded);
         if (!block.changed[mine] || block.size[mine] == kUnset) return;
-        found |= block.size[padded] == kUnset ? block.size[mine] + kLeastStep < reach(block.sign[mine])
-                                              : block.size[mine] < block.size[padded];
+        const bool improves = block.size[padded] == kUnset ? block.size[mine] + kLeastStep < reach(block.sign[mine])
+                                                           : block.size[mine] < block.size[padded];
+        if (improves) nearest = std::min(nearest, block.size[mine]);
       });
-      news |= static_cast<std::uint8_t>(found << face);
+      news[static_cast<std::size_t>(face)] = nearest;
     }
     return news;
   }

@@ -1,15 +1,19 @@
 // Times the library's stages on a mesh file or a scene, from outside, and checks nothing but that they ran.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <span>
 
 #include "vdb_offset/closest.h"
 #include "vdb_offset/directions.h"
@@ -33,7 +37,7 @@ struct Options {
   std::vector<int> threads = {0};
   double voxels_per_diagonal = 512, percent = 1;
   bool eikonal = false;
-  std::size_t queries = 100000, check = 0;
+  std::size_t queries = 100000, brute_force = 0, check = 0;
 };
 
 Polygons load(const std::string& path) {
@@ -91,6 +95,27 @@ std::vector<std::pair<Vec3d, std::uint32_t>> make_queries(const Surface& surface
   return queries;
 }
 
+/// Resident memory of the process now, bytes.
+std::size_t current_memory() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// Largest difference of `count` queries from trying every triangle.
+double check_query(const ClosestQuery& query, std::span<const std::pair<Vec3d, std::uint32_t>> queries) {
+  std::vector<double> difference(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
+    const auto& [x, hint] = queries[i];
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t t = 0; t < query.surface().triangles.size(); ++t)
+      nearest = std::min(nearest, query.surface().closest_on(t, x).squared_distance);
+    difference[i] = std::abs(query(x, hint).distance - std::sqrt(nearest));
+  });
+  return difference.empty() ? 0 : *std::max_element(difference.begin(), difference.end());
+}
+
 /// |phi| of `count` voxels against the exact distance, in voxels: root mean square and largest.
 std::pair<double, double> check_field(const DistanceField& field, const ClosestQuery& query, std::size_t count) {
   const std::size_t stride = std::max<std::size_t>(1, field.phi->activeVoxelCount() / count);
@@ -118,6 +143,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
     const double h = surface.facts.diagonal / options.voxels_per_diagonal,
                  distance = surface.facts.diagonal * options.percent / 100, far = std::abs(distance) + 2 * h;
     build.back() += seconds_of([&] { place(surface, h); });
+    const std::size_t memory = current_memory();
     Front front;
     raster.push_back(seconds_of([&] { front = rasterise(surface, {h, 1.01 * h}); }));
     const std::size_t band_voxels = front.phi->activeVoxelCount();
@@ -126,6 +152,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
     swept.push_back(seconds_of([&] {
       field = sweep(std::move(front), surface, {options.eikonal ? Solver::Eikonal : Solver::Closest, reach});
     }));
+    const std::size_t field_memory = peak_memory() - memory;
     direction.push_back(seconds_of([&] { make_directions(field, !surface.facts.closed()); }));
     std::unique_ptr<ClosestQuery> query;
     tree.push_back(seconds_of([&] { query = std::make_unique<ClosestQuery>(surface); }));
@@ -148,6 +175,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
            {"leaf_nodes", field.phi->tree().leafCount()},
            {"band_voxels", band_voxels},
            {"voxels", voxels},
+           {"field_bytes", field_memory},  // of the first run only: the process keeps what it has had
            {"build_s", median(build)},
            {"rasterise_s", median(raster)},
            {"sweep_s", median(swept)},
@@ -157,6 +185,10 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
            {"query_us", microseconds_each(query_seconds)},
            {"batch_query_us", microseconds_each(batch_seconds)},
            {"query_checksum", checksum}};
+    if (options.brute_force > 0 && i + 1 == options.repeat) {
+      const auto some = make_queries(surface, std::abs(distance), options.brute_force);
+      row["query_worst_difference"] = check_query(*query, some) / surface.facts.diagonal;
+    }
     if (options.check > 0 && i + 1 == options.repeat) {
       const auto [rms, worst] = check_field(field, *query, options.check);
       row["error_rms_voxels"] = rms;
@@ -180,6 +212,8 @@ Options parse(int argc, char** argv, CLI::App& app) {
       ->capture_default_str();
   app.add_option("--repeat", options.repeat, "Runs; medians are told")->capture_default_str();
   app.add_option("--queries", options.queries, "Exact distances at random points, one thread")->capture_default_str();
+  app.add_option("--brute-force", options.brute_force, "Exact distances to compare with trying every triangle")
+      ->capture_default_str();
   app.add_option("--check", options.check, "Voxels of phi to compare with exact distances")->capture_default_str();
   app.add_flag("--eikonal", options.eikonal, "Sweep with the eikonal solver");
   app.add_option("--write", options.write, "Write the mesh that is used");
