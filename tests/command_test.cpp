@@ -110,7 +110,6 @@ TEST_CASE("command: 1 for wrong usage", "[command]") {
   check_failure(shell, "sphere.obj out.obj --distance 1 --nonsense", 1, "--nonsense");
   check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 0", 1, "--voxel-size");
   check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 1 --voxels-per-distance 1", 1, "both");
-  check_failure(shell, "sphere.obj out.obj --distance 1 --collision limit", 1, "not available");
   check_failure(shell, "sphere.obj out.obj --distance 1 --collision bounce", 1, "'bounce'");
   check_failure(shell, "sphere.obj out.obj --distance 1 --solver magic", 1, "'magic'");
   check_failure(shell, "sphere.obj out.obj --distance 1 --weld some", 1, "'some'");

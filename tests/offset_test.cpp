@@ -23,6 +23,11 @@ OffsetOptions by(double distance) {
   return options;
 }
 
+OffsetOptions merged(OffsetOptions options) {
+  options.collision = Collision::Merge;
+  return options;
+}
+
 OffsetOptions by(double distance, double voxel_size) {
   OffsetOptions options = by(distance);
   options.grid.voxel_size = voxel_size;
@@ -74,7 +79,7 @@ TEST_CASE("offset: sphere of the paper's size, both ways, three voxel sizes", "[
 TEST_CASE("offset: the paper's cube, inward", "[offset]") {
   const Polygons cube = scene::box(Vec3d(0.5), 83, true);
   for (const double h : {0.05, 0.025, 0.0125}) {
-    const OffsetResult result = offset(cube.view(), by(-0.1, h));
+    const OffsetResult result = offset(cube.view(), merged(by(-0.1, h)));
     CHECK(share(result, VertexState::Reached) > 0.99);
     double off_cube = 0;
     for (std::size_t v = 0; v < result.positions.size(); ++v)
@@ -202,7 +207,7 @@ TEST_CASE("offset: two sheets back to back do not stop the run", "[offset]") {
     sheet.corners.insert(sheet.corners.end(), reversed.begin(), reversed.end());
     sheet.close_face();
   }
-  const OffsetResult result = offset(sheet.view(), by(0.05));
+  const OffsetResult result = offset(sheet.view(), merged(by(0.05)));
   CHECK(share(result, VertexState::Reached) > 0.9);
   check_guarantee(sheet.view(), result, 0.05, 7, false);
 }

@@ -43,6 +43,7 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     options.distance = scene.distance.in_world_units(used_diagonal(scene.shape.view()));
     options.grid = scene.grid;
     options.solver = scene.solver;
+    options.collision = scene.collision;
     CHECK(scene::unmet(scene.expect, scene.shape.view(), offset(scene.shape.view(), options)) ==
           std::vector<std::string>{});
     CHECK(scene.expect.min_reached);

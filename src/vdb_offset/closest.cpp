@@ -27,12 +27,21 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   // Boxes hold coordinates of size 1 or so: their squares neither overflow nor vanish in a float.
   scale_ = reach > 0 ? std::ldexp(1.0, -std::ilogb(reach)) : 1.0;
   slack_ = static_cast<float>(reach * scale_ * 4e-7);
-  build_lowest_level();
-  std::size_t nodes = (surface_.triangles.size() + kLeafSize - 1) / kLeafSize;
-  while (levels_.back().size() > 1) {
-    nodes = (nodes + kWidth - 1) / kWidth;
-    build_level(levels_.back(), nodes);
-  }
+  constexpr std::size_t kSize = kLeafSize;
+  discs_.resize((surface_.triangles.size() + kSize - 1) / kSize);
+  tree_.build(discs_.size(), [&](std::size_t leaf) {
+    discs_[leaf] = discs_of(leaf);
+    FloatBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (std::size_t t = leaf * kSize; t < std::min((leaf + 1) * kSize, surface_.triangles.size()); ++t)
+      for (const auto v : surface_.triangles[t])
+        for (int k = 0; k < 3; ++k) {
+          const auto x = static_cast<float>(surface_.vertices[v][k] * scale_);
+          const auto axis = static_cast<std::size_t>(k);
+          box.lower[axis] = std::min(box.lower[axis], x);
+          box.upper[axis] = std::max(box.upper[axis], x);
+        }
+    return box;
+  });
 }
 
 ClosestQuery::Discs ClosestQuery::discs_of(std::size_t leaf) const {
@@ -58,46 +67,6 @@ ClosestQuery::Discs ClosestQuery::discs_of(std::size_t leaf) const {
   return discs;
 }
 
-void ClosestQuery::build_lowest_level() {
-  constexpr std::size_t kSize = kLeafSize, kSiblings = kWidth;
-  const std::size_t leaves = (surface_.triangles.size() + kSize - 1) / kSize;
-  discs_.resize(leaves);
-  auto& level = levels_.emplace_back((leaves + kSiblings - 1) / kSiblings);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size() * kSiblings, 512), [&](const auto& range) {
-    for (std::size_t leaf = range.begin(); leaf != range.end(); ++leaf) {
-      if (leaf < leaves) discs_[leaf] = discs_of(leaf);
-      Siblings& block = level[leaf / kSiblings];
-      const std::size_t at = leaf % kSiblings, end = std::min((leaf + 1) * kSize, surface_.triangles.size());
-      for (int k = 0; k < 3; ++k) {
-        block.lower[k][at] = kInfinity;
-        block.upper[k][at] = -kInfinity;
-        for (std::size_t i = leaf * kSize; i < end; ++i)
-          for (const auto v : surface_.triangles[i]) {
-            const auto x = static_cast<float>(surface_.vertices[v][k] * scale_);
-            block.lower[k][at] = std::min(block.lower[k][at], x);
-            block.upper[k][at] = std::max(block.upper[k][at], x);
-          }
-      }
-    }
-  });
-}
-
-void ClosestQuery::build_level(const std::vector<Siblings>& below, std::size_t nodes) {
-  std::vector<Siblings> level((nodes + kWidth - 1) / kWidth);
-  for (std::size_t node = 0; node < level.size() * kWidth; ++node)
-    for (int k = 0; k < 3; ++k) {
-      float lower = kInfinity, upper = -kInfinity;
-      if (node < below.size())
-        for (int i = 0; i < kWidth; ++i) {
-          lower = std::min(lower, below[node].lower[k][i]);
-          upper = std::max(upper, below[node].upper[k][i]);
-        }
-      level[node / kWidth].lower[k][node % kWidth] = lower;
-      level[node / kWidth].upper[k][node % kWidth] = upper;
-    }
-  levels_.push_back(std::move(level));
-}
-
 /// One query's descent through the tree, nearest boxes first.
 class ClosestQuery::Search {
  public:
@@ -109,7 +78,7 @@ class ClosestQuery::Search {
   }
 
   Closest run() {
-    stack_[depth_++] = {0.0f, static_cast<std::uint32_t>(query_.levels_.size() - 1), 0};
+    stack_[depth_++] = {0.0f, static_cast<std::uint32_t>(query_.tree_.levels().size() - 1), 0};
     while (depth_ > 0) {
       const Visit visit = stack_[--depth_];
       if (visit.squared_distance > limit_) continue;
@@ -134,7 +103,7 @@ class ClosestQuery::Search {
   /// Puts the siblings that are near enough on the stack, the nearest last, so that it is taken first; lowest boxes are
   /// looked into at once, as by then the bound is tight and their order matters little.
   void open(std::uint32_t level, std::uint32_t node) {
-    const Siblings& box = query_.levels_[level][node];
+    const BoxTree::Siblings& box = query_.tree_.levels()[level][node];
     float squared[kWidth];
     unsigned near = 0;
     for (int i = 0; i < kWidth; i += kLanes) {

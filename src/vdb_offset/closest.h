@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/box_tree.h"
 #include "vdb_offset/surface.h"
 
 namespace vdb_offset {
@@ -34,13 +35,9 @@ class ClosestQuery {
   const Surface& surface() const { return surface_; }
 
  private:
-  static constexpr int kWidth = 8;     // children of a box
+  static constexpr int kWidth = BoxTree::kWidth;
   static constexpr int kLeafSize = 8;  // triangles in a lowest box
 
-  /// The boxes of eight siblings, coordinate by coordinate.
-  struct Siblings {
-    float lower[3][kWidth], upper[3][kWidth];
-  };
   /// What bounds the distance of a lowest box's triangles from below: a disc around each, in its plane.
   struct Discs {
     float centre[3][kLeafSize], normal[3][kLeafSize], radius[kLeafSize];
@@ -48,14 +45,12 @@ class ClosestQuery {
   class Search;
 
   Discs discs_of(std::size_t leaf) const;
-  void build_lowest_level();
-  void build_level(const std::vector<Siblings>& below, std::size_t nodes_below);
 
   const Surface& surface_;
   std::vector<Discs> discs_;
-  std::vector<std::vector<Siblings>> levels_;  // [0] holds the boxes of leaves, back() a single block
-  double scale_;                               // power of two that brings the surface to size 1
-  float slack_;                                // more than the rounding of a box or a query point to float
+  BoxTree tree_;
+  double scale_;  // power of two that brings the surface to size 1
+  float slack_;   // more than the rounding of a box or a query point to float
 };
 
 /// The exact query at many points, answered in the order of a space-filling curve, each with the one before as its

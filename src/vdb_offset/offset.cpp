@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "vdb_offset/closest.h"
 #include "vdb_offset/directions.h"
@@ -61,6 +62,14 @@ void move_vertices(PolygonView mesh, const Surface& surface, const Paths& paths,
   result.statistics.straight_vertices = paths.straight;
 }
 
+/// Where the surface's vertices stand in the input, to the last bit.
+std::vector<Vec3d> source_positions(PolygonView mesh, const Surface& surface) {
+  std::vector<Vec3d> positions;
+  positions.reserve(surface.representative.size());
+  for (const auto v : surface.representative) positions.push_back(mesh.positions[v]);
+  return positions;
+}
+
 void describe_field(const DistanceField& field, const DirectionField& directions, OffsetStatistics& statistics) {
   statistics.active_voxels = field.phi->activeVoxelCount();
   statistics.leaf_nodes = field.phi->tree().leafCount();
@@ -69,7 +78,7 @@ void describe_field(const DistanceField& field, const DirectionField& directions
   statistics.gradient_bytes = directions.gradient->memUsage();
 }
 
-/// The pipeline: surface, front, field, directions, paths.
+/// The pipeline: surface, front, field, directions, paths, and what of them is valid.
 void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
   OffsetStatistics& statistics = result.statistics;
   Front front;
@@ -87,14 +96,21 @@ void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
     const StageTimer timer(statistics, Stage::Sweep);
     field = sweep(std::move(front), surface, {options.solver, statistics.plan.reach}, options.progress);
   }
+  std::optional<ClosestQuery> query;
+  Paths paths;
   {
     const StageTimer timer(statistics, Stage::Propagate);
     const DirectionField directions = make_directions(field, !surface.facts.closed() || !surface.facts.oriented());
-    const ClosestQuery query(surface);
-    const Paths paths = propagate(query, directions, {options.distance}, options.progress);
-    move_vertices(mesh, surface, paths, result);
     describe_field(field, directions, statistics);
+    query.emplace(surface);
+    paths = propagate(*query, directions, {options.distance}, options.progress);
   }
+  if (options.collision == Collision::Limit) {
+    const StageTimer timer(statistics, Stage::Limit);
+    statistics.limit = limit(*query, source_positions(mesh, surface), {options.distance, options.single_precision},
+                             paths, options.progress);
+  }
+  move_vertices(mesh, surface, paths, result);
   if (options.keep_field) result.field = std::make_shared<DistanceField>(std::move(field));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "vdb_offset/limit.h"
 #include "vdb_offset/mesh.h"
 #include "vdb_offset/plan.h"
 #include "vdb_offset/polygons.h"
@@ -16,6 +17,7 @@ namespace vdb_offset {
 
 /// What happens where fronts meet.
 enum class Collision {
+  Limit,  ///< The result stays valid: vertices are held back where faces would fold or cross.
   Merge,  ///< The paper's weak solution: every vertex goes as far as phi allows; faces there may fold or collapse.
 };
 
@@ -23,7 +25,9 @@ struct OffsetOptions {
   double distance = 0;  ///< World units; negative is inward, 0 leaves everything where it is.
   GridOptions grid;
   Solver solver = Solver::Closest;
-  Collision collision = Collision::Merge;
+  Collision collision = Collision::Limit;
+  bool single_precision =
+      false;  ///< The result is for a file of 32-bit floats; validity is checked as rounded to them.
   WeldOptions weld;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
@@ -41,6 +45,7 @@ struct OffsetStatistics {
   std::array<double, kStageCount> seconds{};  ///< By Stage.
   std::array<std::size_t, kVertexStateCount> vertices_by_state{};
   std::size_t straight_vertices = 0;
+  LimitStatistics limit;
 };
 
 struct OffsetResult {

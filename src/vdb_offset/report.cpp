@@ -45,6 +45,20 @@ Json facts_json(const MeshFacts& facts) {
           {"median_edge", facts.median_edge}};
 }
 
+Json faults_json(const FaultCounts& counts) {
+  return {{"inverted_faces", counts.inverted}, {"collapsed_faces", counts.collapsed}, {"crossings", counts.crossings}};
+}
+
+Json limit_json(const LimitStatistics& limit) {
+  return {{"before", faults_json(limit.before)},
+          {"left", faults_json(limit.left)},
+          {"source_crossings", limit.source_crossings},
+          {"crossings_near_source", limit.crossings_near_source},
+          {"rounds", limit.rounds},
+          {"vertices", limit.limited_vertices},
+          {"mean_thickness_lost", limit.thickness_lost}};
+}
+
 Json grids_json(const OffsetStatistics& statistics) {
   return {{"active_voxels", statistics.active_voxels},
           {"leaf_nodes", statistics.leaf_nodes},
@@ -113,6 +127,7 @@ std::string report_json(const OffsetResult& result, const RunFacts& run) {
                        {"peak_memory_bytes", peak_memory()},
                        {"vertices_by_state", states},
                        {"vertices_straight", statistics.straight_vertices},
+                       {"limit", limit_json(statistics.limit)},
                        {"achieved",
                         {{"vertices", achieved.vertices},
                          {"share_reached", achieved.share_reached},

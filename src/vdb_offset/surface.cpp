@@ -1,7 +1,5 @@
 #include "vdb_offset/surface.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -12,17 +10,11 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/morton.h"
+#include "vdb_offset/parallel.h"
 #include "vdb_offset/triangulate.h"
 
 namespace vdb_offset {
 namespace {
-
-template <class Work>
-void for_each_index(std::size_t count, Work&& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 2048), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
-  });
-}
 
 void check(PolygonView polygons) {
   if (polygons.face_count() == 0) throw InvalidInput("mesh: expected at least one face, got none");

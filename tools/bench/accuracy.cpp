@@ -20,6 +20,7 @@ Row measure(const Polygons& mesh, double distance, double voxel_size, Answer&& a
   OffsetOptions options;
   options.distance = distance;
   options.grid.voxel_size = voxel_size;
+  options.collision = Collision::Merge;  // the paper's answer, which the closed forms are
   const OffsetResult result = offset(mesh.view(), options);
   Row row;
   const auto count = static_cast<double>(mesh.positions.size());

@@ -70,8 +70,8 @@ WeldOptions parse_weld(const std::string& text) {
 
 /// What CLI11 fills in before it is checked.
 struct Raw {
-  std::string distance, max_memory, weld = "exact", collision = "merge";
-  std::optional<std::string> solver;
+  std::string distance, max_memory, weld = "exact";
+  std::optional<std::string> solver, collision;
   std::optional<double> voxel_size, voxels_per_distance;
   int threads = 0;
 };
@@ -85,8 +85,10 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")
       ->type_name("H");
   app.add_option("--voxels-per-distance", raw.voxels_per_distance, "The same as D / N")->type_name("N");
-  app.add_option("--collision", raw.collision,
-                 "Where fronts meet: 'merge' lets vertices go as far as the distance grows [merge]")
+  app.add_option(
+         "--collision", raw.collision,
+         "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
+         "far as the distance grows [limit]")
       ->type_name("MODE");
   app.add_option("--solver", raw.solver,
                  "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]")
@@ -151,8 +153,11 @@ void check(const Raw& raw, Arguments& args) {
        {std::pair{"--voxel-size", raw.voxel_size}, {"--voxels-per-distance", raw.voxels_per_distance}})
     require(!value || (*value > 0 && std::isfinite(*value)), fmt::format("{}: expected a number above 0", name));
   args.options.grid = {raw.voxel_size, raw.voxels_per_distance};
-  require(raw.collision != "limit", "--collision: 'limit' is not available yet; expected 'merge'");
-  require(raw.collision == "merge", fmt::format("--collision: expected 'merge', got '{}'", raw.collision));
+  if (raw.collision) {
+    require(*raw.collision == "limit" || *raw.collision == "merge",
+            fmt::format("--collision: expected 'limit' or 'merge', got '{}'", *raw.collision));
+    args.collision = *raw.collision == "merge" ? Collision::Merge : Collision::Limit;
+  }
   if (raw.solver) {
     require(*raw.solver == "closest" || *raw.solver == "eikonal",
             fmt::format("--solver: expected 'closest' or 'eikonal', got '{}'", *raw.solver));

@@ -15,9 +15,10 @@ struct Arguments {
   std::string input, output;
   std::optional<scene::Distance> distance;  ///< Empty only for a scene, which brings its own.
   std::string distance_text;
-  OffsetOptions options;         ///< All but the distance, which may need the mesh's diagonal, and progress.
-  std::optional<Solver> solver;  ///< As given; a scene's own counts otherwise.
-  std::string weld_text;         ///< As given.
+  OffsetOptions options;               ///< All but the distance, which may need the mesh's diagonal, and progress.
+  std::optional<Solver> solver;        ///< As given; a scene's own counts otherwise.
+  std::optional<Collision> collision;  ///< The same.
+  std::string weld_text;               ///< As given.
   std::string report, vdb;
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };

@@ -47,8 +47,10 @@ void settle_options(Source& source, Arguments& args) {
     else args.distance = scene.distance;
     if (!args.options.grid.voxel_size && !args.options.grid.voxels_per_distance) args.options.grid = scene.grid;
     args.options.solver = scene.solver;
+    args.options.collision = scene.collision;
   }
   if (args.solver) args.options.solver = *args.solver;
+  if (args.collision) args.options.collision = *args.collision;
   const double diagonal = args.distance->percent ? used_diagonal(source.view()) : 0;
   args.options.distance = args.distance->in_world_units(diagonal);
   if (args.distance_text.empty())
@@ -63,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
   return {{"distance", args.distance_text},
           {"voxel-size", number(args.options.grid.voxel_size)},
           {"voxels-per-distance", number(args.options.grid.voxels_per_distance)},
-          {"collision", "merge"},
+          {"collision", args.options.collision == Collision::Merge ? "merge" : "limit"},
           {"solver", args.options.solver == Solver::Eikonal ? "eikonal" : "closest"},
           {"weld", args.weld_text},
           {"threads", fmt::format("{}", args.options.threads)},
@@ -105,8 +107,13 @@ void print_summary(const Arguments& args, const OffsetResult& result, double tot
   fmt::print("{}: {} vertices at {:.6g}: {:.3f} % reached", args.output, achieved.vertices, args.options.distance,
              100 * achieved.share_reached);
   if (in(VertexState::Collision)) fmt::print(", {} stopped by collision", in(VertexState::Collision));
+  if (in(VertexState::Limited)) fmt::print(", {} held back to stay valid", in(VertexState::Limited));
   if (in(VertexState::OutsideField)) fmt::print(", {} outside the field", in(VertexState::OutsideField));
   fmt::print(" ({:.2f} s)\n", total_seconds);
+  const LimitStatistics& limit = result.statistics.limit;
+  if (limit.source_crossings > 0)
+    fmt::print("the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
+               limit.source_crossings, limit.crossings_near_source);
 }
 
 void write_report(const Arguments& args, const OffsetResult& result, Clock::time_point start) {
@@ -166,6 +173,7 @@ int run(Arguments args) {
   args.options.keep_field = !args.vdb.empty();
   if (args.options.keep_field && args.options.distance == 0)
     throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");
+  if (source.file) args.options.single_precision = io::rounds_to_floats(args.output, *source.file);
   OffsetResult result = offset(source.view(), args.options);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   bar.show(Stage::Write, 0);

@@ -318,6 +318,12 @@ std::string write_mesh(const std::string& path, const MeshFile& source, std::spa
   return {};
 }
 
+bool rounds_to_floats(const std::string& path, const MeshFile& source) {
+  const Format format = require_format(path);
+  if (format != source.format) return format == Format::Stl;
+  return source.encoding != Encoding::Ascii && source.position_bytes == 4;
+}
+
 void write_mesh(const std::string& path, PolygonView polygons, const std::function<void()>& before_rename) {
   write_file(path, encode(require_format(path), polygons), before_rename);
 }

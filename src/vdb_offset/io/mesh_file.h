@@ -61,6 +61,9 @@ MeshFile read_mesh(const std::string& path);
 std::string write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
                        const std::function<void()>& before_rename = {});
 
+/// Whether write_mesh() would store the positions as 32-bit floats there.
+bool rounds_to_floats(const std::string& path, const MeshFile& source);
+
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
 void write_mesh(const std::string& path, PolygonView polygons, const std::function<void()>& before_rename = {});
 

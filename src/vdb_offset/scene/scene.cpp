@@ -246,6 +246,11 @@ Scene read_scene(const std::string& path) {
   else scene.shape = make_shape(root.object("shape"));
   Reader offset = root.object("offset");
   scene.distance = read_distance(offset);
+  if (offset.find("collision")) {
+    const std::string collision = offset.text("collision");
+    if (collision != "limit" && collision != "merge") offset.fail("a collision among limit, merge");
+    scene.collision = collision == "merge" ? Collision::Merge : Collision::Limit;
+  }
   offset.finish();
   if (root.find("grid")) {
     Reader grid = root.object("grid");

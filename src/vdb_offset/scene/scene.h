@@ -48,6 +48,7 @@ struct Scene {
   Distance distance;
   GridOptions grid;
   Solver solver = Solver::Closest;
+  Collision collision = Collision::Limit;
   Expectations expect;
 };
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace vdb_offset {
+
+/// A box of floats; empty if a lower bound is above its upper one.
+struct FloatBox {
+  std::array<float, 3> lower, upper;
+};
+
+/// An implicit tree over boxes that come in an order in which neighbours are near each other: eight in a row make one
+/// box of the level above, and so on. There are no pointers; node n of level l has the children 8 n .. 8 n + 7 of
+/// level l - 1, those of level 0 being the boxes given.
+class BoxTree {
+ public:
+  static constexpr int kWidth = 8;
+
+  /// Eight siblings' boxes, coordinate by coordinate. Boxes beyond the last are empty.
+  struct Siblings {
+    float lower[3][kWidth], upper[3][kWidth];
+  };
+
+  /// Builds the tree over box_of(0 .. count - 1), which is called in parallel. \pre count > 0
+  void build(std::size_t count, const std::function<FloatBox(std::size_t)>& box_of);
+
+  /// Level 0 holds the boxes given, back() a single block.
+  const std::vector<std::vector<Siblings>>& levels() const { return levels_; }
+
+  /// Calls visit(i) for every box given that meets `box`; touching counts.
+  template <class Visit>
+  void for_each_overlap(const FloatBox& box, Visit&& visit) const;
+
+ private:
+  std::vector<std::vector<Siblings>> levels_;
+};
+
+template <class Visit>
+void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit) const {
+  struct Node {
+    std::uint32_t level, node;
+  };
+  std::array<Node, kWidth * 12> stack;  // 8^12 boxes are more than can be
+  std::size_t depth = 0;
+  stack[depth++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+  while (depth > 0) {
+    const auto [level, node] = stack[--depth];
+    const Siblings& siblings = levels_[level][node];
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      bool meets = true;
+      for (std::size_t k = 0; k < 3; ++k)
+        meets &= siblings.lower[k][i] <= box.upper[k] && box.lower[k] <= siblings.upper[k][i];
+      if (!meets) continue;
+      if (level == 0) visit(std::size_t{node} * kWidth + i);
+      else stack[depth++] = {level - 1, node * kWidth + i};
+    }
+  }
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "vdb_offset/propagate.h"
+
+namespace vdb_offset {
+
+struct LimitOptions {
+  double distance;                ///< World units, not 0; negative is inward.
+  bool single_precision = false;  ///< The result will be stored as 32-bit floats, and is checked as such.
+};
+
+/// What may be wrong with a result.
+struct FaultCounts {
+  std::size_t inverted = 0, collapsed = 0;  ///< Faces.
+  std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
+};
+
+/// What limit() found and did.
+struct LimitStatistics {
+  FaultCounts before;                     ///< In what propagate() made.
+  FaultCounts left;                       ///< 0 but where rounding to the format's numbers makes a source cross itself.
+  std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
+  std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
+  std::size_t rounds = 0;
+  std::size_t limited_vertices = 0;
+  double thickness_lost = 0;  ///< Mean over the vertices of (asked - achieved) / asked that limit() took away.
+};
+
+/// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew.
+///
+/// A face is inverted if it faces against the direction away from the surface at its centre and at each corner (there,
+/// its distance has folded over), collapsed if its area is below 1e-6 of the source's. Crossings are found with exact
+/// predicates, on the coordinates as they will be written. The vertices of a face that is wrong are pulled back
+/// towards where they came from, by a little in each round, until nothing is wrong; then those that were are let out
+/// again as far as nothing goes wrong. A surface pulled back altogether is the source, so that it ends. Pulled vertices
+/// are `Limited`, with the distance that they keep.
+///
+/// `source` holds where the surface's vertices stand in the input, world coordinates.
+/// The result does not depend on the number of threads.
+LimitStatistics limit(const ClosestQuery& query, std::span<const Vec3d> source, const LimitOptions& options,
+                      Paths& paths, const ProgressCallback& progress = {});
+
+}  // namespace vdb_offset

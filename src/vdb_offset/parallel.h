@@ -1,0 +1,18 @@
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+
+namespace vdb_offset {
+
+/// Calls work(0 .. count - 1) in parallel, in runs long enough for work of a few nanoseconds.
+template <class Work>
+void for_each_index(std::size_t count, Work&& work) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+  });
+}
+
+}  // namespace vdb_offset

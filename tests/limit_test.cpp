@@ -1,0 +1,160 @@
+#include "vdb_offset/limit.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "oracles.h"
+#include "vdb_offset/crossings.h"
+#include "vdb_offset/scene/shapes.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+OffsetResult limited(const Polygons& mesh, double distance, Collision collision = Collision::Limit) {
+  OffsetOptions options;
+  options.distance = distance;
+  options.collision = collision;
+  return offset(mesh.view(), options);
+}
+
+/// Pairs of triangles that meet in a mesh with its vertices at `positions`.
+std::size_t crossings(const Polygons& mesh, const std::vector<Vec3d>& positions) {
+  const Surface surface = build_surface(mesh.view(), {});
+  std::vector<Vec3d> places;
+  for (const auto v : surface.representative) places.push_back(positions[v]);
+  return find_crossings(surface, places).size();
+}
+
+/// A closed fan around a point, its rim of n points on a circle.
+Polygons umbrella(int n, double height) {
+  Polygons mesh;
+  for (int i = 0; i < n; ++i) mesh.positions.emplace_back(std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0);
+  mesh.positions.emplace_back(0, 0, height);
+  for (int i = 0; i < n; ++i) {
+    mesh.corners.insert(mesh.corners.end(), {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>((i + 1) % n),
+                                             static_cast<std::uint32_t>(n)});
+    mesh.close_face();
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("crossings: shapes that do not cross themselves have none", "[crossings]") {
+  for (const Polygons& mesh :
+       {scene::box(Vec3d(1), 4, true), scene::torus(1, 0.4, 24, 12), scene::plates(1, 0.1, 1e-9, 5),
+        scene::bumpy_sphere(1, 0.3, 1.5, 3, 3), umbrella(6, 0.5)})
+    CHECK(crossings(mesh, mesh.positions) == 0);
+}
+
+TEST_CASE("crossings: what meets is found, however little", "[crossings]") {
+  Polygons pair;
+  pair.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, 0}, {0.2, 0.2, 1}, {0.3, 0.2, 1}};
+  pair.corners = {0, 1, 2, 3, 4, 5};
+  pair.face_begin = {0, 3, 6};
+  CHECK(crossings(pair, pair.positions) == 1);  // a corner on a face
+  pair.positions[3][2] = 1e-300;
+  CHECK(crossings(pair, pair.positions) == 0);
+  pair.positions[3][2] = -1e-300;
+  CHECK(crossings(pair, pair.positions) == 1);
+  pair.positions[4] = {0.9, 0.8, 0};
+  pair.positions[5] = {0.8, 0.9, 0};
+  pair.positions[3] = {0.5, 0.5, 0};
+  CHECK(crossings(pair, pair.positions) == 1);  // in one plane, a corner on an edge
+  pair.positions[3] = {0.5, std::nextafter(0.5, 1.0), 0};
+  CHECK(crossings(pair, pair.positions) == 0);
+}
+
+TEST_CASE("crossings: faces at one vertex that run through each other, and faces folded flat", "[crossings]") {
+  const Polygons fan = umbrella(6, 0.5);
+  std::vector<Vec3d> through = fan.positions;
+  std::swap(through[0], through[1]);
+  std::swap(through[3], through[5]);
+  CHECK(crossings(fan, through) > 0);
+  Polygons hinge;
+  hinge.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.25, -1, 0}};
+  hinge.corners = {0, 1, 2, 1, 0, 3};
+  hinge.face_begin = {0, 3, 6};
+  CHECK(crossings(hinge, hinge.positions) == 0);
+  hinge.positions[3] = {0.25, 1, 0};
+  CHECK(crossings(hinge, hinge.positions) == 1);
+  hinge.positions[3] = {0.25, 1, 1e-300};
+  CHECK(crossings(hinge, hinge.positions) == 0);
+}
+
+TEST_CASE("limit: what propagation folds and crosses is valid afterwards", "[limit]") {
+  struct Case {
+    Polygons mesh;
+    double distance;
+  };
+  const Case cases[] = {{scene::box(Vec3d(0.5), 20, true), -0.1},
+                        {scene::bumpy_sphere(1, 0.5, 2.5, 11, 4), 0.3},
+                        {scene::bumpy_sphere(1, 0.5, 2.5, 5, 4), -0.25},
+                        {scene::plates(1, 0.1, 0.1, 6), 0.2},
+                        {scene::wedge(0.4, 1, 1, 6), 0.15},
+                        {scene::gear(12, 0.7, 1, 0.3, 0.3, 3), 0.08}};
+  std::size_t wrong_before = 0;
+  for (const auto& [mesh, distance] : cases) {
+    const OffsetResult merged = limited(mesh, distance, Collision::Merge), result = limited(mesh, distance);
+    wrong_before += crossings(mesh, merged.positions);
+    CHECK(crossings(mesh, mesh.positions) == 0);
+    CHECK(crossings(mesh, result.positions) == 0);
+    const LimitStatistics& limit = result.statistics.limit;
+    CHECK(limit.left.inverted + limit.left.collapsed + limit.left.crossings == 0);
+    CHECK(limit.limited_vertices ==
+          result.statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Limited)]);
+    const test::DistanceErrors errors = test::judge(mesh.view(), result, distance, 7, true);
+    CHECK(errors.worst_reached < 1.01e-6);
+    CHECK(errors.worst_beyond < 1.01e-6);
+    CHECK(errors.worst_told < 1e-9);
+    CHECK(errors.wrong_side == 0);
+  }
+  CHECK(wrong_before > 0);
+}
+
+TEST_CASE("limit: what is valid stays as it is", "[limit]") {
+  const Polygons mesh = scene::torus(1, 0.4, 48, 24);
+  const OffsetResult merged = limited(mesh, 0.1, Collision::Merge), result = limited(mesh, 0.1);
+  CHECK(result.positions == merged.positions);
+  CHECK(result.statistics.limit.limited_vertices == 0);
+}
+
+TEST_CASE("limit: an input that crosses itself is told, not repaired", "[limit]") {
+  Polygons two = scene::box(Vec3d(1), 3, true);
+  const Polygons other = two;
+  const auto base = static_cast<std::uint32_t>(two.positions.size());
+  for (const Vec3d& p : other.positions) two.positions.push_back(p + Vec3d(0.53, 0.37, 0.41));
+  for (std::size_t f = 0; f < other.face_count(); ++f) {
+    for (const auto v : other.view().face(f)) two.corners.push_back(base + v);
+    two.close_face();
+  }
+  const OffsetResult result = limited(two, 0.05);
+  CHECK(result.statistics.limit.source_crossings > 0);
+  CHECK(result.statistics.limit.left.crossings == 0);
+}
+
+TEST_CASE("limit: the same bits for any number of threads", "[limit][invariant]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.5, 2.5, 11, 4);
+  OffsetOptions one;
+  one.distance = 0.3;
+  one.threads = 1;
+  const OffsetResult alone = offset(mesh.view(), one), all = limited(mesh, 0.3);
+  CHECK(alone.positions == all.positions);
+  CHECK(alone.states == all.states);
+}
+
+TEST_CASE("limit: single precision is checked as it will be stored", "[limit]") {
+  Polygons mesh = scene::bumpy_sphere(1, 0.5, 2.5, 11, 4);
+  for (Vec3d& p : mesh.positions) p = Vec3d(openvdb::Vec3s(p));
+  OffsetOptions options;
+  options.distance = 0.3;
+  options.single_precision = true;
+  const OffsetResult result = offset(mesh.view(), options);
+  std::vector<Vec3d> stored;
+  for (const Vec3d& p : result.positions) stored.emplace_back(openvdb::Vec3s(p));
+  CHECK(crossings(mesh, stored) == 0);
+}
