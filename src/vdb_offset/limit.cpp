@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/parallel.h"
@@ -12,8 +13,10 @@ namespace {
 // How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none.
 constexpr double kKept = 0.85, kLastShare = 0.02;
 
-// Rounds in which pulled vertices are let out again, each by one step.
-constexpr int kReleases = 6;
+// Rounds in which patches are relaxed, in turn the whole way to their neighbours' mean and a share of it; rounds in
+// which pulled vertices are let out again, each by one step.
+constexpr int kUntanglings = 12, kReleases = 12;
+constexpr double kGently = 0.3;
 
 // What the states mean by "reached" and no farther.
 constexpr double kReachedTolerance = 1e-6;
@@ -54,6 +57,7 @@ class Limiter {
     Faults faults = look(moved);
     statistics_.crossings_near_source = faults.near_source;
     statistics_.before = count(faults);
+    for (int i = 0; i < kUntanglings && untangle(faults, i % 2 ? kGently : 1.0); ++i) progress.advance(1);
     while (pull_back(faults, moved)) {
       ++statistics_.rounds;
       progress.advance(1);
@@ -110,11 +114,15 @@ class Limiter {
     for_each_index(source_.size(), [&](std::size_t v) {
       faults.vertex[v] = !right_side_[v] || distance_[v] > target_ * (1 + kReachedTolerance) + rounding(v);
     });
+    // Pairs that have not moved meet as before.
+    std::erase_if(crossings_,
+                  [&](const TrianglePair& pair) { return triangle_moved[pair.first] || triangle_moved[pair.second]; });
     for (const TrianglePair& pair : find_crossings(surface_, place_, triangle_moved)) {
       if (std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair)) continue;
       if (is_near_source(pair.first) || is_near_source(pair.second)) ++faults.near_source;
-      else faults.crossings.push_back(pair);
+      else crossings_.push_back(pair);
     }
+    faults.crossings = crossings_;
     return faults;
   }
 
@@ -187,6 +195,125 @@ class Limiter {
     return wrong;
   }
 
+  /// What is wrong at each vertex: faces around it and crossings of those.
+  std::vector<std::uint32_t> faults_around(const Faults& faults) const {
+    std::vector<std::uint32_t> around(source_.size(), 0);
+    const auto add = [&](std::uint32_t t) {
+      for (const auto v : surface_.triangles[t]) ++around[v];
+    };
+    for (std::uint32_t t = 0; t < faults.face.size(); ++t)
+      if (faults.face[t]) add(t);
+    for (const auto& [s, t] : faults.crossings) {
+      add(s);
+      add(t);
+    }
+    return around;
+  }
+
+  /// Numbers the patches that hang together among the chosen vertices; kNone for the others.
+  std::vector<std::uint32_t> find_patches(const std::vector<std::uint8_t>& chosen, std::uint32_t& count) const {
+    std::vector<std::uint32_t> patch(chosen.size(), kNone), open;
+    count = 0;
+    for (std::uint32_t seed = 0; seed < chosen.size(); ++seed) {
+      if (!chosen[seed] || patch[seed] != kNone) continue;
+      patch[seed] = count;
+      for (open.assign(1, seed); !open.empty();) {
+        const std::uint32_t v = open.back();
+        open.pop_back();
+        for (const auto t : surface_.triangles_around(v))
+          for (const auto w : surface_.triangles[t])
+            if (chosen[w] && patch[w] == kNone) {
+              patch[w] = count;
+              open.push_back(w);
+            }
+      }
+      ++count;
+    }
+    return patch;
+  }
+
+  std::vector<std::uint8_t> with_ring(const std::vector<std::uint8_t>& chosen) const {
+    std::vector<std::uint8_t> wider = chosen;
+    for (const auto& [a, b, c] : surface_.triangles)
+      if (chosen[a] || chosen[b] || chosen[c]) wider[a] = wider[b] = wider[c] = 1;
+    return wider;
+  }
+
+  /// The way of a vertex that goes by `weight` the mean way of its neighbours, then to the target's distance, if it
+  /// settles there.
+  std::optional<Vec3d> relaxed_way(std::uint32_t v, double weight) const {
+    Vec3d sum(0.0);
+    std::size_t count = 0;
+    for (const auto t : surface_.triangles_around(v))
+      for (const auto w : surface_.triangles[t])
+        if (w != v) {
+          sum += whole_way_[w];
+          ++count;
+        }
+    const Vec3d start = source_[v] - surface_.origin;
+    Vec3d x = start + whole_way_[v] * (1 - weight) + sum * (weight / static_cast<double>(count));
+    std::uint32_t hint = surface_.triangles_around(v).front();
+    constexpr int kMostSteps = 20;
+    constexpr double kSettled = 1e-9;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const Closest closest = query_(x, hint);
+      hint = closest.triangle;
+      if (std::abs(closest.distance - target_) <= kSettled * target_) return round_way(x - start, target_);
+      if (!(closest.distance > 1e-3 * target_)) return std::nullopt;
+      x = closest.point + (x - closest.point) * (target_ / closest.distance);
+    }
+    return std::nullopt;
+  }
+
+  /// Relaxes the patches around what is wrong, all at their distance, and keeps those where that makes nothing worse.
+  /// False if nothing is wrong.
+  bool untangle(Faults& faults, double weight) {
+    const std::vector<std::uint32_t> before = faults_around(faults);
+    std::vector<std::uint8_t> chosen(source_.size());
+    bool any = false;
+    for (std::size_t v = 0; v < chosen.size(); ++v) {
+      chosen[v] = before[v] > 0;
+      any |= before[v] > 0;
+    }
+    if (!any) return false;
+    chosen = with_ring(chosen);
+    const std::vector<Vec3d> old_way = whole_way_;
+    std::vector<Vec3d> new_way = whole_way_;
+    std::vector<std::uint8_t> moved(source_.size(), 0);
+    for_each_index(source_.size(), [&](std::size_t v) {
+      if (!chosen[v] || paths_.state[v] != VertexState::Reached) return;
+      if (const auto relaxed = relaxed_way(static_cast<std::uint32_t>(v), weight)) {
+        new_way[v] = *relaxed;
+        moved[v] = 1;
+      }
+    });
+    whole_way_ = std::move(new_way);
+    faults = look(moved);
+    if (undo_worse_patches(faults, before, chosen, old_way, moved)) faults = look(moved);
+    return true;
+  }
+
+  /// Takes back the patches with more faults than before, and marks their vertices as moved. False if there are none.
+  bool undo_worse_patches(const Faults& faults, const std::vector<std::uint32_t>& before,
+                          const std::vector<std::uint8_t>& chosen, const std::vector<Vec3d>& old_way,
+                          std::vector<std::uint8_t>& moved) {
+    constexpr std::int64_t kMisplaced = 1000;  // a vertex too far out or on the wrong side: never worth it
+    std::uint32_t count = 0;
+    const std::vector<std::uint32_t> patch = find_patches(chosen, count), after = faults_around(faults);
+    std::vector<std::int64_t> gain(count, 0);
+    for (std::size_t v = 0; v < patch.size(); ++v)
+      if (patch[v] != kNone)
+        gain[patch[v]] += std::int64_t{before[v]} - std::int64_t{after[v]} - kMisplaced * faults.vertex[v];
+    bool undone = false;
+    for (std::size_t v = 0; v < patch.size(); ++v) {
+      moved[v] = moved[v] && gain[patch[v]] < 0;
+      if (!moved[v]) continue;
+      whole_way_[v] = old_way[v];
+      undone = true;
+    }
+    return undone;
+  }
+
   /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.
   bool pull_back(const Faults& faults, std::vector<std::uint8_t>& moved) {
     moved = wrong_vertices(faults);
@@ -230,8 +357,8 @@ class Limiter {
   void finish() {
     double lost = 0;
     for (std::size_t v = 0; v < share_.size(); ++v) {
-      if (share_[v] == 1) continue;
       paths_.displacement[v] = way(v);
+      if (share_[v] == 1) continue;
       lost += std::max(0.0, paths_.achieved[v] - distance_[v]);
       paths_.achieved[v] = distance_[v];
       if (std::abs(distance_[v] - target_) <= kReachedTolerance * target_) continue;
@@ -253,7 +380,7 @@ class Limiter {
   std::vector<Vec3d> place_, away_;
   std::vector<double> distance_;
   std::vector<std::uint8_t> right_side_, fault_, near_source_;
-  std::vector<TrianglePair> source_crossings_;
+  std::vector<TrianglePair> source_crossings_, crossings_;  // of the source; new ones, as things stand
   LimitStatistics statistics_;
 };
 

@@ -33,10 +33,12 @@ struct LimitStatistics {
 ///
 /// A face is inverted if it faces against the direction away from the surface at its centre and at each corner (there,
 /// its distance has folded over), collapsed if its area is below 1e-6 of the source's. Crossings are found with exact
-/// predicates, on the coordinates as they will be written. The vertices of a face that is wrong are pulled back
-/// towards where they came from, by a little in each round, until nothing is wrong; then those that were are let out
-/// again as far as nothing goes wrong. A surface pulled back altogether is the source, so that it ends. Pulled vertices
-/// are `Limited`, with the distance that they keep.
+/// predicates, on the coordinates as they will be written. Patches around what is wrong are relaxed first: their
+/// vertices go the mean way of their neighbours and back to their distance, and a patch keeps that where it makes
+/// nothing worse. That costs no distance. Then the vertices of a face that is wrong are pulled back towards where they
+/// came from, by a little in each round, until nothing is wrong; then those that were are let out again as far as
+/// nothing goes wrong. A surface pulled back altogether is the source, so that it ends. Pulled vertices are `Limited`,
+/// with the distance that they keep.
 ///
 /// `source` holds where the surface's vertices stand in the input, world coordinates.
 /// The result does not depend on the number of threads.

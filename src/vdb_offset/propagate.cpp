@@ -312,19 +312,17 @@ std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const Direction
   return {straight.begin(), straight.end()};
 }
 
-/// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
-/// the result independent of where the mesh stands.
-Vec3d round_way(const Vec3d& way, double target) {
-  const double quantum = std::ldexp(1.0, std::ilogb(target) - 36);
-  return {std::nearbyint(way[0] / quantum) * quantum, std::nearbyint(way[1] / quantum) * quantum,
-          std::nearbyint(way[2] / quantum) * quantum};
-}
-
 }  // namespace
 
 const char* name(VertexState state) {
   constexpr const char* kNames[kVertexStateCount] = {"reached", "collision", "limited", "outside_field", "unused"};
   return kNames[static_cast<std::size_t>(state)];
+}
+
+Vec3d round_way(const Vec3d& way, double target) {
+  const double quantum = std::ldexp(1.0, std::ilogb(target) - 36);
+  return {std::nearbyint(way[0] / quantum) * quantum, std::nearbyint(way[1] / quantum) * quantum,
+          std::nearbyint(way[2] / quantum) * quantum};
 }
 
 Paths propagate(const ClosestQuery& query, const DirectionField& directions, const PropagateOptions& options,

@@ -32,6 +32,10 @@ struct Paths {
   std::size_t straight = 0;  ///< Vertices of components that moved along their normals alone.
 };
 
+/// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
+/// the result independent of where the mesh stands.
+Vec3d round_way(const Vec3d& way, double target);
+
 /// Moves every surface vertex to distance |d| from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
 /// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls).
 ///
