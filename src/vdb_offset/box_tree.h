@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
+
+#include "vdb_offset/lanes.h"
 
 namespace vdb_offset {
 
@@ -50,13 +53,18 @@ void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit) const {
   while (depth > 0) {
     const auto [level, node] = stack[--depth];
     const Siblings& siblings = levels_[level][node];
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      bool meets = true;
+    unsigned meets = 0;
+    for (int i = 0; i < kWidth; i += kLanes) {
+      IntLanes lanes = IntLanes{} - 1;
       for (std::size_t k = 0; k < 3; ++k)
-        meets &= siblings.lower[k][i] <= box.upper[k] && box.lower[k] <= siblings.upper[k][i];
-      if (!meets) continue;
-      if (level == 0) visit(std::size_t{node} * kWidth + i);
-      else stack[depth++] = {level - 1, node * kWidth + i};
+        lanes &= (load_lanes(siblings.lower[k] + i) <= box.upper[k] + Lanes{}) &
+                 (load_lanes(siblings.upper[k] + i) >= box.lower[k] + Lanes{});
+      meets |= lane_bits(lanes) << i;
+    }
+    for (; meets != 0; meets &= meets - 1) {
+      const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
+      if (level == 0) visit(std::size_t{child});
+      else stack[depth++] = {level - 1, child};
     }
   }
 }

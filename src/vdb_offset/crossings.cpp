@@ -26,16 +26,20 @@ class CrossingFinder {
  public:
   CrossingFinder(const Surface& surface, std::span<const Vec3d> positions, std::span<const std::uint8_t> moved)
       : surface_(surface), positions_(positions), moved_(moved) {
-    tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(t); });
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+      if (has_moved(t)) in_tree_.push_back(t);
+    if (!in_tree_.empty()) tree_.build(in_tree_.size(), [&](std::size_t i) { return box_of(in_tree_[i]); });
   }
 
-  /// Adds the triangles that triangle t meets and that are not looked at from the other side.
+  bool has_work() const { return !in_tree_.empty(); }
+
+  /// Adds the moved triangles that triangle t meets; of two that have moved, the one with the smaller number looks.
   void find(std::uint32_t t, std::vector<TrianglePair>& found) const {
-    if (!has_moved(t) || solid(t).is_degenerate()) return;
-    tree_.for_each_overlap(box_of(t), [&](std::size_t index) {
-      const auto other = static_cast<std::uint32_t>(index);
-      if (other == t || (other < t && has_moved(other))) return;
-      if (!solid(other).is_degenerate() && meet(t, other)) found.push_back(std::minmax(t, other));
+    tree_.for_each_overlap(box_of(t), [&](std::size_t i) {
+      const std::uint32_t other = in_tree_[i];
+      if (other == t || (other < t && has_moved(t))) return;
+      if (!solid(t).is_degenerate() && !solid(other).is_degenerate() && meet(t, other))
+        found.push_back(std::minmax(t, other));
     });
   }
 
@@ -58,8 +62,9 @@ class CrossingFinder {
     for (const auto v : surface_.triangles[t])
       for (std::size_t k = 0; k < 3; ++k) {
         const auto x = static_cast<float>(positions_[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
-        box.lower[k] = std::min(box.lower[k], std::nextafter(x, -kInfinity));
-        box.upper[k] = std::max(box.upper[k], std::nextafter(x, kInfinity));
+        const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
+        box.lower[k] = std::min(box.lower[k], x - rounding);
+        box.upper[k] = std::max(box.upper[k], x + rounding);
       }
     return box;
   }
@@ -83,6 +88,7 @@ class CrossingFinder {
   const Surface& surface_;
   std::span<const Vec3d> positions_;
   std::span<const std::uint8_t> moved_;
+  std::vector<std::uint32_t> in_tree_;  // the triangles that have moved
   BoxTree tree_;
 };
 
@@ -91,6 +97,7 @@ class CrossingFinder {
 std::vector<TrianglePair> find_crossings(const Surface& surface, std::span<const Vec3d> positions,
                                          std::span<const std::uint8_t> moved) {
   const CrossingFinder finder(surface, positions, moved);
+  if (!finder.has_work()) return {};
   tbb::enumerable_thread_specific<std::vector<TrianglePair>> found;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.triangles.size(), 256), [&](const auto& range) {
     for (std::size_t t = range.begin(); t != range.end(); ++t)

@@ -133,7 +133,7 @@ class Limiter {
     const Closest closest = query_(x, surface_.triangles_around(vertex).front());
     distance_[v] = closest.distance;
     away_[v] = x - closest.point;
-    const bool sided = surface_.facts.closed() && surface_.facts.oriented() && share_[v] < 1;
+    const bool sided = surface_.facts.closed() && surface_.facts.oriented();
     right_side_[v] = !sided || closest.distance <= 1e-3 * target_ ||
                      side_ * surface_.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
   }

@@ -22,7 +22,7 @@ constexpr double kMaxVoxelsAcross = 8388608;
 // sweep's closest points; measured: 12,400.
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
-constexpr std::size_t kTriangleBytes = 200, kVertexBytes = 300;
+constexpr std::size_t kTriangleBytes = 240, kVertexBytes = 330;
 // The process itself: code, libraries, allocator.
 constexpr double kProcessBytes = 48 << 20;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles; only for the estimate that is shown.
