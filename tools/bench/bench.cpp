@@ -162,6 +162,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
       for (const auto& [x, hint] : queries) checksum += (*query)(x, hint).distance;
     }));
     std::vector<Vec3d> points;
+    points.reserve(queries.size());
     for (const auto& [x, hint] : queries) points.push_back(x);
     batch_seconds.push_back(seconds_of([&] { closest_points(*query, points); }));
     const auto microseconds_each = [&](const std::vector<double>& seconds) {
