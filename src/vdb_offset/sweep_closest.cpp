@@ -123,6 +123,7 @@ class ClosestSweep {
       for_each_leaf(progress, [&](std::size_t leaf) {
         if (graph_[leaf].colour() == colour) compare_with_neighbours(leaf);
       });
+    for_each_leaf(progress, [&](std::size_t leaf) { points_[leaf].reset(); });
     graph_.attach_new_leaves();
   }
 
@@ -142,7 +143,7 @@ class ClosestSweep {
   float reach_squared(std::int32_t id) const { return id < 0 ? reach_inside_ : reach_outside_; }
 
   void allocate(std::size_t leaf) {
-    points_[leaf] = std::make_unique<LeafPoints>();
+    points_[leaf] = std::make_unique_for_overwrite<LeafPoints>();
     for (auto& axis : points_[leaf]->p) std::fill(std::begin(axis), std::end(axis), kFar);
     if (leaf < front_leaves_) return;
     graph_[leaf].closest->allocate();
