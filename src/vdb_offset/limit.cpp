@@ -6,6 +6,7 @@
 
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/untangle.h"
 
 namespace vdb_offset {
 namespace {
@@ -57,7 +58,11 @@ class Limiter {
     Faults faults = look(moved);
     statistics_.crossings_near_source = faults.near_source;
     statistics_.before = count(faults);
-    for (int i = 0; i < kUntanglings && untangle(faults, i % 2 ? kGently : 1.0); ++i) progress.advance(1);
+    constexpr int kRings[] = {1, 2, 3, 4, 6, 8};
+    for (int i = 0; i < 2 * 6 && untangle(faults, kRings[i % 6]); ++i) {
+      if (getenv("DBG")) { auto c = count(faults); fprintf(stderr, "untangle %d: %zu %zu %zu\n", i, c.inverted, c.collapsed, c.crossings); }
+      progress.advance(1);
+    }
     while (pull_back(faults, moved)) {
       ++statistics_.rounds;
       progress.advance(1);
@@ -265,9 +270,9 @@ class Limiter {
     return std::nullopt;
   }
 
-  /// Relaxes the patches around what is wrong, all at their distance, and keeps those where that makes nothing worse.
-  /// False if nothing is wrong.
-  bool untangle(Faults& faults, double weight) {
+  /// Untangles the patches of so many rings around what is wrong, all at their distance, and keeps those where that
+  /// makes nothing worse. False if nothing is wrong.
+  bool untangle(Faults& faults, int rings) {
     const std::vector<std::uint32_t> before = faults_around(faults);
     std::vector<std::uint8_t> chosen(source_.size());
     bool any = false;
@@ -276,18 +281,17 @@ class Limiter {
       any |= before[v] > 0;
     }
     if (!any) return false;
-    chosen = with_ring(chosen);
+    for (int ring = 0; ring < rings; ++ring) chosen = with_ring(chosen);
+    for (std::size_t v = 0; v < chosen.size(); ++v) chosen[v] = chosen[v] && paths_.state[v] == VertexState::Reached;
     const std::vector<Vec3d> old_way = whole_way_;
-    std::vector<Vec3d> new_way = whole_way_;
-    std::vector<std::uint8_t> moved(source_.size(), 0);
-    for_each_index(source_.size(), [&](std::size_t v) {
-      if (!chosen[v] || paths_.state[v] != VertexState::Reached) return;
-      if (const auto relaxed = relaxed_way(static_cast<std::uint32_t>(v), weight)) {
-        new_way[v] = *relaxed;
-        moved[v] = 1;
-      }
-    });
-    whole_way_ = std::move(new_way);
+    std::uint32_t count = 0;
+    const std::vector<std::uint32_t> patch = find_patches(chosen, count);
+    std::vector<std::vector<std::uint32_t>> patches(count);
+    for (std::uint32_t v = 0; v < patch.size(); ++v)
+      if (patch[v] != kNone) patches[patch[v]].push_back(v);
+    const Untangler untangler(query_, options_.distance);
+    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
+    std::vector<std::uint8_t> moved = chosen;
     faults = look(moved);
     if (undo_worse_patches(faults, before, chosen, old_way, moved)) faults = look(moved);
     return true;

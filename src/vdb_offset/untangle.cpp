@@ -1,0 +1,300 @@
+#include "vdb_offset/untangle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "vdb_offset/propagate.h"
+
+namespace vdb_offset {
+namespace {
+
+// Weight of the faces' areas against their shapes.
+constexpr double kAreaWeight = 0.1;
+
+// Planes are renewed this often; each time L-BFGS makes at most so many steps, with so many of them remembered.
+constexpr int kRenewals = 6, kSteps = 20;
+constexpr std::size_t kMemory = 8;
+
+// No vertex goes farther than this, in distances, in one step.
+constexpr double kLongestStep = 0.2;
+
+/// Two directions at right angles to n and to each other.
+std::array<Vec3d, 2> plane_of(const Vec3d& n) {
+  const int axis = std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2)
+                                                   : (std::abs(n[1]) < std::abs(n[2]) ? 1 : 2);
+  Vec3d e(0.0);
+  e[axis] = 1;
+  const Vec3d u = n.cross(e).unit();
+  return {u, n.cross(u)};
+}
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// chi of the paper: about det for det > 0, small and positive below.
+double chi(double det, double epsilon) {
+  const double root = std::sqrt(epsilon * epsilon + det * det);
+  return det > 0 ? (det + root) / 2 : epsilon * epsilon / (2 * (root - det));
+}
+
+class Patch {
+ public:
+  Patch(const ClosestQuery& query, double target, int side, std::span<const std::uint32_t> vertices, std::span<Vec3d> way)
+      : query_(query), surface_(query.surface()), target_(target), side_(side), free_(vertices.size()) {
+    for (const auto v : vertices) add_point(v, way);
+    collect_faces(vertices, way);
+  }
+
+  void untangle() {
+    for (int i = 0; i < kRenewals; ++i) {
+      renew_planes();
+      if (getenv("DBG")) {
+        int neg = 0;
+        for (auto& f : faces_) { double j[4]; neg += jacobian_of(f, {}, j) <= 0; }
+        fprintf(stderr, "  patch %zu free %zu faces %zu renewal %d least det %g neg %d\n", (std::size_t)points_[0].vertex, free_, faces_.size(), i, least_det_, neg);
+      }
+      std::vector<Vec3d> before(free_);
+      for (std::size_t k = 0; k < free_; ++k) before[k] = points_[k].x;
+      slide();
+      for (std::size_t k = 0; k < free_; ++k) return_to_distance(points_[k], before[k]);
+    }
+  }
+
+  void store(std::span<Vec3d> way) const {
+    for (std::size_t i = 0; i < free_; ++i)
+      way[points_[i].vertex] = round_way(points_[i].x - surface_.vertices[points_[i].vertex], target_);
+  }
+
+ private:
+  struct Point {
+    std::uint32_t vertex, hint;
+    Vec3d x, normal;               // local frame; away from the surface, smoothed over the neighbours
+    std::array<Vec3d, 2> tangent;  // at right angles to it
+  };
+  struct Face {
+    std::array<std::uint32_t, 3> point;
+    double inverse[3];  // of the source's edges (a, b; 0, c) in the plane: 1/a, -b/(a c), 1/c
+    double area;
+    std::array<Vec3d, 2> plane;
+  };
+
+  void add_point(std::uint32_t v, std::span<const Vec3d> way) {
+    points_.push_back({v, surface_.triangles_around(v).front(), surface_.vertices[v] + way[v], {}, {}});
+  }
+
+  std::uint32_t index_of(std::uint32_t v, std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
+    const auto at = std::lower_bound(vertices.begin(), vertices.end(), v);
+    if (at != vertices.end() && *at == v) return static_cast<std::uint32_t>(at - vertices.begin());
+    const auto known = std::find_if(points_.begin() + static_cast<std::ptrdiff_t>(free_), points_.end(),
+                                    [&](const Point& p) { return p.vertex == v; });
+    if (known != points_.end()) return static_cast<std::uint32_t>(known - points_.begin());
+    add_point(v, way);
+    return static_cast<std::uint32_t>(points_.size() - 1);
+  }
+
+  void collect_faces(std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
+    std::vector<std::uint32_t> triangles;
+    for (const auto v : vertices)
+      for (const auto t : surface_.triangles_around(v)) triangles.push_back(t);
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    for (const auto t : triangles) {
+      const auto& [a, b, c] = surface_.triangles[t];
+      const Vec3d ab = surface_.vertices[b] - surface_.vertices[a], ac = surface_.vertices[c] - surface_.vertices[a];
+      const double length = ab.length(), twice_area = ab.cross(ac).length();
+      if (is_needle(twice_area * twice_area, std::max(ab.lengthSqr(), ac.lengthSqr()))) continue;
+      const double along = ab.dot(ac) / length, height = twice_area / length;
+      Face face{{}, {1 / length, -along / (length * height), 1 / height}, twice_area / 2, {}};
+      for (std::size_t k = 0; k < 3; ++k) face.point[k] = index_of(surface_.triangles[t][k], vertices, way);
+      faces_.push_back(face);
+    }
+  }
+
+  void renew_planes() {
+    for (Point& p : points_) {
+      const Closest closest = query_(p.x, p.hint);
+      p.hint = closest.triangle;
+      p.normal = closest.distance > 0 ? (p.x - closest.point) / closest.distance : Vec3d(0.0);
+    }
+    static int passes = getenv("PASSES") ? atoi(getenv("PASSES")) : 4;
+    for (int i = 0; i < passes; ++i) smooth_normals();
+    for (Point& p : points_) p.tangent = plane_of(p.normal);
+    least_det_ = 1;
+    for (Face& face : faces_) {
+      Vec3d n(0.0);
+      for (const auto i : face.point) n += points_[i].normal;
+      if (!(n.lengthSqr() > 1e-12)) n = points_[face.point[0]].normal;
+      face.plane = plane_of(n.unit() * side_);
+      double jacobian[4];
+      least_det_ = std::min(least_det_, jacobian_of(face, {}, jacobian));
+    }
+  }
+  /// Each normal becomes the mean of its own and those across the faces around.
+  void smooth_normals() {
+    std::vector<Vec3d> sum(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) sum[i] = points_[i].normal;
+    for (const Face& face : faces_) {
+      const Vec3d n = points_[face.point[0]].normal + points_[face.point[1]].normal + points_[face.point[2]].normal;
+      for (const auto i : face.point) sum[i] += n;
+    }
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      points_[i].normal = sum[i].lengthSqr() > 1e-12 ? sum[i].unit() : Vec3d(0.0, 0.0, 1.0);
+  }
+
+  Vec3d position(std::uint32_t i, std::span<const double> slide) const {
+    const Point& p = points_[i];
+    if (slide.empty() || i >= free_) return p.x;
+    return p.x + p.tangent[0] * slide[2 * i] + p.tangent[1] * slide[2 * i + 1];
+  }
+
+  /// Returns the determinant.
+  double jacobian_of(const Face& face, std::span<const double> slide, double (&j)[4]) const {
+    const Vec3d a = position(face.point[0], slide), ab = position(face.point[1], slide) - a,
+                ac = position(face.point[2], slide) - a;
+    for (std::size_t row = 0; row < 2; ++row) {
+      const double b = face.plane[row].dot(ab), c = face.plane[row].dot(ac);
+      j[2 * row] = b * face.inverse[0];
+      j[2 * row + 1] = b * face.inverse[1] + c * face.inverse[2];
+    }
+    return j[0] * j[3] - j[1] * j[2];
+  }
+
+  /// The energy, and its derivative by the slides.
+  double energy(std::span<const double> slide, double epsilon, std::span<double> derivative) const {
+    std::fill(derivative.begin(), derivative.end(), 0.0);
+    double sum = 0;
+    for (const Face& face : faces_) {
+      double j[4];
+      const double det = jacobian_of(face, slide, j), x = chi(det, epsilon),
+                   x_slope = x / std::sqrt(epsilon * epsilon + det * det);
+      const double e =
+          (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + kAreaWeight * (det * det + 1)) / x;
+      sum += face.area * e;
+      const double by_det = (2 * kAreaWeight * det - e * x_slope) / x;
+      const double by_j[4] = {2 * j[0] / x + by_det * j[3], 2 * j[1] / x - by_det * j[2],
+                              2 * j[2] / x - by_det * j[1], 2 * j[3] / x + by_det * j[0]};
+      Vec3d by_ab(0.0), by_ac(0.0);
+      for (std::size_t row = 0; row < 2; ++row) {
+        const double b = by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1],
+                     c = by_j[2 * row + 1] * face.inverse[2];
+        by_ab += face.plane[row] * (b * face.area);
+        by_ac += face.plane[row] * (c * face.area);
+      }
+      add(derivative, face.point[0], -(by_ab + by_ac));
+      add(derivative, face.point[1], by_ab);
+      add(derivative, face.point[2], by_ac);
+    }
+    return sum;
+  }
+  void add(std::span<double> derivative, std::uint32_t i, const Vec3d& by_x) const {
+    if (i >= free_) return;
+    for (std::size_t k = 0; k < 2; ++k) derivative[2 * i + k] += points_[i].tangent[k].dot(by_x);
+  }
+
+  /// L-BFGS (Nocedal and Wright, Numerical Optimization, 2006, algorithm 7.5) with halved steps.
+  void slide() {
+    const std::size_t n = 2 * free_;
+    const double epsilon = std::sqrt(1e-12 + 0.04 * std::pow(std::min(least_det_, 0.0), 2));
+    std::vector<double> x(n, 0.0), g(n), step(n), next(n), next_g(n);
+    struct Pair {
+      std::vector<double> s, y;
+      double rho;
+    };
+    std::deque<Pair> pairs;
+    double e = energy(x, epsilon, g);
+    for (int i = 0; i < kSteps; ++i) {
+      for (std::size_t k = 0; k < n; ++k) step[k] = -g[k];
+      std::vector<double> alpha(pairs.size());
+      for (std::size_t p = pairs.size(); p-- > 0;) {
+        alpha[p] = pairs[p].rho * dot(pairs[p].s, step);
+        for (std::size_t k = 0; k < n; ++k) step[k] -= alpha[p] * pairs[p].y[k];
+      }
+      if (!pairs.empty()) {
+        const double scale = 1 / (pairs.back().rho * dot(pairs.back().y, pairs.back().y));
+        for (double& s : step) s *= scale;
+      }
+      for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const double beta = pairs[p].rho * dot(pairs[p].y, step);
+        for (std::size_t k = 0; k < n; ++k) step[k] += (alpha[p] - beta) * pairs[p].s[k];
+      }
+      double longest = 0;
+      for (std::size_t k = 0; k < n; k += 2) longest = std::max(longest, std::hypot(step[k], step[k + 1]));
+      if (!(longest > 0)) break;
+      double t = pairs.empty() ? kLongestStep * target_ / longest : std::min(1.0, kLongestStep * target_ / longest);
+      const double slope = dot(g, step);
+      if (!(slope < 0)) break;
+      double next_e = e;
+      bool found = false;
+      for (int halving = 0; halving < 30; ++halving, t /= 2) {
+        for (std::size_t k = 0; k < n; ++k) next[k] = x[k] + t * step[k];
+        next_e = energy(next, epsilon, next_g);
+        if (next_e <= e + 1e-4 * t * slope) {
+          found = true;
+          break;
+        }
+      }
+      if (!found) break;
+      Pair pair{std::vector<double>(n), std::vector<double>(n), 0};
+      for (std::size_t k = 0; k < n; ++k) {
+        pair.s[k] = next[k] - x[k];
+        pair.y[k] = next_g[k] - g[k];
+      }
+      const double sy = dot(pair.s, pair.y);
+      if (sy > 1e-12 * std::sqrt(dot(pair.s, pair.s) * dot(pair.y, pair.y))) {
+        pair.rho = 1 / sy;
+        pairs.push_back(std::move(pair));
+        if (pairs.size() > kMemory) pairs.pop_front();
+      }
+      x.swap(next);
+      g.swap(next_g);
+      const double gained = e - next_e;
+      e = next_e;
+      if (gained < 1e-6 * e) break;
+    }
+    for (std::uint32_t i = 0; i < free_; ++i) points_[i].x = position(i, x);
+  }
+
+  /// Along the smoothed normal to the distance. On the way out phi is concave there, as the least of the distances to
+  /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was.
+  void return_to_distance(Point& p, const Vec3d& before) const {
+    constexpr int kMostSteps = 40;
+    constexpr double kSettled = 1e-9, kLeastSlope = 0.1;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const Closest closest = query_(p.x, p.hint);
+      p.hint = closest.triangle;
+      if (std::abs(closest.distance - target_) <= kSettled * target_) return;
+      if (!(closest.distance > 1e-3 * target_)) break;
+      const double slope = p.normal.dot(p.x - closest.point) / closest.distance;
+      p.x += p.normal * ((target_ - closest.distance) / std::max(slope, kLeastSlope));
+      if (!((p.x - before).length() < 2 * target_)) break;
+    }
+    if (getenv("DBG")) fprintf(stderr, "  not settled %u\n", p.vertex);
+    p.x = before;
+  }
+
+  const ClosestQuery& query_;
+  const Surface& surface_;
+  double target_;
+  int side_;
+  std::size_t free_;           // the first points are the patch's, the others stand around it
+  std::vector<Point> points_;
+  std::vector<Face> faces_;
+  double least_det_ = 1;
+};
+
+}  // namespace
+
+void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const {
+  Patch work(query_, target_, side_, patch, way);
+  work.untangle();
+  work.store(way);
+}
+
+}  // namespace vdb_offset
