@@ -26,7 +26,7 @@ std::size_t crossings(const Polygons& mesh, const std::vector<Vec3d>& positions)
   const Surface surface = build_surface(mesh.view(), {});
   std::vector<Vec3d> places;
   for (const auto v : surface.representative) places.push_back(positions[v]);
-  return find_crossings(surface, places).size();
+  return CrossingFinder(surface, places).all().size();
 }
 
 /// A closed fan around a point, its rim of n points on a circle.

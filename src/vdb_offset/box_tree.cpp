@@ -12,17 +12,24 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr FloatBox kEmpty{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
-FloatBox around(const BoxTree::Siblings& siblings) {
+void set_box(BoxTree::Siblings& siblings, std::size_t i, const FloatBox& box) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    siblings.lower[k][i] = box.lower[k];
+    siblings.upper[k][i] = box.upper[k];
+  }
+}
+
+}  // namespace
+
+FloatBox BoxTree::around(const Siblings& siblings) {
   FloatBox box = kEmpty;
   for (std::size_t k = 0; k < 3; ++k)
-    for (int i = 0; i < BoxTree::kWidth; ++i) {
+    for (int i = 0; i < kWidth; ++i) {
       box.lower[k] = std::min(box.lower[k], siblings.lower[k][i]);
       box.upper[k] = std::max(box.upper[k], siblings.upper[k][i]);
     }
   return box;
 }
-
-}  // namespace
 
 void BoxTree::build(std::size_t count, const std::function<FloatBox(std::size_t)>& box_of) {
   levels_.clear();
@@ -33,16 +40,23 @@ void BoxTree::build(std::size_t count, const std::function<FloatBox(std::size_t)
       for (std::size_t node = range.begin(); node != range.end(); ++node)
         for (std::size_t i = 0; i < kWidth; ++i) {
           const std::size_t child = node * kWidth + i;
-          const FloatBox box = child >= count ? kEmpty : lowest ? box_of(child) : around(levels_.back()[child]);
-          for (std::size_t k = 0; k < 3; ++k) {
-            level[node].lower[k][i] = box.lower[k];
-            level[node].upper[k][i] = box.upper[k];
-          }
+          set_box(level[node], i, child >= count ? kEmpty : lowest ? box_of(child) : around(levels_.back()[child]));
         }
     });
     count = level.size();
     levels_.push_back(std::move(level));
   } while (count > 1);
+}
+
+void BoxTree::refit(std::span<const std::uint32_t> changed, const std::function<FloatBox(std::size_t)>& box_of) {
+  std::vector<std::uint32_t> nodes(changed.begin(), changed.end());
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    for (const auto child : nodes)
+      set_box(levels_[level][child / kWidth], child % kWidth,
+              level == 0 ? box_of(child) : around(levels_[level - 1][child]));
+    for (auto& node : nodes) node /= kWidth;
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
 }
 
 }  // namespace vdb_offset

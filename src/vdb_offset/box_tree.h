@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "vdb_offset/lanes.h"
@@ -31,19 +32,45 @@ class BoxTree {
   /// Builds the tree over box_of(0 .. count - 1), which is called in parallel. \pre count > 0
   void build(std::size_t count, const std::function<FloatBox(std::size_t)>& box_of);
 
+  /// Takes the boxes of these children of level 0 anew, and those above them. Sorted, no two the same.
+  void refit(std::span<const std::uint32_t> changed, const std::function<FloatBox(std::size_t)>& box_of);
+
   /// Level 0 holds the boxes given, back() a single block.
   const std::vector<std::vector<Siblings>>& levels() const { return levels_; }
 
-  /// Calls visit(i) for every box given that meets `box`; touching counts.
+  /// Calls visit(i) for every box of a level (0: every box given) that meets `box`; touching counts. Box i of level
+  /// l > 0 is around the block levels()[l - 1][i].
   template <class Visit>
-  void for_each_overlap(const FloatBox& box, Visit&& visit) const;
+  void for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t of_level = 0) const;
+
+  /// Which of eight siblings meet a box, as bits.
+  static unsigned overlaps(const Siblings& siblings, const FloatBox& box);
+  static FloatBox box(const Siblings& siblings, int i);
+  static FloatBox around(const Siblings& siblings);
 
  private:
   std::vector<std::vector<Siblings>> levels_;
 };
 
+inline unsigned BoxTree::overlaps(const Siblings& siblings, const FloatBox& box) {
+  unsigned meets = 0;
+  for (int i = 0; i < kWidth; i += kLanes) {
+    IntLanes lanes = IntLanes{} - 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      lanes &= (load_lanes(siblings.lower[k] + i) <= box.upper[k] + Lanes{}) &
+               (load_lanes(siblings.upper[k] + i) >= box.lower[k] + Lanes{});
+    meets |= lane_bits(lanes) << i;
+  }
+  return meets;
+}
+
+inline FloatBox BoxTree::box(const Siblings& siblings, int i) {
+  const auto& [lower, upper] = siblings;
+  return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
+}
+
 template <class Visit>
-void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit) const {
+void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t of_level) const {
   struct Node {
     std::uint32_t level, node;
   };
@@ -52,18 +79,9 @@ void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit) const {
   stack[depth++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
   while (depth > 0) {
     const auto [level, node] = stack[--depth];
-    const Siblings& siblings = levels_[level][node];
-    unsigned meets = 0;
-    for (int i = 0; i < kWidth; i += kLanes) {
-      IntLanes lanes = IntLanes{} - 1;
-      for (std::size_t k = 0; k < 3; ++k)
-        lanes &= (load_lanes(siblings.lower[k] + i) <= box.upper[k] + Lanes{}) &
-                 (load_lanes(siblings.upper[k] + i) >= box.lower[k] + Lanes{});
-      meets |= lane_bits(lanes) << i;
-    }
-    for (; meets != 0; meets &= meets - 1) {
+    for (unsigned meets = overlaps(levels_[level][node], box); meets != 0; meets &= meets - 1) {
       const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
-      if (level == 0) visit(std::size_t{child});
+      if (level == of_level) visit(std::size_t{child});
       else stack[depth++] = {level - 1, child};
     }
   }

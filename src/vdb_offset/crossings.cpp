@@ -9,10 +9,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
-
-#include "vdb_offset/box_tree.h"
 
 namespace vdb_offset {
 namespace {
@@ -22,91 +22,160 @@ using Point = Kernel::Point_3;
 using Triangle = Kernel::Triangle_3;
 using Segment = Kernel::Segment_3;
 
-class CrossingFinder {
- public:
-  CrossingFinder(const Surface& surface, std::span<const Vec3d> positions, std::span<const std::uint8_t> moved)
-      : surface_(surface), positions_(positions), moved_(moved) {
-    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
-      if (has_moved(t)) in_tree_.push_back(t);
-    if (!in_tree_.empty()) tree_.build(in_tree_.size(), [&](std::size_t i) { return box_of(in_tree_[i]); });
+/// Two triangles, the corners that they share first.
+struct Couple {
+  std::array<Vec3d, 3> a, b;
+  int shared = 0;
+
+  Couple(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
+    std::array<std::uint32_t, 3> of_a = surface.triangles[s], of_b = surface.triangles[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto n = static_cast<std::size_t>(shared);
+      const auto found = std::find(of_b.begin() + shared, of_b.end(), of_a[i]);
+      if (found == of_b.end()) continue;
+      std::swap(*found, of_b[n]);
+      std::swap(of_a[i], of_a[n]);
+      ++shared;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = positions[of_a[k]];
+      b[k] = positions[of_b[k]];
+    }
   }
-
-  bool has_work() const { return !in_tree_.empty(); }
-
-  /// Adds the moved triangles that triangle t meets; of two that have moved, the one with the smaller number looks.
-  void find(std::uint32_t t, std::vector<TrianglePair>& found) const {
-    tree_.for_each_overlap(box_of(t), [&](std::size_t i) {
-      const std::uint32_t other = in_tree_[i];
-      if (other == t || (other < t && has_moved(t))) return;
-      if (!solid(t).is_degenerate() && !solid(other).is_degenerate() && meet(t, other))
-        found.push_back(std::minmax(t, other));
-    });
-  }
-
- private:
-  bool has_moved(std::uint32_t t) const { return moved_.empty() || moved_[t]; }
-
-  Point point(std::uint32_t vertex) const {
-    const Vec3d& p = positions_[vertex];
-    return {p[0], p[1], p[2]};
-  }
-  Triangle solid(std::uint32_t t) const {
-    const auto& [a, b, c] = surface_.triangles[t];
-    return {point(a), point(b), point(c)};
-  }
-
-  /// Rounded outwards, relative to the surface's own frame.
-  FloatBox box_of(std::size_t t) const {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    FloatBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    for (const auto v : surface_.triangles[t])
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto x = static_cast<float>(positions_[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
-        const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
-        box.lower[k] = std::min(box.lower[k], x - rounding);
-        box.upper[k] = std::max(box.upper[k], x + rounding);
-      }
-    return box;
-  }
-
-  bool meet(std::uint32_t s, std::uint32_t t) const {
-    const auto &a = surface_.triangles[s], &b = surface_.triangles[t];
-    std::uint32_t shared[3], only_a[3], only_b[3];
-    int n_shared = 0, n_a = 0, n_b = 0;
-    for (const auto v : a) (std::count(b.begin(), b.end(), v) ? shared[n_shared++] : only_a[n_a++]) = v;
-    for (const auto v : b)
-      if (!std::count(a.begin(), a.end(), v)) only_b[n_b++] = v;
-    if (n_shared == 0) return CGAL::do_intersect(solid(s), solid(t));
-    if (n_shared == 1)
-      return CGAL::do_intersect(Segment(point(only_a[0]), point(only_a[1])), solid(t)) ||
-             CGAL::do_intersect(Segment(point(only_b[0]), point(only_b[1])), solid(s));
-    if (n_shared == 3) return false;  // the same triangle twice, or a sheet's two sides
-    const Point p = point(shared[0]), q = point(shared[1]), pa = point(only_a[0]), pb = point(only_b[0]);
-    return CGAL::coplanar(p, q, pa, pb) && CGAL::coplanar_orientation(p, q, pa, pb) == CGAL::POSITIVE;
-  }
-
-  const Surface& surface_;
-  std::span<const Vec3d> positions_;
-  std::span<const std::uint8_t> moved_;
-  std::vector<std::uint32_t> in_tree_;  // the triangles that have moved
-  BoxTree tree_;
 };
 
-}  // namespace
+// Differences of coordinates are exact to 2^-53 of themselves; a dot product of three with a cross product, or with a
+// sum of such differences, is off by far less than this share of the product of lengths.
+constexpr double kRounding = 1e-14;
 
-std::vector<TrianglePair> find_crossings(const Surface& surface, std::span<const Vec3d> positions,
-                                         std::span<const std::uint8_t> moved) {
-  const CrossingFinder finder(surface, positions, moved);
-  if (!finder.has_work()) return {};
+/// True if the corners of `b` that are not shared lie clearly on one side of the plane of `a`.
+bool on_one_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b, int shared) {
+  const Vec3d ab = a[1] - a[0], ac = a[2] - a[0], normal = ab.cross(ac);
+  const double size = kRounding * std::sqrt(ab.lengthSqr() * ac.lengthSqr());
+  bool above = true, below = true;
+  for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) {
+    const Vec3d to = b[k] - a[0];
+    const double height = normal.dot(to), margin = size * to.length();
+    above = above && height > margin;
+    below = below && height < -margin;
+  }
+  return above || below;
+}
+
+/// True if the triangles, which share their first corner, clearly lie to either side of a plane through it: one at
+/// right angles to the difference of the directions that they lie in.
+bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
+  const std::array<Vec3d, 4> edge = {a[1] - a[0], a[2] - a[0], b[1] - b[0], b[2] - b[0]};
+  Vec3d w(0.0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double length = edge[i].length();
+    if (!(length > 0)) return false;
+    w += edge[i] * ((i < 2 ? 1 : -1) / length);
+  }
+  const double margin = kRounding * w.length();
+  for (std::size_t i = 0; i < 4; ++i)
+    if (!((i < 2 ? 1 : -1) * w.dot(edge[i]) > margin * edge[i].length())) return false;
+  return true;
+}
+
+/// Most pairs are clearly apart; no more than rounding is left to the exact predicates.
+bool clearly_apart(const Couple& pair) {
+  if (on_one_side(pair.a, pair.b, pair.shared) || on_one_side(pair.b, pair.a, pair.shared)) return true;
+  return pair.shared == 1 && on_either_side(pair.a, pair.b);
+}
+
+bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
+  const Couple pair(surface, positions, s, t);
+  if (pair.shared == 3) return false;  // the same triangle twice, or a sheet's two sides
+  if (clearly_apart(pair)) return false;
+  std::array<Point, 3> a, b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    a[k] = {pair.a[k][0], pair.a[k][1], pair.a[k][2]};
+    b[k] = {pair.b[k][0], pair.b[k][1], pair.b[k][2]};
+  }
+  const Triangle of_a(a[0], a[1], a[2]), of_b(b[0], b[1], b[2]);
+  if (of_a.is_degenerate() || of_b.is_degenerate()) return false;
+  if (pair.shared == 0) return CGAL::do_intersect(of_a, of_b);
+  if (pair.shared == 1)
+    return CGAL::do_intersect(Segment(a[1], a[2]), of_b) || CGAL::do_intersect(Segment(b[1], b[2]), of_a);
+  return CGAL::coplanar(a[0], a[1], a[2], b[2]) && CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::POSITIVE;
+}
+
+/// Lets find(first, last, found) look at runs of 0 .. count - 1 in parallel; sorts what they find.
+template <class Find>
+std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain, Find&& find) {
   tbb::enumerable_thread_specific<std::vector<TrianglePair>> found;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.triangles.size(), 256), [&](const auto& range) {
-    for (std::size_t t = range.begin(); t != range.end(); ++t)
-      finder.find(static_cast<std::uint32_t>(t), found.local());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    auto& mine = found.local();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) find(i, mine);
   });
   std::vector<TrianglePair> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
+}
+
+}  // namespace
+
+CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
+    : surface_(surface), positions_(positions) {
+  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(t); });
+}
+
+void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
+  tree_.refit(triangles, [&](std::size_t t) { return box_of(t); });
+}
+
+/// Rounded outwards, relative to the surface's own frame.
+FloatBox CrossingFinder::box_of(std::size_t t) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  FloatBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const auto v : surface_.triangles[t])
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = static_cast<float>(positions_[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
+      const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
+      box.lower[k] = std::min(box.lower[k], x - rounding);
+      box.upper[k] = std::max(box.upper[k], x + rounding);
+    }
+  return box;
+}
+
+std::vector<TrianglePair> CrossingFinder::all() const {
+  const auto& blocks = tree_.levels().front();
+  constexpr std::uint32_t kWidth = BoxTree::kWidth;
+  const auto compare = [&](std::size_t block, std::size_t other, std::vector<TrianglePair>& found) {
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      unsigned meets = BoxTree::overlaps(blocks[other], BoxTree::box(blocks[block], static_cast<int>(i)));
+      if (block == other) meets &= ~0u << (i + 1);
+      const auto s = static_cast<std::uint32_t>(block) * kWidth + i;
+      for (; meets != 0; meets &= meets - 1) {
+        const auto t = static_cast<std::uint32_t>(other) * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
+        if (meet(surface_, positions_, s, t)) found.emplace_back(s, t);
+      }
+    }
+  };
+  return find_in_parallel(blocks.size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
+    if (tree_.levels().size() == 1) return compare(block, block, found);
+    tree_.for_each_overlap(
+        BoxTree::around(blocks[block]),
+        [&](std::size_t other) {
+          if (other >= block) compare(block, other, found);
+        },
+        1);
+  });
+}
+
+std::vector<TrianglePair> CrossingFinder::of(std::span<const std::uint32_t> triangles) const {
+  return find_in_parallel(triangles.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
+    const std::uint32_t t = triangles[i];
+    tree_.for_each_overlap(box_of(t), [&](std::size_t child) {
+      const auto other = static_cast<std::uint32_t>(child);
+      if (other == t || (other < t && std::binary_search(triangles.begin(), triangles.end(), other))) return;
+      const TrianglePair pair = std::minmax(t, other);
+      if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
+    });
+  });
 }
 
 }  // namespace vdb_offset

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/box_tree.h"
 #include "vdb_offset/surface.h"
 
 namespace vdb_offset {
@@ -12,12 +13,28 @@ namespace vdb_offset {
 /// Two triangles, the smaller index first.
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The pairs of a surface's triangles that meet elsewhere than in the corners and edges they share, with its vertices
-/// at `positions`, as they are: decided with exact predicates (CGAL's kernel), without a tolerance. Neighbours across
-/// an edge meet if they are folded flat onto each other. Triangles without area meet nothing.
-/// If `moved` is not empty, only pairs of which at least one triangle has moved (is not 0) are looked at.
-/// Sorted; the same for any number of threads. Positions may lie anywhere; one for each surface vertex.
-std::vector<TrianglePair> find_crossings(const Surface& surface, std::span<const Vec3d> positions,
-                                         std::span<const std::uint8_t> moved = {});
+/// Finds the pairs of a surface's triangles that meet elsewhere than in the corners and edges they share: decided with
+/// exact predicates (CGAL's kernel), without a tolerance. Neighbours across an edge meet if they are folded flat onto
+/// each other. Triangles without area meet nothing. Memory: 28 bytes a triangle.
+class CrossingFinder {
+ public:
+  /// `positions` of the surface's vertices may lie anywhere. Keeps references to both.
+  CrossingFinder(const Surface& surface, std::span<const Vec3d> positions);
+
+  /// To be told of triangles whose corners have moved; sorted, no two the same.
+  void update(std::span<const std::uint32_t> triangles);
+
+  /// All pairs, sorted; the same for any number of threads.
+  std::vector<TrianglePair> all() const;
+  /// The pairs that one of these triangles is part of, or two; they are sorted, and so is the answer.
+  std::vector<TrianglePair> of(std::span<const std::uint32_t> triangles) const;
+
+ private:
+  FloatBox box_of(std::size_t triangle) const;
+
+  const Surface& surface_;
+  std::span<const Vec3d> positions_;
+  BoxTree tree_;
+};
 
 }  // namespace vdb_offset

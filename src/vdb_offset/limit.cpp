@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <numeric>
 
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/parallel.h"
@@ -14,22 +14,30 @@ namespace {
 // How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none.
 constexpr double kKept = 0.85, kLastShare = 0.02;
 
-// Rounds in which patches are relaxed, in turn the whole way to their neighbours' mean and a share of it; rounds in
-// which pulled vertices are let out again, each by one step.
-constexpr int kUntanglings = 12, kReleases = 12;
-constexpr double kGently = 0.3;
+// Patches are tried with so many rings around what is wrong, their normals smoothed so many times.
+constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16}, kSmoothings[] = {4, 10, 30};
+
+// Rounds in which pulled vertices are let out again, each by one step.
+constexpr int kReleases = 12;
 
 // What the states mean by "reached" and no farther.
 constexpr double kReachedTolerance = 1e-6;
 
 enum class Fault : std::uint8_t { None, Inverted, Collapsed };
 
+using Indices = std::vector<std::uint32_t>;  // sorted, no two the same
+
+void sort_unique(Indices& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
 /// What is wrong with a state of the surface.
 struct Faults {
-  std::vector<std::uint8_t> face;       // Fault of each triangle
+  Indices faces, vertices;              // vertices: too far from the surface, or on the wrong side of it
   std::vector<TrianglePair> crossings;  // new ones, away from those of the source
-  std::vector<std::uint8_t> vertex;     // 1: too far from the surface, or on the wrong side of it
-  std::size_t near_source = 0;
+
+  bool none() const { return faces.empty() && crossings.empty(); }
 };
 
 class Limiter {
@@ -48,29 +56,28 @@ class Limiter {
         away_(source.size()),
         distance_(source.size()),
         right_side_(source.size(), 1),
-        fault_(surface_.triangles.size(), 0) {
-    statistics_.source_crossings = (source_crossings_ = find_crossings(surface_, source)).size();
+        fault_(surface_.triangles.size(), Fault::None),
+        patch_(source.size(), kNone),
+        finder_(surface_, place_) {
+    statistics_.source_crossings = (source_crossings_ = finder_.all()).size();
     mark_near_source();
   }
 
   LimitStatistics run(Progress& progress) {
-    std::vector<std::uint8_t> moved(source_.size(), 1);
-    Faults faults = look(moved);
-    statistics_.crossings_near_source = faults.near_source;
-    statistics_.before = count(faults);
-    constexpr int kRings[] = {1, 2, 3, 4, 6, 8};
-    for (int i = 0; i < 2 * 6 && untangle(faults, kRings[i % 6]); ++i) {
-      if (getenv("DBG")) { auto c = count(faults); fprintf(stderr, "untangle %d: %zu %zu %zu\n", i, c.inverted, c.collapsed, c.crossings); }
-      progress.advance(1);
-    }
-    while (pull_back(faults, moved)) {
-      ++statistics_.rounds;
-      progress.advance(1);
-      faults = look(moved);
-    }
-    statistics_.left = count(faults);
-    for (int i = 0; i < kReleases && release(progress); ++i) {
-    }
+    Indices everything(source_.size());
+    std::iota(everything.begin(), everything.end(), 0u);
+    look(everything);
+    statistics_.before = count();
+    for (const int smoothing : kSmoothings)
+      for (const int rings : kRings)
+        if (!faults_.none()) {
+          untangle(rings, smoothing);
+          ++statistics_.untanglings;
+          progress.advance(1);
+        }
+    while (pull_back()) progress.advance(1);
+    statistics_.left = count();
+    for (int i = 0; i < kReleases && release(); ++i) progress.advance(1);
     finish();
     return statistics_;
   }
@@ -102,33 +109,56 @@ class Limiter {
     return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
   }
 
-  /// Puts the moved vertices where their share of the way leads, and finds what is wrong around them.
-  Faults look(const std::vector<std::uint8_t>& moved) {
-    for_each_index(source_.size(), [&](std::size_t v) {
-      if (moved[v]) measure(v);
-    });
-    std::vector<std::uint8_t> triangle_moved(surface_.triangles.size());
-    for_each_index(surface_.triangles.size(), [&](std::size_t t) {
-      const auto& [a, b, c] = surface_.triangles[t];
-      triangle_moved[t] = moved[a] || moved[b] || moved[c];
-      if (triangle_moved[t]) fault_[t] = static_cast<std::uint8_t>(judge(static_cast<std::uint32_t>(t)));
-    });
-    Faults faults;
-    faults.face = fault_;
-    faults.vertex.resize(source_.size());
-    for_each_index(source_.size(), [&](std::size_t v) {
-      faults.vertex[v] = !right_side_[v] || distance_[v] > target_ * (1 + kReachedTolerance) + rounding(v);
-    });
-    // Pairs that have not moved meet as before.
-    std::erase_if(crossings_,
-                  [&](const TrianglePair& pair) { return triangle_moved[pair.first] || triangle_moved[pair.second]; });
-    for (const TrianglePair& pair : find_crossings(surface_, place_, triangle_moved)) {
-      if (std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair)) continue;
-      if (is_near_source(pair.first) || is_near_source(pair.second)) ++faults.near_source;
-      else crossings_.push_back(pair);
+  Indices triangles_around(const Indices& vertices) const {
+    Indices triangles;
+    if (vertices.size() == source_.size()) {
+      triangles.resize(surface_.triangles.size());
+      std::iota(triangles.begin(), triangles.end(), 0u);
+      return triangles;
     }
-    faults.crossings = crossings_;
-    return faults;
+    for (const auto v : vertices) {
+      const auto around = surface_.triangles_around(v);
+      triangles.insert(triangles.end(), around.begin(), around.end());
+    }
+    sort_unique(triangles);
+    return triangles;
+  }
+
+  /// Puts the moved vertices where their share of the way leads, and finds what is wrong around them.
+  void look(const Indices& moved) {
+    for_each_index(
+        moved.size(), [&](std::size_t i) { measure(moved[i]); }, 64);
+    const Indices touched = triangles_around(moved);
+    for_each_index(
+        touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
+    replace(faults_.faces, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
+    replace(faults_.vertices, moved, [&](std::uint32_t v) {
+      return !right_side_[v] || distance_[v] > target_ * (1 + kReachedTolerance) + rounding(v);
+    });
+    look_for_crossings(touched);
+  }
+
+  /// Judges anew the members of `some`.
+  template <class Wrong>
+  static void replace(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
+    std::erase_if(wrong, [&](std::uint32_t i) { return std::binary_search(some.begin(), some.end(), i); });
+    for (const auto i : some)
+      if (is_wrong(i)) wrong.push_back(i);
+    std::sort(wrong.begin(), wrong.end());
+  }
+
+  void look_for_crossings(const Indices& touched) {
+    finder_.update(touched);
+    const auto has_moved = [&](std::uint32_t t) { return std::binary_search(touched.begin(), touched.end(), t); };
+    const bool first = touched.size() == surface_.triangles.size();
+    // Pairs that have not moved meet as before.
+    std::erase_if(faults_.crossings,
+                  [&](const TrianglePair& pair) { return has_moved(pair.first) || has_moved(pair.second); });
+    for (const TrianglePair& pair : first ? finder_.all() : finder_.of(touched)) {
+      if (std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair)) continue;
+      if (is_near_source(pair.first) || is_near_source(pair.second)) statistics_.crossings_near_source += first;
+      else faults_.crossings.push_back(pair);
+    }
   }
 
   void measure(std::size_t v) {
@@ -175,199 +205,161 @@ class Limiter {
     return any || now.dot(before) < 0 ? Fault::Inverted : Fault::None;
   }
 
-  static FaultCounts count(const Faults& faults) {
+  FaultCounts count() const {
     FaultCounts counts;
-    for (const auto fault : faults.face) {
-      counts.inverted += fault == static_cast<std::uint8_t>(Fault::Inverted);
-      counts.collapsed += fault == static_cast<std::uint8_t>(Fault::Collapsed);
-    }
-    counts.crossings = faults.crossings.size();
+    for (const auto t : faults_.faces) ++(fault_[t] == Fault::Inverted ? counts.inverted : counts.collapsed);
+    counts.crossings = faults_.crossings.size();
     return counts;
   }
 
-  /// The vertices that something is wrong with.
-  std::vector<std::uint8_t> wrong_vertices(const Faults& faults) const {
-    std::vector<std::uint8_t> wrong = faults.vertex;
-    const auto mark = [&](std::uint32_t t) {
-      for (const auto v : surface_.triangles[t]) wrong[v] = 1;
+  /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another.
+  template <class Visit>
+  void for_each_wrong_corner(Visit&& visit) const {
+    const auto visit_corners = [&](std::uint32_t t) {
+      for (const auto v : surface_.triangles[t]) visit(v);
     };
-    for (std::uint32_t t = 0; t < faults.face.size(); ++t)
-      if (faults.face[t]) mark(t);
-    for (const auto& [s, t] : faults.crossings) {
-      mark(s);
-      mark(t);
+    for (const auto t : faults_.faces) visit_corners(t);
+    for (const auto& [s, t] : faults_.crossings) {
+      visit_corners(s);
+      visit_corners(t);
     }
+  }
+
+  Indices with_rings(Indices vertices, int rings) const {
+    for (; rings > 0; --rings) {
+      for (const auto t : triangles_around(vertices))
+        for (const auto v : surface_.triangles[t]) vertices.push_back(v);
+      sort_unique(vertices);
+    }
+    return vertices;
+  }
+
+  /// Splits vertices into patches that share no face; patch_ tells the patch of each.
+  std::vector<Indices> find_patches(const Indices& vertices) {
+    constexpr std::uint32_t kOpen = kNone - 1;
+    for (const auto v : vertices) patch_[v] = kOpen;
+    std::vector<Indices> patches;
+    for (const auto seed : vertices) {
+      if (patch_[seed] != kOpen) continue;
+      const auto number = static_cast<std::uint32_t>(patches.size());
+      Indices& patch = patches.emplace_back(1, seed);
+      patch_[seed] = number;
+      for (std::size_t i = 0; i < patch.size(); ++i)
+        for (const auto t : surface_.triangles_around(patch[i]))
+          for (const auto w : surface_.triangles[t])
+            if (patch_[w] == kOpen) {
+              patch_[w] = number;
+              patch.push_back(w);
+            }
+      std::sort(patch.begin(), patch.end());
+    }
+    return patches;
+  }
+
+  /// What is wrong in each patch, corner by corner.
+  std::vector<std::size_t> faults_by_patch(std::size_t patches) const {
+    constexpr std::size_t kMisplaced = 1000000;  // a vertex too far out or on the wrong side: never worth it
+    std::vector<std::size_t> faults(patches, 0);
+    for_each_wrong_corner([&](std::uint32_t v) {
+      if (patch_[v] != kNone) ++faults[patch_[v]];
+    });
+    for (const auto v : faults_.vertices)
+      if (patch_[v] != kNone) faults[patch_[v]] += kMisplaced;
+    return faults;
+  }
+
+  /// Untangles patches around what is wrong, all at their distance, and keeps those where that makes nothing worse.
+  void untangle(int rings, int smoothing) {
+    Indices chosen;
+    for_each_wrong_corner([&](std::uint32_t v) { chosen.push_back(v); });
+    sort_unique(chosen);
+    chosen = with_rings(std::move(chosen), rings);
+    // What has collided may slide to where there is room.
+    std::erase_if(chosen, [&](std::uint32_t v) {
+      return paths_.state[v] != VertexState::Reached && paths_.state[v] != VertexState::Collision;
+    });
+    const std::vector<Indices> patches = find_patches(chosen);
+    const std::vector<std::size_t> before = faults_by_patch(patches.size());
+    std::vector<Vec3d> old_way(chosen.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
+    const Untangler untangler(query_, options_.distance, smoothing);
+    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
+    look(chosen);
+    const std::vector<std::size_t> after = faults_by_patch(patches.size());
+    Indices undone;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      const std::uint32_t v = chosen[i];
+      if (after[patch_[v]] <= before[patch_[v]]) continue;
+      whole_way_[v] = old_way[i];
+      undone.push_back(v);
+    }
+    for (const auto v : chosen) patch_[v] = kNone;
+    if (!undone.empty()) look(undone);
+  }
+
+  /// The vertices that something is wrong with.
+  Indices wrong_vertices() const {
+    Indices wrong = faults_.vertices;
+    for_each_wrong_corner([&](std::uint32_t v) { wrong.push_back(v); });
+    sort_unique(wrong);
     return wrong;
   }
 
-  /// What is wrong at each vertex: faces around it and crossings of those.
-  std::vector<std::uint32_t> faults_around(const Faults& faults) const {
-    std::vector<std::uint32_t> around(source_.size(), 0);
-    const auto add = [&](std::uint32_t t) {
-      for (const auto v : surface_.triangles[t]) ++around[v];
-    };
-    for (std::uint32_t t = 0; t < faults.face.size(); ++t)
-      if (faults.face[t]) add(t);
-    for (const auto& [s, t] : faults.crossings) {
-      add(s);
-      add(t);
-    }
-    return around;
-  }
-
-  /// Numbers the patches that hang together among the chosen vertices; kNone for the others.
-  std::vector<std::uint32_t> find_patches(const std::vector<std::uint8_t>& chosen, std::uint32_t& count) const {
-    std::vector<std::uint32_t> patch(chosen.size(), kNone), open;
-    count = 0;
-    for (std::uint32_t seed = 0; seed < chosen.size(); ++seed) {
-      if (!chosen[seed] || patch[seed] != kNone) continue;
-      patch[seed] = count;
-      for (open.assign(1, seed); !open.empty();) {
-        const std::uint32_t v = open.back();
-        open.pop_back();
-        for (const auto t : surface_.triangles_around(v))
-          for (const auto w : surface_.triangles[t])
-            if (chosen[w] && patch[w] == kNone) {
-              patch[w] = count;
-              open.push_back(w);
-            }
-      }
-      ++count;
-    }
-    return patch;
-  }
-
-  std::vector<std::uint8_t> with_ring(const std::vector<std::uint8_t>& chosen) const {
-    std::vector<std::uint8_t> wider = chosen;
-    for (const auto& [a, b, c] : surface_.triangles)
-      if (chosen[a] || chosen[b] || chosen[c]) wider[a] = wider[b] = wider[c] = 1;
-    return wider;
-  }
-
-  /// The way of a vertex that goes by `weight` the mean way of its neighbours, then to the target's distance, if it
-  /// settles there.
-  std::optional<Vec3d> relaxed_way(std::uint32_t v, double weight) const {
-    Vec3d sum(0.0);
-    std::size_t count = 0;
-    for (const auto t : surface_.triangles_around(v))
-      for (const auto w : surface_.triangles[t])
-        if (w != v) {
-          sum += whole_way_[w];
-          ++count;
-        }
-    const Vec3d start = source_[v] - surface_.origin;
-    Vec3d x = start + whole_way_[v] * (1 - weight) + sum * (weight / static_cast<double>(count));
-    std::uint32_t hint = surface_.triangles_around(v).front();
-    constexpr int kMostSteps = 20;
-    constexpr double kSettled = 1e-9;
-    for (int i = 0; i < kMostSteps; ++i) {
-      const Closest closest = query_(x, hint);
-      hint = closest.triangle;
-      if (std::abs(closest.distance - target_) <= kSettled * target_) return round_way(x - start, target_);
-      if (!(closest.distance > 1e-3 * target_)) return std::nullopt;
-      x = closest.point + (x - closest.point) * (target_ / closest.distance);
-    }
-    return std::nullopt;
-  }
-
-  /// Untangles the patches of so many rings around what is wrong, all at their distance, and keeps those where that
-  /// makes nothing worse. False if nothing is wrong.
-  bool untangle(Faults& faults, int rings) {
-    const std::vector<std::uint32_t> before = faults_around(faults);
-    std::vector<std::uint8_t> chosen(source_.size());
-    bool any = false;
-    for (std::size_t v = 0; v < chosen.size(); ++v) {
-      chosen[v] = before[v] > 0;
-      any |= before[v] > 0;
-    }
-    if (!any) return false;
-    for (int ring = 0; ring < rings; ++ring) chosen = with_ring(chosen);
-    for (std::size_t v = 0; v < chosen.size(); ++v) chosen[v] = chosen[v] && paths_.state[v] == VertexState::Reached;
-    const std::vector<Vec3d> old_way = whole_way_;
-    std::uint32_t count = 0;
-    const std::vector<std::uint32_t> patch = find_patches(chosen, count);
-    std::vector<std::vector<std::uint32_t>> patches(count);
-    for (std::uint32_t v = 0; v < patch.size(); ++v)
-      if (patch[v] != kNone) patches[patch[v]].push_back(v);
-    const Untangler untangler(query_, options_.distance);
-    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
-    std::vector<std::uint8_t> moved = chosen;
-    faults = look(moved);
-    if (undo_worse_patches(faults, before, chosen, old_way, moved)) faults = look(moved);
-    return true;
-  }
-
-  /// Takes back the patches with more faults than before, and marks their vertices as moved. False if there are none.
-  bool undo_worse_patches(const Faults& faults, const std::vector<std::uint32_t>& before,
-                          const std::vector<std::uint8_t>& chosen, const std::vector<Vec3d>& old_way,
-                          std::vector<std::uint8_t>& moved) {
-    constexpr std::int64_t kMisplaced = 1000;  // a vertex too far out or on the wrong side: never worth it
-    std::uint32_t count = 0;
-    const std::vector<std::uint32_t> patch = find_patches(chosen, count), after = faults_around(faults);
-    std::vector<std::int64_t> gain(count, 0);
-    for (std::size_t v = 0; v < patch.size(); ++v)
-      if (patch[v] != kNone)
-        gain[patch[v]] += std::int64_t{before[v]} - std::int64_t{after[v]} - kMisplaced * faults.vertex[v];
-    bool undone = false;
-    for (std::size_t v = 0; v < patch.size(); ++v) {
-      moved[v] = moved[v] && gain[patch[v]] < 0;
-      if (!moved[v]) continue;
-      whole_way_[v] = old_way[v];
-      undone = true;
-    }
-    return undone;
-  }
-
   /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.
-  bool pull_back(const Faults& faults, std::vector<std::uint8_t>& moved) {
-    moved = wrong_vertices(faults);
-    bool any = false;
-    for (std::size_t v = 0; v < moved.size(); ++v) {
-      moved[v] = moved[v] && share_[v] > 0;
-      if (!moved[v]) continue;
+  bool pull_back() {
+    Indices wrong = wrong_vertices();
+    std::erase_if(wrong, [&](std::uint32_t v) { return share_[v] == 0; });
+    if (wrong.empty()) return false;
+    for (const auto v : wrong) {
       share_[v] = share_[v] * kKept < kLastShare ? 0 : share_[v] * kKept;
-      any = true;
+      pulled_.push_back(v);
     }
-    return any;
+    sort_unique(pulled_);
+    look(wrong);
+    ++statistics_.rounds;
+    return true;
   }
 
   /// Lets every pulled vertex out by one step, and takes those back that something is then wrong with. False if none
   /// could be let out.
-  bool release(Progress& progress) {
-    const std::vector<double> before = share_;
-    std::vector<std::uint8_t> moved(source_.size(), 0);
-    for (std::size_t v = 0; v < share_.size(); ++v)
-      if (share_[v] < 1 && share_[v] > 0) {
-        share_[v] = std::min(1.0, share_[v] / kKept);
-        moved[v] = 1;
-      }
-    for (;;) {
-      const Faults faults = look(moved);
-      ++statistics_.rounds;
-      progress.advance(1);
-      moved = wrong_vertices(faults);
-      bool any = false;
-      for (std::size_t v = 0; v < moved.size(); ++v) {
-        moved[v] = moved[v] && share_[v] != before[v];
-        if (!moved[v]) continue;
-        share_[v] = before[v];
-        any = true;
-      }
-      if (!any) break;
+  bool release() {
+    Indices moved = pulled_;
+    std::erase_if(moved, [&](std::uint32_t v) { return share_[v] == 0 || share_[v] == 1; });
+    std::vector<std::pair<std::uint32_t, double>> before;
+    before.reserve(moved.size());
+    for (const auto v : moved) {
+      before.emplace_back(v, share_[v]);
+      share_[v] = std::min(1.0, share_[v] / kKept);
     }
-    return share_ != before;
+    for (std::size_t out = before.size(); !moved.empty();) {
+      look(moved);
+      ++statistics_.rounds;
+      moved = wrong_vertices();
+      std::erase_if(moved, [&](std::uint32_t v) {
+        const auto at = std::lower_bound(before.begin(), before.end(), std::pair(v, 0.0));
+        if (at == before.end() || at->first != v || at->second == share_[v]) return true;
+        share_[v] = at->second;
+        return false;
+      });
+      out -= moved.size();
+      if (moved.empty()) return out > 0;
+    }
+    return false;
   }
 
   void finish() {
     double lost = 0;
     for (std::size_t v = 0; v < share_.size(); ++v) {
       paths_.displacement[v] = way(v);
-      if (share_[v] == 1) continue;
+      if (share_[v] == 1 && paths_.state[v] != VertexState::Collision) continue;
       lost += std::max(0.0, paths_.achieved[v] - distance_[v]);
       paths_.achieved[v] = distance_[v];
-      if (std::abs(distance_[v] - target_) <= kReachedTolerance * target_) continue;
-      paths_.state[v] = VertexState::Limited;
-      ++statistics_.limited_vertices;
+      if (std::abs(distance_[v] - target_) <= kReachedTolerance * target_) {
+        paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
+      } else if (share_[v] != 1) {
+        paths_.state[v] = VertexState::Limited;
+        ++statistics_.limited_vertices;
+      }
     }
     statistics_.thickness_lost = lost / (target_ * static_cast<double>(std::max<std::size_t>(1, share_.size())));
   }
@@ -381,10 +373,15 @@ class Limiter {
   Paths& paths_;
   std::vector<Vec3d> whole_way_;
   std::vector<double> share_;  // of the way that a vertex goes
+  Indices pulled_;             // vertices that have been pulled back at some time
   std::vector<Vec3d> place_, away_;
   std::vector<double> distance_;
-  std::vector<std::uint8_t> right_side_, fault_, near_source_;
-  std::vector<TrianglePair> source_crossings_, crossings_;  // of the source; new ones, as things stand
+  std::vector<std::uint8_t> right_side_, near_source_;
+  std::vector<Fault> fault_;  // of each triangle
+  Faults faults_;             // as things stand
+  Indices patch_;             // of each vertex while patches are being untangled, else kNone
+  CrossingFinder finder_;
+  std::vector<TrianglePair> source_crossings_;
   LimitStatistics statistics_;
 };
 

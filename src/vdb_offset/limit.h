@@ -24,7 +24,8 @@ struct LimitStatistics {
   FaultCounts left;                       ///< 0 but where rounding to the format's numbers makes a source cross itself.
   std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
   std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
-  std::size_t rounds = 0;
+  std::size_t untanglings = 0;            ///< Rounds in which patches were untangled.
+  std::size_t rounds = 0;                 ///< Rounds in which vertices were pulled back or let out again.
   std::size_t limited_vertices = 0;
   double thickness_lost = 0;  ///< Mean over the vertices of (asked - achieved) / asked that limit() took away.
 };
@@ -33,12 +34,12 @@ struct LimitStatistics {
 ///
 /// A face is inverted if it faces against the direction away from the surface at its centre and at each corner (there,
 /// its distance has folded over), collapsed if its area is below 1e-6 of the source's. Crossings are found with exact
-/// predicates, on the coordinates as they will be written. Patches around what is wrong are relaxed first: their
-/// vertices go the mean way of their neighbours and back to their distance, and a patch keeps that where it makes
-/// nothing worse. That costs no distance. Then the vertices of a face that is wrong are pulled back towards where they
-/// came from, by a little in each round, until nothing is wrong; then those that were are let out again as far as
-/// nothing goes wrong. A surface pulled back altogether is the source, so that it ends. Pulled vertices are `Limited`,
-/// with the distance that they keep.
+/// predicates, on the coordinates as they will be written. Patches around what is wrong are untangled first
+/// (Untangler), small ones, then larger ones and with smoother normals, and a patch keeps that where it makes nothing
+/// worse. That costs no distance. Then the vertices of a face that is wrong are pulled back towards where they came
+/// from, by a little in each round, until nothing is wrong; then those that were are let out again as far as nothing
+/// goes wrong. A surface pulled back altogether is the source, so that it ends. Pulled vertices are `Limited`, with the
+/// distance that they keep.
 ///
 /// `source` holds where the surface's vertices stand in the input, world coordinates.
 /// The result does not depend on the number of threads.

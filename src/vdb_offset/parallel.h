@@ -7,10 +7,11 @@
 
 namespace vdb_offset {
 
-/// Calls work(0 .. count - 1) in parallel, in runs long enough for work of a few nanoseconds.
+/// Calls work(0 .. count - 1) in parallel, in runs long enough for work of a few nanoseconds or of no less than
+/// `grain`.
 template <class Work>
-void for_each_index(std::size_t count, Work&& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+void for_each_index(std::size_t count, Work&& work, std::size_t grain = 1024) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
   });
 }

@@ -50,13 +50,10 @@ Json faults_json(const FaultCounts& counts) {
 }
 
 Json limit_json(const LimitStatistics& limit) {
-  return {{"before", faults_json(limit.before)},
-          {"left", faults_json(limit.left)},
-          {"source_crossings", limit.source_crossings},
-          {"crossings_near_source", limit.crossings_near_source},
-          {"rounds", limit.rounds},
-          {"vertices", limit.limited_vertices},
-          {"mean_thickness_lost", limit.thickness_lost}};
+  return {{"before", faults_json(limit.before)},        {"left", faults_json(limit.left)},
+          {"source_crossings", limit.source_crossings}, {"crossings_near_source", limit.crossings_near_source},
+          {"untanglings", limit.untanglings},           {"rounds", limit.rounds},
+          {"vertices", limit.limited_vertices},         {"mean_thickness_lost", limit.thickness_lost}};
 }
 
 Json grids_json(const OffsetStatistics& statistics) {

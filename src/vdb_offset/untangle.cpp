@@ -22,6 +22,9 @@ constexpr std::size_t kMemory = 8;
 // No vertex goes farther than this, in distances, in one step.
 constexpr double kLongestStep = 0.2;
 
+// A vertex stays in the ball around it that holds no surface.
+constexpr double kFreeShare = 0.9;
+
 /// Two directions at right angles to n and to each other.
 std::array<Vec3d, 2> plane_of(const Vec3d& n) {
   const int axis = std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2)
@@ -46,25 +49,26 @@ double chi(double det, double epsilon) {
 
 class Patch {
  public:
-  Patch(const ClosestQuery& query, double target, int side, std::span<const std::uint32_t> vertices, std::span<Vec3d> way)
+  Patch(const ClosestQuery& query, double target, int side, std::span<const std::uint32_t> vertices,
+        std::span<Vec3d> way)
       : query_(query), surface_(query.surface()), target_(target), side_(side), free_(vertices.size()) {
     for (const auto v : vertices) add_point(v, way);
     collect_faces(vertices, way);
   }
 
-  void untangle() {
-    for (int i = 0; i < kRenewals; ++i) {
-      renew_planes();
-      if (getenv("DBG")) {
-        int neg = 0;
-        for (auto& f : faces_) { double j[4]; neg += jacobian_of(f, {}, j) <= 0; }
-        fprintf(stderr, "  patch %zu free %zu faces %zu renewal %d least det %g neg %d\n", (std::size_t)points_[0].vertex, free_, faces_.size(), i, least_det_, neg);
-      }
-      std::vector<Vec3d> before(free_);
-      for (std::size_t k = 0; k < free_; ++k) before[k] = points_[k].x;
+  void untangle(int smoothing) {
+    renew_planes(smoothing);
+    std::vector<Vec3d> best = places();
+    for (int i = 0, fewest = folded_; i < kRenewals && (i == 0 || fewest > 0); ++i) {
+      const std::vector<Vec3d> before = places();
       slide();
       for (std::size_t k = 0; k < free_; ++k) return_to_distance(points_[k], before[k]);
+      renew_planes(smoothing);
+      if (i > 0 && folded_ > fewest) continue;
+      fewest = folded_;
+      best = places();
     }
+    for (std::size_t k = 0; k < free_; ++k) points_[k].x = best[k];
   }
 
   void store(std::span<Vec3d> way) const {
@@ -75,6 +79,7 @@ class Patch {
  private:
   struct Point {
     std::uint32_t vertex, hint;
+    double distance;               // to the surface when planes were renewed
     Vec3d x, normal;               // local frame; away from the surface, smoothed over the neighbours
     std::array<Vec3d, 2> tangent;  // at right angles to it
   };
@@ -86,7 +91,7 @@ class Patch {
   };
 
   void add_point(std::uint32_t v, std::span<const Vec3d> way) {
-    points_.push_back({v, surface_.triangles_around(v).front(), surface_.vertices[v] + way[v], {}, {}});
+    points_.push_back({v, surface_.triangles_around(v).front(), 0, surface_.vertices[v] + way[v], {}, {}});
   }
 
   std::uint32_t index_of(std::uint32_t v, std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
@@ -117,23 +122,26 @@ class Patch {
     }
   }
 
-  void renew_planes() {
+  void renew_planes(int smoothing) {
     for (Point& p : points_) {
       const Closest closest = query_(p.x, p.hint);
       p.hint = closest.triangle;
+      p.distance = closest.distance;
       p.normal = closest.distance > 0 ? (p.x - closest.point) / closest.distance : Vec3d(0.0);
     }
-    static int passes = getenv("PASSES") ? atoi(getenv("PASSES")) : 4;
-    for (int i = 0; i < passes; ++i) smooth_normals();
+    for (int i = 0; i < smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
     least_det_ = 1;
+    folded_ = 0;
     for (Face& face : faces_) {
       Vec3d n(0.0);
       for (const auto i : face.point) n += points_[i].normal;
       if (!(n.lengthSqr() > 1e-12)) n = points_[face.point[0]].normal;
       face.plane = plane_of(n.unit() * side_);
       double jacobian[4];
-      least_det_ = std::min(least_det_, jacobian_of(face, {}, jacobian));
+      const double det = jacobian_of(face, {}, jacobian);
+      least_det_ = std::min(least_det_, det);
+      folded_ += det <= 0;
     }
   }
   /// Each normal becomes the mean of its own and those across the faces around.
@@ -146,6 +154,12 @@ class Patch {
     }
     for (std::size_t i = 0; i < points_.size(); ++i)
       points_[i].normal = sum[i].lengthSqr() > 1e-12 ? sum[i].unit() : Vec3d(0.0, 0.0, 1.0);
+  }
+
+  std::vector<Vec3d> places() const {
+    std::vector<Vec3d> x(free_);
+    for (std::size_t i = 0; i < free_; ++i) x[i] = points_[i].x;
+    return x;
   }
 
   Vec3d position(std::uint32_t i, std::span<const double> slide) const {
@@ -174,12 +188,11 @@ class Patch {
       double j[4];
       const double det = jacobian_of(face, slide, j), x = chi(det, epsilon),
                    x_slope = x / std::sqrt(epsilon * epsilon + det * det);
-      const double e =
-          (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + kAreaWeight * (det * det + 1)) / x;
+      const double e = (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + kAreaWeight * (det * det + 1)) / x;
       sum += face.area * e;
       const double by_det = (2 * kAreaWeight * det - e * x_slope) / x;
-      const double by_j[4] = {2 * j[0] / x + by_det * j[3], 2 * j[1] / x - by_det * j[2],
-                              2 * j[2] / x - by_det * j[1], 2 * j[3] / x + by_det * j[0]};
+      const double by_j[4] = {2 * j[0] / x + by_det * j[3], 2 * j[1] / x - by_det * j[2], 2 * j[2] / x - by_det * j[1],
+                              2 * j[3] / x + by_det * j[0]};
       Vec3d by_ab(0.0), by_ac(0.0);
       for (std::size_t row = 0; row < 2; ++row) {
         const double b = by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1],
@@ -258,7 +271,11 @@ class Patch {
       e = next_e;
       if (gained < 1e-6 * e) break;
     }
-    for (std::uint32_t i = 0; i < free_; ++i) points_[i].x = position(i, x);
+    for (std::uint32_t i = 0; i < free_; ++i) {
+      const Vec3d way = position(i, x) - points_[i].x;
+      const double length = way.length(), free = kFreeShare * points_[i].distance;
+      points_[i].x += length > free ? way * (free / length) : way;
+    }
   }
 
   /// Along the smoothed normal to the distance. On the way out phi is concave there, as the least of the distances to
@@ -271,11 +288,10 @@ class Patch {
       p.hint = closest.triangle;
       if (std::abs(closest.distance - target_) <= kSettled * target_) return;
       if (!(closest.distance > 1e-3 * target_)) break;
-      const double slope = p.normal.dot(p.x - closest.point) / closest.distance;
-      p.x += p.normal * ((target_ - closest.distance) / std::max(slope, kLeastSlope));
+      const double slope = p.normal.dot(p.x - closest.point) / closest.distance, free = kFreeShare * closest.distance;
+      p.x += p.normal * std::clamp((target_ - closest.distance) / std::max(slope, kLeastSlope), -free, free);
       if (!((p.x - before).length() < 2 * target_)) break;
     }
-    if (getenv("DBG")) fprintf(stderr, "  not settled %u\n", p.vertex);
     p.x = before;
   }
 
@@ -283,17 +299,18 @@ class Patch {
   const Surface& surface_;
   double target_;
   int side_;
-  std::size_t free_;           // the first points are the patch's, the others stand around it
+  std::size_t free_;  // the first points are the patch's, the others stand around it
   std::vector<Point> points_;
   std::vector<Face> faces_;
-  double least_det_ = 1;
+  double least_det_ = 1;  // of the faces, as planes were renewed, and how many are folded over
+  int folded_ = 0;
 };
 
 }  // namespace
 
 void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const {
   Patch work(query_, target_, side_, patch, way);
-  work.untangle();
+  work.untangle(smoothing_);
   work.store(way);
 }
 

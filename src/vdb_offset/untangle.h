@@ -10,16 +10,19 @@ namespace vdb_offset {
 
 /// Unfolds patches of a surface's offset, every vertex staying at its distance.
 ///
-/// A patch's vertices slide in their planes at right angles to grad phi, so that a foldover-free energy of its faces
-/// falls (Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, Foldover-free maps in 50 lines of code, 2021): the
-/// sum over faces of area (tr J'J + lambda (det J^2 + 1)) / chi(det J), where J takes the source's triangle to its
-/// image seen along grad phi and chi is smooth, positive and tiny where det J < 0. L-BFGS, a few steps at a time; then
-/// back to the distance, and planes anew.
+/// A patch's vertices slide in their planes so that a foldover-free energy of its faces falls (Garanzha, Kaporin,
+/// Kudryavtseva, Protais, Ray, Sokolov, Foldover-free maps in 50 lines of code, 2021): the sum over faces of
+/// area (tr J'J + lambda (det J^2 + 1)) / chi(det J), where J takes the source's triangle to its image in the plane of
+/// its corners' normals and chi is smooth, positive, and tiny where det J < 0. A few steps of L-BFGS; then along the
+/// normals back to the distance, and all planes anew. The normals are directions away from the surface, *smoothed over
+/// the patch*: seen along those the offset surface is a graph even across a concave crease, where its own normal
+/// jumps, so that what is unfolded in the planes is unfolded on the surface.
 class Untangler {
  public:
-  /// Keeps a reference to the query. `distance` in world units, not 0; negative is inward.
-  Untangler(const ClosestQuery& query, double distance)
-      : query_(query), target_(std::abs(distance)), side_(distance < 0 ? -1 : 1) {}
+  /// Keeps a reference to the query. `distance` in world units, not 0; negative is inward. Normals are smoothed over
+  /// the patch `smoothing` times.
+  Untangler(const ClosestQuery& query, double distance, int smoothing)
+      : query_(query), target_(std::abs(distance)), side_(distance < 0 ? -1 : 1), smoothing_(smoothing) {}
 
   /// Moves the patch's vertices: `way` leads from each of the surface's vertices to its place, at the distance for
   /// those of the patch, which are sorted. Reads the ways of the vertices around the patch.
@@ -29,7 +32,7 @@ class Untangler {
  private:
   const ClosestQuery& query_;
   double target_;
-  int side_;
+  int side_, smoothing_;
 };
 
 }  // namespace vdb_offset
