@@ -350,8 +350,9 @@ class Limiter {
   void finish() {
     double lost = 0;
     for (std::size_t v = 0; v < share_.size(); ++v) {
+      const bool stayed = paths_.displacement[v] == way(v);
       paths_.displacement[v] = way(v);
-      if (share_[v] == 1 && paths_.state[v] != VertexState::Collision) continue;
+      if (stayed) continue;
       lost += std::max(0.0, paths_.achieved[v] - distance_[v]);
       paths_.achieved[v] = distance_[v];
       if (std::abs(distance_[v] - target_) <= kReachedTolerance * target_) {

@@ -90,8 +90,13 @@ Start start_of(const Surface& surface, std::uint32_t vertex) {
 /// One vertex on its way.
 class Traveller {
  public:
+  /// One that is in haste asks what is near of the triangles around the last answer alone. That is right but where
+  /// another part of the surface comes near, which shows in the exact distance where it ends up: having met such a part
+  /// it is nearer to that than it believes.
+  enum class Pace { Careful, Hasty };
+
   Traveller(const ClosestQuery& query, const DirectionField& field, const DirectionSampler& sampler, double distance,
-            std::uint32_t vertex)
+            std::uint32_t vertex, Pace pace)
       : query_(query),
         sampler_(sampler),
         surface_(query.surface()),
@@ -100,7 +105,8 @@ class Traveller {
         h_(field.voxel_size),
         sided_(surface_.facts.closed() && surface_.facts.oriented()),
         origin_(surface_.vertices[vertex]),
-        hint_(surface_.triangles_around(vertex).front()) {
+        hint_(surface_.triangles_around(vertex).front()),
+        pace_(pace) {
     const Start start = start_of(surface_, vertex);
     normal_ = start.direction * side_;
     slope_ = start.slope;
@@ -168,10 +174,15 @@ class Traveller {
   };
 
   Sample measure(const Vec3d& x) {
-    const Closest closest = query_(x, hint_);
-    hint_ = closest.triangle;
-    feature_ = closest.feature;
-    return {x, closest.distance, x - closest.point};
+    if (pace_ == Pace::Careful) {
+      const Closest closest = query_(x, hint_);
+      hint_ = closest.triangle;
+      feature_ = closest.feature;
+      return {x, closest.distance, x - closest.point};
+    }
+    const TrianglePoint nearest = surface_.walk_to_closest(x, hint_);
+    feature_ = nearest.feature;
+    return {x, std::sqrt(nearest.squared_distance), x - nearest.point};
   }
   bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
 
@@ -287,6 +298,7 @@ class Traveller {
   Vec3d origin_, normal_;  // of the vertex; the normal points to the side asked for
   double slope_;
   std::uint32_t hint_;
+  Pace pace_;
   Feature feature_ = Feature::Face;
   bool outside_ = false;
 };
@@ -304,7 +316,8 @@ std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const Direction
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
       auto& flag = straight[surface.component[v]];
       if (!flag.load(std::memory_order_relaxed)) continue;
-      const auto end = Traveller(query, directions, sampler, distance, static_cast<std::uint32_t>(v)).go_straight();
+      const auto vertex = static_cast<std::uint32_t>(v);
+      const auto end = Traveller(query, directions, sampler, distance, vertex, Traveller::Pace::Careful).go_straight();
       if (end) arrival[v] = *end;
       else flag.store(0, std::memory_order_relaxed);
     }
@@ -341,16 +354,23 @@ Paths propagate(const ClosestQuery& query, const DirectionField& directions, con
     const DirectionSampler sampler(directions);
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
       const auto vertex = static_cast<std::uint32_t>(v);
-      const auto end = straight[surface.component[v]]
-                           ? Traveller::Arrival{arrival[v]}
-                           : Traveller(query, directions, sampler, options.distance, vertex).march();
-      paths.displacement[v] = round_way(end.position - surface.vertices[v], target);
-      // Judged where the vertex will be: far from the origin its coordinates are rounded.
-      const Vec3d place = (surface.vertices[v] + surface.origin) + paths.displacement[v];
-      paths.achieved[v] = query(place - surface.origin, surface.triangles_around(vertex).front()).distance;
-      paths.state[v] = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target ? VertexState::Reached
-                       : end.outside_field                                                ? VertexState::OutsideField
-                                                                                          : VertexState::Collision;
+      const auto arrive = [&](const Traveller::Arrival& end) {
+        paths.displacement[v] = round_way(end.position - surface.vertices[v], target);
+        // Judged where the vertex will be: far from the origin its coordinates are rounded.
+        const Vec3d place = (surface.vertices[v] + surface.origin) + paths.displacement[v];
+        paths.achieved[v] = query(place - surface.origin, surface.triangles_around(vertex).front()).distance;
+        paths.state[v] = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target ? VertexState::Reached
+                         : end.outside_field                                                ? VertexState::OutsideField
+                                                                                            : VertexState::Collision;
+      };
+      if (straight[surface.component[v]]) {
+        arrive({arrival[v]});
+        continue;
+      }
+      for (const auto pace : {Traveller::Pace::Hasty, Traveller::Pace::Careful}) {
+        arrive(Traveller(query, directions, sampler, options.distance, vertex, pace).march());
+        if (paths.state[v] == VertexState::Reached) break;
+      }
     }
     progress.advance(range.size());
   });
