@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 
+#include "vdb_offset/faults.h"
 #include "vdb_offset/propagate.h"
 
 namespace vdb_offset {
@@ -10,12 +11,6 @@ namespace vdb_offset {
 struct LimitOptions {
   double distance;                ///< World units, not 0; negative is inward.
   bool single_precision = false;  ///< The result will be stored as 32-bit floats, and is checked as such.
-};
-
-/// What may be wrong with a result.
-struct FaultCounts {
-  std::size_t inverted = 0, collapsed = 0;  ///< Faces.
-  std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
 };
 
 /// What limit() found and did.
@@ -32,9 +27,7 @@ struct LimitStatistics {
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew.
 ///
-/// A face is inverted if it faces against the direction away from the surface at its centre and at each corner (there,
-/// its distance has folded over), collapsed if its area is below 1e-6 of the source's. Crossings are found with exact
-/// predicates, on the coordinates as they will be written. Patches around what is wrong are untangled first
+/// What counts as wrong is told in faults.h. Patches around what is wrong are untangled first
 /// (Untangler), small ones, then larger ones and with smoother normals, and a patch keeps that where it makes nothing
 /// worse. That costs no distance. Then the vertices of a face that is wrong are pulled back towards where they came
 /// from, by a little in each round, until nothing is wrong; then those that were are let out again as far as nothing

@@ -1,0 +1,176 @@
+#include "vdb_offset/faults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vdb_offset/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+// What the states mean by "reached" and no farther.
+constexpr double kReachedTolerance = 1e-6;
+
+/// Judges anew the members of `some`.
+template <class Wrong>
+void replace(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
+  std::erase_if(wrong, [&](std::uint32_t i) { return std::binary_search(some.begin(), some.end(), i); });
+  for (const auto i : some)
+    if (is_wrong(i)) wrong.push_back(i);
+  std::sort(wrong.begin(), wrong.end());
+}
+
+}  // namespace
+
+void sort_unique(Indices& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+FaultFinder::FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance,
+                         bool single_precision)
+    : query_(query),
+      surface_(query.surface()),
+      source_(source),
+      target_(std::abs(distance)),
+      side_(distance < 0 ? -1 : 1),
+      single_precision_(single_precision),
+      place_(source.begin(), source.end()),
+      away_(source.size()),
+      distance_(source.size()),
+      right_side_(source.size(), 1),
+      fault_(surface_.triangles.size(), Fault::None),
+      finder_(surface_, place_) {
+  source_crossings_ = finder_.all();
+  mark_near_source();
+}
+
+/// Vertices within two rings of a face that crosses another in the source.
+void FaultFinder::mark_near_source() {
+  near_source_.assign(source_.size(), 0);
+  for (const auto& [s, t] : source_crossings_)
+    for (const auto triangle : {s, t})
+      for (const auto v : surface_.triangles[triangle]) near_source_[v] = 1;
+  for (int ring = 0; ring < 2 && !source_crossings_.empty(); ++ring) {
+    const std::vector<std::uint8_t> inner = near_source_;
+    for (const auto& [a, b, c] : surface_.triangles)
+      if (inner[a] || inner[b] || inner[c]) near_source_[a] = near_source_[b] = near_source_[c] = 1;
+  }
+}
+bool FaultFinder::is_near_source(std::uint32_t triangle) const {
+  const auto& [a, b, c] = surface_.triangles[triangle];
+  return near_source_[a] || near_source_[b] || near_source_[c];
+}
+
+Indices FaultFinder::triangles_around(const Indices& vertices) const {
+  Indices triangles;
+  if (vertices.size() == source_.size()) {
+    triangles.resize(surface_.triangles.size());
+    std::iota(triangles.begin(), triangles.end(), 0u);
+    return triangles;
+  }
+  for (const auto v : vertices) {
+    const auto around = surface_.triangles_around(v);
+    triangles.insert(triangles.end(), around.begin(), around.end());
+  }
+  sort_unique(triangles);
+  return triangles;
+}
+
+void FaultFinder::look_for_crossings(const Indices& touched) {
+  finder_.update(touched);
+  const auto has_moved = [&](std::uint32_t t) { return std::binary_search(touched.begin(), touched.end(), t); };
+  const bool first = touched.size() == surface_.triangles.size();
+  // Pairs that have not moved meet as before.
+  std::erase_if(crossings_, [&](const TrianglePair& pair) { return has_moved(pair.first) || has_moved(pair.second); });
+  for (const TrianglePair& pair : first ? finder_.all() : finder_.of(touched)) {
+    if (std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair)) continue;
+    if (is_near_source(pair.first) || is_near_source(pair.second)) crossings_near_source_ += first;
+    else crossings_.push_back(pair);
+  }
+}
+
+void FaultFinder::measure(std::size_t v) {
+  const Vec3d x = place_[v] - surface_.origin;
+  const auto vertex = static_cast<std::uint32_t>(v);
+  const Closest closest = query_(x, surface_.triangles_around(vertex).front());
+  distance_[v] = closest.distance;
+  away_[v] = x - closest.point;
+  const bool sided = surface_.facts.closed() && surface_.facts.oriented();
+  right_side_[v] = !sided || closest.distance <= 1e-3 * target_ ||
+                   side_ * surface_.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
+}
+
+/// How far rounding may have moved a vertex.
+double FaultFinder::rounding(std::size_t v) const {
+  double size = 0;
+  for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(place_[v][k]));
+  return size * (single_precision_ ? 0x1p-23 : 0x1p-51);
+}
+
+Vec3d FaultFinder::twice_area(std::uint32_t t, std::span<const Vec3d> at) const {
+  const auto& [a, b, c] = surface_.triangles[t];
+  return (at[b] - at[a]).cross(at[c] - at[a]);
+}
+
+FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
+  constexpr double kCollapsed = 1e-6;
+  const Vec3d before = twice_area(t, source_), now = twice_area(t, place_);
+  if (!(before.lengthSqr() > 0)) return Fault::None;
+  if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
+  // A place very near the source says nothing; with none left the source's normal decides.
+  const double near = 1e-3 * target_;
+  bool any = false;
+  for (const auto v : surface_.triangles[t]) {
+    if (distance_[v] < near) continue;
+    any = true;
+    if (side_ * now.dot(away_[v]) >= 0) return Fault::None;
+  }
+  const auto& [a, b, c] = surface_.triangles[t];
+  const Vec3d centre = (place_[a] + place_[b] + place_[c]) / 3.0 - surface_.origin;
+  const Closest closest = query_(centre, t);
+  if (closest.distance >= near) return side_ * now.dot(centre - closest.point) < 0 ? Fault::Inverted : Fault::None;
+  return any || now.dot(before) < 0 ? Fault::Inverted : Fault::None;
+}
+
+void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of) {
+  Indices everything(source_.size());
+  std::iota(everything.begin(), everything.end(), 0u);
+  crossings_near_source_ = 0;
+  look(everything, place_of);
+}
+
+void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
+  const auto put = [&](std::size_t i) {
+    const Vec3d p = place_of(moved[i]);
+    place_[moved[i]] =
+        single_precision_ ? Vec3d(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])) : p;
+    measure(moved[i]);
+  };
+  for_each_index(moved.size(), put, 64);
+  const Indices touched = triangles_around(moved);
+  for_each_index(
+      touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
+  replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
+  replace(misplaced_, moved, [&](std::uint32_t v) {
+    return !right_side_[v] || distance_[v] > target_ * (1 + kReachedTolerance) + rounding(v);
+  });
+  look_for_crossings(touched);
+}
+
+FaultCounts FaultFinder::count() const {
+  FaultCounts counts;
+  for (const auto t : faces_) ++(fault_[t] == Fault::Inverted ? counts.inverted : counts.collapsed);
+  counts.crossings = crossings_.size();
+  return counts;
+}
+
+Indices FaultFinder::wrong_vertices() const {
+  Indices wrong = misplaced_;
+  for_each_wrong_corner([&](std::uint32_t v) { wrong.push_back(v); });
+  sort_unique(wrong);
+  return wrong;
+}
+
+}  // namespace vdb_offset

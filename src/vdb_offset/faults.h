@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/closest.h"
+#include "vdb_offset/crossings.h"
+
+namespace vdb_offset {
+
+/// What may be wrong with a result.
+struct FaultCounts {
+  std::size_t inverted = 0, collapsed = 0;  ///< Faces.
+  std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
+};
+
+/// Indices of vertices or triangles: sorted, no two the same.
+using Indices = std::vector<std::uint32_t>;
+void sort_unique(Indices& indices);
+
+/// What is wrong with an offset of a surface, as its vertices are moved about.
+///
+/// A face is inverted if it faces against the direction away from the surface at its centre and at each corner (there,
+/// its distance has folded over), collapsed if its area is below 1e-6 of the source's. Crossings are found with exact
+/// predicates. All is judged on coordinates as they will be written, and only around what has moved since the last
+/// look. The result does not depend on the number of threads.
+class FaultFinder {
+ public:
+  /// `source` holds where the surface's vertices stand in the input, world coordinates; they begin there. `distance` in
+  /// world units, not 0; negative is inward. With `single_precision` places are rounded to 32-bit floats.
+  /// Keeps references to the query and the source.
+  FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance, bool single_precision);
+
+  /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
+  /// them.
+  void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
+  void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of);
+
+  bool any() const { return !faces_.empty() || !crossings_.empty(); }
+  FaultCounts count() const;
+  /// Vertices that are too far from the surface, or on the wrong side of it.
+  const Indices& misplaced() const { return misplaced_; }
+  /// Pairs that meet where the source's do not, away from where those do.
+  const std::vector<TrianglePair>& crossings() const { return crossings_; }
+  /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another.
+  template <class Visit>
+  void for_each_wrong_corner(Visit&& visit) const;
+  /// All vertices that something is wrong with.
+  Indices wrong_vertices() const;
+
+  /// Exact distance of a vertex as it was last looked at.
+  double distance_of(std::uint32_t vertex) const { return distance_[vertex]; }
+  bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }
+  /// World coordinates, as they will be written.
+  std::span<const Vec3d> places() const { return place_; }
+  const std::vector<TrianglePair>& source_crossings() const { return source_crossings_; }
+  /// New pairs within two rings of one of those, which has to slide, when everything was last looked at.
+  std::size_t crossings_near_source() const { return crossings_near_source_; }
+
+ private:
+  enum class Fault : std::uint8_t { None, Inverted, Collapsed };
+
+  void mark_near_source();
+  bool is_near_source(std::uint32_t triangle) const;
+  Indices triangles_around(const Indices& vertices) const;
+  void measure(std::size_t vertex);
+  double rounding(std::size_t vertex) const;
+  Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
+  Fault judge(std::uint32_t triangle) const;
+  void look_for_crossings(const Indices& touched);
+
+  const ClosestQuery& query_;
+  const Surface& surface_;
+  std::span<const Vec3d> source_;
+  double target_;
+  int side_;
+  bool single_precision_;
+  std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
+  std::vector<double> distance_;
+  std::vector<std::uint8_t> right_side_, near_source_;
+  std::vector<Fault> fault_;  // of each triangle
+  Indices faces_, misplaced_;
+  std::vector<TrianglePair> crossings_, source_crossings_;
+  std::size_t crossings_near_source_ = 0;
+  CrossingFinder finder_;
+};
+
+template <class Visit>
+void FaultFinder::for_each_wrong_corner(Visit&& visit) const {
+  const auto visit_corners = [&](std::uint32_t t) {
+    for (const auto v : surface_.triangles[t]) visit(v);
+  };
+  for (const auto t : faces_) visit_corners(t);
+  for (const auto& [s, t] : crossings_) {
+    visit_corners(s);
+    visit_corners(t);
+  }
+}
+
+}  // namespace vdb_offset
