@@ -15,6 +15,9 @@
 namespace vdb_offset {
 namespace {
 
+// Triangles that the error between vertices is measured on.
+constexpr std::size_t kInteriorTriangles = 10000;
+
 /// Adds the time that it lives to one stage's seconds.
 class StageTimer {
  public:
@@ -70,6 +73,10 @@ std::vector<Vec3d> source_positions(PolygonView mesh, const Surface& surface) {
   return positions;
 }
 
+std::vector<Vec3d> moved_places(PolygonView mesh, const Surface& surface, const OffsetResult& result) {
+  return source_positions({result.positions, mesh.corners, mesh.face_begin}, surface);
+}
+
 void describe_field(const DistanceField& field, const DirectionField& directions, OffsetStatistics& statistics) {
   statistics.active_voxels = field.phi->activeVoxelCount();
   statistics.leaf_nodes = field.phi->tree().leafCount();
@@ -111,6 +118,8 @@ void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
                              paths, options.progress);
   }
   move_vertices(mesh, surface, paths, result);
+  statistics.interior =
+      measure_interior(*query, moved_places(mesh, surface, result), std::abs(options.distance), kInteriorTriangles);
   if (options.keep_field) result.field = std::make_shared<DistanceField>(std::move(field));
 }
 

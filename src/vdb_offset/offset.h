@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "vdb_offset/interior.h"
 #include "vdb_offset/limit.h"
 #include "vdb_offset/mesh.h"
 #include "vdb_offset/plan.h"
@@ -46,6 +47,7 @@ struct OffsetStatistics {
   std::array<std::size_t, kVertexStateCount> vertices_by_state{};
   std::size_t straight_vertices = 0;
   LimitStatistics limit;
+  InteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
 };
 
 struct OffsetResult {

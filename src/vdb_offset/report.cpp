@@ -56,6 +56,23 @@ Json limit_json(const LimitStatistics& limit) {
           {"vertices", limit.limited_vertices},         {"mean_thickness_lost", limit.thickness_lost}};
 }
 
+Json achieved_json(const AchievedSummary& achieved) {
+  return {{"vertices", achieved.vertices},
+          {"share_reached", achieved.share_reached},
+          {"least", achieved.least},
+          {"quantile_01", achieved.quantile_01},
+          {"quantile_05", achieved.quantile_05},
+          {"median", achieved.median},
+          {"quantile_95", achieved.quantile_95},
+          {"mean", achieved.mean},
+          {"most", achieved.most},
+          {"worst_reached_error", achieved.worst_reached_error}};
+}
+
+Json interior_json(const InteriorError& error) {
+  return {{"samples", error.samples}, {"mean", error.mean}, {"quantile_99", error.quantile_99}, {"worst", error.worst}};
+}
+
 Json grids_json(const OffsetStatistics& statistics) {
   return {{"active_voxels", statistics.active_voxels},
           {"leaf_nodes", statistics.leaf_nodes},
@@ -71,19 +88,19 @@ Json grids_json(const OffsetStatistics& statistics) {
 
 const char* version() { return VDB_OFFSET_VERSION; }
 
-AchievedSummary summarise(const OffsetResult& result, double distance) {
+AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> distances, double distance) {
   AchievedSummary summary;
   const double target = std::abs(distance);
   std::vector<double> achieved;
+  achieved.reserve(states.size());
   std::size_t reached = 0;
-  for (std::size_t v = 0; v < result.states.size(); ++v) {
-    if (result.states[v] == VertexState::Unused) continue;
-    achieved.push_back(result.achieved[v]);
-    if (result.states[v] != VertexState::Reached) continue;
+  for (std::size_t v = 0; v < states.size(); ++v) {
+    if (states[v] == VertexState::Unused) continue;
+    achieved.push_back(distances[v]);
+    if (states[v] != VertexState::Reached) continue;
     ++reached;
     if (target > 0)
-      summary.worst_reached_error =
-          std::max(summary.worst_reached_error, std::abs(result.achieved[v] - target) / target);
+      summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(distances[v] - target) / target);
   }
   summary.vertices = achieved.size();
   if (achieved.empty()) return summary;
@@ -97,6 +114,7 @@ AchievedSummary summarise(const OffsetResult& result, double distance) {
   summary.quantile_01 = quantile(achieved, 0.01);
   summary.quantile_05 = quantile(achieved, 0.05);
   summary.median = quantile(achieved, 0.5);
+  summary.quantile_95 = quantile(achieved, 0.95);
   return summary;
 }
 
@@ -108,7 +126,6 @@ std::string report_json(const OffsetResult& result, const RunFacts& run) {
   seconds["total"] = run.total_seconds;
   for (std::size_t s = 0; s < kVertexStateCount; ++s)
     states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
-  const AchievedSummary achieved = summarise(result, run.distance);
   const Json report = {{"version", version()},
                        {"input", run.input},
                        {"output", run.output},
@@ -125,16 +142,26 @@ std::string report_json(const OffsetResult& result, const RunFacts& run) {
                        {"vertices_by_state", states},
                        {"vertices_straight", statistics.straight_vertices},
                        {"limit", limit_json(statistics.limit)},
-                       {"achieved",
-                        {{"vertices", achieved.vertices},
-                         {"share_reached", achieved.share_reached},
-                         {"least", achieved.least},
-                         {"quantile_01", achieved.quantile_01},
-                         {"quantile_05", achieved.quantile_05},
-                         {"median", achieved.median},
-                         {"mean", achieved.mean},
-                         {"most", achieved.most},
-                         {"worst_reached_error", achieved.worst_reached_error}}}};
+                       {"achieved", achieved_json(summarise(result, run.distance))},
+                       {"face_interior_error", interior_json(statistics.interior)}};
+  return report.dump(2) + "\n";
+}
+
+std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {
+  const Json report = {{"version", version()},
+                       {"source", source},
+                       {"offset", offset},
+                       {"valid", result.valid()},
+                       {"distance", result.distance},
+                       {"mesh", facts_json(result.facts)},
+                       {"faults", faults_json(result.faults)},
+                       {"source_crossings", result.source_crossings},
+                       {"crossings_near_source", result.crossings_near_source},
+                       {"vertices_beyond", result.beyond},
+                       {"vertices_on_wrong_side", result.wrong_side},
+                       {"vertices_torn", result.torn},
+                       {"achieved", achieved_json(summarise(result.states, result.achieved, result.distance))},
+                       {"face_interior_error", interior_json(result.interior)}};
   return report.dump(2) + "\n";
 }
 

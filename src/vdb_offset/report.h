@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset {
@@ -11,11 +12,14 @@ namespace vdb_offset {
 struct AchievedSummary {
   std::size_t vertices = 0;  ///< In use.
   double share_reached = 0;
-  double least = 0, mean = 0, most = 0;                 ///< Achieved distance, world units.
-  double quantile_01 = 0, quantile_05 = 0, median = 0;  ///< Of the achieved distance.
-  double worst_reached_error = 0;                       ///< Largest |achieved - target| / target among the reached.
+  double least = 0, mean = 0, most = 0;                                  ///< Achieved distance, world units.
+  double quantile_01 = 0, quantile_05 = 0, median = 0, quantile_95 = 0;  ///< Of the achieved distance.
+  double worst_reached_error = 0;  ///< Largest |achieved - target| / target among the reached.
 };
-AchievedSummary summarise(const OffsetResult& result, double distance);
+AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> achieved, double distance);
+inline AchievedSummary summarise(const OffsetResult& result, double distance) {
+  return summarise(result.states, result.achieved, distance);
+}
 
 /// What a report adds to a result: what was asked for, and where.
 struct RunFacts {
@@ -28,6 +32,9 @@ struct RunFacts {
 
 /// The report of a run as JSON text; the keys are documented in the README.
 std::string report_json(const OffsetResult& result, const RunFacts& run);
+
+/// What a check found, as JSON text; the same keys where they mean the same.
+std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);
 
 /// The library's version, "major.minor.patch".
 const char* version();

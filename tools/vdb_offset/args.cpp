@@ -10,6 +10,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/states_file.h"
 #include "vdb_offset/memory.h"
 #include "vdb_offset/report.h"
 
@@ -31,6 +32,7 @@ Examples:
   vdb_offset wing.ply out.ply --distance 0.5% --report out.json --strict
   vdb_offset big.obj out.obj --distance 2 --dry-run     what would it take?
   vdb_offset scenes/torus.json torus.obj                a procedural scene
+  vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
 
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
 met), 4 output; after Ctrl-C the process ends by that signal, and no output is left.
@@ -51,21 +53,6 @@ std::size_t parse_size(const std::string& text) {
   if (error != std::errc() || unit == kUnits.end() || !(value > 0) || value * unit->second > 0x1p60)
     throw UsageError(fmt::format("--max-memory: expected a size such as 4G or 512M, got '{}'", text));
   return std::max<std::size_t>(1, static_cast<std::size_t>(value * unit->second));
-}
-
-WeldOptions parse_weld(const std::string& text) {
-  WeldOptions weld;
-  if (text == "exact") return weld;
-  if (text == "none") {
-    weld.enabled = false;
-    return weld;
-  }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), weld.tolerance);
-  if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) ||
-      !std::isfinite(weld.tolerance))
-    throw UsageError(
-        fmt::format("--weld: expected 'none', 'exact' or a tolerance >= 0 in world units, got '{}'", text));
-  return weld;
 }
 
 /// What CLI11 fills in before it is checked.
@@ -101,6 +88,9 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--max-memory", raw.max_memory, "Refuse work that would need more, as in 4G [80 % of what is free]")
       ->type_name("SIZE");
   app.add_option("--report", args.report, "Write what happened as JSON")->type_name("FILE");
+  app.add_option("--states", args.states,
+                 "Write state, target and achieved distance of every vertex: .csv, or .ply to colour by in a viewer")
+      ->type_name("FILE");
   app.add_option("--save-vdb", args.vdb, "Write phi and the closest triangles as OpenVDB grids")->type_name("FILE");
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use falls short of the distance");
   app.add_flag("--dry-run", args.dry_run, "Read the input, print what would be done, write nothing");
@@ -122,15 +112,20 @@ bool same_file(const std::string& a, const std::string& b) {
 
 /// The output may be the input; no other two files may be one.
 void check_apart(const Arguments& args) {
-  for (const auto& [name, path] : {std::pair{"--report", args.report}, {"--save-vdb", args.vdb}})
-    require(!same_file(path, args.input) && !same_file(path, args.output),
-            fmt::format("{}: expected a file of its own, got {}", name, path));
-  require(!same_file(args.report, args.vdb), "--report: expected a file of its own, got that of --save-vdb");
+  std::vector<std::string> taken = {args.input, args.output};
+  for (const auto& [name, path] :
+       {std::pair{"--report", args.report}, {"--states", args.states}, {"--save-vdb", args.vdb}}) {
+    for (const std::string& other : taken)
+      require(!same_file(path, other), fmt::format("{}: expected a file of its own, got {}", name, path));
+    taken.push_back(path);
+  }
 }
 
 void check_names(const Arguments& args) {
   require(scene::is_scene(args.input) || io::format_of(args.input),
           args.input + ": expected an input that ends in .obj, .ply, .stl, .off or .json");
+  require(args.states.empty() || io::is_states_file(args.states),
+          args.states + ": expected a file of states that ends in .csv or .ply");
   require(io::format_of(args.output).has_value(),
           args.output + ": expected an output that ends in .obj, .ply, .stl or .off");
 }
@@ -172,6 +167,21 @@ void check(const Raw& raw, Arguments& args) {
 }
 
 }  // namespace
+
+WeldOptions parse_weld(const std::string& text) {
+  WeldOptions weld;
+  if (text == "exact") return weld;
+  if (text == "none") {
+    weld.enabled = false;
+    return weld;
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), weld.tolerance);
+  if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) ||
+      !std::isfinite(weld.tolerance))
+    throw UsageError(
+        fmt::format("--weld: expected 'none', 'exact' or a tolerance >= 0 in world units, got '{}'", text));
+  return weld;
+}
 
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "vdb_offset");

@@ -19,7 +19,7 @@ struct Arguments {
   std::optional<Solver> solver;        ///< As given; a scene's own counts otherwise.
   std::optional<Collision> collision;  ///< The same.
   std::string weld_text;               ///< As given.
-  std::string report, vdb;
+  std::string report, states, vdb;
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };
 
@@ -27,6 +27,9 @@ struct Arguments {
 struct UsageError : Error {
   using Error::Error;
 };
+
+/// 'exact', 'none' or a tolerance. \throw UsageError
+WeldOptions parse_weld(const std::string& text);
 
 /// Parses the command line. Empty if it asked only for help or the version, which are then printed.
 /// \throw UsageError with one line that says what is wrong.

@@ -7,11 +7,13 @@
 #include <new>
 
 #include "args.h"
+#include "check_command.h"
 #include "terminal.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/field.h"
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/states_file.h"
 #include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
@@ -134,6 +136,11 @@ void write_outputs(const Arguments& args, const Source& source, OffsetResult& re
              {{"source", args.input},
               {"offset_distance", fmt::format("{}", args.options.distance)},
               {"made_by", std::string("vdb_offset ") + version()}});
+  if (!args.states.empty()) {
+    const PolygonView mesh = source.view();
+    io::write_states(args.states, {result.positions, mesh.corners, mesh.face_begin},
+                     {result.states, result.achieved, args.options.distance});
+  }
   const auto writing = Clock::now();
   const auto before_rename = [&] {
     result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
@@ -158,7 +165,7 @@ int run(Arguments args) {
     return interrupted() == 0;
   };
   if (!args.dry_run)
-    for (const std::string& path : {args.output, args.report, args.vdb})
+    for (const std::string& path : {args.output, args.report, args.states, args.vdb})
       if (!path.empty()) require_writable(path);
   bar.show(Stage::Read, 0);
   Source source = read_source(args.input);
@@ -207,6 +214,7 @@ int end_by_signal() {
 
 int guarded(int argc, char** argv) {
   try {
+    if (is_check(argc, argv)) return run_check(argc, argv);
     auto args = parse_arguments(argc, argv);
     return args ? run(std::move(*args)) : kDone;
   } catch (const UsageError& error) {

@@ -1,0 +1,121 @@
+#include "check_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "args.h"
+#include "vdb_offset/check.h"
+#include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/report.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+constexpr const char* kAbout =
+    "Measures OFFSET as an offset of SOURCE, whichever program made it: exact distances of all vertices, inverted\n"
+    "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
+    "Both must have the same vertices and faces in the same order.";
+
+constexpr const char* kMore = R"(
+Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
+
+struct CheckArguments {
+  std::string source, offset, distance, weld = "exact", report;
+  int threads = 0;
+  bool json = false, strict = false;
+};
+
+void declare(CLI::App& app, CheckArguments& args) {
+  app.add_option("SOURCE", args.source, "Mesh before (.obj .ply .stl .off)")->required();
+  app.add_option("OFFSET", args.offset, "Mesh after")->required();
+  app.add_option("-d,--distance", args.distance,
+                 "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward [the median of "
+                 "what is found]")
+      ->type_name("D");
+  app.add_option("--weld", args.weld,
+                 "Vertices of SOURCE that count as one: 'exact', 'none', or within TOL world units [exact]")
+      ->type_name("MODE");
+  app.add_option("--threads", args.threads, "Threads; 0 takes all [0]")->type_name("N");
+  app.add_option("--report", args.report, "Write what is found as JSON")->type_name("FILE");
+  app.add_flag("--json", args.json, "Print JSON, not text");
+  app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use is not at the distance");
+}
+
+std::optional<double> parse_distance(const std::string& text, PolygonView source) {
+  if (text.empty()) return std::nullopt;
+  try {
+    const scene::Distance distance = scene::parse_distance(text);
+    return distance.in_world_units(distance.percent ? used_diagonal(source) : 0);
+  } catch (const InvalidInput& error) {
+    throw UsageError(std::string("--") + error.what());
+  }
+}
+
+void require_same_faces(const CheckArguments& args, const Polygons& source, const Polygons& offset) {
+  if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
+      source.corners == offset.corners)
+    return;
+  throw InvalidInput(
+      fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", args.offset, args.source,
+                  source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
+                  source.positions.size() == offset.positions.size() && source.face_count() == offset.face_count()
+                      ? " with other corners"
+                      : ""));
+}
+
+void print(const CheckResult& result) {
+  const AchievedSummary achieved = summarise(result.states, result.achieved, result.distance);
+  fmt::print("distance    {:.9g}: {:.3f} % of {} vertices there, {} beyond, {} on the wrong side\n", result.distance,
+             100 * achieved.share_reached, achieved.vertices, result.beyond, result.wrong_side);
+  fmt::print("achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
+             achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,
+             achieved.most);
+  fmt::print("in faces    off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
+             100 * result.interior.mean, 100 * result.interior.quantile_99, 100 * result.interior.worst);
+  fmt::print("faces       {} inverted, {} collapsed\n", result.faults.inverted, result.faults.collapsed);
+  fmt::print("crossings   {} new pairs of triangles; {} in the source, {} beside those\n", result.faults.crossings,
+             result.source_crossings, result.crossings_near_source);
+  if (result.torn) fmt::print("torn        {} vertices are apart from others that they stood with\n", result.torn);
+  fmt::print("{}\n", result.valid() ? "valid" : "not valid");
+}
+
+}  // namespace
+
+bool is_check(int argc, const char* const* argv) { return argc > 1 && std::string(argv[1]) == "check"; }
+
+int run_check(int argc, const char* const* argv) {
+  CLI::App app(kAbout, "vdb_offset check");
+  app.footer(kMore);
+  CheckArguments args;
+  declare(app, args);
+  try {
+    app.parse(argc - 1, argv + 1);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(fmt::format("{} (check --help lists the options)", error.what()));
+  }
+  if (args.threads < 0 || args.threads > 4096)
+    throw UsageError(fmt::format("--threads: expected 0 to 4096, got {}", args.threads));
+  CheckOptions options;
+  options.weld = parse_weld(args.weld);
+  options.threads = args.threads;
+  const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
+  require_same_faces(args, source.polygons, offset.polygons);
+  options.distance = parse_distance(args.distance, source.polygons.view());
+  options.single_precision = io::rounds_to_floats(args.offset, offset);
+  const CheckResult result = check_offset(source.polygons.view(), offset.polygons.positions, options);
+  const std::string json = check_json(result, args.source, args.offset);
+  if (!args.report.empty()) write_file(args.report, json);
+  if (args.json) fmt::print("{}", json);
+  else print(result);
+  const bool all_there = summarise(result.states, result.achieved, result.distance).share_reached == 1;
+  return result.valid() && (all_there || !args.strict) ? 0 : 3;
+}
+
+}  // namespace vdb_offset::tool
