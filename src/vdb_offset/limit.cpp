@@ -14,8 +14,9 @@ namespace {
 // How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none.
 constexpr double kKept = 0.85, kLastShare = 0.02;
 
-// Patches are tried with so many rings around what is wrong, their normals smoothed so many times.
-constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16}, kSmoothings[] = {4, 10, 30};
+// Patches are tried in these ways, with so many rings around what is wrong. What frees one patch fails in the next.
+constexpr Untangler::Options kAttempts[] = {{4, 1}, {10, 0.1}, {30, 1}, {10, 0.01}};
+constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
 // Rounds in which pulled vertices are let out again, each by one step.
 constexpr int kReleases = 12;
@@ -43,10 +44,10 @@ class Limiter {
     faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); });
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
-    for (const int smoothing : kSmoothings)
+    for (const Untangler::Options& attempt : kAttempts)
       for (const int rings : kRings)
         if (faults_.any()) {
-          untangle(rings, smoothing);
+          untangle(rings, attempt);
           ++statistics_.untanglings;
           progress.advance(1);
         }
@@ -109,7 +110,7 @@ class Limiter {
   }
 
   /// Untangles patches around what is wrong, all at their distance, and keeps those where that makes nothing worse.
-  void untangle(int rings, int smoothing) {
+  void untangle(int rings, const Untangler::Options& attempt) {
     Indices chosen;
     faults_.for_each_wrong_corner([&](std::uint32_t v) { chosen.push_back(v); });
     sort_unique(chosen);
@@ -122,7 +123,7 @@ class Limiter {
     const std::vector<std::size_t> before = faults_by_patch(patches.size());
     std::vector<Vec3d> old_way(chosen.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
-    const Untangler untangler(query_, options_.distance, smoothing);
+    const Untangler untangler(query_, options_.distance, attempt);
     tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
     look(chosen);
     const std::vector<std::size_t> after = faults_by_patch(patches.size());

@@ -12,15 +12,12 @@
 namespace vdb_offset {
 namespace {
 
-// Weight of the faces' areas against their shapes.
-constexpr double kAreaWeight = 0.1;
-
 // Planes are renewed this often; each time L-BFGS makes at most so many steps, with so many of them remembered.
 constexpr int kRenewals = 6, kSteps = 20;
 constexpr std::size_t kMemory = 8;
 
 // No vertex goes farther than this, in distances, in one step.
-constexpr double kLongestStep = 0.2;
+constexpr double kLongestStep = 0.5;
 
 // A vertex stays in the ball around it that holds no surface.
 constexpr double kFreeShare = 0.9;
@@ -49,21 +46,26 @@ double chi(double det, double epsilon) {
 
 class Patch {
  public:
-  Patch(const ClosestQuery& query, double target, int side, std::span<const std::uint32_t> vertices,
-        std::span<Vec3d> way)
-      : query_(query), surface_(query.surface()), target_(target), side_(side), free_(vertices.size()) {
+  Patch(const ClosestQuery& query, double target, int side, const Untangler::Options& options,
+        std::span<const std::uint32_t> vertices, std::span<Vec3d> way)
+      : query_(query),
+        surface_(query.surface()),
+        target_(target),
+        side_(side),
+        options_(options),
+        free_(vertices.size()) {
     for (const auto v : vertices) add_point(v, way);
     collect_faces(vertices, way);
   }
 
-  void untangle(int smoothing) {
-    renew_planes(smoothing);
+  void untangle() {
+    renew_planes();
     std::vector<Vec3d> best = places();
     for (int i = 0, fewest = folded_; i < kRenewals && (i == 0 || fewest > 0); ++i) {
       const std::vector<Vec3d> before = places();
       slide();
       for (std::size_t k = 0; k < free_; ++k) return_to_distance(points_[k], before[k]);
-      renew_planes(smoothing);
+      renew_planes();
       if (i > 0 && folded_ > fewest) continue;
       fewest = folded_;
       best = places();
@@ -122,14 +124,14 @@ class Patch {
     }
   }
 
-  void renew_planes(int smoothing) {
+  void renew_planes() {
     for (Point& p : points_) {
       const Closest closest = query_(p.x, p.hint);
       p.hint = closest.triangle;
       p.distance = closest.distance;
       p.normal = closest.distance > 0 ? (p.x - closest.point) / closest.distance : Vec3d(0.0);
     }
-    for (int i = 0; i < smoothing; ++i) smooth_normals();
+    for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
     least_det_ = 1;
     folded_ = 0;
@@ -188,9 +190,10 @@ class Patch {
       double j[4];
       const double det = jacobian_of(face, slide, j), x = chi(det, epsilon),
                    x_slope = x / std::sqrt(epsilon * epsilon + det * det);
-      const double e = (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + kAreaWeight * (det * det + 1)) / x;
+      const double e =
+          (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + options_.area_weight * (det * det + 1)) / x;
       sum += face.area * e;
-      const double by_det = (2 * kAreaWeight * det - e * x_slope) / x;
+      const double by_det = (2 * options_.area_weight * det - e * x_slope) / x;
       const double by_j[4] = {2 * j[0] / x + by_det * j[3], 2 * j[1] / x - by_det * j[2], 2 * j[2] / x - by_det * j[1],
                               2 * j[3] / x + by_det * j[0]};
       Vec3d by_ab(0.0), by_ac(0.0);
@@ -299,6 +302,7 @@ class Patch {
   const Surface& surface_;
   double target_;
   int side_;
+  Untangler::Options options_;
   std::size_t free_;  // the first points are the patch's, the others stand around it
   std::vector<Point> points_;
   std::vector<Face> faces_;
@@ -309,8 +313,8 @@ class Patch {
 }  // namespace
 
 void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const {
-  Patch work(query_, target_, side_, patch, way);
-  work.untangle(smoothing_);
+  Patch work(query_, target_, side_, options_, patch, way);
+  work.untangle();
   work.store(way);
 }
 

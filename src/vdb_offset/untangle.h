@@ -19,10 +19,14 @@ namespace vdb_offset {
 /// jumps, so that what is unfolded in the planes is unfolded on the surface.
 class Untangler {
  public:
-  /// Keeps a reference to the query. `distance` in world units, not 0; negative is inward. Normals are smoothed over
-  /// the patch `smoothing` times.
-  Untangler(const ClosestQuery& query, double distance, int smoothing)
-      : query_(query), target_(std::abs(distance)), side_(distance < 0 ? -1 : 1), smoothing_(smoothing) {}
+  struct Options {
+    int smoothing;       ///< How often normals are smoothed over the patch.
+    double area_weight;  ///< lambda: of the faces' areas against their shapes.
+  };
+
+  /// Keeps a reference to the query. `distance` in world units, not 0; negative is inward.
+  Untangler(const ClosestQuery& query, double distance, const Options& options)
+      : query_(query), target_(std::abs(distance)), side_(distance < 0 ? -1 : 1), options_(options) {}
 
   /// Moves the patch's vertices: `way` leads from each of the surface's vertices to its place, at the distance for
   /// those of the patch, which are sorted. Reads the ways of the vertices around the patch.
@@ -32,7 +36,8 @@ class Untangler {
  private:
   const ClosestQuery& query_;
   double target_;
-  int side_, smoothing_;
+  int side_;
+  Options options_;
 };
 
 }  // namespace vdb_offset
