@@ -92,10 +92,50 @@ TEST_CASE("command: help and version", "[command]") {
   const Run help = shell("--help");
   CHECK(help.code == 0);
   for (const char* word : {"--distance", "--voxel-size", "--voxels-per-distance", "--collision", "--solver", "--weld",
-                           "--threads", "--max-memory", "--report", "--save-vdb", "--strict", "--dry-run", "--quiet",
-                           "--verbose", "Examples", "Exit codes"})
+                           "--threads", "--max-memory", "--report", "--states", "--save-vdb", "--strict", "--dry-run",
+                           "--quiet", "--verbose", "Examples", "Exit codes"})
     CHECK_THAT(help.out, Catch::Contains(word));
   CHECK_THAT(shell("--version").out, Catch::StartsWith("vdb_offset "));
+}
+
+TEST_CASE("command: --states tells of every vertex", "[command]") {
+  const Shell shell;
+  CHECK(shell("sphere.obj out.obj -d 0.1 --states s.csv -q").code == 0);
+  const std::string csv = shell.slurp(shell.file("s.csv"));
+  const io::MeshFile source = io::read_mesh(shell.file("sphere.obj"));
+  CHECK(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')) == source.polygons.positions.size() + 1);
+  CHECK_THAT(csv, Catch::StartsWith("vertex,state,target,achieved\n0,reached,0.1,0.1"));
+  CHECK(shell("sphere.obj out.obj -d 0.1 --states s.ply -q").code == 0);
+  const io::MeshFile coloured = io::read_mesh(shell.file("s.ply")), out = io::read_mesh(shell.file("out.obj"));
+  CHECK(coloured.polygons.positions == out.polygons.positions);
+  CHECK(coloured.polygons.corners == source.polygons.corners);
+  check_failure(shell, "sphere.obj out2.obj -d 0.1 --states s.txt", 1, "s.txt");
+  check_failure(shell, "sphere.obj out2.obj -d 0.1 --states out2.obj", 1, "out2.obj");
+}
+
+TEST_CASE("command: check measures any two meshes", "[command]") {
+  const Shell shell;
+  CHECK(shell("sphere.obj out.obj -d 0.1 -q").code == 0);
+  const Run text = shell("check sphere.obj out.obj");
+  CHECK(text.code == 0);
+  CHECK_THAT(text.out, Catch::Contains("100.000 %") && Catch::Contains("0 inverted") && Catch::EndsWith("\nvalid\n"));
+  const Run json = shell("check sphere.obj out.obj --distance 0.1 --json --report r.json");
+  const auto found = nlohmann::json::parse(json.out);
+  CHECK(found["valid"] == true);
+  CHECK(found["distance"] == 0.1);
+  CHECK(json.out == shell.slurp(shell.file("r.json")));
+  CHECK(shell("check sphere.obj out.obj -d 0.2").code == 0);
+  CHECK(shell("check sphere.obj out.obj -d 0.2 --strict").code == 3);
+  CHECK(shell("check --help").code == 0);
+  Polygons turned = io::read_mesh(shell.file("out.obj")).polygons;
+  std::swap(turned.positions[turned.corners[0]], turned.positions[turned.corners[1]]);
+  io::write_mesh(shell.file("bad.obj"), turned.view());
+  CHECK(shell("check sphere.obj bad.obj").code == 3);
+  io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 2, true).view());
+  check_failure(shell, "check sphere.obj box.obj", 2, "box.obj");
+  check_failure(shell, "check sphere.obj none.obj", 2, "none.obj");
+  check_failure(shell, "check sphere.obj", 1, "OFFSET");
+  check_failure(shell, "check sphere.obj out.obj -d x", 1, "'x'");
 }
 
 TEST_CASE("command: 1 for wrong usage", "[command]") {

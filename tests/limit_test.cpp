@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <random>
 
 #include "oracles.h"
+#include "random_scenes.h"
+#include "vdb_offset/check.h"
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/scene/shapes.h"
 
@@ -157,4 +160,86 @@ TEST_CASE("limit: single precision is checked as it will be stored", "[limit]") 
   std::vector<Vec3d> stored;
   for (const Vec3d& p : result.positions) stored.emplace_back(openvdb::Vec3s(p));
   CHECK(crossings(mesh, stored) == 0);
+}
+
+TEST_CASE("limit: solids that close on each other stop before they touch", "[limit]") {
+  Polygons spheres = scene::icosphere(0.5, 4);
+  const Polygons one = spheres;
+  const auto base = static_cast<std::uint32_t>(one.positions.size());
+  for (Vec3d& p : spheres.positions) p[0] -= 0.55;
+  for (const Vec3d& p : one.positions) spheres.positions.push_back(p + Vec3d(0.55, 0, 0));
+  for (std::size_t f = 0; f < one.face_count(); ++f) {
+    for (const auto v : one.view().face(f)) spheres.corners.push_back(v + base);
+    spheres.close_face();
+  }
+  for (const Polygons& mesh : {spheres, scene::plates(1, 0.1, 0.1, 20)}) {
+    const OffsetResult result = limited(mesh, 0.08);
+    CHECK(crossings(mesh, result.positions) == 0);
+    CHECK(check_offset(mesh.view(), result.positions, {.distance = 0.08}).valid());
+    CHECK(test::share(result, VertexState::Reached) < 1);
+  }
+  // The gap is 0.1 wide at its narrowest; its middle is the plane x = 0.
+  const OffsetResult result = limited(spheres, 0.08);
+  for (std::size_t v = 0; v < result.positions.size(); ++v)
+    CHECK((v < base ? -1 : 1) * result.positions[v][0] > -0.01 * 0.1);
+}
+
+TEST_CASE("limit: patches around folds are freed at their distance", "[limit][untangle]") {
+  // Ridges and grooves at whose feet the offset has creases.
+  std::size_t folded = 0;
+  for (const unsigned seed : {11u, 7u, 3u}) {
+    const Polygons mesh = scene::bumpy_sphere(1, 0.4, 3, seed, 4);
+    const OffsetResult merged = limited(mesh, 0.1, Collision::Merge), result = limited(mesh, 0.1);
+    const FaultCounts& before = result.statistics.limit.before;
+    folded += before.inverted + before.crossings;
+    CHECK(check_offset(mesh.view(), result.positions, {.distance = 0.1}).valid());
+    CHECK(test::share(result, VertexState::Reached) >= test::share(merged, VertexState::Reached) - 0.01);
+  }
+  CHECK(folded > 0);
+}
+
+TEST_CASE("limit: the smaller offset lies inside the larger", "[limit][property]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.3, 2, 5, 3);
+  const OffsetResult small = limited(mesh, 0.1), large = limited(mesh, 0.2);
+  REQUIRE(large.statistics.interior.worst * 0.2 * 2 < 0.1);
+  Polygons outer = mesh;
+  outer.positions = large.positions;
+  for (std::size_t v = 0; v < mesh.positions.size(); v += 7) CHECK(test::is_inside(outer.view(), small.positions[v]));
+}
+
+TEST_CASE("limit: out and back again, a smooth shape is what it was", "[limit][property]") {
+  const double minor = 0.4, distance = 0.1;
+  Polygons torus = scene::torus(1, minor, 160, 64);
+  const std::vector<Vec3d> before = torus.positions;
+  torus.positions = limited(torus, distance).positions;
+  const OffsetResult back = limited(torus, -distance);
+  CHECK(test::share(back, VertexState::Reached) == 1);
+  const double edge = 2 * M_PI * (1 + minor + distance) / 160;
+  for (std::size_t v = 0; v < before.size(); ++v)
+    CHECK((back.positions[v] - before[v]).length() < edge * edge / (2 * minor));
+}
+
+TEST_CASE("limit: random scenes are valid and exact", "[limit][property][random]") {
+  const auto number = [](const char* name, unsigned otherwise) {
+    const char* text = std::getenv(name);
+    return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : otherwise;
+  };
+  const unsigned first = number("VDB_OFFSET_RANDOM_FIRST", 1), count = number("VDB_OFFSET_RANDOM_COUNT", 200);
+  for (unsigned seed = first; seed < first + count; ++seed) {
+    INFO("seed " << seed);
+    const test::RandomScene scene = test::random_scene(seed);
+    const OffsetResult result = limited(scene.mesh, scene.distance);
+    const CheckResult found = check_offset(scene.mesh.view(), result.positions, {.distance = scene.distance});
+    const FaultCounts& left = result.statistics.limit.left;
+    CHECK(left.inverted + left.collapsed + left.crossings == 0);
+    // Where the source crosses itself, what is away from it and what is not may change with a bit.
+    if (found.source_crossings == 0)
+      CHECK(found.faults.inverted + found.faults.collapsed + found.faults.crossings == 0);
+    CHECK(found.torn + found.wrong_side + found.beyond == 0);
+    const test::DistanceErrors errors =
+        test::judge(scene.mesh.view(), result, scene.distance, 97, scene.closed && found.source_crossings == 0);
+    CHECK(errors.worst_reached < 1.01e-6);
+    CHECK(errors.worst_beyond < 1.01e-6);
+    CHECK(errors.wrong_side == 0);
+  }
 }

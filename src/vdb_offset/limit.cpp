@@ -44,13 +44,7 @@ class Limiter {
     faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); });
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
-    for (const Untangler::Options& attempt : kAttempts)
-      for (const int rings : kRings)
-        if (faults_.any()) {
-          untangle(rings, attempt);
-          ++statistics_.untanglings;
-          progress.advance(1);
-        }
+    for (const Untangler::Options& attempt : kAttempts) untangle_with(attempt, progress);
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
     for (int i = 0; i < kReleases && release(); ++i) progress.advance(1);
@@ -59,6 +53,20 @@ class Limiter {
   }
 
  private:
+  /// Patches of ever more rings, for as long as something is wrong and more rings make another patch.
+  void untangle_with(const Untangler::Options& attempt, Progress& progress) {
+    Indices last;
+    for (const int rings : kRings) {
+      if (!faults_.any()) return;
+      Indices chosen = patch_vertices(rings);
+      if (chosen == last) return;
+      untangle(chosen, attempt);
+      ++statistics_.untanglings;
+      progress.advance(1);
+      last = std::move(chosen);
+    }
+  }
+
   Vec3d way(std::size_t v) const { return share_[v] == 1 ? whole_way_[v] : whole_way_[v] * share_[v]; }
 
   void look(const Indices& moved) {
@@ -109,8 +117,8 @@ class Limiter {
     return faults;
   }
 
-  /// Untangles patches around what is wrong, all at their distance, and keeps those where that makes nothing worse.
-  void untangle(int rings, const Untangler::Options& attempt) {
+  /// The vertices that may slide, so many rings around what is wrong.
+  Indices patch_vertices(int rings) const {
     Indices chosen;
     faults_.for_each_wrong_corner([&](std::uint32_t v) { chosen.push_back(v); });
     sort_unique(chosen);
@@ -119,6 +127,11 @@ class Limiter {
     std::erase_if(chosen, [&](std::uint32_t v) {
       return paths_.state[v] != VertexState::Reached && paths_.state[v] != VertexState::Collision;
     });
+    return chosen;
+  }
+
+  /// Untangles patches of vertices, all at their distance, and keeps those where that makes nothing worse.
+  void untangle(const Indices& chosen, const Untangler::Options& attempt) {
     const std::vector<Indices> patches = find_patches(chosen);
     const std::vector<std::size_t> before = faults_by_patch(patches.size());
     std::vector<Vec3d> old_way(chosen.size());
