@@ -84,17 +84,32 @@ DirectionSampler::DirectionSampler(const DirectionField& field)
     : field_(field), gradient_(field.gradient->getConstAccessor()), phi_(field.phi->getConstAccessor()) {}
 
 bool DirectionSampler::operator()(const Vec3d& x, int side, double distance, Vec3d& gradient) const {
-  const Vec3d index = x / field_.voxel_size;
+  const double per_unit = 1 / field_.voxel_size;
+  const Vec3d index(x[0] * per_unit, x[1] * per_unit, x[2] * per_unit);
   const openvdb::Coord base = openvdb::Coord::floor(index);
-  const Vec3d f = index - base.asVec3d();
-  double total = 0;
-  gradient = Vec3d(0.0);
+  double share[3][2];  // of the lower and the upper node along each axis
+  for (int k = 0; k < 3; ++k) {
+    share[k][1] = index[k] - base[k];
+    share[k][0] = 1 - share[k][1];
+  }
+  // Two times in three all eight nodes lie in one leaf node.
+  const GradientLeaf* leaf = gradient_.probeConstLeaf(base);
+  const bool together = (base[0] & 7) != 7 && (base[1] & 7) != 7 && (base[2] & 7) != 7;
+  if (together && !leaf) return false;
+  const openvdb::Index first = GradientLeaf::coordToOffset(base);
+  double total = 0, sum[3] = {0, 0, 0};
   for (int corner = 0; corner < 8; ++corner) {
-    const openvdb::Coord offset(corner >> 2, corner >> 1 & 1, corner & 1), node = base + offset;
+    const int i = corner >> 2, j = corner >> 1 & 1, k = corner & 1;
+    const openvdb::Coord node = base.offsetBy(i, j, k);
     openvdb::Vec3s g;
-    if (!gradient_.probeValue(node, g)) continue;
-    double weight = 1;
-    for (int k = 0; k < 3; ++k) weight *= offset[k] ? f[k] : 1 - f[k];
+    if (together) {
+      const openvdb::Index n = first + static_cast<openvdb::Index>(i << 6 | j << 3 | k);
+      if (!leaf->isValueOn(n)) continue;
+      g = leaf->getValue(n);
+    } else if (!gradient_.probeValue(node, g)) {
+      continue;
+    }
+    double weight = share[0][i] * share[1][j] * share[2][k];
     total += weight;
     if (field_.open_surface) {
       const double phi = phi_.getValue(node);
@@ -102,10 +117,10 @@ bool DirectionSampler::operator()(const Vec3d& x, int side, double distance, Vec
       const double apart = (node.asVec3d() - index).length() * field_.voxel_size;
       if (std::signbit(phi) != (side < 0) && std::abs(phi) + distance > 1.001 * apart) weight = -weight;
     }
-    gradient += Vec3d(g) * weight;
+    for (int axis = 0; axis < 3; ++axis) sum[axis] += static_cast<double>(g[axis]) * weight;
   }
   if (!(total > 0)) return false;
-  gradient /= total;
+  gradient = Vec3d(sum[0], sum[1], sum[2]) / total;
   return true;
 }
 

@@ -18,6 +18,12 @@ constexpr double kKept = 0.85, kLastShare = 0.02;
 constexpr Untangler::Options kAttempts[] = {{4, 1}, {10, 0.1}, {30, 1}, {10, 0.01}};
 constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
+// With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
+// share.
+constexpr std::size_t kManyFaults = 2000;
+constexpr int kFewRings = 3;
+constexpr double kWorthwhile = 0.8;
+
 // Rounds in which pulled vertices are let out again, each by one step.
 constexpr int kReleases = 12;
 
@@ -44,7 +50,8 @@ class Limiter {
     faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); });
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
-    for (const Untangler::Options& attempt : kAttempts) untangle_with(attempt, progress);
+    for (const Untangler::Options& attempt : kAttempts)
+      if (!untangle_with(attempt, progress)) break;
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
     for (int i = 0; i < kReleases && release(); ++i) progress.advance(1);
@@ -53,18 +60,28 @@ class Limiter {
   }
 
  private:
-  /// Patches of ever more rings, for as long as something is wrong and more rings make another patch.
-  void untangle_with(const Untangler::Options& attempt, Progress& progress) {
+  std::size_t fault_count() const {
+    const FaultCounts counts = faults_.count();
+    return counts.inverted + counts.collapsed + counts.crossings;
+  }
+
+  /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
+  /// wrong, fronts have run through each other, and large patches take long for little. False if it is not worth
+  /// while to try another way.
+  bool untangle_with(const Untangler::Options& attempt, Progress& progress) {
+    const std::size_t before = fault_count();
     Indices last;
     for (const int rings : kRings) {
-      if (!faults_.any()) return;
+      if (!faults_.any()) return false;
+      if (rings > kFewRings && fault_count() > kManyFaults) break;
       Indices chosen = patch_vertices(rings);
-      if (chosen == last) return;
+      if (chosen == last) break;
       untangle(chosen, attempt);
       ++statistics_.untanglings;
       progress.advance(1);
       last = std::move(chosen);
     }
+    return fault_count() <= kManyFaults || fault_count() < kWorthwhile * static_cast<double>(before);
   }
 
   Vec3d way(std::size_t v) const { return share_[v] == 1 ? whole_way_[v] : whole_way_[v] * share_[v]; }
