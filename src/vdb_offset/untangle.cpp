@@ -126,10 +126,9 @@ class Patch {
 
   void renew_planes() {
     for (Point& p : points_) {
-      const Closest closest = query_(p.x, p.hint);
-      p.hint = closest.triangle;
-      p.distance = closest.distance;
-      p.normal = closest.distance > 0 ? (p.x - closest.point) / closest.distance : Vec3d(0.0);
+      const TrianglePoint nearest = surface_.walk_to_closest(p.x, p.hint);
+      p.distance = std::sqrt(nearest.squared_distance);
+      p.normal = p.distance > 0 ? (p.x - nearest.point) / p.distance : Vec3d(0.0);
     }
     for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
@@ -282,17 +281,24 @@ class Patch {
   }
 
   /// Along the smoothed normal to the distance. On the way out phi is concave there, as the least of the distances to
-  /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was.
+  /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was. The triangles around
+  /// the last answer are asked what is near, and the exact query only whether that is so.
   void return_to_distance(Point& p, const Vec3d& before) const {
     constexpr int kMostSteps = 40;
     constexpr double kSettled = 1e-9, kLeastSlope = 0.1;
     for (int i = 0; i < kMostSteps; ++i) {
-      const Closest closest = query_(p.x, p.hint);
-      p.hint = closest.triangle;
-      if (std::abs(closest.distance - target_) <= kSettled * target_) return;
-      if (!(closest.distance > 1e-3 * target_)) break;
-      const double slope = p.normal.dot(p.x - closest.point) / closest.distance, free = kFreeShare * closest.distance;
-      p.x += p.normal * std::clamp((target_ - closest.distance) / std::max(slope, kLeastSlope), -free, free);
+      TrianglePoint nearest = surface_.walk_to_closest(p.x, p.hint);
+      double distance = std::sqrt(nearest.squared_distance);
+      if (std::abs(distance - target_) <= kSettled * target_) {
+        const Closest closest = query_(p.x, p.hint);
+        if (std::abs(closest.distance - target_) <= kSettled * target_) return;
+        p.hint = closest.triangle;
+        distance = closest.distance;
+        nearest.point = closest.point;
+      }
+      if (!(distance > 1e-3 * target_)) break;
+      const double slope = p.normal.dot(p.x - nearest.point) / distance, free = kFreeShare * distance;
+      p.x += p.normal * std::clamp((target_ - distance) / std::max(slope, kLeastSlope), -free, free);
       if (!((p.x - before).length() < 2 * target_)) break;
     }
     p.x = before;
