@@ -89,7 +89,8 @@ class Patch {
     std::array<std::uint32_t, 3> point;
     double inverse[3];  // of the source's edges (a, b; 0, c) in the plane: 1/a, -b/(a c), 1/c
     double area;
-    std::array<Vec3d, 2> plane;
+    double edge[2][2];    // from the first corner to the others, in the face's plane
+    double map[3][2][2];  // how a slide of each corner shows in that plane
   };
 
   void add_point(std::uint32_t v, std::span<const Vec3d> way) {
@@ -118,7 +119,7 @@ class Patch {
       const double length = ab.length(), twice_area = ab.cross(ac).length();
       if (is_needle(twice_area * twice_area, std::max(ab.lengthSqr(), ac.lengthSqr()))) continue;
       const double along = ab.dot(ac) / length, height = twice_area / length;
-      Face face{{}, {1 / length, -along / (length * height), 1 / height}, twice_area / 2, {}};
+      Face face{{}, {1 / length, -along / (length * height), 1 / height}, twice_area / 2, {}, {}};
       for (std::size_t k = 0; k < 3; ++k) face.point[k] = index_of(surface_.triangles[t][k], vertices, way);
       faces_.push_back(face);
     }
@@ -138,7 +139,14 @@ class Patch {
       Vec3d n(0.0);
       for (const auto i : face.point) n += points_[i].normal;
       if (!(n.lengthSqr() > 1e-12)) n = points_[face.point[0]].normal;
-      face.plane = plane_of(n.unit() * side_);
+      const std::array<Vec3d, 2> plane = plane_of(n.unit() * side_);
+      for (std::size_t row = 0; row < 2; ++row) {
+        for (std::size_t k = 0; k < 3; ++k)
+          for (std::size_t axis = 0; axis < 2; ++axis)
+            face.map[k][row][axis] = plane[row].dot(points_[face.point[k]].tangent[axis]);
+        for (std::size_t k = 0; k < 2; ++k)
+          face.edge[k][row] = plane[row].dot(points_[face.point[k + 1]].x - points_[face.point[0]].x);
+      }
       double jacobian[4];
       const double det = jacobian_of(face, {}, jacobian);
       least_det_ = std::min(least_det_, det);
@@ -163,20 +171,22 @@ class Patch {
     return x;
   }
 
-  Vec3d position(std::uint32_t i, std::span<const double> slide) const {
-    const Point& p = points_[i];
-    if (slide.empty() || i >= free_) return p.x;
-    return p.x + p.tangent[0] * slide[2 * i] + p.tangent[1] * slide[2 * i + 1];
-  }
-
-  /// Returns the determinant.
+  /// Returns the determinant. `slide` holds two numbers for each free point, and may be empty.
   double jacobian_of(const Face& face, std::span<const double> slide, double (&j)[4]) const {
-    const Vec3d a = position(face.point[0], slide), ab = position(face.point[1], slide) - a,
-                ac = position(face.point[2], slide) - a;
+    double edge[2][2] = {{face.edge[0][0], face.edge[0][1]}, {face.edge[1][0], face.edge[1][1]}};
+    if (!slide.empty())
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (face.point[k] >= free_) continue;
+        const double u = slide[2 * face.point[k]], v = slide[2 * face.point[k] + 1];
+        for (std::size_t row = 0; row < 2; ++row) {
+          const double moved = face.map[k][row][0] * u + face.map[k][row][1] * v;
+          if (k != 2) edge[0][row] += k == 0 ? -moved : moved;
+          if (k != 1) edge[1][row] += k == 0 ? -moved : moved;
+        }
+      }
     for (std::size_t row = 0; row < 2; ++row) {
-      const double b = face.plane[row].dot(ab), c = face.plane[row].dot(ac);
-      j[2 * row] = b * face.inverse[0];
-      j[2 * row + 1] = b * face.inverse[1] + c * face.inverse[2];
+      j[2 * row] = edge[0][row] * face.inverse[0];
+      j[2 * row + 1] = edge[0][row] * face.inverse[1] + edge[1][row] * face.inverse[2];
     }
     return j[0] * j[3] - j[1] * j[2];
   }
@@ -195,22 +205,21 @@ class Patch {
       const double by_det = (2 * options_.area_weight * det - e * x_slope) / x;
       const double by_j[4] = {2 * j[0] / x + by_det * j[3], 2 * j[1] / x - by_det * j[2], 2 * j[2] / x - by_det * j[1],
                               2 * j[3] / x + by_det * j[0]};
-      Vec3d by_ab(0.0), by_ac(0.0);
+      double by_edge[2][2];
       for (std::size_t row = 0; row < 2; ++row) {
-        const double b = by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1],
-                     c = by_j[2 * row + 1] * face.inverse[2];
-        by_ab += face.plane[row] * (b * face.area);
-        by_ac += face.plane[row] * (c * face.area);
+        by_edge[0][row] = (by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1]) * face.area;
+        by_edge[1][row] = by_j[2 * row + 1] * face.inverse[2] * face.area;
       }
-      add(derivative, face.point[0], -(by_ab + by_ac));
-      add(derivative, face.point[1], by_ab);
-      add(derivative, face.point[2], by_ac);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (face.point[k] >= free_) continue;
+        for (std::size_t row = 0; row < 2; ++row) {
+          const double by_x = k == 0 ? -by_edge[0][row] - by_edge[1][row] : by_edge[k - 1][row];
+          for (std::size_t axis = 0; axis < 2; ++axis)
+            derivative[2 * face.point[k] + axis] += face.map[k][row][axis] * by_x;
+        }
+      }
     }
     return sum;
-  }
-  void add(std::span<double> derivative, std::uint32_t i, const Vec3d& by_x) const {
-    if (i >= free_) return;
-    for (std::size_t k = 0; k < 2; ++k) derivative[2 * i + k] += points_[i].tangent[k].dot(by_x);
   }
 
   /// L-BFGS (Nocedal and Wright, Numerical Optimization, 2006, algorithm 7.5) with halved steps.
@@ -240,7 +249,8 @@ class Patch {
         for (std::size_t k = 0; k < n; ++k) step[k] += (alpha[p] - beta) * pairs[p].s[k];
       }
       double longest = 0;
-      for (std::size_t k = 0; k < n; k += 2) longest = std::max(longest, std::hypot(step[k], step[k + 1]));
+      for (std::size_t k = 0; k < n; k += 2)
+        longest = std::max(longest, std::sqrt(step[k] * step[k] + step[k + 1] * step[k + 1]));
       if (!(longest > 0)) break;
       double t = pairs.empty() ? kLongestStep * target_ / longest : std::min(1.0, kLongestStep * target_ / longest);
       const double slope = dot(g, step);
@@ -274,15 +284,15 @@ class Patch {
       if (gained < 1e-6 * e) break;
     }
     for (std::uint32_t i = 0; i < free_; ++i) {
-      const Vec3d way = position(i, x) - points_[i].x;
+      const Vec3d way = points_[i].tangent[0] * x[2 * i] + points_[i].tangent[1] * x[2 * i + 1];
       const double length = way.length(), free = kFreeShare * points_[i].distance;
       points_[i].x += length > free ? way * (free / length) : way;
     }
   }
 
   /// Along the smoothed normal to the distance. On the way out phi is concave there, as the least of the distances to
-  /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was. The triangles around
-  /// the last answer are asked what is near, and the exact query only whether that is so.
+  /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was. The triangles
+  /// around the last answer are asked what is near, and the exact query only whether that is so.
   void return_to_distance(Point& p, const Vec3d& before) const {
     constexpr int kMostSteps = 40;
     constexpr double kSettled = 1e-9, kLeastSlope = 0.1;
