@@ -16,6 +16,10 @@ namespace {
 constexpr int kRenewals = 6, kSteps = 20;
 constexpr std::size_t kMemory = 8;
 
+// A step is halved this often until it gains enough; when all of it gains less than this share, the slide ends.
+constexpr int kHalvings = 30;
+constexpr double kArmijo = 1e-4, kLeastGain = 1e-6;
+
 // No vertex goes farther than this, in distances, in one step.
 constexpr double kLongestStep = 0.5;
 
@@ -43,6 +47,51 @@ double chi(double det, double epsilon) {
   const double root = std::sqrt(epsilon * epsilon + det * det);
   return det > 0 ? (det + root) / 2 : epsilon * epsilon / (2 * (root - det));
 }
+
+/// L-BFGS: what the last steps tell of the energy's curvature (Nocedal and Wright, Numerical Optimization, 2006,
+/// algorithm 7.4).
+class QuasiNewton {
+ public:
+  void remember(std::span<const double> x, std::span<const double> next_x, std::span<const double> g,
+                std::span<const double> next_g) {
+    Pair pair{std::vector<double>(x.size()), std::vector<double>(x.size()), 0};
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      pair.s[k] = next_x[k] - x[k];
+      pair.y[k] = next_g[k] - g[k];
+    }
+    const double curvature = dot(pair.s, pair.y);
+    if (!(curvature > 1e-12 * std::sqrt(dot(pair.s, pair.s) * dot(pair.y, pair.y)))) return;
+    pair.rho = 1 / curvature;
+    pairs_.push_back(std::move(pair));
+    if (pairs_.size() > kMemory) pairs_.pop_front();
+  }
+
+  /// The step to where the gradient g would vanish.
+  void descend(std::span<const double> g, std::span<double> step) const {
+    for (std::size_t k = 0; k < g.size(); ++k) step[k] = -g[k];
+    std::array<double, kMemory> alpha{};
+    for (std::size_t p = pairs_.size(); p-- > 0;) {
+      alpha[p] = pairs_[p].rho * dot(pairs_[p].s, step);
+      add(-alpha[p], pairs_[p].y, step);
+    }
+    if (pairs_.empty()) return;
+    const double scale = 1 / (pairs_.back().rho * dot(pairs_.back().y, pairs_.back().y));
+    for (double& s : step) s *= scale;
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+      add(alpha[p] - pairs_[p].rho * dot(pairs_[p].y, step), pairs_[p].s, step);
+  }
+
+ private:
+  struct Pair {
+    std::vector<double> s, y;  // of places and of gradients
+    double rho;
+  };
+  static void add(double factor, std::span<const double> a, std::span<double> sum) {
+    for (std::size_t k = 0; k < a.size(); ++k) sum[k] += factor * a[k];
+  }
+
+  std::deque<Pair> pairs_;
+};
 
 class Patch {
  public:
@@ -222,71 +271,49 @@ class Patch {
     return sum;
   }
 
-  /// L-BFGS (Nocedal and Wright, Numerical Optimization, 2006, algorithm 7.5) with halved steps.
+  /// Lets the energy fall, with L-BFGS directions and halved steps, then puts the points where they have slid to.
   void slide() {
     const std::size_t n = 2 * free_;
-    const double epsilon = std::sqrt(1e-12 + 0.04 * std::pow(std::min(least_det_, 0.0), 2));
+    const double folded = std::min(least_det_, 0.0), epsilon = std::sqrt(1e-12 + 0.04 * folded * folded);
     std::vector<double> x(n, 0.0), g(n), step(n), next(n), next_g(n);
-    struct Pair {
-      std::vector<double> s, y;
-      double rho;
-    };
-    std::deque<Pair> pairs;
+    QuasiNewton model;
     double e = energy(x, epsilon, g);
     for (int i = 0; i < kSteps; ++i) {
-      for (std::size_t k = 0; k < n; ++k) step[k] = -g[k];
-      std::vector<double> alpha(pairs.size());
-      for (std::size_t p = pairs.size(); p-- > 0;) {
-        alpha[p] = pairs[p].rho * dot(pairs[p].s, step);
-        for (std::size_t k = 0; k < n; ++k) step[k] -= alpha[p] * pairs[p].y[k];
-      }
-      if (!pairs.empty()) {
-        const double scale = 1 / (pairs.back().rho * dot(pairs.back().y, pairs.back().y));
-        for (double& s : step) s *= scale;
-      }
-      for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const double beta = pairs[p].rho * dot(pairs[p].y, step);
-        for (std::size_t k = 0; k < n; ++k) step[k] += (alpha[p] - beta) * pairs[p].s[k];
-      }
-      double longest = 0;
-      for (std::size_t k = 0; k < n; k += 2)
-        longest = std::max(longest, std::sqrt(step[k] * step[k] + step[k + 1] * step[k + 1]));
-      if (!(longest > 0)) break;
-      double t = pairs.empty() ? kLongestStep * target_ / longest : std::min(1.0, kLongestStep * target_ / longest);
+      model.descend(g, step);
       const double slope = dot(g, step);
       if (!(slope < 0)) break;
-      double next_e = e;
-      bool found = false;
-      for (int halving = 0; halving < 30; ++halving, t /= 2) {
+      double t = first_step(step, i == 0), next_e = e;
+      for (int halvings = 0; halvings < kHalvings; ++halvings, t /= 2) {
         for (std::size_t k = 0; k < n; ++k) next[k] = x[k] + t * step[k];
         next_e = energy(next, epsilon, next_g);
-        if (next_e <= e + 1e-4 * t * slope) {
-          found = true;
-          break;
-        }
+        if (next_e <= e + kArmijo * t * slope) break;
       }
-      if (!found) break;
-      Pair pair{std::vector<double>(n), std::vector<double>(n), 0};
-      for (std::size_t k = 0; k < n; ++k) {
-        pair.s[k] = next[k] - x[k];
-        pair.y[k] = next_g[k] - g[k];
-      }
-      const double sy = dot(pair.s, pair.y);
-      if (sy > 1e-12 * std::sqrt(dot(pair.s, pair.s) * dot(pair.y, pair.y))) {
-        pair.rho = 1 / sy;
-        pairs.push_back(std::move(pair));
-        if (pairs.size() > kMemory) pairs.pop_front();
-      }
+      if (!(next_e <= e + kArmijo * t * slope)) break;
+      model.remember(x, next, g, next_g);
       x.swap(next);
       g.swap(next_g);
       const double gained = e - next_e;
       e = next_e;
-      if (gained < 1e-6 * e) break;
+      if (gained < kLeastGain * e) break;
     }
-    for (std::uint32_t i = 0; i < free_; ++i) {
-      const Vec3d way = points_[i].tangent[0] * x[2 * i] + points_[i].tangent[1] * x[2 * i + 1];
-      const double length = way.length(), free = kFreeShare * points_[i].distance;
-      points_[i].x += length > free ? way * (free / length) : way;
+    move_points(x);
+  }
+
+  /// The share of a step to try first: all of it, if no point goes too far by that.
+  double first_step(std::span<const double> step, bool scaled_by_nothing) const {
+    double longest2 = 0;
+    for (std::size_t k = 0; k < step.size(); k += 2)
+      longest2 = std::max(longest2, step[k] * step[k] + step[k + 1] * step[k + 1]);
+    const double most = kLongestStep * target_ / std::sqrt(longest2);
+    return scaled_by_nothing ? most : std::min(1.0, most);
+  }
+
+  void move_points(std::span<const double> slide) {
+    for (std::size_t i = 0; i < free_; ++i) {
+      Point& p = points_[i];
+      const Vec3d way = p.tangent[0] * slide[2 * i] + p.tangent[1] * slide[2 * i + 1];
+      const double length = way.length(), free = kFreeShare * p.distance;
+      p.x += length > free ? way * (free / length) : way;
     }
   }
 
