@@ -4,13 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace vdb_offset {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr FloatBox kEmpty{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
 void set_box(BoxTree::Siblings& siblings, std::size_t i, const FloatBox& box) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -22,7 +18,7 @@ void set_box(BoxTree::Siblings& siblings, std::size_t i, const FloatBox& box) {
 }  // namespace
 
 FloatBox BoxTree::around(const Siblings& siblings) {
-  FloatBox box = kEmpty;
+  FloatBox box;
   for (std::size_t k = 0; k < 3; ++k)
     for (int i = 0; i < kWidth; ++i) {
       box.lower[k] = std::min(box.lower[k], siblings.lower[k][i]);
@@ -40,7 +36,7 @@ void BoxTree::build(std::size_t count, const std::function<FloatBox(std::size_t)
       for (std::size_t node = range.begin(); node != range.end(); ++node)
         for (std::size_t i = 0; i < kWidth; ++i) {
           const std::size_t child = node * kWidth + i;
-          set_box(level[node], i, child >= count ? kEmpty : lowest ? box_of(child) : around(levels_.back()[child]));
+          set_box(level[node], i, child >= count ? FloatBox{} : lowest ? box_of(child) : around(levels_.back()[child]));
         }
     });
     count = level.size();

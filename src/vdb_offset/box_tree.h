@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,9 +13,10 @@
 
 namespace vdb_offset {
 
-/// A box of floats; empty if a lower bound is above its upper one.
+/// A box of floats; empty, as it is by default, if a lower bound is above its upper one.
 struct FloatBox {
-  std::array<float, 3> lower, upper;
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::array<float, 3> lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
 };
 
 /// An implicit tree over boxes that come in an order in which neighbours are near each other: eight in a row make one

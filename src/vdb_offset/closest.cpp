@@ -8,17 +8,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "vdb_offset/lanes.h"
 #include "vdb_offset/morton.h"
 
 namespace vdb_offset {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
 
 ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   const Vec3d lower = surface.facts.lower - surface.origin, upper = surface.facts.upper - surface.origin;
@@ -31,7 +25,7 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   discs_.resize((surface_.triangles.size() + kSize - 1) / kSize);
   tree_.build(discs_.size(), [&](std::size_t leaf) {
     discs_[leaf] = discs_of(leaf);
-    FloatBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    FloatBox box;
     for (std::size_t t = leaf * kSize; t < std::min((leaf + 1) * kSize, surface_.triangles.size()); ++t)
       for (const auto v : surface_.triangles[t])
         for (int k = 0; k < 3; ++k) {

@@ -17,6 +17,9 @@ struct Closest {
   Vec3d point;
 };
 
+/// The ball of radius phi(x) around x holds no surface; a step from x that is to cross nothing stays in this share.
+inline constexpr double kFreeShare = 0.9;
+
 /// Exact distance to a surface: phi(x) without a grid's error.
 ///
 /// The surface's triangles, which lie along a space-filling curve, are packed four at a time into an implicit tree of

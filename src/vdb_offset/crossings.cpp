@@ -129,8 +129,7 @@ void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
 
 /// Rounded outwards, relative to the surface's own frame.
 FloatBox CrossingFinder::box_of(std::size_t t) const {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  FloatBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  FloatBox box;
   for (const auto v : surface_.triangles[t])
     for (std::size_t k = 0; k < 3; ++k) {
       const auto x = static_cast<float>(positions_[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);

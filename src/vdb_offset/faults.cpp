@@ -5,12 +5,10 @@
 #include <numeric>
 
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/propagate.h"
 
 namespace vdb_offset {
 namespace {
-
-// What the states mean by "reached" and no farther.
-constexpr double kReachedTolerance = 1e-6;
 
 /// Judges anew the members of `some`.
 template <class Wrong>

@@ -27,9 +27,6 @@ constexpr double kWorthwhile = 0.8;
 // Rounds in which pulled vertices are let out again, each by one step.
 constexpr int kReleases = 12;
 
-// What the states mean by "reached" and no farther.
-constexpr double kReachedTolerance = 1e-6;
-
 class Limiter {
  public:
   Limiter(const ClosestQuery& query, std::span<const Vec3d> source, const LimitOptions& options, Paths& paths)

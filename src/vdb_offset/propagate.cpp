@@ -13,13 +13,10 @@ namespace {
 
 // The stop is solved far below the promised 1e-6, so that rounding on the way to a file does not use it up.
 constexpr double kStopTolerance = 1e-9;
-constexpr double kReachedTolerance = 1e-6;
 // How much longer than the faces around a vertex alone ask for a straight path may be.
 constexpr double kStraightTolerance = 1e-3;
 // Below this the faces around a vertex turn away from its normal so far that a straight path says little.
 constexpr double kLeastStraightSlope = 0.2;
-// A step never leaves the ball of radius phi that is free of surface.
-constexpr double kFreeShare = 0.9;
 constexpr double kStepVoxels = 0.5;
 // A path may run this far, in distances, without getting anywhere before it counts as stopped.
 constexpr double kPatience = 0.5;

@@ -20,6 +20,9 @@ enum class VertexState : std::uint8_t {
 inline constexpr std::size_t kVertexStateCount = 5;
 const char* name(VertexState state);
 
+/// A vertex is at its distance if it is that near to it, relative to the distance.
+inline constexpr double kReachedTolerance = 1e-6;
+
 struct PropagateOptions {
   double distance;  ///< World units, not 0; negative is inward.
 };

@@ -290,15 +290,15 @@ TriangleShape shape_of(const Surface& surface, std::size_t t) {
 }
 
 /// Triangles that hang together over edges with two faces, and which of them agree with the first.
-struct Patch {
+struct OrientablePatch {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint8_t> agrees;
   bool orientable = true;
 };
 
 /// The patch around a triangle that no patch holds yet. `state`: 0 not seen, 1 agrees with the seed, 2 does not.
-Patch collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
-  Patch patch;
+OrientablePatch collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
+  OrientablePatch patch;
   patch.triangles.push_back(seed);
   state[seed] = 1;
   for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
@@ -341,7 +341,7 @@ void settle_orientation(Surface& surface) {
   std::vector<std::uint8_t> state(count, 0), turned(count, 0);
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     if (state[seed] != 0) continue;
-    const Patch patch = collect_patch(surface, seed, state);
+    const OrientablePatch patch = collect_patch(surface, seed, state);
     if (!patch.orientable) continue;
     double area[2] = {0, 0};
     for (std::size_t i = 0; i < patch.triangles.size(); ++i)

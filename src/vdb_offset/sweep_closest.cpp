@@ -37,7 +37,7 @@ std::uint32_t triangle_of(std::int32_t id) { return static_cast<std::uint32_t>(i
 constexpr Lanes kCount = {0, 1, 2, 3};
 
 /// One leaf node and its halo, unpacked: a voxel's position is its indices.
-struct Block {
+struct ClosestBlock {
   float limit[kPaddedVoxels];  // squared distance below which another point is nearer
   float p[3][kPaddedVoxels];   // closest point
   std::int32_t id[kPaddedVoxels];
@@ -174,7 +174,7 @@ class ClosestSweep {
   /// Hands closest points on within one leaf node, and tells what those across its faces would learn.
   News relax(std::size_t leaf) {
     if (!points_[leaf]) allocate(leaf);
-    Block block;
+    ClosestBlock block;
     load(leaf, block);
     const float farthest = std::max(reach_inside_, reach_outside_);
     for_each_row([&](int i, int j, int padded, int n) {
@@ -199,7 +199,7 @@ class ClosestSweep {
     return find_news(block);
   }
 
-  void load(std::size_t leaf, Block& block) const {
+  void load(std::size_t leaf, ClosestBlock& block) const {
     for (auto& axis : block.p) std::fill(std::begin(axis), std::end(axis), kFar);
     const std::int32_t* id = graph_[leaf].closest->buffer().data();
     for_each_row([&](int, int, int padded, int n) {
@@ -220,7 +220,7 @@ class ClosestSweep {
     }
   }
 
-  void store(std::size_t leaf, const Block& block) {
+  void store(std::size_t leaf, const ClosestBlock& block) {
     std::int32_t* id = graph_[leaf].closest->buffer().data();
     for_each_row([&](int, int, int padded, int n) {
       for (int axis = 0; axis < 3; ++axis) std::copy_n(block.p[axis] + padded, kLeafWidth, points_[leaf]->p[axis] + n);
@@ -229,7 +229,7 @@ class ClosestSweep {
   }
 
   /// What voxels across the faces would take over from here.
-  News find_news(const Block& block) const {
+  News find_news(const ClosestBlock& block) const {
     News news;
     for (int face = 0; face < kFaces; ++face) {
       const float squared = face < 4 ? nearest_row_news(block, face) : nearest_end_news(block, face);
@@ -239,7 +239,7 @@ class ClosestSweep {
   }
 
   /// Across the faces along i and j, where rows lie in the face.
-  float nearest_row_news(const Block& block, int face) const {
+  float nearest_row_news(const ClosestBlock& block, int face) const {
     const int axis = face / 2, out = face % 2 ? kLeafWidth : -1;
     Lanes nearest = kNoNews + Lanes{};
     for (int a = 0; a < kLeafWidth; ++a)
@@ -255,7 +255,7 @@ class ClosestSweep {
   }
 
   /// Across the faces along k, where rows end.
-  float nearest_end_news(const Block& block, int face) const {
+  float nearest_end_news(const ClosestBlock& block, int face) const {
     const int k = face % 2 ? kLeafWidth : -1;
     float nearest = kNoNews;
     for_each_row([&](int i, int j, int, int) {
@@ -330,7 +330,7 @@ class ClosestSweep {
   /// A last look at the neighbours' closest points: where surfaces compete, the samples may have chosen the wrong one.
   void compare_with_neighbours(std::size_t leaf) {
     if (graph_[leaf].phi->isEmpty()) return;
-    Block block;
+    ClosestBlock block;
     load(leaf, block);
     const auto tolerance = static_cast<float>(kTolerance);
     for_each_row([&](int i, int j, int padded, int n) {

@@ -13,14 +13,14 @@ constexpr float kUnset = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 1e-5f;
 
 /// One leaf node and its halo, unpacked; lengths in voxels.
-struct Block {
+struct EikonalBlock {
   float size[kPaddedVoxels];  // |phi|, kUnset where nothing is known
   std::int8_t sign[kPaddedVoxels];
   std::int32_t closest[kPaddedVoxels];
   bool changed[kPaddedVoxels];
 
   /// Everything counts as changed in a leaf node's first visit.
-  explicit Block(bool first) {
+  explicit EikonalBlock(bool first) {
     std::fill(std::begin(size), std::end(size), kUnset);
     std::fill(std::begin(changed), std::end(changed), first);
   }
@@ -62,7 +62,7 @@ class EikonalSweep {
   /// Solves one leaf node with its neighbours as they are, in the eight orders of (+-i, +-j, +-k) in turn until one
   /// changes nothing, and tells what those across its faces may learn.
   News relax(std::size_t leaf) {
-    Block block(leaf < front_leaves_ && !visited_[leaf]);
+    EikonalBlock block(leaf < front_leaves_ && !visited_[leaf]);
     if (leaf < front_leaves_) visited_[leaf] = 1;
     else if (graph_[leaf].phi->buffer().empty()) allocate(leaf);
     load(leaf, block);
@@ -79,7 +79,7 @@ class EikonalSweep {
     std::fill_n(at.closest->buffer().data(), kLeafVoxels, -1);
   }
 
-  void load(std::size_t leaf, Block& block) const {
+  void load(std::size_t leaf, EikonalBlock& block) const {
     for (int n = 0; n < kLeafVoxels; ++n) unpack(leaf, n, block, padded_index(n));
     for (int face = 0; face < kFaces; ++face) {
       const auto neighbour = graph_[leaf].neighbour[static_cast<std::size_t>(face)];
@@ -89,7 +89,7 @@ class EikonalSweep {
     }
   }
 
-  void unpack(std::size_t leaf, int n, Block& block, int padded) const {
+  void unpack(std::size_t leaf, int n, EikonalBlock& block, int padded) const {
     if (!graph_[leaf].phi->isValueOn(static_cast<openvdb::Index>(n))) return;
     const float phi = graph_[leaf].phi->buffer().data()[n];
     block.size[padded] = std::abs(phi) / h_;
@@ -102,7 +102,7 @@ class EikonalSweep {
   }
   float reach(std::int8_t sign) const { return sign < 0 ? reach_inside_ : reach_outside_; }
 
-  bool sweep_once(std::size_t leaf, Block& block, int order) const {
+  bool sweep_once(std::size_t leaf, EikonalBlock& block, int order) const {
     bool any = false;
     for (int a = 0; a < kLeafWidth; ++a)
       for (int b = 0; b < kLeafWidth; ++b)
@@ -113,7 +113,7 @@ class EikonalSweep {
     return any;
   }
 
-  bool improve(Block& block, int n) const {
+  bool improve(EikonalBlock& block, int n) const {
     float size[3];
     int nearest = n;
     for (int axis = 0; axis < 3; ++axis) {
@@ -133,7 +133,7 @@ class EikonalSweep {
     return true;
   }
 
-  void store(std::size_t leaf, const Block& block) {
+  void store(std::size_t leaf, const EikonalBlock& block) {
     for (int n = 0; n < kLeafVoxels; ++n) {
       const int padded = padded_index(n);
       if (is_frozen(leaf, n) || block.size[padded] == kUnset) continue;
@@ -145,7 +145,7 @@ class EikonalSweep {
 
   /// A neighbour may improve if one of its voxels lies farther out than one here that has changed. A voxel that is not
   /// set yet is out of reach if the least step, 1 / sqrt(3) of a voxel, leads beyond it.
-  News find_news(const Block& block) const {
+  News find_news(const EikonalBlock& block) const {
     constexpr float kLeastStep = 0.57f;
     News news;
     for (int face = 0; face < kFaces; ++face) {

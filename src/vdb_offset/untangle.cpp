@@ -23,9 +23,6 @@ constexpr double kArmijo = 1e-4, kLeastGain = 1e-6;
 // No vertex goes farther than this, in distances, in one step.
 constexpr double kLongestStep = 0.5;
 
-// A vertex stays in the ball around it that holds no surface.
-constexpr double kFreeShare = 0.9;
-
 /// Two directions at right angles to n and to each other.
 std::array<Vec3d, 2> plane_of(const Vec3d& n) {
   const int axis = std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2)

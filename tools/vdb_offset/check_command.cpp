@@ -16,12 +16,12 @@
 namespace vdb_offset::tool {
 namespace {
 
-constexpr const char* kAbout =
+constexpr const char* kCheckAbout =
     "Measures OFFSET as an offset of SOURCE, whichever program made it: exact distances of all vertices, inverted\n"
     "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
     "Both must have the same vertices and faces in the same order.";
 
-constexpr const char* kMore = R"(
+constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
 struct CheckArguments {
@@ -89,8 +89,8 @@ void print(const CheckResult& result) {
 bool is_check(int argc, const char* const* argv) { return argc > 1 && std::string(argv[1]) == "check"; }
 
 int run_check(int argc, const char* const* argv) {
-  CLI::App app(kAbout, "vdb_offset check");
-  app.footer(kMore);
+  CLI::App app(kCheckAbout, "vdb_offset check");
+  app.footer(kCheckMore);
   CheckArguments args;
   declare(app, args);
   try {
