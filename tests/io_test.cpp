@@ -191,7 +191,7 @@ TEST_CASE("io: numbers in text read back to the same double", "[io]") {
 TEST_CASE("io: conversion keeps positions and faces and says what is lost", "[io]") {
   const Folder folder;
   const io::MeshFile file = io::read_mesh(folder.write("a.obj", kObj));
-  const std::string lost = io::write_mesh(folder.file("a.off"), file, file.polygons.positions);
+  const std::string lost = io::write_mesh(folder.file("a.off"), file, file.polygons.positions).lost;
   for (const char* what : {"texture coordinates", "normals", "materials", "groups", "smoothing", "weights or colours"})
     CHECK_THAT(lost, Catch::Contains(what));
   CHECK(io::read_mesh(folder.file("a.off")).polygons.corners == file.polygons.corners);
@@ -199,10 +199,10 @@ TEST_CASE("io: conversion keeps positions and faces and says what is lost", "[io
   const Polygons cube = scene::box(Vec3d(1), 2, false);
   io::write_mesh(folder.file("cube.obj"), cube.view());
   const io::MeshFile quads = io::read_mesh(folder.file("cube.obj"));
-  CHECK_THAT(io::write_mesh(folder.file("cube.stl"), quads, quads.polygons.positions),
+  CHECK_THAT(io::write_mesh(folder.file("cube.stl"), quads, quads.polygons.positions).lost,
              Catch::Contains("split into triangles"));
   CHECK(io::read_mesh(folder.file("cube.stl")).polygons.face_count() == 2 * cube.face_count());
-  CHECK(io::write_mesh(folder.file("cube.ply"), quads, quads.polygons.positions).empty());
+  CHECK(io::write_mesh(folder.file("cube.ply"), quads, quads.polygons.positions).lost.empty());
 }
 
 TEST_CASE("io: faulty content is refused with its place", "[io]") {
@@ -221,7 +221,7 @@ TEST_CASE("io: faulty content is refused with its place", "[io]") {
       {"a.obj", "v 0 0 0\nf 1 1 -2\n", "line 2", "'-2'"},
       {"a.obj", "v 0 0 0\nf 1 1\n", "line 2", "3 corners"},
       {"a.obj", "v 0 0 0\nf 1 1 x\n", "line 2", "'x'"},
-      {"a.obj", "v 0 0 0\nf 1//1 1//1 1//1\n", "line 2", "normal indices"},
+      {"a.obj", "v 0 0 0\nf 1//1 1//1 1//1\n", "line 2", "normal index up to 0"},
       {"a.obj", "\x01\x02\x03 zz\n", "line 1", "a line of an OBJ file"},
       {"a.off", "OFX\n", "line 1", "OFF"},
       {"a.off", "OFF\n353535235358 1 0\n", "line 2", "rest of the file"},

@@ -155,7 +155,7 @@ TEST_CASE("limit: single precision is checked as it will be stored", "[limit]") 
   for (Vec3d& p : mesh.positions) p = Vec3d(openvdb::Vec3s(p));
   OffsetOptions options;
   options.distance = 0.3;
-  options.single_precision = true;
+  options.precision = {Precision::Kind::Single};
   const OffsetResult result = offset(mesh.view(), options);
   std::vector<Vec3d> stored;
   for (const Vec3d& p : result.positions) stored.emplace_back(openvdb::Vec3s(p));

@@ -61,8 +61,9 @@ double find_distance(const ClosestQuery& query, std::span<const Vec3d> places) {
 }
 
 /// States and distances of the input's vertices.
-void judge_vertices(const Surface& surface, const FaultFinder& finder, bool single_precision, CheckResult& result) {
-  const double target = std::abs(result.distance), epsilon = single_precision ? 0x1p-23 : 0x1p-51;
+void judge_vertices(const Surface& surface, const FaultFinder& finder, const Precision& precision,
+                    CheckResult& result) {
+  const double target = std::abs(result.distance), epsilon = precision.epsilon();
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     const std::uint32_t w = surface.welded[v];
     if (w == kNone) continue;
@@ -88,12 +89,12 @@ void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOp
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  FaultFinder finder(query, places.source, result.distance, false);
+  FaultFinder finder(query, places.source, result.distance, {});
   finder.look_everywhere([&](std::uint32_t v) { return places.offset[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().size();
   result.crossings_near_source = finder.crossings_near_source();
-  judge_vertices(surface, finder, options.single_precision, result);
+  judge_vertices(surface, finder, options.precision, result);
   result.interior = measure_interior(query, places.offset, std::abs(result.distance));
 }
 

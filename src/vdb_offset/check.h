@@ -12,7 +12,7 @@ namespace vdb_offset {
 struct CheckOptions {
   /// What was asked for, world units, negative inward; empty: the median of the distances found, with the sign of most.
   std::optional<double> distance;
-  bool single_precision = false;  ///< The offset's coordinates were stored as 32-bit floats.
+  Precision precision;  ///< Of the offset's coordinates as stored.
   WeldOptions weld;
   int threads = 0;  ///< 0: as many as the machine has.
 };

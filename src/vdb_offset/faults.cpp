@@ -26,14 +26,13 @@ void sort_unique(Indices& indices) {
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-FaultFinder::FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance,
-                         bool single_precision)
+FaultFinder::FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance, Precision precision)
     : query_(query),
       surface_(query.surface()),
       source_(source),
       target_(std::abs(distance)),
       side_(distance < 0 ? -1 : 1),
-      single_precision_(single_precision),
+      precision_(precision),
       place_(source.begin(), source.end()),
       away_(source.size()),
       distance_(source.size()),
@@ -104,7 +103,7 @@ void FaultFinder::measure(std::size_t v) {
 double FaultFinder::rounding(std::size_t v) const {
   double size = 0;
   for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(place_[v][k]));
-  return size * (single_precision_ ? 0x1p-23 : 0x1p-51);
+  return size * precision_.epsilon();
 }
 
 Vec3d FaultFinder::twice_area(std::uint32_t t, std::span<const Vec3d> at) const {
@@ -142,8 +141,7 @@ void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& pla
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
   const auto put = [&](std::size_t i) {
     const Vec3d p = place_of(moved[i]);
-    place_[moved[i]] =
-        single_precision_ ? Vec3d(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])) : p;
+    place_[moved[i]] = p == source_[moved[i]] ? p : precision_(p);  // what has not moved keeps its bytes
     measure(moved[i]);
   };
   for_each_index(moved.size(), put, 64);

@@ -8,6 +8,7 @@
 
 #include "vdb_offset/closest.h"
 #include "vdb_offset/crossings.h"
+#include "vdb_offset/precision.h"
 
 namespace vdb_offset {
 
@@ -30,9 +31,9 @@ void sort_unique(Indices& indices);
 class FaultFinder {
  public:
   /// `source` holds where the surface's vertices stand in the input, world coordinates; they begin there. `distance` in
-  /// world units, not 0; negative is inward. With `single_precision` places are rounded to 32-bit floats.
+  /// world units, not 0; negative is inward. Places are rounded to `precision`.
   /// Keeps references to the query and the source.
-  FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance, bool single_precision);
+  FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance, Precision precision);
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them.
@@ -77,7 +78,7 @@ class FaultFinder {
   std::span<const Vec3d> source_;
   double target_;
   int side_;
-  bool single_precision_;
+  Precision precision_;
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
   std::vector<std::uint8_t> right_side_, near_source_;

@@ -4,22 +4,37 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <utility>
 
 #include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {
 
+// For a signal handler, which may not do more than read it.
+std::atomic<const char*> temporary_path = nullptr;
+
 /// Removes the temporary file unless it was renamed away.
 struct Remover {
   std::string path;
+  explicit Remover(std::string temporary) : path(std::move(temporary)) { temporary_path = path.c_str(); }
+  Remover(const Remover&) = delete;
+  Remover& operator=(const Remover&) = delete;
   ~Remover() {
+    temporary_path = nullptr;
     if (!path.empty()) ::unlink(path.c_str());
   }
+};
+
+struct Descriptor {
+  int fd;
+  ~Descriptor() { close(); }
+  bool close() { return fd < 0 || ::close(std::exchange(fd, -1)) == 0; }
 };
 
 /// The file that a path names: a link stays a link, and what it points to is replaced.
@@ -34,9 +49,19 @@ std::filesystem::path resolved(const std::string& path) {
 
 std::string reason() { return std::strerror(errno); }
 
+void write_all(const std::string& path, int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw WriteError(path + ": cannot be written: " + reason());
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
 }  // namespace
 
 void require_writable(const std::string& path) {
+  if (path == "-") return;
   const std::filesystem::path target = resolved(path);
   std::error_code ignored;
   const bool in_place = std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored);
@@ -53,31 +78,38 @@ void replace_file(const std::string& path, const std::function<void(const std::s
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return write(target.string());
   // The ending stays last: writers that choose a format by it must see the same one.
   const std::string name = fmt::format(".tmp-{}-{}", ::getpid(), std::hash<std::string>{}(target.string()) % 1000000);
-  Remover temporary{(target.parent_path() / (name + target.extension().string())).string()};
+  Remover temporary((target.parent_path() / (name + target.extension().string())).string());
   write(temporary.path);
   if (std::filesystem::exists(status)) std::filesystem::permissions(temporary.path, status.permissions(), ignored);
   if (std::rename(temporary.path.c_str(), target.c_str()) != 0)
     throw WriteError(path + ": cannot be replaced: " + reason());
+  temporary_path = nullptr;
   temporary.path.clear();
 }
 
-void write_file(const std::string& path, const std::string& bytes, const std::function<void()>& before_rename) {
+void write_file(const std::string& path, const std::function<void(const Sink&)>& produce,
+                const std::function<void()>& before_rename) {
+  if (path == "-") {
+    produce([](std::string_view bytes) { write_all("standard output", STDOUT_FILENO, bytes); });
+    if (before_rename) before_rename();
+    return;
+  }
   replace_file(path, [&](const std::string& temporary) {
-    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) throw WriteError(path + ": cannot be written: " + reason());
-    for (std::size_t at = 0; at < bytes.size();) {
-      const ssize_t count = ::write(file, bytes.data() + at, bytes.size() - at);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) {
-        const std::string why = reason();
-        ::close(file);
-        throw WriteError(fmt::format("{}: cannot be written: {}", path, why));
-      }
-      at += static_cast<std::size_t>(count);
-    }
-    if (::close(file) != 0) throw WriteError(path + ": cannot be written: " + reason());
+    Descriptor file{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+    if (file.fd < 0) throw WriteError(path + ": cannot be written: " + reason());
+    produce([&](std::string_view bytes) { write_all(path, file.fd, bytes); });
+    if (!file.close()) throw WriteError(path + ": cannot be written: " + reason());
     if (before_rename) before_rename();
   });
+}
+
+void write_file(const std::string& path, std::string_view bytes, const std::function<void()>& before_rename) {
+  write_file(
+      path, [&](const Sink& sink) { sink(bytes); }, before_rename);
+}
+
+void remove_temporary_file() noexcept {
+  if (const char* path = temporary_path.load()) ::unlink(path);
 }
 
 }  // namespace vdb_offset

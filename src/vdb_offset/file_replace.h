@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace vdb_offset {
 
@@ -13,7 +14,18 @@ void replace_file(const std::string& path, const std::function<void(const std::s
 /// Finds out before a long run whether `path` could be written. \throw WriteError
 void require_writable(const std::string& path);
 
-/// Writes `bytes` to `path` through replace_file(), and calls `before_rename` in between. \throw WriteError
-void write_file(const std::string& path, const std::string& bytes, const std::function<void()>& before_rename = {});
+/// Where a file's bytes go, run by run.
+using Sink = std::function<void(std::string_view)>;
+
+/// Writes what `produce` hands to its sink to `path` through replace_file(), and calls `before_rename` in between.
+/// "-" is standard output. \throw WriteError
+void write_file(const std::string& path, const std::function<void(const Sink&)>& produce,
+                const std::function<void()>& before_rename = {});
+
+/// The same for bytes that are all there.
+void write_file(const std::string& path, std::string_view bytes, const std::function<void()>& before_rename = {});
+
+/// Removes the temporary file of a replace_file() that is under way. For signal handlers that end the process.
+void remove_temporary_file() noexcept;
 
 }  // namespace vdb_offset

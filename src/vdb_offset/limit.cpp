@@ -39,7 +39,7 @@ class Limiter {
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
         patch_(source.size(), kNone),
-        faults_(query, source, options.distance, options.single_precision) {
+        faults_(query, source, options.distance, options.precision) {
     statistics_.source_crossings = faults_.source_crossings().size();
   }
 

@@ -9,8 +9,8 @@
 namespace vdb_offset {
 
 struct LimitOptions {
-  double distance;                ///< World units, not 0; negative is inward.
-  bool single_precision = false;  ///< The result will be stored as 32-bit floats, and is checked as such.
+  double distance;      ///< World units, not 0; negative is inward.
+  Precision precision;  ///< The result will be stored so, and is checked as such.
 };
 
 /// What limit() found and did.

@@ -114,8 +114,8 @@ void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
   }
   if (options.collision == Collision::Limit) {
     const StageTimer timer(statistics, Stage::Limit);
-    statistics.limit = limit(*query, source_positions(mesh, surface), {options.distance, options.single_precision},
-                             paths, options.progress);
+    statistics.limit =
+        limit(*query, source_positions(mesh, surface), {options.distance, options.precision}, paths, options.progress);
   }
   move_vertices(mesh, surface, paths, result);
   statistics.interior =

@@ -27,8 +27,7 @@ struct OffsetOptions {
   GridOptions grid;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
-  bool single_precision =
-      false;  ///< The result is for a file of 32-bit floats; validity is checked as rounded to them.
+  Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
   WeldOptions weld;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.

@@ -108,7 +108,7 @@ int run_check(int argc, const char* const* argv) {
   const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
   require_same_faces(args, source.polygons, offset.polygons);
   options.distance = parse_distance(args.distance, source.polygons.view());
-  options.single_precision = io::rounds_to_floats(args.offset, offset);
+  options.precision = io::precision_of(args.offset, offset);
   const CheckResult result = check_offset(source.polygons.view(), offset.polygons.positions, options);
   const std::string json = check_json(result, args.source, args.offset);
   if (!args.report.empty()) write_file(args.report, json);

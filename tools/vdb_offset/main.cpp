@@ -148,11 +148,11 @@ void write_outputs(const Arguments& args, const Source& source, OffsetResult& re
   };
   std::string lost;
   if (source.file) {
-    lost = io::write_mesh(args.output, *source.file, result.positions, before_rename);
+    lost = io::write_mesh(args.output, *source.file, result.positions, {.before_rename = before_rename}).lost;
   } else {
     Polygons made = source.scene->shape;
     made.positions = result.positions;
-    io::write_mesh(args.output, made.view(), before_rename);
+    io::write_mesh(args.output, made.view(), {.before_rename = before_rename});
   }
   if (!lost.empty() && !args.quiet) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, lost);
 }
@@ -180,7 +180,7 @@ int run(Arguments args) {
   args.options.keep_field = !args.vdb.empty();
   if (args.options.keep_field && args.options.distance == 0)
     throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");
-  if (source.file) args.options.single_precision = io::rounds_to_floats(args.output, *source.file);
+  if (source.file) args.options.precision = io::precision_of(args.output, *source.file);
   OffsetResult result = offset(source.view(), args.options);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   bar.show(Stage::Write, 0);

@@ -1,51 +1,248 @@
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstring>
+#include <exception>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/io/text.h"
 
 namespace vdb_offset::io {
 namespace {
 
-/// Reads `v`, `vn` and `f` lines; all others stay what they are, bytes that are copied.
-class ObjParser {
- public:
-  explicit ObjParser(MeshFile& file)
-      : file_(file), scanner_(file.path, file.bytes, byte_order_mark(file.bytes), true, '#') {}
+/// What a file holds besides positions and faces, as bits; the order is that of the names.
+enum Extra : unsigned {
+  kVertexData = 1,
+  kNormals = 2,
+  kTexture = 4,
+  kMaterials = 8,
+  kGroups = 16,
+  kSmooth = 32,
+  kOther = 64
+};
+constexpr const char* kExtraNames[] = {
+    "vertex weights or colours", "normals",          "texture coordinates", "materials",
+    "groups and object names",   "smoothing groups", "other lines"};
 
-  void run() {
-    for (; !scanner_.at_end(); scanner_.next_line()) {
-      const std::string_view keyword = scanner_.token();
-      if (keyword == "v") vertex();
-      else if (keyword == "vn") normal();
-      else if (keyword == "f") face();
-      else if (!keyword.empty()) other(keyword);
+// Bytes of "v 0 0 0".
+constexpr std::ptrdiff_t kLeastVertexLine = 7;
+
+/// How much of everything a run of lines holds, or there is before it.
+struct Counts {
+  std::size_t vertices = 0, normals = 0, faces = 0, corners = 0;
+
+  Counts& operator+=(const Counts& other) {
+    vertices += other.vertices;
+    normals += other.normals;
+    faces += other.faces;
+    corners += other.corners;
+    return *this;
+  }
+  bool operator==(const Counts&) const = default;
+};
+
+/// Where the parts of a mesh are put, each run of lines into its own part of the arrays.
+struct Arrays {
+  Polygons& polygons;
+  std::vector<std::uint32_t>& corner_normal;
+  std::vector<NumberTriple> position_at, normal_at;
+};
+
+/// The end of a line: behind its line end, or behind that of the last line that backslashes join to it.
+const char* line_end(const char* line, const char* end) {
+  const char* at = line;
+  for (;;) {
+    const auto* newline = static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
+    if (!newline) return end;
+    at = newline + 1;
+    const char* last = newline != line && newline[-1] == '\r' ? newline - 1 : newline;
+    if (last == line || last[-1] != '\\') return at;
+    if (std::memchr(line, '#', static_cast<std::size_t>(newline - line))) return at;  // a comment ends with its line
+    if (at == end) return end;
+  }
+}
+
+enum class Line { Vertex, Normal, Face, Blank, Other };
+
+bool is_keyword(FastCursor& cursor, char first, char second = 0) {
+  FastCursor ahead = cursor;
+  if (!ahead.take(first) || (second && !ahead.take(second)) || !ahead.at_word_end()) return false;
+  cursor = ahead;
+  return true;
+}
+
+Line line_of(std::string_view keyword) {
+  return keyword == "v" ? Line::Vertex : keyword == "vn" ? Line::Normal : keyword == "f" ? Line::Face : Line::Other;
+}
+
+/// A scanner at the start of a line.
+Scanner scanner_at(const MeshFile& file, const char* line) {
+  return {file.path, file.text(), static_cast<std::size_t>(line - file.text().data()), true, '#'};
+}
+
+/// What a line is. The cursor goes behind the keyword, or, where a backslash stands in front of it, stays there.
+Line classify(const MeshFile& file, const char* line, FastCursor& cursor) {
+  cursor.skip_blanks();
+  if (is_keyword(cursor, 'v')) return Line::Vertex;
+  if (is_keyword(cursor, 'f')) return Line::Face;
+  if (is_keyword(cursor, 'v', 'n')) return Line::Normal;
+  if (cursor.at_line_end()) return Line::Blank;
+  FastCursor ahead = cursor;
+  if (ahead.take('#')) return Line::Blank;
+  return ahead.take('\\') ? line_of(scanner_at(file, line).token()) : Line::Other;
+}
+
+/// The corners of a face's line, behind its keyword.
+std::size_t count_corners(const MeshFile& file, const char* line, FastCursor cursor, const char* end) {
+  std::size_t corners = 0;
+  while (cursor.skip_word()) ++corners;
+  if (cursor.at_line_end() && cursor.position() + 1 >= end) return corners;
+  Scanner scanner = scanner_at(file, line);  // a comment, or a line that goes on in the next
+  scanner.token();
+  for (corners = 0; !scanner.token().empty();) ++corners;
+  return corners;
+}
+
+/// Counts what a run of lines holds. Lines that are wrong are counted somehow: parsing tells.
+Counts count_run(const MeshFile& file, std::size_t begin, std::size_t end) {
+  Counts counts;
+  const char* const last = file.text().data() + end;
+  for (const char* line = file.text().data() + begin; line != last;) {
+    const char* const next = line_end(line, last);
+    FastCursor cursor(line, next);
+    const Line kind = classify(file, line, cursor);
+    // Lines too short for a vertex would make much of little: they are refused before there is an array.
+    if (kind == Line::Vertex && next - line < kLeastVertexLine) {
+      Scanner scanner = scanner_at(file, line);
+      scanner.token();
+      NumberTriple ignored;
+      scanner.triple("a coordinate", ignored);
     }
-    check_indices();
-    if (file_.polygons.face_count() == 0) scanner_.fail("at least one face ('f' line)", file_.bytes.size());
-    if (std::all_of(file_.corner_normal.begin(), file_.corner_normal.end(), [](auto n) { return n == kNoNormal; }))
-      file_.corner_normal.clear();
+    counts.vertices += kind == Line::Vertex;
+    counts.normals += kind == Line::Normal;
+    if (kind == Line::Face) {
+      ++counts.faces;
+      counts.corners += count_corners(file, line, cursor, next);
+    }
+    line = next;
+  }
+  return counts;
+}
+
+/// Parses a run of lines into its part of the arrays.
+class RunParser {
+ public:
+  RunParser(const MeshFile& file, Arrays& arrays, const Counts& from, const Counts& to, const Counts& all)
+      : file_(file),
+        text_(file.text()),
+        scanner_(scanner_at(file, text_.data())),
+        arrays_(arrays),
+        next_(from),
+        to_(to),
+        all_(all) {}
+
+  /// What the lines hold besides positions and faces.
+  unsigned run(std::size_t begin, std::size_t end) {
+    const char* const last = text_.data() + end;
+    for (const char* line = text_.data() + begin; line != last;) {
+      const char* const next = line_end(line, last);
+      FastCursor cursor(line, next);
+      const Line kind = classify(file_, line, cursor);
+      if (kind == Line::Vertex) vertex(line, cursor);
+      else if (kind == Line::Face) face(line, cursor);
+      else if (kind == Line::Normal) normal(line, cursor);
+      else if (kind == Line::Other) other(line);
+      line = next;
+    }
+    if (!(next_ == to_)) changed();
+    return extras_;
   }
 
  private:
-  void vertex() {
-    file_.polygons.positions.push_back(scanner_.triple("a coordinate", file_.position_at.emplace_back()));
-    if (!scanner_.at_line_end()) note("vertex weights or colours");
+  /// A file that says something else when it is read again; what was counted no longer holds.
+  [[noreturn]] void changed() const {
+    scanner_.fail_with("a file that stays as it is", "one that changes while it is read", 0);
   }
-  void normal() {
-    scanner_.skip_triple("three numbers of a normal", file_.normal_at.emplace_back());
-    note("normals");
+  std::size_t take(std::size_t Counts::*what) {
+    if (next_.*what == to_.*what) changed();
+    return (next_.*what)++;
   }
-  void face() {
-    const std::size_t begin = scanner_.position();
-    std::size_t corners = 0;
-    for (; !scanner_.at_line_end(); ++corners) corner(scanner_.token());
-    if (corners < 3) scanner_.fail_with("at least 3 corners in a face", fmt::format("{}", corners), begin);
-    face_at_.push_back(begin);
-    file_.polygons.close_face();
+  std::uint64_t place(const char* at) const { return static_cast<std::uint64_t>(at - text_.data()); }
+  /// For what the fast way does not read: the line again, from behind its keyword.
+  void scan(const char* line) {
+    scanner_ = scanner_at(file_, line);
+    scanner_.token();
   }
+
+  void vertex(const char* line, FastCursor cursor) {
+    const std::size_t v = take(&Counts::vertices);
+    Vec3d& p = arrays_.polygons.positions[v];
+    NumberTriple& at = arrays_.position_at[v];
+    bool plain = true;
+    for (int k = 0; k < 3 && plain; ++k) {
+      cursor.skip_blanks();
+      at.at[k] = place(cursor.position());
+      plain = cursor.number(p[k]);
+    }
+    if (plain && cursor.at_line_end()) return;
+    scan(line);
+    p = scanner_.triple("a coordinate", at);
+    if (!scanner_.at_line_end()) extras_ |= kVertexData;
+  }
+
+  void normal(const char* line, FastCursor cursor) {
+    NumberTriple& at = arrays_.normal_at[take(&Counts::normals)];
+    extras_ |= kNormals;
+    bool plain = true;
+    for (auto& byte : at.at) {
+      cursor.skip_blanks();
+      byte = place(cursor.position());
+      plain = plain && cursor.skip_word();
+    }
+    if (plain && cursor.at_line_end()) return;
+    scan(line);
+    scanner_.skip_triple("three numbers of a normal", at);
+  }
+
+  void face(const char* line, FastCursor cursor) {
+    const std::size_t f = take(&Counts::faces), first = next_.corners;
+    bool plain = true;
+    while (plain && !cursor.at_line_end()) plain = plain_corner(cursor);
+    if (!plain) {
+      next_.corners = first;
+      scan(line);
+      while (!scanner_.at_line_end()) corner(scanner_.token());
+    }
+    if (next_.corners - first < 3) {
+      scan(line);
+      scanner_.fail_with("at least 3 corners in a face", fmt::format("{}", next_.corners - first), place(line));
+    }
+    arrays_.polygons.face_begin[f + 1] = static_cast<std::uint32_t>(next_.corners);
+  }
+
+  bool plain_corner(FastCursor& cursor) {
+    std::uint32_t vertex = 0, texture = 0, normal = 0;
+    if (!cursor.digits(vertex) || vertex == 0 || vertex > all_.vertices) return false;
+    if (cursor.take('/')) {
+      const bool has_texture = !cursor.take('/');
+      if (has_texture && !cursor.digits(texture)) return false;
+      if (!has_texture || cursor.take('/')) {
+        if (!cursor.digits(normal) || normal == 0 || normal > all_.normals) return false;
+      }
+    }
+    if (!cursor.at_word_end()) return false;
+    add_corner(vertex - 1, normal == 0 ? kNoNormal : normal - 1);
+    return true;
+  }
+  void add_corner(std::uint32_t vertex, std::uint32_t normal) {
+    const std::size_t c = take(&Counts::corners);
+    arrays_.polygons.corners[c] = vertex;
+    if (!arrays_.corner_normal.empty()) arrays_.corner_normal[c] = normal;
+  }
+
   /// v, v/vt, v//vn or v/vt/vn; negative numbers count back from the last one read so far.
   void corner(std::string_view token) {
     const std::size_t at = scanner_.position() - token.size();
@@ -58,54 +255,94 @@ class ObjParser {
       rest.remove_prefix(slash + 1);
     }
     if (parts == 3) scanner_.fail("a corner of the form v, v/vt, v//vn or v/vt/vn", at);
-    file_.polygons.corners.push_back(index(part[0], file_.polygons.positions.size(), "vertex", at));
+    const std::uint32_t vertex = index(part[0], next_.vertices, all_.vertices, "vertex", at);
     std::int64_t texture = 0;
     if (!part[1].empty() && !parse_integer(part[1], texture)) scanner_.fail("a texture index", at);
-    file_.corner_normal.push_back(part[2].empty() ? kNoNormal : index(part[2], file_.normal_at.size(), "normal", at));
+    add_corner(vertex, part[2].empty() ? kNoNormal : index(part[2], next_.normals, all_.normals, "normal", at));
   }
-  std::uint32_t index(std::string_view text, std::size_t count, const char* what, std::size_t at) {
+  std::uint32_t index(std::string_view text, std::size_t so_far, std::size_t all, const char* what, std::size_t at) {
     std::int64_t value = 0;
     if (!parse_integer(text, value)) scanner_.fail(fmt::format("a {} index", what), at);
     if (value == 0) scanner_.fail(fmt::format("a {} index from 1 on or below 0", what), at);
-    if (value < 0) value += static_cast<std::int64_t>(count) + 1;
-    if (value < 1 || static_cast<std::uint64_t>(value) > kMostVertices)
-      scanner_.fail(fmt::format("a {} index within the {} read so far", what, count), at);
+    if (value < 0) {
+      value += static_cast<std::int64_t>(so_far) + 1;
+      if (value < 1) scanner_.fail(fmt::format("a {} index within the {} read so far", what, so_far), at);
+    }
+    if (static_cast<std::uint64_t>(value) > all) scanner_.fail(fmt::format("a {} index up to {}", what, all), at);
     return static_cast<std::uint32_t>(value - 1);
   }
-  /// Positive indices may point forward, so that their range is known only now.
-  void check_indices() {
-    for (std::size_t f = 0; f < face_at_.size(); ++f)
-      for (auto c = file_.polygons.face_begin[f]; c < file_.polygons.face_begin[f + 1]; ++c) {
-        if (file_.polygons.corners[c] >= file_.polygons.positions.size())
-          scanner_.fail_with(fmt::format("vertex indices up to {} in the face", file_.polygons.positions.size()),
-                             fmt::format("{}", file_.polygons.corners[c] + 1), face_at_[f]);
-        if (file_.corner_normal[c] != kNoNormal && file_.corner_normal[c] >= file_.normal_at.size())
-          scanner_.fail_with(fmt::format("normal indices up to {} in the face", file_.normal_at.size()),
-                             fmt::format("{}", file_.corner_normal[c] + 1), face_at_[f]);
-      }
-  }
-  void other(std::string_view keyword) {
+
+  void other(const char* line) {
+    scanner_ = scanner_at(file_, line);
+    const std::string_view keyword = scanner_.token();
     // A file of random bytes is recognised by its first line that is none.
     if (keyword.size() > 32 || !std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; }))
       scanner_.fail("a line of an OBJ file", scanner_.position() - keyword.size());
-    if (keyword == "vt") note("texture coordinates");
-    else if (keyword == "usemtl" || keyword == "mtllib") note("materials");
-    else if (keyword == "g" || keyword == "o") note("groups and object names");
-    else if (keyword == "s") note("smoothing groups");
-    else note("other lines");
-  }
-  void note(const char* what) {
-    if (std::find(file_.extras.begin(), file_.extras.end(), what) == file_.extras.end())
-      file_.extras.emplace_back(what);
+    if (keyword == "vt") extras_ |= kTexture;
+    else if (keyword == "usemtl" || keyword == "mtllib") extras_ |= kMaterials;
+    else if (keyword == "g" || keyword == "o") extras_ |= kGroups;
+    else if (keyword == "s") extras_ |= kSmooth;
+    else if (!keyword.empty()) extras_ |= kOther;
   }
 
-  MeshFile& file_;
+  const MeshFile& file_;
+  std::string_view text_;
   Scanner scanner_;
-  std::vector<std::size_t> face_at_;
+  Arrays& arrays_;
+  Counts next_, to_, all_;
+  unsigned extras_ = 0;
 };
+
+/// What stands before each run, and behind the last one.
+std::vector<Counts> count(const MeshFile& file, const std::vector<std::size_t>& cuts) {
+  std::vector<Counts> before(cuts.size());
+  tbb::parallel_for(std::size_t{1}, cuts.size(),
+                    [&](std::size_t run) { before[run] = count_run(file, cuts[run - 1], cuts[run]); });
+  for (std::size_t run = 1; run < cuts.size(); ++run) before[run] += before[run - 1];
+  return before;
+}
+
+Arrays allocate(MeshFile& file, const Counts& all) {
+  const Scanner end(file.path, file.text(), file.text().size());
+  if (all.vertices > kMostVertices || all.normals > kMostVertices || all.corners > kMostVertices)
+    end.fail("fewer than 2^32 vertices and face corners");
+  Arrays arrays{file.polygons, file.corner_normal, {}, {}};
+  arrays.polygons.positions.resize(all.vertices);
+  arrays.polygons.corners.resize(all.corners);
+  arrays.polygons.face_begin.resize(all.faces + 1);
+  arrays.position_at.resize(all.vertices);
+  arrays.normal_at.resize(all.normals);
+  if (all.normals > 0) arrays.corner_normal.resize(all.corners);
+  return arrays;
+}
 
 }  // namespace
 
-void parse_obj(MeshFile& file) { ObjParser(file).run(); }
+/// Reads `v`, `vn` and `f` lines; all others stay what they are, bytes that are copied. The lines are counted first, so
+/// that runs of them can be parsed in parallel, straight to where they belong.
+void parse_obj(MeshFile& file) {
+  const std::vector<std::size_t> cuts = cut_at_lines(file.text(), byte_order_mark(file.text()));
+  const std::vector<Counts> before = count(file, cuts);
+  const Counts& all = before.back();
+  Arrays arrays = allocate(file, all);
+  std::vector<std::exception_ptr> failed(cuts.size());
+  std::vector<unsigned> extras(cuts.size(), 0);
+  tbb::parallel_for(std::size_t{1}, cuts.size(), [&](std::size_t run) {
+    try {
+      extras[run] = RunParser(file, arrays, before[run - 1], before[run], all).run(cuts[run - 1], cuts[run]);
+    } catch (...) {
+      failed[run] = std::current_exception();
+    }
+  });
+  for (const auto& exception : failed)
+    if (exception) std::rethrow_exception(exception);
+  if (all.faces == 0) Scanner(file.path, file.text()).fail("at least one face ('f' line)", file.text().size());
+  file.position_at = Places(std::move(arrays.position_at));
+  file.normal_at = Places(std::move(arrays.normal_at));
+  unsigned held = 0;
+  for (const unsigned extra : extras) held |= extra;
+  for (std::size_t i = 0; i < std::size(kExtraNames); ++i)
+    if (held >> i & 1) file.extras.emplace_back(kExtraNames[i]);
+}
 
 }  // namespace vdb_offset::io

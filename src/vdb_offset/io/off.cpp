@@ -37,17 +37,18 @@ std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
 }  // namespace
 
 void parse_off(MeshFile& file) {
-  Scanner scanner(file.path, file.bytes, byte_order_mark(file.bytes), false, '#');
+  Scanner scanner(file.path, file.text(), byte_order_mark(file.text()), false, '#');
   const bool normals = has_normals(scanner, scanner.token_anywhere("the keyword OFF"), file);
   if (is_word(Scanner(scanner).token(), "binary"))
     scanner.fail_with("a text OFF file", "a binary one", scanner.position());
   const std::size_t vertices = count(scanner, "a number of vertices", 6),
                     faces = count(scanner, "a number of faces", 8);
   if (!scanner.at_line_end()) scanner.integer("a number of edges");
+  std::vector<NumberTriple> position_at, normal_at;
   for (std::size_t v = 0; v < vertices; ++v) {
     if (scanner.at_text_end()) scanner.fail(fmt::format("vertex {} of {}", v + 1, vertices));
-    file.polygons.positions.push_back(scanner.triple("a coordinate", file.position_at.emplace_back()));
-    if (normals) scanner.skip_triple("three numbers of a normal", file.normal_at.emplace_back());
+    file.polygons.positions.push_back(scanner.triple("a coordinate", position_at.emplace_back()));
+    if (normals) scanner.skip_triple("three numbers of a normal", normal_at.emplace_back());
     scanner.next_line();
   }
   for (std::size_t f = 0; f < faces; ++f) {
@@ -64,6 +65,8 @@ void parse_off(MeshFile& file) {
     scanner.next_line();
   }
   if (faces == 0) scanner.fail("at least one face");
+  file.position_at = Places(std::move(position_at));
+  file.normal_at = Places(std::move(normal_at));
 }
 
 }  // namespace vdb_offset::io

@@ -9,11 +9,10 @@
 #include <cstdlib>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/text.h"
 
 namespace vdb_offset::io {
 namespace {
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 /// A token as a message can show it: short, and without control bytes.
 std::string shown(std::string_view token) {
@@ -150,7 +149,7 @@ void Scanner::fail(const std::string& expected, std::size_t at) const {
 void Scanner::fail_with(const std::string& expected, const std::string& found, std::size_t at) const {
   const auto before = text_.begin() + static_cast<std::ptrdiff_t>(std::min(at, text_.size()));
   const auto line = 1 + std::count(text_.begin(), before, '\n');
-  throw InvalidInput(fmt::format("{}, line {}: expected {}, got {}", path_, line, expected, found));
+  throw InvalidInput(fmt::format("{}, line {}: expected {}, got {}", *path_, line, expected, found));
 }
 
 }  // namespace vdb_offset::io

@@ -15,7 +15,7 @@ class Scanner {
   /// `continues`: a backslash at the end of a line joins it to the next one (OBJ).
   /// `comment`: the character that starts a comment, which counts as the end of its line; 0 for none.
   Scanner(const std::string& path, std::string_view text, std::size_t at = 0, bool continues = false, char comment = 0)
-      : path_(path), text_(text), at_(at), continues_(continues), comment_(comment) {}
+      : path_(&path), text_(text), at_(at), continues_(continues), comment_(comment) {}
 
   std::size_t position() const { return at_; }
   std::size_t remaining() const { return text_.size() - at_; }
@@ -57,7 +57,7 @@ class Scanner {
   std::size_t continuation_length(std::size_t at) const;
   void skip_blanks();
 
-  const std::string& path_;
+  const std::string* path_;
   std::string_view text_;
   std::size_t at_;
   std::size_t last_token_ = 0;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -7,24 +8,22 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 
-void add_facet(MeshFile& file) {
-  const auto v = static_cast<std::uint32_t>(file.polygons.positions.size());
-  file.polygons.add_face({v - 3, v - 2, v - 1});
-}
-
 class AsciiStlParser {
  public:
-  explicit AsciiStlParser(MeshFile& file) : file_(file), scanner_(file.path, file.bytes) {}
+  explicit AsciiStlParser(MeshFile& file) : file_(file), scanner_(file.path, file.text()) {}
 
   void run() {
     while (!scanner_.at_text_end()) solid();
     if (file_.polygons.face_count() == 0) scanner_.fail("at least one facet");
+    file_.position_at = Places(std::move(position_at_));
+    file_.normal_at = Places(std::move(normal_at_));
   }
 
  private:
@@ -47,14 +46,15 @@ class AsciiStlParser {
     expect("loop");
     for (int k = 0; k < 3; ++k) {
       expect("vertex");
-      file_.polygons.positions.push_back(scanner_.triple("a coordinate", file_.position_at.emplace_back()));
+      file_.polygons.positions.push_back(scanner_.triple("a coordinate", position_at_.emplace_back()));
       if (!scanner_.at_line_end()) scanner_.fail("the end of the line after three coordinates");
     }
     expect("endloop");
     skip_remark();
     expect("endfacet");
     skip_remark();
-    add_facet(file_);
+    const auto v = static_cast<std::uint32_t>(file_.polygons.positions.size());
+    file_.polygons.add_face({v - 3, v - 2, v - 1});
   }
   /// Some writers put words of their own behind the end of a loop or a facet.
   void skip_remark() {
@@ -62,20 +62,21 @@ class AsciiStlParser {
     if (!next.starts_with("end") && !next.starts_with("END") && !is_word(next, "facet")) scanner_.next_line();
   }
   /// Words and infinities in the place of a normal are common.
-  void normal() { scanner_.skip_triple("three numbers of a normal", file_.normal_at.emplace_back()); }
+  void normal() { scanner_.skip_triple("three numbers of a normal", normal_at_.emplace_back()); }
   void expect(const char* word) {
-    const std::string quoted = fmt::format("'{}'", word);
-    const std::string_view found = scanner_.token_anywhere(quoted.c_str());
-    if (!is_word(found, word)) scanner_.fail(quoted, scanner_.position() - found.size());
+    const bool ended = scanner_.at_text_end();
+    if (ended || !is_word(scanner_.token(), word))
+      scanner_.fail(fmt::format("'{}'", word), ended ? scanner_.position() : scanner_.last_token());
   }
 
   MeshFile& file_;
   Scanner scanner_;
+  std::vector<NumberTriple> position_at_, normal_at_;
 };
 
 std::uint32_t promised_facets(const MeshFile& file) {
   std::uint32_t count = 0;
-  std::memcpy(&count, file.bytes.data() + kHeaderBytes - 4, 4);
+  std::memcpy(&count, file.text().data() + kHeaderBytes - 4, 4);
   return count;
 }
 
@@ -84,31 +85,41 @@ void parse_binary(MeshFile& file) {
   const std::size_t facets = promised_facets(file);
   file.encoding = Encoding::LittleEndian;
   file.position_bytes = file.normal_bytes = 4;
+  file.precision = {Precision::Kind::Single};
   if (facets == 0) throw InvalidInput(file.path + ", byte 80: expected at least one facet, got a count of 0");
-  file.polygons.positions.reserve(3 * facets);
-  file.position_at.reserve(3 * facets);
-  file.normal_at.reserve(facets);
-  for (std::size_t f = 0; f < facets; ++f) {
-    const std::size_t facet = kHeaderBytes + f * kFacetBytes;
-    file.normal_at.push_back({{facet, facet + 4, facet + 8}});
-    for (std::size_t corner = facet + 12; corner < facet + 48; corner += 12) {
+  if (3 * facets > kMostVertices)
+    throw InvalidInput(
+        fmt::format("{}, byte 80: expected at most {} facets, got {}", file.path, kMostVertices / 3, facets));
+  file.normal_at = Places(facets, kHeaderBytes, kFacetBytes, {0, 4, 8});
+  file.position_at = Places(3 * facets, kHeaderBytes + 12, kFacetBytes, {0, 4, 8}, 3, 12);
+  Polygons& polygons = file.polygons;
+  polygons.positions.resize(3 * facets);
+  polygons.corners.resize(3 * facets);
+  polygons.face_begin.resize(facets + 1);
+  std::atomic<std::uint64_t> first_bad = file.text().size();
+  for_each_index(facets, [&](std::size_t f) {
+    polygons.face_begin[f + 1] = static_cast<std::uint32_t>(3 * f + 3);
+    for (std::size_t v = 3 * f; v < 3 * f + 3; ++v) {
+      polygons.corners[v] = static_cast<std::uint32_t>(v);
+      const std::uint64_t at = file.position_at[v].at[0];
       float xyz[3];
-      std::memcpy(xyz, file.bytes.data() + corner, sizeof xyz);
+      std::memcpy(xyz, file.text().data() + at, sizeof xyz);
       for (std::size_t k = 0; k < 3; ++k)
-        if (!std::isfinite(xyz[k]))
-          throw InvalidInput(
-              fmt::format("{}, byte {}: expected a finite coordinate, got {}", file.path, corner + 4 * k, xyz[k]));
-      file.polygons.positions.emplace_back(xyz[0], xyz[1], xyz[2]);
-      file.position_at.push_back({{corner, corner + 4, corner + 8}});
+        if (!std::isfinite(xyz[k])) lower_to(first_bad, at + 4 * k);
+      polygons.positions[v] = Vec3d(xyz[0], xyz[1], xyz[2]);
     }
-    add_facet(file);
-  }
+  });
+  if (first_bad == file.text().size()) return;
+  float bad = 0;
+  std::memcpy(&bad, file.text().data() + first_bad, sizeof bad);
+  throw InvalidInput(
+      fmt::format("{}, byte {}: expected a finite coordinate, got {}", file.path, first_bad.load(), bad));
 }
 
 }  // namespace
 
 void parse_stl(MeshFile& file) {
-  const std::string& bytes = file.bytes;
+  const std::string_view bytes = file.text();
   const bool says_solid = is_word(Scanner(file.path, bytes).first_word(), "solid");
   const bool holds_header = bytes.size() >= kHeaderBytes;
   // Binary files may start with "solid" too; then their size tells. Bytes behind the last facet are kept.

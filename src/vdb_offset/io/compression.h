@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace vdb_offset::io {
+
+enum class Compression { None, Gzip, Zstd };
+
+/// By the file's ending: .gz, .zst.
+Compression compression_of(std::string_view path);
+
+/// The path without .gz or .zst.
+std::string_view without_compression(std::string_view path);
+
+/// All members (gzip) or frames (zstd) of `bytes`, decompressed. \throw InvalidInput (`path`, byte, what was expected)
+/// if they are damaged, end early, or would not fit into memory.
+std::string decompress(Compression compression, const std::string& path, std::string_view bytes);
+
+/// One member or frame of its own: several behind each other are a file as well.
+std::string compress(Compression compression, const std::string& bytes);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vdb_offset/io/mesh_file.h"
+
+namespace vdb_offset::io {
+
+/// New values for a file's normals.
+struct NewNormals {
+  std::vector<Vec3d> value;     ///< Unit length, one for each of the file's; zero for one that stays as it is.
+  std::size_t disagreeing = 0;  ///< Normals shared by vertices that ask for different ones now.
+};
+
+/// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners
+/// that name a normal, of the corner's face normal times its angle.
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions,
+                       const std::vector<std::uint8_t>& moved);
+
+}  // namespace vdb_offset::io

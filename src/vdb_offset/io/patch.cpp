@@ -1,0 +1,145 @@
+#include "vdb_offset/io/patch.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <memory>
+
+#include "vdb_offset/io/normals.h"
+#include "vdb_offset/io/numbers.h"
+#include "vdb_offset/io/text.h"
+#include "vdb_offset/parallel.h"
+
+namespace vdb_offset::io {
+namespace {
+
+// Size of a piece of a binary file.
+constexpr std::size_t kPiece = std::size_t{1} << 20;
+
+/// A number of the file that gets another value.
+struct Patch {
+  std::uint64_t at;
+  double value;
+  bool of_normal;
+};
+
+class Patcher {
+ public:
+  Patcher(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, Normals normals)
+      : source_(source), positions_(positions), precision_(precision) {
+    if (!source.normal_at.empty() && normals == Normals::Recompute) update_normals();
+    cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text(), 0) : cut_between_numbers();
+  }
+
+  std::size_t pieces() const { return cuts_.size() - 1; }
+  std::size_t disagreeing() const { return normals_.disagreeing; }
+
+  std::string make(std::size_t piece) const {
+    const std::uint64_t begin = cuts_[piece], end = cuts_[piece + 1];
+    const std::vector<Patch> patches = find(begin, end);
+    return source_.encoding == Encoding::Ascii ? in_text(begin, end, patches) : in_binary(begin, end, patches);
+  }
+
+ private:
+  void update_normals() {
+    std::vector<Vec3d> stored(positions_.size());
+    std::vector<std::uint8_t> moved(positions_.size());
+    for_each_index(positions_.size(), [&](std::size_t v) {
+      moved[v] = has_moved(v);
+      stored[v] = moved[v] ? precision_(positions_[v]) : positions_[v];
+    });
+    normals_ = new_normals(source_, stored, moved);
+  }
+  bool has_moved(std::size_t v) const { return !(precision_(positions_[v]) == source_.polygons.positions[v]); }
+
+  /// Cuts of a binary file of which none runs through the numbers of a vertex or a normal.
+  std::vector<std::size_t> cut_between_numbers() const {
+    const std::size_t size = source_.text().size();
+    std::vector<std::size_t> cuts{0};
+    while (cuts.back() < size) {
+      std::uint64_t cut = std::min(cuts.back() + kPiece, size);
+      for (const auto& [places, bytes] :
+           {std::pair{&source_.position_at, source_.position_bytes}, {&source_.normal_at, source_.normal_bytes}}) {
+        const std::size_t i = places->first_from(cut);
+        if (i > 0) cut = std::max(cut, last_of((*places)[i - 1]) + bytes);
+        if (i < places->size() && first_of((*places)[i]) < cut) cut = last_of((*places)[i]) + bytes;
+      }
+      cuts.push_back(cut);
+    }
+    return cuts;
+  }
+  static std::uint64_t first_of(const NumberTriple& t) { return std::min({t.at[0], t.at[1], t.at[2]}); }
+  static std::uint64_t last_of(const NumberTriple& t) { return std::max({t.at[0], t.at[1], t.at[2]}); }
+
+  /// What changes from `begin` to `end`, in the order of the file.
+  std::vector<Patch> find(std::uint64_t begin, std::uint64_t end) const {
+    std::vector<Patch> patches;
+    const auto add = [&](const NumberTriple& place, const Vec3d& value, bool of_normal) {
+      for (int k = 0; k < 3; ++k)
+        if (place.at[k] >= begin && place.at[k] < end) patches.push_back({place.at[k], value[k], of_normal});
+    };
+    const auto for_each = [&](const Places& places, auto&& visit) {
+      for (std::size_t i = places.first_from(begin); i < places.size(); ++i) {
+        const NumberTriple place = places[i];
+        if (first_of(place) >= end) return;
+        visit(i, place);
+      }
+    };
+    for_each(source_.position_at, [&](std::size_t v, const NumberTriple& place) {
+      if (has_moved(v)) add(place, precision_(positions_[v]), false);
+    });
+    if (!normals_.value.empty())
+      for_each(source_.normal_at, [&](std::size_t n, const NumberTriple& place) {
+        if (normals_.value[n].lengthSqr() > 0) add(place, normals_.value[n], true);
+      });
+    const auto by_place = [](const Patch& a, const Patch& b) { return a.at < b.at; };
+    if (!std::is_sorted(patches.begin(), patches.end(), by_place)) std::sort(patches.begin(), patches.end(), by_place);
+    return patches;
+  }
+
+  std::string in_text(std::uint64_t begin, std::uint64_t end, const std::vector<Patch>& patches) const {
+    const std::string_view bytes = source_.text();
+    std::string text;
+    text.reserve((end - begin) + patches.size() * 12);
+    const Precision of_normals{Precision::Kind::Single};  // a normal needs no more
+    std::uint64_t copied = begin;
+    for (const Patch& patch : patches) {
+      text.append(bytes, copied, patch.at - copied);
+      append_number(text, patch.value, patch.of_normal ? of_normals : precision_);
+      for (copied = patch.at; copied < end && !ends_number(bytes[copied]);) ++copied;
+    }
+    return text.append(bytes, copied, end - copied);
+  }
+  static bool ends_number(char c) { return is_blank(c) || c == '\n' || c == '\\' || c == '#'; }
+
+  std::string in_binary(std::uint64_t begin, std::uint64_t end, const std::vector<Patch>& patches) const {
+    std::string bytes(source_.text().substr(begin, end - begin));
+    for (const Patch& patch : patches) {
+      char raw[8];
+      const std::uint8_t size = patch.of_normal ? source_.normal_bytes : source_.position_bytes;
+      const auto narrow = static_cast<float>(patch.value);
+      if (size == 4) std::memcpy(raw, &narrow, 4);
+      else std::memcpy(raw, &patch.value, 8);
+      if (source_.encoding == Encoding::BigEndian) std::reverse(raw, raw + size);
+      std::memcpy(bytes.data() + (patch.at - begin), raw, size);
+    }
+    return bytes;
+  }
+
+  const MeshFile& source_;
+  std::span<const Vec3d> positions_;
+  Precision precision_;
+  NewNormals normals_;
+  std::vector<std::size_t> cuts_;
+};
+
+}  // namespace
+
+Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, Normals normals,
+             std::size_t& disagreeing) {
+  const auto patcher = std::make_shared<const Patcher>(source, positions, precision, normals);
+  disagreeing = patcher->disagreeing();
+  return {patcher->pieces(), [patcher](std::size_t piece) { return patcher->make(piece); }};
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cmath>
+
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset {
+
+/// What a file keeps of a coordinate. Validity is judged on what is kept.
+struct Precision {
+  enum class Kind { Double, Single, Digits };
+
+  Kind kind = Kind::Double;
+  int digits = 17;  ///< Significant decimal digits; for Kind::Digits, 1 .. 17.
+
+  double operator()(double value) const {
+    return kind == Kind::Double   ? value
+           : kind == Kind::Single ? static_cast<double>(static_cast<float>(value))
+                                  : rounded_to_digits(value);
+  }
+  Vec3d operator()(const Vec3d& p) const { return {(*this)(p[0]), (*this)(p[1]), (*this)(p[2])}; }
+
+  /// Most that a number may change by, relative to itself, arithmetic on the way included.
+  double epsilon() const {
+    return kind == Kind::Double ? 0x1p-51 : kind == Kind::Single ? 0x1p-23 : 0x1p-51 + 5 * std::pow(10.0, -digits);
+  }
+
+ private:
+  double rounded_to_digits(double value) const;
+};
+
+}  // namespace vdb_offset
