@@ -22,7 +22,9 @@ constexpr const char* kAbout =
     "texture coordinates, groups and materials; only positions (and normals) change.";
 
 constexpr const char* kMore = R"(
-INPUT and OUTPUT end in .obj, .ply, .stl or .off; INPUT may also be a scene (.json), which brings its distance.
+INPUT and OUTPUT end in .obj, .ply, .stl or .off, compressed with .gz or .zst behind it, or are '-' (standard input and
+output, with --format); INPUT may also be a scene (.json), which brings its distance. The same format in and out keeps
+every byte but coordinates and normals of what moved.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
 below zero it is inward. Write --distance=-1% or --distance -1%.
 
@@ -58,14 +60,17 @@ std::size_t parse_size(const std::string& text) {
 /// What CLI11 fills in before it is checked.
 struct Raw {
   std::string distance, max_memory, weld = "exact";
-  std::optional<std::string> solver, collision;
+  std::optional<std::string> solver, collision, format;
+  std::string normals = "recompute";
   std::optional<double> voxel_size, voxels_per_distance;
   int threads = 0;
 };
 
 void declare(CLI::App& app, Arguments& args, Raw& raw) {
-  app.add_option("INPUT", args.input, "Mesh to offset (.obj .ply .stl .off), or a scene (.json)")->required();
-  app.add_option("OUTPUT", args.output, "Mesh to write, by extension; may be the input")->required();
+  app.add_option("INPUT", args.input, "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), or a scene (.json)")
+      ->required();
+  app.add_option("OUTPUT", args.output, "Mesh to write, by extension; may be the input; '-' is standard output")
+      ->required();
   app.add_option("-d,--distance", raw.distance,
                  "Distance: world units, or percent of the diagonal as in 1.5%; negative is inward")
       ->type_name("D");
@@ -83,6 +88,14 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--weld", raw.weld,
                  "Vertices that move as one: 'exact' (equal positions), 'none', or within TOL world units [exact]")
       ->type_name("MODE");
+  app.add_option("--format", raw.format, "Format of '-' and of files with another ending: 'obj', 'ply', 'stl' or 'off'")
+      ->type_name("NAME");
+  app.add_option("--normals", raw.normals,
+                 "Normals of the file where faces moved: 'recompute' or 'keep' them as they are [recompute]")
+      ->type_name("MODE");
+  app.add_option("--precision", args.write.digits,
+                 "Significant digits of moved coordinates in text, 1 to 17 [as many as read back to the same number]")
+      ->type_name("N");
   app.add_option("--threads", raw.threads, "Threads; 0 takes all; the result is the same for any number [0]")
       ->type_name("N");
   app.add_option("--max-memory", raw.max_memory, "Refuse work that would need more, as in 4G [80 % of what is free]")
@@ -105,7 +118,7 @@ void require(bool holds, const std::string& message) {
 bool same_file(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
   std::error_code unknown;
-  return !a.empty() && !b.empty() &&
+  return !a.empty() && !b.empty() && a != "-" &&
          fs::weakly_canonical(fs::absolute(a, unknown), unknown) ==
              fs::weakly_canonical(fs::absolute(b, unknown), unknown);
 }
@@ -122,15 +135,33 @@ void check_apart(const Arguments& args) {
 }
 
 void check_names(const Arguments& args) {
-  require(scene::is_scene(args.input) || io::format_of(args.input),
-          args.input + ": expected an input that ends in .obj, .ply, .stl, .off or .json");
+  require(scene::is_scene(args.input) || format_of(args.input, args),
+          args.input +
+              ": expected an input that ends in .obj, .ply, .stl, .off (or these and .gz or .zst) or .json, or "
+              "--format");
   require(args.states.empty() || io::is_states_file(args.states),
           args.states + ": expected a file of states that ends in .csv or .ply");
-  require(io::format_of(args.output).has_value(),
-          args.output + ": expected an output that ends in .obj, .ply, .stl or .off");
+  require(format_of(args.output, args).has_value(),
+          args.output +
+              ": expected an output that ends in .obj, .ply, .stl or .off (or these and .gz or .zst), or "
+              "--format");
+}
+
+void check_file_options(const Raw& raw, Arguments& args) {
+  if (raw.format) {
+    args.format = io::format_of("." + *raw.format);
+    require(args.format && raw.format->find('.') == std::string::npos,
+            fmt::format("--format: expected 'obj', 'ply', 'stl' or 'off', got '{}'", *raw.format));
+  }
+  require(raw.normals == "recompute" || raw.normals == "keep",
+          fmt::format("--normals: expected 'recompute' or 'keep', got '{}'", raw.normals));
+  args.write.normals = raw.normals == "keep" ? io::Normals::Keep : io::Normals::Recompute;
+  require(args.write.digits >= 0 && args.write.digits <= 17,
+          fmt::format("--precision: expected 1 to 17 digits, got {}", args.write.digits));
 }
 
 void check(const Raw& raw, Arguments& args) {
+  check_file_options(raw, args);
   check_names(args);
   check_apart(args);
   if (!raw.distance.empty()) {
@@ -167,6 +198,11 @@ void check(const Raw& raw, Arguments& args) {
 }
 
 }  // namespace
+
+std::optional<io::Format> format_of(const std::string& path, const Arguments& args) {
+  const auto format = io::format_of(path);
+  return format ? format : args.format;
+}
 
 WeldOptions parse_weld(const std::string& text) {
   WeldOptions weld;

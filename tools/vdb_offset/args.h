@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/scene/scene.h"
 
@@ -20,8 +21,13 @@ struct Arguments {
   std::optional<Collision> collision;  ///< The same.
   std::string weld_text;               ///< As given.
   std::string report, states, vdb;
+  std::optional<io::Format> format;  ///< Of files whose ending names none.
+  io::WriteOptions write;            ///< All but its format, which is the output's alone.
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };
+
+/// The format of a mesh by its name, or else the one that was given.
+std::optional<io::Format> format_of(const std::string& path, const Arguments& args);
 
 /// A command line that cannot be carried out.
 struct UsageError : Error {

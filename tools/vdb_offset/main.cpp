@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <chrono>
 #include <csignal>
@@ -32,10 +33,10 @@ struct Source {
   PolygonView view() const { return file ? file->polygons.view() : scene->shape.view(); }
 };
 
-Source read_source(const std::string& path) {
+Source read_source(const Arguments& args) {
   Source source;
-  if (scene::is_scene(path)) source.scene = scene::read_scene(path);
-  if (!source.scene) source.file = io::read_mesh(path);
+  if (scene::is_scene(args.input)) source.scene = scene::read_scene(args.input);
+  if (!source.scene) source.file = io::read_mesh(args.input, format_of(args.input, args));
   else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
   return source;
 }
@@ -70,51 +71,55 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
           {"collision", args.options.collision == Collision::Merge ? "merge" : "limit"},
           {"solver", args.options.solver == Solver::Eikonal ? "eikonal" : "closest"},
           {"weld", args.weld_text},
+          {"normals", args.write.normals == io::Normals::Keep ? "keep" : "recompute"},
+          {"precision", args.write.digits > 0 ? fmt::format("{}", args.write.digits) : "automatic"},
           {"threads", fmt::format("{}", args.options.threads)},
           {"max-memory", fmt::format("{}", args.options.max_memory)},
           {"strict", args.strict ? "true" : "false"}};
 }
 
-void print_facts(const OffsetStatistics& statistics) {
+void print_facts(std::FILE* out, const OffsetStatistics& statistics) {
   const MeshFacts& facts = statistics.facts;
   std::size_t faces = 0;
   for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
-  fmt::print("mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n",
+  fmt::print(out, "mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n",
              facts.vertices, facts.welded_vertices, facts.unused_vertices, faces, facts.components,
              facts.components == 1 ? "" : "s", facts.diagonal);
-  fmt::print("           {} boundary edges, {} non-manifold edges, {} degenerate faces, {} orientation conflicts\n",
+  fmt::print(out,
+             "           {} boundary edges, {} non-manifold edges, {} degenerate faces, {} orientation conflicts\n",
              facts.boundary_edges, facts.non_manifold_edges, facts.degenerate_faces, facts.orientation_conflicts);
 }
 
-void print_plan(const OffsetStatistics& statistics, double distance) {
+void print_plan(std::FILE* out, const OffsetStatistics& statistics, double distance) {
   const GridPlan& plan = statistics.plan;
-  fmt::print("distance   {:.9g}\n", distance);
+  fmt::print(out, "distance   {:.9g}\n", distance);
   if (distance == 0) return;
-  fmt::print("voxel size {:.6g} ({})\n", plan.voxel_size, plan.reason);
-  fmt::print("estimate   {} leaf nodes, {} voxels, {:.1f} MiB, {:.2g} s on {} thread{}\n", plan.leaf_nodes, plan.voxels,
-             static_cast<double>(plan.bytes) / 1048576.0, plan.seconds, statistics.threads,
+  fmt::print(out, "voxel size {:.6g} ({})\n", plan.voxel_size, plan.reason);
+  fmt::print(out, "estimate   {} leaf nodes, {} voxels, {:.1f} MiB, {:.2g} s on {} thread{}\n", plan.leaf_nodes,
+             plan.voxels, static_cast<double>(plan.bytes) / 1048576.0, plan.seconds, statistics.threads,
              statistics.threads == 1 ? "" : "s");
 }
 
 void print_summary(const Arguments& args, const OffsetResult& result, double total_seconds) {
+  std::FILE* const out = args.output == "-" ? stderr : stdout;  // standard output may be taken by the mesh
   const AchievedSummary achieved = summarise(result, args.options.distance);
   const auto& states = result.statistics.vertices_by_state;
   const auto in = [&](VertexState state) { return states[static_cast<std::size_t>(state)]; };
   if (args.verbose) {
-    print_facts(result.statistics);
-    print_plan(result.statistics, args.options.distance);
+    print_facts(out, result.statistics);
+    print_plan(out, result.statistics, args.options.distance);
     for (std::size_t s = 0; s < kStageCount; ++s)
-      fmt::print("{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), result.statistics.seconds[s]);
+      fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), result.statistics.seconds[s]);
   }
-  fmt::print("{}: {} vertices at {:.6g}: {:.3f} % reached", args.output, achieved.vertices, args.options.distance,
+  fmt::print(out, "{}: {} vertices at {:.6g}: {:.3f} % reached", args.output, achieved.vertices, args.options.distance,
              100 * achieved.share_reached);
-  if (in(VertexState::Collision)) fmt::print(", {} stopped by collision", in(VertexState::Collision));
-  if (in(VertexState::Limited)) fmt::print(", {} held back to stay valid", in(VertexState::Limited));
-  if (in(VertexState::OutsideField)) fmt::print(", {} outside the field", in(VertexState::OutsideField));
-  fmt::print(" ({:.2f} s)\n", total_seconds);
+  if (in(VertexState::Collision)) fmt::print(out, ", {} stopped by collision", in(VertexState::Collision));
+  if (in(VertexState::Limited)) fmt::print(out, ", {} held back to stay valid", in(VertexState::Limited));
+  if (in(VertexState::OutsideField)) fmt::print(out, ", {} outside the field", in(VertexState::OutsideField));
+  fmt::print(out, " ({:.2f} s)\n", total_seconds);
   const LimitStatistics& limit = result.statistics.limit;
   if (limit.source_crossings > 0)
-    fmt::print("the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
+    fmt::print(out, "the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
                limit.source_crossings, limit.crossings_near_source);
 }
 
@@ -127,6 +132,12 @@ void write_report(const Arguments& args, const OffsetResult& result, Clock::time
   facts.total_seconds = seconds_since(start);
   facts.options = options_in_force(args);
   write_file(args.report, report_json(result, facts));
+}
+
+io::WriteOptions write_options(const Arguments& args) {
+  io::WriteOptions options = args.write;
+  options.format = format_of(args.output, args);
+  return options;
 }
 
 /// The mesh comes last: should anything else fail, its place holds what it held before.
@@ -146,19 +157,28 @@ void write_outputs(const Arguments& args, const Source& source, OffsetResult& re
     result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
     if (!args.report.empty()) write_report(args, result, start);
   };
-  std::string lost;
-  if (source.file) {
-    lost = io::write_mesh(args.output, *source.file, result.positions, {.before_rename = before_rename}).lost;
-  } else {
-    Polygons made = source.scene->shape;
-    made.positions = result.positions;
-    io::write_mesh(args.output, made.view(), {.before_rename = before_rename});
+  io::WriteOptions options = write_options(args);
+  options.before_rename = before_rename;
+  if (!source.file) {
+    const PolygonView made = source.view();
+    return io::write_mesh(args.output, PolygonView{result.positions, made.corners, made.face_begin}, options);
   }
-  if (!lost.empty() && !args.quiet) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, lost);
+  const io::WriteResult written = io::write_mesh(args.output, *source.file, result.positions, options);
+  if (args.quiet) return;
+  if (!written.lost.empty()) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", args.output, written.lost);
+  if (written.disagreeing_normals > 0)
+    fmt::print(stderr,
+               "vdb_offset: {}: {} normals (vn) are shared by vertices that ask for different ones now; they got "
+               "the mean (--normals keep leaves all as they were)\n",
+               args.output, written.disagreeing_normals);
 }
 
 int run(Arguments args) {
   const auto start = Clock::now();
+  tell_of_lost_input(args.input);
+  std::optional<tbb::global_control> threads;  // reading and writing, too
+  if (args.options.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(args.options.threads));
   ProgressBar bar(!args.quiet);
   args.options.progress = [&](Stage stage, double share) {
     bar.show(stage, share);
@@ -168,19 +188,19 @@ int run(Arguments args) {
     for (const std::string& path : {args.output, args.report, args.states, args.vdb})
       if (!path.empty()) require_writable(path);
   bar.show(Stage::Read, 0);
-  Source source = read_source(args.input);
+  Source source = read_source(args);
   settle_options(source, args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
     const OffsetStatistics statistics = plan_offset(source.view(), args.options);
-    print_facts(statistics);
-    print_plan(statistics, args.options.distance);
+    print_facts(stdout, statistics);
+    print_plan(stdout, statistics, args.options.distance);
     return kDone;
   }
   args.options.keep_field = !args.vdb.empty();
   if (args.options.keep_field && args.options.distance == 0)
     throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");
-  if (source.file) args.options.precision = io::precision_of(args.output, *source.file);
+  if (source.file) args.options.precision = io::precision_of(args.output, *source.file, write_options(args));
   OffsetResult result = offset(source.view(), args.options);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   bar.show(Stage::Write, 0);

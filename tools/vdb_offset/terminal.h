@@ -24,6 +24,9 @@ class ProgressBar {
 
 /// Makes Ctrl-C (and a polite kill) set a flag instead of ending the process, so that files are tidied up.
 void catch_interrupts();
+/// Input files are mapped: one that is cut short while it is read ends the process by SIGBUS. From here on it ends with
+/// a message about `path`, no temporary file and exit code 2.
+void tell_of_lost_input(const std::string& path);
 /// The signal that came, or 0.
 int interrupted();
 
