@@ -1,8 +1,11 @@
 #include "vdb_offset/io/normals.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <tuple>
+#include <numeric>
+
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -10,81 +13,113 @@ namespace {
 // Vertices that share a normal disagree if theirs are farther apart than this: about two degrees.
 constexpr double kLeastCosine = 0.9994;
 
-std::uint32_t normal_of(const MeshFile& source, std::size_t face, std::size_t corner, std::uint32_t vertex) {
-  if (source.format == Format::Stl) return static_cast<std::uint32_t>(face);
-  if (source.format == Format::Obj) return source.corner_normal.empty() ? kNoNormal : source.corner_normal[corner];
-  return vertex;
+/// A face corner.
+struct Corner {
+  std::uint32_t face, index;  // index within all corners
+};
+
+/// The corners that name each normal: those of normal n are corners[begin[n] .. begin[n + 1]), in the file's order.
+struct Users {
+  std::vector<std::uint32_t> begin;
+  std::vector<Corner> corners;
+
+  std::span<const Corner> of(std::size_t normal) const {
+    return std::span(corners).subspan(begin[normal], begin[normal + 1] - begin[normal]);
+  }
+};
+
+std::uint32_t normal_of(const MeshFile& source, std::size_t corner) {
+  if (source.format != Format::Obj) return source.polygons.corners[corner];  // one a vertex
+  return source.corner_normal.empty() ? kNoNormal : source.corner_normal[corner];
 }
 
-/// Calls visit(normal, vertex, corner's face normal times its angle, whether the face moved) for every face corner that
-/// names a normal.
-template <class Visit>
-void for_each_corner(const MeshFile& source, std::span<const Vec3d> positions, const std::vector<std::uint8_t>& moved,
-                     Visit&& visit) {
+Users find_users(const MeshFile& source) {
   const PolygonView mesh = source.polygons.view();
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.face(f);
-    const bool face_moved = std::any_of(face.begin(), face.end(), [&](auto v) { return moved[v] != 0; });
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const std::uint32_t normal = normal_of(source, f, mesh.face_begin[f] + k, face[k]);
-      if (normal == kNoNormal) continue;
-      const Vec3d& tip = positions[face[k]];
-      const Vec3d next = positions[face[(k + 1) % face.size()]] - tip,
-                  previous = positions[face[(k + face.size() - 1) % face.size()]] - tip, across = next.cross(previous);
-      const double sine = across.length();
-      const Vec3d weighted = sine > 0 ? across * (std::atan2(sine, next.dot(previous)) / sine) : Vec3d(0.0);
-      visit(normal, face[k], weighted, face_moved);
-    }
-  }
+  Users users;
+  users.begin.assign(source.normal_at.size() + 2, 0);
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c)
+    if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) ++users.begin[n + 2];
+  std::partial_sum(users.begin.begin(), users.begin.end(), users.begin.begin());
+  users.corners.resize(users.begin.back());
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+    for (std::uint32_t c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) users.corners[users.begin[n + 1]++] = {f, c};
+  users.begin.pop_back();
+  return users;
 }
 
-/// OBJ normals can be shared by several vertices, and what these ask for may come apart.
-std::size_t count_disagreeing(const MeshFile& source, std::span<const Vec3d> positions,
-                              const std::vector<std::uint8_t>& moved, const std::vector<Vec3d>& value) {
-  if (source.format != Format::Obj) return 0;
-  std::vector<std::uint32_t> first(value.size(), kNoNormal);
-  std::vector<std::uint8_t> shared(value.size(), 0);
-  for (std::size_t c = 0; c < source.corner_normal.size(); ++c) {
-    const std::uint32_t n = source.corner_normal[c], v = source.polygons.corners[c];
-    if (n == kNoNormal) continue;
-    if (first[n] == kNoNormal) first[n] = v;
-    shared[n] |= first[n] != v;
-  }
-  std::vector<std::tuple<std::uint32_t, std::uint32_t, Vec3d>> asked;
-  for_each_corner(source, positions, moved, [&](std::uint32_t n, std::uint32_t v, const Vec3d& weighted, bool) {
-    if (shared[n]) asked.emplace_back(n, v, weighted);
-  });
-  std::stable_sort(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
-    return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
-  });
-  std::vector<std::uint8_t> disagrees(value.size(), 0);
-  for (std::size_t i = 0; i < asked.size();) {
-    const auto [normal, vertex, ignored] = asked[i];
+/// The face's normal at a corner times the corner's angle.
+Vec3d weighted_normal(PolygonView mesh, std::span<const Vec3d> positions, const Corner& corner) {
+  const auto face = mesh.face(corner.face);
+  const std::size_t k = corner.index - mesh.face_begin[corner.face], size = face.size();
+  const Vec3d& tip = positions[face[k]];
+  const Vec3d next = positions[face[(k + 1) % size]] - tip, previous = positions[face[(k + size - 1) % size]] - tip,
+              across = next.cross(previous);
+  const double sine = across.length();
+  return sine > 0 ? across * (std::atan2(sine, next.dot(previous)) / sine) : Vec3d(0.0);
+}
+
+bool any_moved(std::span<const std::uint32_t> face, const std::vector<std::uint8_t>& moved) {
+  return std::any_of(face.begin(), face.end(), [&](auto v) { return moved[v] != 0; });
+}
+
+Vec3d unit_or_zero(const Vec3d& v) {
+  const double length = v.length();
+  return length > 0 ? v / length : Vec3d(0.0);
+}
+
+/// Whether vertices that share a normal ask for different ones now.
+bool disagree(PolygonView mesh, std::span<const Vec3d> positions, std::span<const Corner> users, const Vec3d& mean) {
+  const auto vertex = [&](const Corner& corner) { return mesh.corners[corner.index]; };
+  const auto same = [&](const Corner& a) { return vertex(a) == vertex(users.front()); };
+  if (std::all_of(users.begin(), users.end(), same)) return false;
+  std::vector<Corner> by_vertex(users.begin(), users.end());
+  std::stable_sort(by_vertex.begin(), by_vertex.end(),
+                   [&](const Corner& a, const Corner& b) { return vertex(a) < vertex(b); });
+  for (std::size_t i = 0; i < by_vertex.size();) {
+    const std::uint32_t v = vertex(by_vertex[i]);
     Vec3d sum(0.0);
-    for (; i < asked.size() && std::get<0>(asked[i]) == normal && std::get<1>(asked[i]) == vertex; ++i)
-      sum += std::get<2>(asked[i]);
-    if (value[normal].lengthSqr() > 0 && sum.dot(value[normal]) < kLeastCosine * sum.length()) disagrees[normal] = 1;
+    for (; i < by_vertex.size() && vertex(by_vertex[i]) == v; ++i)
+      sum += weighted_normal(mesh, positions, by_vertex[i]);
+    if (sum.dot(mean) < kLeastCosine * sum.length()) return true;
   }
-  return static_cast<std::size_t>(std::count(disagrees.begin(), disagrees.end(), 1));
+  return false;
+}
+
+/// STL: one a facet.
+NewNormals facet_normals(PolygonView mesh, std::span<const Vec3d> positions, const std::vector<std::uint8_t>& moved) {
+  NewNormals normals;
+  normals.value.assign(mesh.face_count(), Vec3d(0.0));
+  for_each_index(mesh.face_count(), [&](std::size_t f) {
+    const auto face = mesh.face(f);
+    const Vec3d &a = positions[face[0]], &b = positions[face[1]], &c = positions[face[2]];
+    if (any_moved(face, moved)) normals.value[f] = unit_or_zero((b - a).cross(c - a));
+  });
+  return normals;
 }
 
 }  // namespace
 
 NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions,
                        const std::vector<std::uint8_t>& moved) {
+  const PolygonView mesh = source.polygons.view();
+  if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
+  const Users users = find_users(source);
   NewNormals normals;
   normals.value.assign(source.normal_at.size(), Vec3d(0.0));
-  std::vector<std::uint8_t> affected(source.normal_at.size(), 0);
-  for_each_corner(source, positions, moved,
-                  [&](std::uint32_t n, std::uint32_t, const Vec3d& weighted, bool face_moved) {
-                    normals.value[n] += weighted;
-                    affected[n] |= face_moved;
-                  });
-  for (std::size_t n = 0; n < normals.value.size(); ++n) {
-    const double length = normals.value[n].length();
-    normals.value[n] = affected[n] && length > 0 ? normals.value[n] / length : Vec3d(0.0);
-  }
-  normals.disagreeing = count_disagreeing(source, positions, moved, normals.value);
+  std::atomic<std::size_t> disagreeing = 0;
+  for_each_index(normals.value.size(), [&](std::size_t n) {
+    Vec3d sum(0.0);
+    bool affected = false;
+    for (const Corner& corner : users.of(n)) {
+      sum += weighted_normal(mesh, positions, corner);
+      affected = affected || any_moved(mesh.face(corner.face), moved);
+    }
+    if (!affected) return;
+    normals.value[n] = unit_or_zero(sum);
+    if (source.format == Format::Obj && disagree(mesh, positions, users.of(n), normals.value[n])) ++disagreeing;
+  });
+  normals.disagreeing = disagreeing;
   return normals;
 }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 #include "vdb_offset/io/normals.h"
 #include "vdb_offset/io/numbers.h"
@@ -16,7 +17,7 @@ namespace {
 // Size of a piece of a binary file.
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 
-/// A number of the file that gets another value.
+/// A number of a text that gets another value.
 struct Patch {
   std::uint64_t at;
   double value;
@@ -36,8 +37,7 @@ class Patcher {
 
   std::string make(std::size_t piece) const {
     const std::uint64_t begin = cuts_[piece], end = cuts_[piece + 1];
-    const std::vector<Patch> patches = find(begin, end);
-    return source_.encoding == Encoding::Ascii ? in_text(begin, end, patches) : in_binary(begin, end, patches);
+    return source_.encoding == Encoding::Ascii ? in_text(begin, end) : in_binary(begin, end);
   }
 
  private:
@@ -71,33 +71,32 @@ class Patcher {
   static std::uint64_t first_of(const NumberTriple& t) { return std::min({t.at[0], t.at[1], t.at[2]}); }
   static std::uint64_t last_of(const NumberTriple& t) { return std::max({t.at[0], t.at[1], t.at[2]}); }
 
-  /// What changes from `begin` to `end`, in the order of the file.
-  std::vector<Patch> find(std::uint64_t begin, std::uint64_t end) const {
-    std::vector<Patch> patches;
-    const auto add = [&](const NumberTriple& place, const Vec3d& value, bool of_normal) {
-      for (int k = 0; k < 3; ++k)
-        if (place.at[k] >= begin && place.at[k] < end) patches.push_back({place.at[k], value[k], of_normal});
-    };
-    const auto for_each = [&](const Places& places, auto&& visit) {
+  /// Calls visit(place, value, whether it is a normal's) for every number from `begin` to `end` that changes:
+  /// coordinates first, in the file's order, then normals.
+  template <class Visit>
+  void for_each_number(std::uint64_t begin, std::uint64_t end, Visit&& visit) const {
+    const auto each = [&](const Places& places, bool of_normals, auto&& value_of) {
       for (std::size_t i = places.first_from(begin); i < places.size(); ++i) {
         const NumberTriple place = places[i];
         if (first_of(place) >= end) return;
-        visit(i, place);
+        const std::optional<Vec3d> value = value_of(i);
+        for (int k = 0; value && k < 3; ++k)
+          if (place.at[k] >= begin && place.at[k] < end) visit(place.at[k], (*value)[k], of_normals);
       }
     };
-    for_each(source_.position_at, [&](std::size_t v, const NumberTriple& place) {
-      if (has_moved(v)) add(place, precision_(positions_[v]), false);
+    each(source_.position_at, false, [&](std::size_t v) -> std::optional<Vec3d> {
+      if (has_moved(v)) return precision_(positions_[v]);
+      return std::nullopt;
     });
     if (!normals_.value.empty())
-      for_each(source_.normal_at, [&](std::size_t n, const NumberTriple& place) {
-        if (normals_.value[n].lengthSqr() > 0) add(place, normals_.value[n], true);
+      each(source_.normal_at, true, [&](std::size_t n) -> std::optional<Vec3d> {
+        if (normals_.value[n].lengthSqr() > 0) return normals_.value[n];
+        return std::nullopt;
       });
-    const auto by_place = [](const Patch& a, const Patch& b) { return a.at < b.at; };
-    if (!std::is_sorted(patches.begin(), patches.end(), by_place)) std::sort(patches.begin(), patches.end(), by_place);
-    return patches;
   }
 
-  std::string in_text(std::uint64_t begin, std::uint64_t end, const std::vector<Patch>& patches) const {
+  std::string in_text(std::uint64_t begin, std::uint64_t end) const {
+    const std::vector<Patch> patches = in_order(begin, end);
     const std::string_view bytes = source_.text();
     std::string text;
     text.reserve((end - begin) + patches.size() * 12);
@@ -110,19 +109,28 @@ class Patcher {
     }
     return text.append(bytes, copied, end - copied);
   }
+  std::vector<Patch> in_order(std::uint64_t begin, std::uint64_t end) const {
+    std::vector<Patch> patches;
+    for_each_number(begin, end, [&](std::uint64_t at, double value, bool of_normal) {
+      patches.push_back({at, value, of_normal});
+    });
+    const auto by_place = [](const Patch& a, const Patch& b) { return a.at < b.at; };
+    if (!std::is_sorted(patches.begin(), patches.end(), by_place)) std::sort(patches.begin(), patches.end(), by_place);
+    return patches;
+  }
   static bool ends_number(char c) { return is_blank(c) || c == '\n' || c == '\\' || c == '#'; }
 
-  std::string in_binary(std::uint64_t begin, std::uint64_t end, const std::vector<Patch>& patches) const {
+  std::string in_binary(std::uint64_t begin, std::uint64_t end) const {
     std::string bytes(source_.text().substr(begin, end - begin));
-    for (const Patch& patch : patches) {
+    for_each_number(begin, end, [&](std::uint64_t at, double value, bool of_normal) {
       char raw[8];
-      const std::uint8_t size = patch.of_normal ? source_.normal_bytes : source_.position_bytes;
-      const auto narrow = static_cast<float>(patch.value);
+      const std::uint8_t size = of_normal ? source_.normal_bytes : source_.position_bytes;
+      const auto narrow = static_cast<float>(value);
       if (size == 4) std::memcpy(raw, &narrow, 4);
-      else std::memcpy(raw, &patch.value, 8);
+      else std::memcpy(raw, &value, 8);
       if (source_.encoding == Encoding::BigEndian) std::reverse(raw, raw + size);
-      std::memcpy(bytes.data() + (patch.at - begin), raw, size);
-    }
+      std::memcpy(bytes.data() + (at - begin), raw, size);
+    });
     return bytes;
   }
 
