@@ -1,0 +1,204 @@
+// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl: what fuzzing starts from.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
+
+using namespace vdb_offset;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path folder;
+
+/// Every seed must be a mesh, else it would lead nowhere: checked here.
+void seed(const std::string& name, const std::string& bytes) {
+  const fs::path path = folder / name.substr(name.rfind('.') + 1) / name;
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << bytes;
+  io::read_mesh(path.string());
+}
+
+std::string with_crlf(const std::string& text) {
+  std::string bytes;
+  for (const char c : text) bytes += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  return bytes;
+}
+
+template <class T>
+std::string raw(T value, bool swap = false) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  if (swap) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+/// A triangle and a quadrilateral on five vertices, none of which is round.
+Polygons two_faces() {
+  Polygons mesh;
+  mesh.positions = {{0.1, 0, 1.0 / 3}, {1.5, -0.25, 0}, {0, 1e-7, 2}, {-1, 123456.789, 0.5}, {1, 1, 1}};
+  mesh.add_face({0, 1, 2});
+  mesh.add_face({0, 2, 3, 4});
+  return mesh;
+}
+
+/// The project's own writers.
+void plain_seeds() {
+  const Polygons mesh = two_faces();
+  for (const char* format : {"obj", "off", "ply", "stl"}) {
+    fs::create_directories(folder / format);
+    io::write_mesh((folder / format / (std::string("plain.") + format)).string(), mesh.view());
+  }
+}
+
+void obj_seeds() {
+  const std::string rich =
+      "# a comment\nmtllib x.mtl\nv 0 0 0 0.5 0.5 0.5\nv  1.50 0 \t0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n"
+      "o part\ng group\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/1/1 # face\nf -3//1 -1//1 -2//1\nl 1 2\nunknown 1 2 3";
+  seed("rich.obj", rich);
+  seed("crlf.obj", with_crlf(rich));
+  seed("numbers.obj", "v +0 -0 .5\nv 1e-3 2E+2 3.\nv 1e-400 1e300 0.1000000000000000055\nf 1 +2 3\n");
+  const std::string continued =
+      "v 0 \\\n0 0\nv 1 0 0\\\nv 0 1 0\nv 1\\\n 0 0\nv 0 1 0\nf 1\\\n 2 \\\n 3\n# end \\\nf 1 2 3\n";
+  seed("continued.obj", continued);
+  seed("continued_crlf.obj", with_crlf(continued));
+  seed("mark_forward.obj",
+       "\xef\xbb\xbf"
+       "f 1 2 3\nf 1/7 3/8 2/9\nv 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\n");
+  seed("negative.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf -3/-1/-2 -2/-1/-1 -1/-1/-2\nf -1 -2 -3\n");
+  seed("normals.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn nan inf x\nvn 0 1 0\nf 1//1 2//1 3//2\nf 3//2 2 1//2\n");
+}
+
+void off_seeds() {
+  const std::string rows = "0 0 0%\n1 0 0%\n0 1 0%\n1 1 0.5%\n", faces = "3 0 1 2\n4 0 1 3 2 255 0 0\n";
+  const auto with = [&](const std::string& keyword, const std::string& rest) {
+    std::string text = keyword + "\n4 2 0\n";
+    for (const char c : rows) text += c == '%' ? rest : std::string(1, c);
+    return text + faces;
+  };
+  seed("coff.off", with("COFF", " 255 0 0 128"));
+  seed("noff.off", with("NOFF", " 0 0 1"));
+  seed("cnoff.off", with("CNOFF", " 0 nan 1 0.5 0.5 0.5 1"));
+  seed("stoff.off", with("STOFF", " 0.25 0.75"));
+  seed("stcnoff.off", with("STCNOFF", " 0 0 1 1 1 1 1 0.25 0.75"));
+  seed("crlf.off", with_crlf(with("OFF", "")));
+  seed("comments.off",
+       "# first\nOFF # keyword\n\n# counts\n3 1 # two of three\n0 0 0#near\n#\n1 0 0\n0 1 0\n\n3 0 1 2");
+  seed("one_line.off", "\xef\xbb\xbfOFF 3 1 0\n0 0 0\n1e-3 +0 -0\n0 1 .5\n3 0 1 2");
+}
+
+std::string ply_header(const std::string& encoding, const std::string& elements) {
+  return "ply\nformat " + encoding + " 1.0\ncomment made by hand\n" + elements + "end_header\n";
+}
+
+void ply_text_seeds() {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  const std::string corners = "property list uchar int vertex_indices\n";
+  const std::string normals =
+      ply_header("ascii", "obj_info by nobody\nelement vertex 3\n" + xyz + "property float nx\nproperty float ny\n" +
+                              "property float nz\nelement face 2\n" + corners) +
+      "0 0 0 nan 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n3 2 1 0\n";
+  seed("text_normals.ply", normals);
+  seed("text_crlf.ply", with_crlf(normals));
+  seed("text_lists.ply",
+       ply_header("ascii",
+                  "element camera 1\nproperty list char short view\nelement face 1\nproperty double quality\n" +
+                      std::string("property list uint ushort vertex_index\nproperty list uchar float texcoord\n") +
+                      "element vertex 3\nproperty list uchar uchar ring\n" + xyz + "property uchar red\n") +
+           "2 7 8\n0.5 3 0 1 2 6 0 0 1 0 0 1\n0 0 0 0 255\n1 5 1 0 0 255\n2 5 6 0 1 0 255\n");
+  seed("text_one_line.ply",
+       ply_header("ascii", "element vertex 3\n" + xyz + "element face 1\n" + corners) + "0 0 0 1 0 0 0 1 0 3 0 1 2");
+}
+
+/// Every number of the file is binary: a vertex with a colour and a normal, lists in front and behind.
+std::string binary_ply(bool big) {
+  std::string bytes = ply_header(
+      std::string("binary_") + (big ? "big" : "little") + "_endian",
+      "element vertex 3\nproperty list uchar short ring\nproperty float64 x\nproperty uint8 red\nproperty float64 y\n"
+      "property float64 z\nproperty float32 nx\nproperty float32 ny\nproperty float32 nz\nelement face 1\n"
+      "property list uint16 uint32 vertex_indices\nproperty float quality\nelement edge 1\nproperty int8 a\n");
+  for (int v = 0; v < 3; ++v) {
+    bytes += raw(static_cast<std::uint8_t>(v));
+    for (int k = 0; k < v; ++k) bytes += raw(std::int16_t{-2}, big);
+    bytes += raw(v == 1 ? 1.1 : 0.0, big) + raw(std::uint8_t{200}) + raw(v == 2 ? 1.1 : 0.0, big) + raw(0.25, big);
+    for (const float n : {0.f, 0.f, 1.f}) bytes += raw(n, big);
+  }
+  bytes += raw(std::uint16_t{3}, big);
+  for (const std::uint32_t v : {0u, 1u, 2u}) bytes += raw(v, big);
+  return bytes + raw(0.25f, big) + raw(std::int8_t{-1}) + "rest";
+}
+
+/// The plainest of binary files: three floats a vertex, nothing but triangles.
+std::string triangles_ply(bool big) {
+  std::string bytes =
+      ply_header(std::string("binary_") + (big ? "big" : "little") + "_endian",
+                 "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+                 "property list uchar int vertex_indices\n");
+  for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) bytes += raw(x, big);
+  for (const std::int32_t first : {0, 1}) {
+    bytes += raw(std::uint8_t{3});
+    for (const std::int32_t k : {0, 1, 2}) bytes += raw((first + k) % 3, big);
+  }
+  return bytes;
+}
+
+std::string binary_stl(std::string header, std::uint32_t facets, std::uint16_t attribute) {
+  header.resize(80, ' ');
+  std::string bytes = header + raw(facets);
+  for (std::uint32_t f = 0; f < facets; ++f) {
+    for (const float x : {9.f, 9.f, 9.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.1f}) bytes += raw(x);
+    bytes += raw(attribute);
+  }
+  return bytes;
+}
+
+void stl_seeds() {
+  const std::string facet =
+      "  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n      vertex 1 0 0\n      vertex 0 1.0e-1 0\n"
+      "    endloop\n  endfacet\n";
+  const std::string text = "solid my part\n" + facet + facet + "endsolid my part\n";
+  std::string upper = text;
+  std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
+  seed("text.stl", text);
+  seed("crlf.stl", with_crlf(text));
+  seed("upper.stl", upper);
+  seed("two_solids.stl", text + "\n" + text);
+  seed("remarks.stl",
+       "solid\nfacet normal inf -inf word\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop foo\n"
+       "endfacet blah\nendsolid");
+  seed("attributes.stl", binary_stl("made by hand", 2, 0xabcd));
+  seed("solid_in_binary.stl", binary_stl("solid COLOR=abcd", 1, 0));
+  seed("longer.stl", binary_stl("", 1, 1) + "bytes behind the last facet");
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fprintf(stderr, "usage: fuzz_corpus FOLDER\n");
+    return 1;
+  }
+  folder = arguments[1];
+  try {
+    plain_seeds();
+    obj_seeds();
+    off_seeds();
+    ply_text_seeds();
+    for (const bool big : {false, true}) {
+      const std::string name = big ? "big.ply" : "little.ply";
+      seed("rows_" + name, binary_ply(big));
+      seed("triangles_" + name, triangles_ply(big));
+    }
+    stl_seeds();
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 4;
+  }
+}

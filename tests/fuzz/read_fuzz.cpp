@@ -1,0 +1,112 @@
+// A libFuzzer target for one format, FUZZ_FORMAT: whatever the bytes are, they are refused with InvalidInput or are a
+// mesh that keeps the promises of io/mesh_file.h. What else is thrown ends the process, as do the sanitizers.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+constexpr io::Format kFormat = io::Format::FUZZ_FORMAT;
+
+/// Not an assert: it must hold in every build.
+void require(bool holds, const char* rule) {
+  if (holds) return;
+  std::fprintf(stderr, "violated: %s\n", rule);
+  std::abort();
+}
+
+const std::string& file_name() {
+  static const std::string name = std::string("fuzz.") + io::name(kFormat);
+  return name;
+}
+
+std::optional<io::MeshFile> parsed(const std::string& bytes) {
+  try {
+    return io::parse_mesh(file_name(), kFormat, bytes);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+io::MeshFile parsed_again(const std::string& bytes) {
+  std::optional<io::MeshFile> file = parsed(bytes);
+  require(file.has_value(), "what was written can be read");
+  return *std::move(file);
+}
+
+void check_mesh(const io::MeshFile& file) {
+  const Polygons& mesh = file.polygons;
+  require(!mesh.face_begin.empty() && mesh.face_begin.front() == 0, "face_begin starts with 0");
+  require(mesh.face_begin.back() == mesh.corners.size(), "face_begin ends with the number of corners");
+  require(mesh.face_count() > 0, "a mesh has a face");
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    require(mesh.face_begin[f] < mesh.face_begin[f + 1] && mesh.face_begin[f + 1] - mesh.face_begin[f] >= 3,
+            "a face has three corners");
+  for (const auto v : mesh.corners) require(v < mesh.positions.size(), "corners are indices of vertices");
+  for (const Vec3d& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) require(std::isfinite(p[k]), "coordinates are finite");
+
+  require(file.position_at.size() == mesh.positions.size(), "every vertex has its place in the file");
+  require(file.corner_normal.empty() || file.corner_normal.size() == mesh.corners.size(), "one normal a corner");
+  for (const auto n : file.corner_normal)
+    require(n == io::kNoNormal || n < file.normal_at.size(), "corner_normal holds indices of normals");
+}
+
+void require_same_topology(const io::MeshFile& a, const io::MeshFile& b) {
+  require(a.polygons.positions.size() == b.polygons.positions.size(), "the number of vertices stays");
+  require(a.polygons.corners == b.polygons.corners, "corners stay");
+  require(a.polygons.face_begin == b.polygons.face_begin, "faces stay");
+  require(a.corner_normal == b.corner_normal, "the corners' normals stay");
+  require(a.normal_at.size() == b.normal_at.size(), "the number of normals stays");
+  require(a.encoding == b.encoding, "the encoding stays");
+  require(a.extras == b.extras, "what else the file holds stays");
+}
+
+/// Writes the mesh with these positions and reads it again.
+void check_moved(const io::MeshFile& file, const std::vector<Vec3d>& positions) {
+  const std::string bytes = io::patched_bytes(file, positions);
+  const io::MeshFile back = parsed_again(bytes);
+  check_mesh(back);
+  require_same_topology(file, back);
+
+  const bool floats = io::rounds_to_floats(file_name(), file);
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    for (int k = 0; k < 3; ++k) {
+      const double stored = floats ? static_cast<double>(static_cast<float>(positions[v][k])) : positions[v][k];
+      require(back.polygons.positions[v][k] == stored, "positions are those that were written");
+    }
+  require(io::patched_bytes(back, back.polygons.positions) == bytes, "what was written is written again as it is");
+
+  // Numbers of other lengths than the first time, normals that were computed before.
+  const io::MeshFile home = parsed_again(io::patched_bytes(back, file.polygons.positions));
+  require_same_topology(file, home);
+  require(home.polygons.positions == file.polygons.positions, "vertices can be moved back");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  const std::optional<io::MeshFile> file = parsed(bytes);
+  if (!file) return 0;
+  check_mesh(*file);
+  require(io::patched_bytes(*file, file->polygons.positions) == bytes, "an unmoved mesh keeps every byte");
+
+  std::vector<Vec3d> shifted = file->polygons.positions, turned = file->polygons.positions;
+  for (Vec3d& p : shifted) p += Vec3d(1.0);
+  check_moved(*file, shifted);
+  // Coordinates of all digits, and faces that turn; nothing becomes larger than it was, so that it can be stored.
+  for (Vec3d& p : turned) p = Vec3d(-p[2] / 3, p[0] / 7, p[1]);
+  check_moved(*file, turned);
+  return 0;
+}
