@@ -79,12 +79,8 @@ void check_moved(const io::MeshFile& file, const std::vector<Vec3d>& positions) 
   check_mesh(back);
   require_same_topology(file, back);
 
-  const bool floats = io::rounds_to_floats(file_name(), file);
   for (std::size_t v = 0; v < positions.size(); ++v)
-    for (int k = 0; k < 3; ++k) {
-      const double stored = floats ? static_cast<double>(static_cast<float>(positions[v][k])) : positions[v][k];
-      require(back.polygons.positions[v][k] == stored, "positions are those that were written");
-    }
+    require(back.polygons.positions[v] == file.precision(positions[v]), "positions are those that were written");
   require(io::patched_bytes(back, back.polygons.positions) == bytes, "what was written is written again as it is");
 
   // Numbers of other lengths than the first time, normals that were computed before.

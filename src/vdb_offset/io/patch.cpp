@@ -50,7 +50,10 @@ class Patcher {
     });
     normals_ = new_normals(source_, stored, moved);
   }
-  bool has_moved(std::size_t v) const { return !(precision_(positions_[v]) == source_.polygons.positions[v]); }
+  bool has_moved(std::size_t v) const {
+    const Vec3d& before = source_.polygons.positions[v];
+    return !(positions_[v] == before) && !(precision_(positions_[v]) == before);
+  }
 
   /// Cuts of a binary file of which none runs through the numbers of a vertex or a normal.
   std::vector<std::size_t> cut_between_numbers() const {

@@ -137,6 +137,11 @@ double binary_number(const char* at, Type type, Encoding encoding) {
   return type.bytes == 1 ? load<std::int8_t>(raw) : type.bytes == 2 ? load<std::int16_t>(raw) : load<std::int32_t>(raw);
 }
 
+/// Digits that a text has beyond its declared type are not there for anyone who reads it.
+double as_declared(Type type, double value) {
+  return type.bytes == 4 ? static_cast<double>(static_cast<float>(value)) : value;
+}
+
 /// Takes numbers of either kind off the body, one after the other.
 class Body {
  public:
@@ -150,7 +155,7 @@ class Body {
       Scanner before = text_;
       const std::string_view word = before.token();
       at = before.position() - word.size();
-      return type.kind == 'f' ? text_.number(what) : static_cast<double>(text_.integer(what));
+      return type.kind == 'f' ? as_declared(type, text_.number(what)) : static_cast<double>(text_.integer(what));
     }
     at = at_;
     return take_binary(type, what);
@@ -327,10 +332,10 @@ class PlyParser {
         const auto byte = static_cast<std::uint64_t>(cursor.position() - file_.text().data());
         double value = 0;
         if (c < 0 || c >= 3 ? !cursor.skip_word() : !cursor.number(value)) return false;
-        if (c >= 0 && c < 3) file_.polygons.positions[v][c] = value;
+        if (c >= 0 && c < 3) file_.polygons.positions[v][c] = as_declared({'f', file_.position_bytes}, value);
         if (c >= 0 && (c < 3 || layout.normals)) at[c / 3][v].at[c % 3] = byte;
       }
-      return true;
+      return file_.polygons.positions[v].isFinite();
     });
     if (!plain) return false;
     file_.position_at = Places(std::move(at[0]));
@@ -423,7 +428,7 @@ class PlyParser {
   bool read_face_lines(const Element& element) {
     const LineRecords lines(file_.text(), body_.position(), element.count);
     if (!lines.complete()) return false;
-    auto& [positions, corners, face_begin] = file_.polygons;
+    std::vector<std::uint32_t>&corners = file_.polygons.corners, &face_begin = file_.polygons.face_begin;
     face_begin.resize(element.count + 1);
     const auto list = std::find_if(element.properties.begin(), element.properties.end(), is_corner_list);
     const auto before = list - element.properties.begin(), after = element.properties.end() - list - 1;

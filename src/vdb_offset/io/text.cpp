@@ -42,7 +42,7 @@ LineRecords::LineRecords(std::string_view text, std::size_t begin, std::size_t c
   });
   std::size_t run = 0;
   for (; run < runs && first_[run] < count; ++run) first_[run + 1] += first_[run];
-  if (first_[run] < count && !text.empty() && text.back() != '\n') ++first_[run];  // the last line's end is missing
+  if (run > 0 && first_[run] < count && text.back() != '\n') ++first_[run];  // the last line's end is missing
   first_.resize(run + 1);
   cuts_.resize(run + 1);
   // The last run may go on behind the last record.
