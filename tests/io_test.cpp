@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
@@ -286,4 +288,119 @@ TEST_CASE("io: a write that fails half-way leaves the old file and nothing else"
                   WriteError);
   CHECK(slurp(path) == "old");
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE("obj: lines out of the ordinary are read as plain ones are, in files of many runs", "[io]") {
+  const Folder folder;
+  // The same grid of quads twice: plainly, and with all that an OBJ file may hold in between.
+  constexpr int kSide = 150;
+  std::string plain, odd = "\xef\xbb\xbf";
+  const auto at = [](int i, int j) { return i * (kSide + 1) + j + 1; };
+  for (int i = 0; i <= kSide; ++i)
+    for (int j = 0; j <= kSide; ++j) {
+      const std::string x = std::to_string(i) + ".25", y = std::to_string(j) + ".5";
+      plain += "v " + x + " " + y + " 0\n";
+      const int kind = (i + j) % 5;
+      odd += kind == 0   ? "  v\t" + x + " \\\n " + y + " 0\n"
+             : kind == 1 ? "v +" + x + " " + y + " 0 # a vertex\r\n"
+             : kind == 2 ? "# nothing \\\nv " + x + " " + y + " 0e0 1 0 0\n"
+             : kind == 3 ? "\\\nv " + x + " " + y + " 0\ng part\n"
+                         : "v " + x + " " + y + " -0\n\n";
+    }
+  odd += "vn 0 0 1\nvt 0 0\n";
+  const int all = (kSide + 1) * (kSide + 1);
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const int corner[4] = {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+      plain += 'f';
+      odd += (i + j) % 3 == 0 ? "f \\\r\n" : "f";
+      for (const int v : corner) {
+        plain += fmt::format(" {}", v);
+        odd += (i + j) % 2 == 0 ? fmt::format(" {}/1/1", v) : fmt::format("\t{}//-1", v - all - 1);
+      }
+      plain += '\n';
+      odd += (i + j) % 4 == 0 ? "#\n" : "\n";
+    }
+  REQUIRE(odd.size() > std::size_t{2} << 19);
+  const io::MeshFile a = io::read_mesh(folder.write("plain.obj", plain)),
+                     b = io::read_mesh(folder.write("odd.obj", odd));
+  CHECK(a.polygons.positions == b.polygons.positions);
+  CHECK(a.polygons.corners == b.polygons.corners);
+  CHECK(a.polygons.face_begin == b.polygons.face_begin);
+  CHECK(b.corner_normal == std::vector<std::uint32_t>(b.polygons.corners.size(), 0));
+  CHECK(moved(folder, "odd.obj", odd, {0, 0, 0}) == odd);
+  CHECK(io::parse_mesh("x", io::Format::Obj, moved(folder, "odd.obj", odd, {1, 2, 3})).polygons.positions ==
+        shifted(a.polygons.positions, {1, 2, 3}));
+}
+
+TEST_CASE("obj: the first fault of a large file is told, whichever thread found one", "[io]") {
+  std::string text;
+  for (int v = 0; v < 100000; ++v) text += "v 0.125 " + std::to_string(v) + " 1\n";
+  for (int f = 0; f < 100000; ++f) text += f == 70000 || f == 90000 ? "f 1 2 x\n" : "f 1 2 3\n";
+  for (int i = 0; i < 5; ++i)
+    CHECK_THROWS_WITH(io::parse_mesh("a.obj", io::Format::Obj, text), Catch::Contains("line 170001"));
+}
+
+TEST_CASE("ply: text in lines and text in any other order of white space are read alike", "[io]") {
+  const Folder folder;
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty int id\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty float q\nend_header\n";
+  const std::string lines = "0 7 0 0.1\n1 8 0 0\n0 9 1 0\n0 3 0 1 2 0.5\n1 3 2 1 0 0.5",
+                    spread = "0 7\n0 0.1 1 8 0 0\n\n0 9 1 0 0 3 0 1 2 0.5 1 3\n2 1 0 0.5\n";
+  const io::MeshFile a = io::read_mesh(folder.write("a.ply", header + lines)),
+                     b = io::read_mesh(folder.write("b.ply", header + spread));
+  CHECK(a.polygons.positions == b.polygons.positions);
+  CHECK(a.polygons.corners == b.polygons.corners);
+  CHECK(a.polygons.positions[0][2] == static_cast<double>(0.1f));
+  CHECK(moved(folder, "a.ply", header + lines, {0, 0, 0}) == header + lines);
+  CHECK(moved(folder, "b.ply", header + spread, {0, 1, 0}) ==
+        header + "0 7\n1 0.1 1 8 1 0\n\n0 9 2 0 0 3 0 1 2 0.5 1 3\n2 1 0 0.5\n");
+  // Vertices that take all there is leave nothing for the faces.
+  CHECK_THROWS_AS(io::parse_mesh("c.ply", io::Format::Ply, header + "0 7 0 0 1 8 0 0 0\n9 1 0"), InvalidInput);
+}
+
+TEST_CASE("io: compressed files are read and written in place", "[io]") {
+  const Folder folder;
+  const io::MeshFile plain = io::read_mesh(folder.write("a.obj", kObj));
+  for (const std::string ending : {".gz", ".zst"}) {
+    const std::string path = folder.file("a.obj" + ending);
+    io::write_mesh(path, plain, shifted(plain.polygons.positions, {0, 0, 2}));
+    CHECK(slurp(path).substr(0, 2) == (ending == ".gz" ? "\x1f\x8b" : "\x28\xb5"));
+    const io::MeshFile back = io::read_mesh(path);
+    CHECK(back.format == io::Format::Obj);
+    CHECK(std::string(back.text()) == moved(folder, "b.obj", kObj, {0, 0, 2}));
+    // Members behind each other are one file; an end that is missing is told.
+    const std::string packed = slurp(path);
+    CHECK(std::string(io::read_mesh(folder.write("twice.obj" + ending, packed + packed)).text()) ==
+          std::string(back.text()) + std::string(back.text()));
+    for (const std::size_t size : {std::size_t{1}, std::size_t{20}, packed.size() - 1})
+      CHECK_THROWS_AS(io::read_mesh(folder.write("cut.obj" + ending, packed.substr(0, size))), InvalidInput);
+    CHECK_THROWS_AS(io::read_mesh(folder.write("none.obj" + ending, kObj)), InvalidInput);
+  }
+}
+
+TEST_CASE("io: digits, normals kept, and normals whose vertices disagree", "[io]") {
+  const Folder folder;
+  const io::MeshFile file = io::read_mesh(
+      folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//1 4//1 3//1\n"));
+  const std::vector<Vec3d> bent = {{0, 0, 1.0 / 3}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1.0 / 3}};
+  const io::WriteResult kept =
+      io::write_mesh(folder.file("b.obj"), file, bent, {.normals = io::Normals::Keep, .digits = 3});
+  CHECK(kept.disagreeing_normals == 0);
+  CHECK(slurp(folder.file("b.obj")) ==
+        "v 0 0 0.333\nv 1 0 0\nv 0 1 0\nv 1 1 0.333\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//1 4//1 3//1\n");
+  CHECK(io::write_mesh(folder.file("c.obj"), file, bent).disagreeing_normals == 1);
+  const std::vector<Vec3d> lifted = shifted(file.polygons.positions, {0, 0, 1});
+  CHECK(io::write_mesh(folder.file("c.obj"), file, lifted).disagreeing_normals == 0);
+  CHECK(io::precision_of("x.obj", file, {.digits = 3})(1.0 / 3) == 0.333);
+  CHECK(io::precision_of("x.stl", file)(1.0 / 3) == static_cast<double>(1.0f / 3));
+}
+
+TEST_CASE("io: a file that changes while it is in use is told", "[io]") {
+  const Folder folder;
+  const io::MeshFile file = io::read_mesh(folder.write("a.obj", kObj));
+  std::ofstream(folder.file("a.obj"), std::ios::app) << "# more\n";
+  CHECK_THROWS_AS(io::write_mesh(folder.file("b.obj"), file, file.polygons.positions), ReadError);
+  CHECK_FALSE(fs::exists(folder.file("b.obj")));
 }
