@@ -18,13 +18,18 @@ namespace {
 
 fs::path folder;
 
-/// Every seed must be a mesh, else it would lead nowhere: checked here.
-void seed(const std::string& name, const std::string& bytes) {
+std::string write(const std::string& name, const std::string& bytes) {
   const fs::path path = folder / name.substr(name.rfind('.') + 1) / name;
   fs::create_directories(path.parent_path());
   std::ofstream(path, std::ios::binary) << bytes;
-  io::read_mesh(path.string());
+  return path.string();
 }
+
+/// Most seeds must be meshes, else they would lead nowhere: checked here.
+void seed(const std::string& name, const std::string& bytes) { io::read_mesh(write(name, bytes)); }
+
+/// What a reader may refuse, next to what it must.
+void odd_seed(const std::string& name, const std::string& bytes) { write(name, bytes); }
 
 std::string with_crlf(const std::string& text) {
   std::string bytes;
@@ -115,6 +120,11 @@ void ply_text_seeds() {
            "2 7 8\n0.5 3 0 1 2 6 0 0 1 0 0 1\n0 0 0 0 255\n1 5 1 0 0 255\n2 5 6 0 1 0 255\n");
   seed("text_one_line.ply",
        ply_header("ascii", "element vertex 3\n" + xyz + "element face 1\n" + corners) + "0 0 0 1 0 0 0 1 0 3 0 1 2");
+  const std::string three = "element vertex 3\n" + xyz + "property float nx\nproperty float ny\nproperty float nz\n";
+  const std::string one = "element face 1\n" + corners;
+  odd_seed("text_twice.ply", ply_header("ascii", three + three + one + one + "element edge 1000\n") +
+                                 "0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1 0 0 1 0 0 1 1 0 1 0 0 1 0 1 1 0 0 1\n"
+                                 "3 0 1 2\n3 3 4 5\n");
 }
 
 /// Every number of the file is binary: a vertex with a colour and a normal, lists in front and behind.
