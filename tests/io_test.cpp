@@ -134,6 +134,8 @@ TEST_CASE("off: header variants, comments and colours stay", "[io]") {
   CHECK(moved(folder, "a.off", off, {0, 0, 0}) == off);
   CHECK(moved(folder, "a.off", off, {1, 0, 0}) ==
         "COFF # colours\n# counts\n3 1 0\n1 0 0 255 0 0 255\n2 0 0 0 255 0 255\n1 1 0 0 0 255 255\n3 0 1 2 0.5\n");
+  CHECK(io::read_mesh(folder.write("c.off", "OFF\n3\n1\n0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2")).polygons.face_count() == 1);
+  CHECK(io::read_mesh(folder.write("d.off", "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2")).polygons.face_count() == 1);
   CHECK(io::read_mesh(folder.write("b.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2")).polygons.face_count() == 1);
 }
 
@@ -215,6 +217,8 @@ TEST_CASE("io: faulty content is refused with its place", "[io]") {
   const Case cases[] = {
       {"a.obj", "", "byte 0", "empty"},
       {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "line 4", "at least one face"},
+      {"a.obj", "v 0 0 +-1\n", "line 1", "'+-1'"},
+      {"a.obj", "v 0 0 0\nf 1 1 +-1\n", "line 2", "'+-1'"},
       {"a.obj", "v 0 0 nan\n", "line 1", "finite"},
       {"a.obj", "v 0 0\n", "line 1", "the end of the line"},
       {"a.obj", "v 0 0 1,5\n", "line 1", "'1,5'"},
@@ -250,6 +254,23 @@ TEST_CASE("io: faulty content is refused with its place", "[io]") {
     CHECK_THROWS_WITH(io::read_mesh(path),
                       Catch::StartsWith(path) && Catch::Contains(c.place) && Catch::Contains(c.fault));
   }
+}
+
+TEST_CASE("io: words in the place of a normal are replaced as a whole", "[io]") {
+  const Folder folder;
+  CHECK_THAT(moved(folder, "a.stl", replaced(kStl, "inf -inf word", "1#0 0\\3 0"), {1, 0, 0}),
+             Catch::Contains("facet normal 0 0 1\n"));
+  CHECK(moved(folder, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1\\2 0 \\\n0#c\nf 1//1 2//1 3//1\n", {0, 0, 1}) ==
+        "v 0 0 1\nv 1 0 1\nv 0 1 1\nvn 0 0 \\\n1#c\nf 1//1 2//1 3//1\n");
+}
+
+TEST_CASE("ply: an element that comes twice is refused", "[io]") {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+      "nx\n"
+      "property float ny\nproperty float nz\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0\n0 1 0\n3 0 1 2\n";
+  CHECK_THROWS_WITH(io::parse_mesh("a.ply", io::Format::Ply, text), Catch::Contains("once"));
 }
 
 TEST_CASE("io: truncated and lying binaries are refused without reading beyond", "[io]") {

@@ -41,9 +41,12 @@ void parse_off(MeshFile& file) {
   const bool normals = has_normals(scanner, scanner.token_anywhere("the keyword OFF"), file);
   if (is_word(Scanner(scanner).token(), "binary"))
     scanner.fail_with("a text OFF file", "a binary one", scanner.position());
-  const std::size_t vertices = count(scanner, "a number of vertices", 6),
-                    faces = count(scanner, "a number of faces", 8);
-  if (!scanner.at_line_end()) scanner.integer("a number of edges");
+  const std::size_t vertices = count(scanner, "a number of vertices", 6);
+  const bool a_line_each = scanner.at_line_end();
+  const std::size_t faces = count(scanner, "a number of faces", 8);
+  // Some writers leave the number of edges away, some give each number a line of its own.
+  if (a_line_each) scanner.integer_anywhere("a number of edges");
+  else if (!scanner.at_line_end()) scanner.integer("a number of edges");
   std::vector<NumberTriple> position_at, normal_at;
   for (std::size_t v = 0; v < vertices; ++v) {
     if (scanner.at_text_end()) scanner.fail(fmt::format("vertex {} of {}", v + 1, vertices));

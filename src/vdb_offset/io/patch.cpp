@@ -108,7 +108,7 @@ class Patcher {
     for (const Patch& patch : patches) {
       text.append(bytes, copied, patch.at - copied);
       append_number(text, patch.value, patch.of_normal ? of_normals : precision_);
-      for (copied = patch.at; copied < end && !ends_number(bytes[copied]);) ++copied;
+      for (copied = patch.at; copied < end && !ends_number(copied);) ++copied;
     }
     return text.append(bytes, copied, end - copied);
   }
@@ -121,7 +121,13 @@ class Patcher {
     if (!std::is_sorted(patches.begin(), patches.end(), by_place)) std::sort(patches.begin(), patches.end(), by_place);
     return patches;
   }
-  static bool ends_number(char c) { return is_blank(c) || c == '\n' || c == '\\' || c == '#'; }
+  /// Where the readers see a word end: at white space, at a comment where the format has them, at a line that goes on.
+  bool ends_number(std::uint64_t at) const {
+    const std::string_view rest = source_.text().substr(at);
+    if (is_blank(rest[0]) || rest[0] == '\n') return true;
+    if (rest[0] == '#') return source_.format == Format::Obj || source_.format == Format::Off;
+    return source_.format == Format::Obj && (rest.starts_with("\\\n") || rest.starts_with("\\\r\n"));
+  }
 
   std::string in_binary(std::uint64_t begin, std::uint64_t end) const {
     std::string bytes(source_.text().substr(begin, end - begin));

@@ -215,6 +215,7 @@ class PlyParser {
       missing("an element 'face' with a list 'vertex_indices'");
     for (const Element& element : header_.elements) {
       if (find(element.name) != &element) missing("each element once");
+      if (element.properties.empty()) continue;  // takes no bytes, however many there are
       if (element.name == "vertex") read_vertices(element);
       else if (element.name == "face") read_faces(element);
       else {

@@ -21,10 +21,17 @@ std::string shown(std::string_view token) {
   return token.size() > 24 ? text + "..." : text;
 }
 
+/// from_chars() knows no plus. False for two signs.
+bool skip_plus(const char*& first, const char* last) {
+  if (first == last || *first != '+') return true;
+  ++first;
+  return first != last && *first != '-';
+}
+
 bool parse_double(std::string_view token, double& value) {
   const char* first = token.data();
   const char* last = first + token.size();
-  if (first != last && *first == '+') ++first;
+  if (!skip_plus(first, last)) return false;
   const auto [end, error] = std::from_chars(first, last, value);
   if (end != last || first == last) return false;
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(first, last).c_str(), nullptr);
@@ -41,7 +48,7 @@ bool is_word(std::string_view text, std::string_view word) {
 bool parse_integer(std::string_view token, std::int64_t& value) {
   const char* first = token.data();
   const char* last = first + token.size();
-  if (first != last && *first == '+') ++first;
+  if (!skip_plus(first, last)) return false;
   const auto [end, error] = std::from_chars(first, last, value);
   return error == std::errc() && end == last && first != last;
 }

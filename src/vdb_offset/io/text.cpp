@@ -6,8 +6,11 @@
 namespace vdb_offset::io {
 namespace {
 
-// A run keeps a thread busy for a while and fits its cache.
-constexpr std::size_t kRun = std::size_t{1} << 19;
+// A run keeps a thread busy for a while and fits its cache. Fuzzers need shorter ones to get at what lies between two.
+#ifndef VDB_OFFSET_TEXT_RUN
+#define VDB_OFFSET_TEXT_RUN (1 << 19)
+#endif
+constexpr std::size_t kRun = VDB_OFFSET_TEXT_RUN;
 
 bool is_continued(std::string_view text, std::size_t line_end) {
   std::size_t at = line_end;
