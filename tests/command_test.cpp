@@ -1,6 +1,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
@@ -72,6 +73,39 @@ void check_failure(const Shell& shell, const std::string& arguments, int code, c
 }
 
 }  // namespace
+
+TEST_CASE("command: what is inside out is told, and which option enlarges it", "[command]") {
+  const Shell shell;
+  Polygons sphere = scene::icosphere(1, 3);
+  std::reverse(sphere.corners.begin(), sphere.corners.end());
+  io::write_mesh(shell.file("reversed.obj"), sphere.view());
+  const auto least_radius = [&](const std::string& name) {
+    double least = 1e300;
+    for (const Vec3d& p : io::read_mesh(shell.file(name)).polygons.positions) least = std::min(least, p.length());
+    return least;
+  };
+  const Run keep = shell("reversed.obj keep.obj -d 0.1 --report keep.json");
+  CHECK(keep.code == 0);
+  CHECK_THAT(keep.out, Catch::Contains("1 of 1 closed components point inward") && Catch::Contains("--orient fix"));
+  CHECK(least_radius("keep.obj") < 0.91);
+  const Run fixed = shell("reversed.obj fixed.obj -d 0.1 --orient fix-direction-only --report fixed.json");
+  CHECK_THAT(fixed.out, Catch::Contains("taken as turned"));
+  CHECK(least_radius("fixed.obj") > 1.09);
+  CHECK(io::read_mesh(shell.file("fixed.obj")).polygons.corners == sphere.corners);
+  for (const std::string name : {"keep", "fixed"}) {
+    const auto report = nlohmann::json::parse(shell.slurp(shell.file(name + ".json")));
+    CHECK(report["mesh"]["closed_components"] == 1);
+    CHECK(report["mesh"]["inside_out_components"] == 1);
+    CHECK(report["options"]["orient"] == (name == "keep" ? "keep" : "fix-direction-only"));
+  }
+  CHECK(shell("check reversed.obj fixed.obj -d 0.1 --orient fix-direction-only --strict").code == 0);
+  CHECK(shell("check reversed.obj fixed.obj -d 0.1").code == 3);
+  CHECK(shell("check reversed.obj keep.obj -d 0.1 --strict").code == 0);
+  CHECK_THAT(shell("sphere.obj out.obj -d 0.1").out, !Catch::Contains("inward"));
+  const Run wrong = shell("sphere.obj out2.obj -d 0.1 --orient outward");
+  CHECK(wrong.code == 1);
+  CHECK_THAT(wrong.err, Catch::Contains("'keep' or 'fix-direction-only'"));
+}
 
 TEST_CASE("command: 0 and an output when all is well", "[command]") {
   const Shell shell;

@@ -207,8 +207,11 @@ TEST_CASE("offset: two sheets back to back do not stop the run", "[offset]") {
     sheet.corners.insert(sheet.corners.end(), reversed.begin(), reversed.end());
     sheet.close_face();
   }
-  const OffsetResult result = offset(sheet.view(), merged(by(0.05)));
-  CHECK(share(result, VertexState::Reached) > 0.9);
+  // They move as the sheet does alone, to the side of the faces that come first.
+  const OffsetResult result = offset(sheet.view(), by(0.05));
+  CHECK(share(result, VertexState::Reached) == 1);
+  CHECK(result.statistics.facts.repeated_faces == faces);
+  CHECK(position_errors(sheet.view(), result, [&](const Vec3d& x) { return x + Vec3d(0, 0, 0.05); }).worst < 1e-8);
   check_guarantee(sheet.view(), result, 0.05, 7, false);
 }
 
@@ -314,6 +317,16 @@ TEST_CASE("offset: vertices that no face uses stay where they are", "[offset]") 
   CHECK(result.states.back() == VertexState::Unused);
   CHECK(result.statistics.facts.unused_vertices == 1);
   CHECK(share(result, VertexState::Reached) == 1);
+}
+
+TEST_CASE("offset: a vertex that only a line holds stays, and stops nothing else", "[offset]") {
+  Polygons mesh = scene::icosphere(1, 3);
+  mesh.positions.push_back({0.5, 1.5, 0.5});
+  const auto lonely = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  mesh.add_face({lonely, lonely, lonely});
+  const OffsetResult result = offset(mesh.view(), by(0.1));
+  CHECK(result.positions.back() == mesh.positions.back());
+  CHECK(result.statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)] == lonely);
 }
 
 TEST_CASE("offset: a distance of zero moves nothing", "[offset]") {

@@ -1,5 +1,6 @@
 #include "vdb_offset/surface.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -168,6 +169,67 @@ TEST_CASE("surface: a strip with one side only is left as it is, and told", "[su
   CHECK(facts.unsettled_conflicts == 1);
   CHECK(facts.turned_triangles == 0);
   CHECK_FALSE(facts.oriented());
+}
+
+TEST_CASE("surface: a face over the corners of an earlier one counts once inside", "[surface]") {
+  const Polygons cube = scene::box(Vec3d(1), 3, false);
+  const Surface once = build_surface(cube.view(), {});
+  Polygons doubled = cube;
+  for (std::size_t f = 0; f < cube.face_count(); ++f) {
+    const auto face = cube.view().face(f);
+    std::vector<std::uint32_t> copy(face.begin(), face.end());
+    std::rotate(copy.begin(), copy.begin() + static_cast<std::ptrdiff_t>(f % 4), copy.end());
+    if (f % 3 != 0) std::reverse(copy.begin(), copy.end());
+    doubled.corners.insert(doubled.corners.end(), copy.begin(), copy.end());
+    doubled.close_face();
+  }
+  const Surface twice = build_surface(doubled.view(), {});
+  CHECK(twice.facts.repeated_faces == cube.face_count());
+  CHECK(twice.facts.non_manifold_edges >= 2 * cube.face_count());  // and diagonals where both have the same
+  CHECK(twice.facts.non_manifold_left == 0);
+  CHECK(twice.facts.closed());
+  CHECK(twice.facts.oriented());
+  CHECK(twice.triangles.size() == once.triangles.size());
+  CHECK(once.facts.repeated_faces == 0);
+}
+
+TEST_CASE("surface: other faces over the same corners are no repetition", "[surface]") {
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.add_face({0, 1, 2, 3});
+  mesh.add_face({0, 2, 1, 3});
+  mesh.add_face({0, 1, 2, 4});
+  CHECK(build_surface(mesh.view(), {}).facts.repeated_faces == 0);
+}
+
+TEST_CASE("surface: of two bent faces that share three corners in a row, one is folded over", "[surface]") {
+  // Corner 1 has two edges only; the second quad is bent there, and its fan lies on the first's.
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, -0.1, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}};
+  mesh.add_face({0, 1, 2, 3});
+  mesh.add_face({2, 1, 0, 4});
+  const Surface surface = build_surface(mesh.view(), {});
+  CHECK(surface.facts.repeated_faces == 0);
+  CHECK(surface.facts.folded_triangles == 1);
+  CHECK(surface.triangles.size() == 3);
+}
+
+TEST_CASE("surface: faces with a repeated corner leave a closed mesh closed", "[surface]") {
+  Polygons mesh = scene::box(Vec3d(1), 2, true);
+  mesh.add_face({0, 1, 1});
+  mesh.add_face({3, 3, 3});
+  const Surface surface = build_surface(mesh.view(), {});
+  CHECK(surface.facts.degenerate_faces == 2);
+  CHECK(surface.facts.closed());
+  CHECK(surface.facts.components == 1);
+  CHECK(surface.triangles.size() == mesh.face_count() - 2);
+  // One that holds a vertex of no other face stays, so that every vertex in use has a triangle.
+  mesh.positions.push_back({5, 5, 5});
+  const auto lonely = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  mesh.add_face({lonely, lonely, 0});
+  const Surface with = build_surface(mesh.view(), {});
+  CHECK_FALSE(with.triangles_around(with.welded[lonely]).empty());
+  CHECK_FALSE(with.facts.closed());
 }
 
 TEST_CASE("surface: pseudonormals tell the side at faces, edges and vertices", "[surface]") {

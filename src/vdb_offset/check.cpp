@@ -77,7 +77,7 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Pre
 }
 
 void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
-  Surface surface = build_surface(source, options.weld);
+  Surface surface = build_surface(source, options.weld, options.orient);
   result.facts = surface.facts;
   place(surface, surface.facts.diagonal / 256);
   const ClosestQuery query(surface);

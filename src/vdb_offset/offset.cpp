@@ -92,7 +92,7 @@ void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
   Surface surface;
   {
     const StageTimer timer(statistics, Stage::Rasterise);
-    surface = build_surface(mesh, options.weld);
+    surface = build_surface(mesh, options.weld, options.orient);
     statistics.facts = surface.facts;
     statistics.plan = plan_grid(surface, options.distance, options.grid, options.max_memory, statistics.threads);
     place(surface, statistics.plan.voxel_size);
@@ -125,7 +125,7 @@ void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
 
 /// A distance of 0 needs no field: every vertex in use is where it should be.
 void run_nothing(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
-  const Surface surface = build_surface(mesh, options.weld);
+  const Surface surface = build_surface(mesh, options.weld, options.orient);
   result.statistics.facts = surface.facts;
   for (std::size_t v = 0; v < result.states.size(); ++v)
     if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
@@ -168,7 +168,7 @@ OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options) {
   require_finite_distance(options);
   OffsetStatistics statistics;
   statistics.threads = thread_count(options);
-  const Surface surface = build_surface(mesh, options.weld);
+  const Surface surface = build_surface(mesh, options.weld, options.orient);
   statistics.facts = surface.facts;
   if (options.distance != 0)
     statistics.plan = plan_grid(surface, options.distance, options.grid, options.max_memory, statistics.threads);

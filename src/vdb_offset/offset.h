@@ -29,6 +29,7 @@ struct OffsetOptions {
   Collision collision = Collision::Limit;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
   WeldOptions weld;
+  Orient orient = Orient::Keep;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
   bool keep_field = false;     ///< Hand the distance field out with the result.

@@ -9,8 +9,11 @@
 #include <string>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/mix.h"
 #include "vdb_offset/morton.h"
+#include "vdb_offset/orientation.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/repeated_faces.h"
 #include "vdb_offset/triangulate.h"
 
 namespace vdb_offset {
@@ -34,13 +37,6 @@ void check(PolygonView polygons) {
   for (const auto v : polygons.corners)
     if (!polygons.positions[v].isFinite())
       throw InvalidInput("mesh: expected finite coordinates, got a NaN or an infinity at vertex " + std::to_string(v));
-}
-
-std::uint64_t mix(std::uint64_t x) {
-  x ^= x >> 32;
-  x *= 0xd6e8feb86659fd93ULL;
-  x ^= x >> 32;
-  return x;
 }
 
 /// Finds the first vertex that stands where another one does. Open addressing over vertex numbers.
@@ -126,6 +122,34 @@ void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
   surface.facts.welded_vertices = surface.vertices.size();
 }
 
+bool repeats_corner(const std::array<std::uint32_t, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+/// Keeps the triangles, and the faces they are of, that `is_kept(t)`, in their order.
+template <class IsKept>
+void keep_triangles(Surface& surface, IsKept&& is_kept) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!is_kept(t)) continue;
+    surface.triangles[kept] = surface.triangles[t];
+    surface.face[kept++] = surface.face[t];
+  }
+  surface.triangles.resize(kept);
+  surface.face.resize(kept);
+}
+
+/// Triangles with a repeated corner are lines that would only make edges of three faces. Those stay that hold a vertex
+/// which is in no other.
+void leave_out_lines(Surface& surface) {
+  if (std::none_of(surface.triangles.begin(), surface.triangles.end(), repeats_corner)) return;
+  std::vector<std::uint8_t> held(surface.vertices.size(), 0);
+  for (const auto& t : surface.triangles)
+    if (!repeats_corner(t)) held[t[0]] = held[t[1]] = held[t[2]] = 1;
+  keep_triangles(surface, [&](std::size_t i) {
+    const auto& t = surface.triangles[i];
+    return !repeats_corner(t) || !held[t[0]] || !held[t[1]] || !held[t[2]];
+  });
+}
+
 void split_faces(PolygonView polygons, Surface& surface) {
   std::vector<std::uint32_t> face;
   surface.triangles.reserve(polygons.corners.size() - 2 * polygons.face_count());
@@ -137,6 +161,7 @@ void split_faces(PolygonView polygons, Surface& surface) {
     triangulate(surface.vertices, face, surface.triangles);
     surface.face.resize(surface.triangles.size(), static_cast<std::uint32_t>(f));
   }
+  leave_out_lines(surface);
 }
 
 /// Numbers the vertices as the triangles come to use them.
@@ -204,18 +229,13 @@ void sort_in_space(Surface& surface) {
   renumber_vertices(surface);
 }
 
-std::uint32_t from(const Surface& s, std::uint32_t half_edge) { return s.triangles[half_edge / 3][half_edge % 3]; }
-std::uint32_t to(const Surface& s, std::uint32_t half_edge) {
-  return s.triangles[half_edge / 3][(half_edge % 3 + 1) % 3];
-}
-
 /// Half-edges bucketed by their smaller end, in order; in a bucket, those with the same larger end make an edge.
 template <class Visit>
 void for_each_edge(const Surface& surface, Visit&& visit) {
   const auto half_edges = static_cast<std::uint32_t>(3 * surface.triangles.size());
   std::vector<std::uint32_t> begin(surface.vertices.size() + 2, 0), bucket(half_edges);
-  const auto smaller = [&](std::uint32_t e) { return std::min(from(surface, e), to(surface, e)); };
-  const auto larger = [&](std::uint32_t e) { return std::max(from(surface, e), to(surface, e)); };
+  const auto smaller = [&](std::uint32_t e) { return std::min(surface.from(e), surface.to(e)); };
+  const auto larger = [&](std::uint32_t e) { return std::max(surface.from(e), surface.to(e)); };
   for (std::uint32_t e = 0; e < half_edges; ++e) ++begin[smaller(e) + 2];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   for (std::uint32_t e = 0; e < half_edges; ++e) bucket[begin[smaller(e) + 1]++] = e;
@@ -238,41 +258,120 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t x) {
 }
 
 /// Numbers the components in the order of their first face and hands them to the vertices; one that several
-/// components share by a corner belongs to the last of them.
-void number_components(Surface& surface, std::vector<std::uint32_t>& parent) {
-  std::vector<std::uint32_t> number(parent.size(), kNone);
+/// components share by a corner belongs to the last of them. Returns the component of each triangle.
+std::vector<std::uint32_t> number_components(Surface& surface, std::vector<std::uint32_t>& parent) {
+  std::vector<std::uint32_t> number(parent.size(), kNone), component_of(surface.triangles.size());
   surface.component.resize(surface.vertices.size());
+  surface.facts.components = 0;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     auto& component = number[root(parent, surface.face[t])];
     if (component == kNone) component = static_cast<std::uint32_t>(surface.facts.components++);
     for (const auto v : surface.triangles[t]) surface.component[v] = component;
+    component_of[t] = component;
   }
+  return component_of;
 }
 
-void join(Surface& surface, std::size_t face_count) {
-  MeshFacts& facts = surface.facts;
+/// What joining finds.
+struct Joined {
+  std::size_t boundary = 0, non_manifold = 0, conflicts = 0;  // edges
+  bool folded = false;                                        // two triangles over the same corners share an edge
+  std::vector<std::uint32_t> component_of;                    // each triangle
+};
+
+Joined join(Surface& surface, std::size_t face_count) {
+  Joined joined;
   surface.next_around_edge.resize(3 * surface.triangles.size());
   std::iota(surface.next_around_edge.begin(), surface.next_around_edge.end(), 0u);
   std::vector<std::uint32_t> parent(face_count);
   std::iota(parent.begin(), parent.end(), 0u);
   std::vector<double> lengths;
   lengths.reserve(surface.triangles.size() * 3 / 2);
+  const auto across = [&](std::uint32_t e) { return surface.triangles[e / 3][(e + 2) % 3]; };
   for_each_edge(surface, [&](std::span<const std::uint32_t> edge) {
     for (std::size_t i = 0; i < edge.size(); ++i) {
       surface.next_around_edge[edge[i]] = edge[(i + 1) % edge.size()];
       parent[root(parent, surface.face[edge[i] / 3])] = root(parent, surface.face[edge[0] / 3]);
     }
-    facts.boundary_edges += edge.size() == 1;
-    facts.non_manifold_edges += edge.size() > 2;
-    facts.orientation_conflicts += edge.size() == 2 && from(surface, edge[0]) == from(surface, edge[1]);
-    lengths.push_back((surface.vertices[from(surface, edge[0])] - surface.vertices[to(surface, edge[0])]).length());
+    const bool pair = edge.size() == 2;
+    joined.boundary += edge.size() == 1;
+    joined.non_manifold += edge.size() > 2;
+    joined.conflicts += pair && surface.from(edge[0]) == surface.from(edge[1]);
+    joined.folded |= pair && across(edge[0]) == across(edge[1]);
+    lengths.push_back((surface.vertices[surface.from(edge[0])] - surface.vertices[surface.to(edge[0])]).length());
   });
-  number_components(surface, parent);
+  // A line that had to stay is all border: it has no side.
+  joined.boundary +=
+      static_cast<std::size_t>(std::count_if(surface.triangles.begin(), surface.triangles.end(), repeats_corner));
+  joined.component_of = number_components(surface, parent);
   if (!lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
-    facts.median_edge = *middle;
+    surface.facts.median_edge = *middle;
   }
+  return joined;
+}
+
+/// Whether a triangle faces against the polygon that it is part of, as where a bent one's fan folds over.
+bool is_folded_over(PolygonView polygons, const Surface& surface, std::size_t t) {
+  const auto polygon = polygons.face(surface.face[t]);
+  if (polygon.size() == 3) return false;
+  const auto at = [&](std::size_t k) { return polygons.positions[polygon[k]] - polygons.positions[polygon[0]]; };
+  Vec3d normal(0.0);
+  for (std::size_t k = 2; k < polygon.size(); ++k) normal += at(k - 1).cross(at(k));
+  const auto& [i, j, k] = surface.triangles[t];
+  return normal.dot((surface.vertices[j] - surface.vertices[i]).cross(surface.vertices[k] - surface.vertices[i])) < 0;
+}
+
+/// The triangles that are folded over onto another one: of two bent polygons that share three corners in a row, for
+/// one.
+std::vector<std::uint8_t> find_folded_triangles(PolygonView polygons, const Surface& surface) {
+  const std::size_t count = surface.triangles.size();
+  std::vector<std::uint8_t> folded(count), result(count, 0);
+  for_each_index(count, [&](std::size_t t) { folded[t] = is_folded_over(polygons, surface, t); });
+  std::vector<std::uint32_t> order(count), corners, begin(count + 1);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_partition(order.begin(), order.end(), [&](std::uint32_t t) { return !folded[t]; });
+  corners.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& triangle = surface.triangles[order[i]];
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+    begin[i + 1] = static_cast<std::uint32_t>(corners.size());
+  }
+  const std::vector<std::uint8_t> repeated = find_repeated_faces(corners, begin);
+  for (std::size_t i = 0; i < count; ++i) result[order[i]] = repeated[i] && folded[order[i]];
+  return result;
+}
+
+/// Leaves out every face that repeats another, whichever way round, and of the others the triangles that are folded
+/// over onto another. False if there are none.
+bool leave_out_repeated_faces(PolygonView polygons, Surface& surface) {
+  std::vector<std::uint32_t> corners(polygons.corners.size());
+  for_each_index(corners.size(), [&](std::size_t i) { corners[i] = surface.welded[polygons.corners[i]]; });
+  const std::vector<std::uint8_t> repeats = find_repeated_faces(corners, polygons.face_begin);
+  surface.facts.repeated_faces = static_cast<std::size_t>(std::count(repeats.begin(), repeats.end(), 1));
+  const std::size_t before = surface.triangles.size();
+  keep_triangles(surface, [&](std::size_t t) { return !repeats[surface.face[t]]; });
+  const std::vector<std::uint8_t> folded = find_folded_triangles(polygons, surface);
+  surface.facts.folded_triangles = static_cast<std::size_t>(std::count(folded.begin(), folded.end(), 1));
+  keep_triangles(surface, [&](std::size_t t) { return !folded[t]; });
+  return surface.triangles.size() < before;
+}
+
+/// Joins the triangles and settles which side is outward. Sheets that lie on each other, as doubled faces do, would
+/// join into edges of four faces with no side at all; one of them says where they all go.
+void join_and_settle(PolygonView polygons, Orient orient, Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  Joined joined = join(surface, polygons.face_count());
+  facts.boundary_edges = joined.boundary;
+  facts.non_manifold_edges = joined.non_manifold;
+  if ((joined.non_manifold > 0 || joined.folded) && leave_out_repeated_faces(polygons, surface))
+    joined = join(surface, polygons.face_count());
+  facts.boundary_left = joined.boundary;
+  facts.non_manifold_left = joined.non_manifold;
+  facts.orientation_conflicts = joined.conflicts;
+  settle_orientation(surface);
+  settle_outside(surface, joined.component_of, orient);
 }
 
 struct TriangleShape {
@@ -287,75 +386,6 @@ TriangleShape shape_of(const Surface& surface, std::size_t t) {
   if (is_needle(n.lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}))) return {Vec3d(0.0), 0};
   const double twice = n.length();
   return {n / twice, twice / 2};
-}
-
-/// Triangles that hang together over edges with two faces, and which of them agree with the first.
-struct OrientablePatch {
-  std::vector<std::uint32_t> triangles;
-  std::vector<std::uint8_t> agrees;
-  bool orientable = true;
-};
-
-/// The patch around a triangle that no patch holds yet. `state`: 0 not seen, 1 agrees with the seed, 2 does not.
-OrientablePatch collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
-  OrientablePatch patch;
-  patch.triangles.push_back(seed);
-  state[seed] = 1;
-  for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
-    const std::uint32_t t = patch.triangles[i];
-    for (std::uint32_t e = 3 * t; e < 3 * t + 3; ++e) {
-      const std::uint32_t twin = surface.next_around_edge[e], other = twin / 3;
-      if (twin == e || surface.next_around_edge[twin] != e) continue;
-      const bool conflict = from(surface, e) == from(surface, twin);
-      const auto wanted = static_cast<std::uint8_t>(conflict ? 3 - state[t] : state[t]);
-      if (state[other] == 0) {
-        state[other] = wanted;
-        patch.triangles.push_back(other);
-      } else if (state[other] != wanted) {
-        patch.orientable = false;
-      }
-    }
-  }
-  for (const auto t : patch.triangles) patch.agrees.push_back(state[t] == 1);
-  return patch;
-}
-
-/// Half-edge k of a triangle whose last two corners change places becomes half-edge 2 - k.
-std::uint32_t renamed(std::uint32_t half_edge, const std::vector<std::uint8_t>& turned) {
-  return turned[half_edge / 3] ? 3 * (half_edge / 3) + 2 - half_edge % 3 : half_edge;
-}
-
-void turn_round(Surface& surface, const std::vector<std::uint8_t>& turned) {
-  std::vector<std::uint32_t> next(surface.next_around_edge.size());
-  for (std::uint32_t e = 0; e < next.size(); ++e)
-    next[renamed(e, turned)] = renamed(surface.next_around_edge[e], turned);
-  surface.next_around_edge = std::move(next);
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    if (turned[t]) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
-}
-
-void settle_orientation(Surface& surface) {
-  MeshFacts& facts = surface.facts;
-  if (facts.orientation_conflicts == 0) return;
-  const std::size_t count = surface.triangles.size();
-  std::vector<std::uint8_t> state(count, 0), turned(count, 0);
-  for (std::uint32_t seed = 0; seed < count; ++seed) {
-    if (state[seed] != 0) continue;
-    const OrientablePatch patch = collect_patch(surface, seed, state);
-    if (!patch.orientable) continue;
-    double area[2] = {0, 0};
-    for (std::size_t i = 0; i < patch.triangles.size(); ++i)
-      area[patch.agrees[i]] += shape_of(surface, patch.triangles[i]).area;
-    const std::uint8_t kept = area[1] >= area[0];
-    for (std::size_t i = 0; i < patch.triangles.size(); ++i) turned[patch.triangles[i]] = patch.agrees[i] != kept;
-  }
-  facts.turned_triangles = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), 1));
-  turn_round(surface, turned);
-  for (std::uint32_t e = 0; e < 3 * count; ++e) {
-    const std::uint32_t twin = surface.next_around_edge[e];
-    facts.unsettled_conflicts +=
-        twin > e && surface.next_around_edge[twin] == e && from(surface, e) == from(surface, twin);
-  }
 }
 
 void list_incident_triangles(Surface& surface) {
@@ -451,17 +481,16 @@ TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) 
   return best;
 }
 
-Surface build_surface(PolygonView polygons, const WeldOptions& options) {
+Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient orient) {
   check(polygons);
   Surface surface;
   weld(polygons, options, surface);
   find_bounds(surface);
   split_faces(polygons, surface);
   sort_in_space(surface);
-  join(surface, polygons.face_count());
-  settle_orientation(surface);
-  list_incident_triangles(surface);
   measure(polygons, surface);
+  join_and_settle(polygons, orient, surface);
+  list_incident_triangles(surface);
   return surface;
 }
 

@@ -19,26 +19,38 @@ struct WeldOptions {
   double tolerance = 0;  ///< World units, >= 0. Vertices closer than this are taken to stand where the first stands.
 };
 
+/// Which side of a closed component is outward.
+enum class Orient {
+  Keep,              ///< Where its faces point.
+  FixDirectionOnly,  ///< Out of the solid that it encloses, wherever its faces point. They stay as they are.
+};
+
 /// What a mesh is made of, counted on its polygons after welding.
 struct MeshFacts {
   std::size_t vertices = 0;         ///< As in the input.
   std::size_t unused_vertices = 0;  ///< In no face.
   std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
   std::map<std::size_t, std::size_t> faces_by_corners;
-  std::size_t components = 0;             ///< Of faces, joined over edges.
-  std::size_t boundary_edges = 0;         ///< With one face.
-  std::size_t non_manifold_edges = 0;     ///< With three faces or more.
+  std::size_t components = 0;          ///< Of faces, joined over edges.
+  std::size_t boundary_edges = 0;      ///< With one face.
+  std::size_t non_manifold_edges = 0;  ///< With three faces or more.
+  std::size_t repeated_faces = 0;      ///< Over the corners of an earlier face, either way round: left out inside.
+  std::size_t folded_triangles = 0;    ///< Of bent faces, over the corners of another triangle: left out too.
+  std::size_t boundary_left = 0;       ///< Boundary and non-manifold edges without all these.
+  std::size_t non_manifold_left = 0;
   std::size_t degenerate_faces = 0;       ///< With a repeated corner or no area.
   std::size_t orientation_conflicts = 0;  ///< Edges whose two faces run through it in the same direction.
   std::size_t turned_triangles = 0;       ///< Turned round, for the distance's sign alone, to settle such conflicts.
   std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
+  std::size_t closed_components = 0;      ///< Those whose edges all have two faces, which agree about the outside.
+  std::size_t inside_out_components = 0;  ///< Closed ones that face the wrong way as a whole (see orientation.h).
   Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
   double diagonal = 0;                    ///< Of that box.
   double area = 0;
   double median_edge = 0;  ///< Median edge length of the triangulated surface.
 
-  bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
-  bool oriented() const { return unsettled_conflicts == 0 && non_manifold_edges == 0; }
+  bool closed() const { return boundary_left == 0 && non_manifold_left == 0; }
+  bool oriented() const { return unsettled_conflicts == 0 && non_manifold_left == 0; }
 };
 
 /// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
@@ -65,6 +77,8 @@ struct Surface {
   std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
     return std::span(incident).subspan(incident_begin[vertex], incident_begin[vertex + 1] - incident_begin[vertex]);
   }
+  std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
+  std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
   TrianglePoint closest_on(std::uint32_t triangle, const Vec3d& x) const {
     const auto& t = triangles[triangle];
     return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
@@ -78,11 +92,10 @@ struct Surface {
   Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;
 };
 
-/// Welds, triangulates, joins and counts. Where neighbours disagree about the outside, the smaller part by area of
-/// each orientable patch (of faces joined over edges with two faces) is turned to agree with the rest. Origin and
-/// normals are left to place(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
+/// Welds, triangulates, joins and counts, and settles which side is outward (see orientation.h). Origin and normals are
+/// left to place(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
 /// finite, or there are 2^31 triangles or more.
-Surface build_surface(PolygonView polygons, const WeldOptions& weld);
+Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
 /// box, and computes its normals there. \pre voxel_size > 0, called once.

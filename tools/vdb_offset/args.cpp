@@ -59,7 +59,7 @@ std::size_t parse_size(const std::string& text) {
 
 /// What CLI11 fills in before it is checked.
 struct Raw {
-  std::string distance, max_memory, weld = "exact";
+  std::string distance, max_memory, weld = "exact", orient = "keep";
   std::optional<std::string> solver, collision, format;
   std::string normals = "recompute";
   std::optional<double> voxel_size, voxels_per_distance;
@@ -87,6 +87,10 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
       ->type_name("NAME");
   app.add_option("--weld", raw.weld,
                  "Vertices that move as one: 'exact' (equal positions), 'none', or within TOL world units [exact]")
+      ->type_name("MODE");
+  app.add_option("--orient", raw.orient,
+                 "Outward is where the faces point ('keep'), or out of what a closed component encloses even where it "
+                 "is inside out ('fix-direction-only'; the faces stay as they are) [keep]")
       ->type_name("MODE");
   app.add_option("--format", raw.format, "Format of '-' and of files with another ending: 'obj', 'ply', 'stl' or 'off'")
       ->type_name("NAME");
@@ -190,6 +194,7 @@ void check(const Raw& raw, Arguments& args) {
     args.solver = *raw.solver == "eikonal" ? Solver::Eikonal : Solver::Closest;
   }
   args.options.weld = parse_weld(raw.weld);
+  args.options.orient = parse_orient(raw.orient);
   require(raw.threads >= 0 && raw.threads <= 4096, fmt::format("--threads: expected 0 to 4096, got {}", raw.threads));
   args.options.threads = raw.threads;
   require(!(args.quiet && args.verbose), "--quiet: expected it or --verbose, got both");
@@ -219,6 +224,12 @@ WeldOptions parse_weld(const std::string& text) {
   return weld;
 }
 
+Orient parse_orient(const std::string& text) {
+  if (text == "keep") return Orient::Keep;
+  if (text == "fix-direction-only") return Orient::FixDirectionOnly;
+  throw UsageError(fmt::format("--orient: expected 'keep' or 'fix-direction-only', got '{}'", text));
+}
+
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "vdb_offset");
   app.footer(kMore);
@@ -236,6 +247,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   }
   check(raw, args);
   args.weld_text = raw.weld;
+  args.orient_text = raw.orient;
   return args;
 }
 

@@ -19,7 +19,7 @@ struct Arguments {
   OffsetOptions options;               ///< All but the distance, which may need the mesh's diagonal, and progress.
   std::optional<Solver> solver;        ///< As given; a scene's own counts otherwise.
   std::optional<Collision> collision;  ///< The same.
-  std::string weld_text;               ///< As given.
+  std::string weld_text, orient_text;  ///< As given.
   std::string report, states, vdb;
   std::optional<io::Format> format;  ///< Of files whose ending names none.
   io::WriteOptions write;            ///< All but its format, which is the output's alone.
@@ -36,6 +36,9 @@ struct UsageError : Error {
 
 /// 'exact', 'none' or a tolerance. \throw UsageError
 WeldOptions parse_weld(const std::string& text);
+
+/// 'keep' or 'fix-direction-only'. \throw UsageError
+Orient parse_orient(const std::string& text);
 
 /// Parses the command line. Empty if it asked only for help or the version, which are then printed.
 /// \throw UsageError with one line that says what is wrong.

@@ -25,7 +25,7 @@ constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
 struct CheckArguments {
-  std::string source, offset, distance, weld = "exact", report;
+  std::string source, offset, distance, weld = "exact", orient = "keep", report;
   int threads = 0;
   bool json = false, strict = false;
 };
@@ -39,6 +39,9 @@ void declare(CLI::App& app, CheckArguments& args) {
       ->type_name("D");
   app.add_option("--weld", args.weld,
                  "Vertices of SOURCE that count as one: 'exact', 'none', or within TOL world units [exact]")
+      ->type_name("MODE");
+  app.add_option("--orient", args.orient,
+                 "Which side of SOURCE is outward, as it was for the offset: 'keep' or 'fix-direction-only' [keep]")
       ->type_name("MODE");
   app.add_option("--threads", args.threads, "Threads; 0 takes all [0]")->type_name("N");
   app.add_option("--report", args.report, "Write what is found as JSON")->type_name("FILE");
@@ -104,6 +107,7 @@ int run_check(int argc, const char* const* argv) {
     throw UsageError(fmt::format("--threads: expected 0 to 4096, got {}", args.threads));
   CheckOptions options;
   options.weld = parse_weld(args.weld);
+  options.orient = parse_orient(args.orient);
   options.threads = args.threads;
   const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
   require_same_faces(args, source.polygons, offset.polygons);

@@ -71,6 +71,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
           {"collision", args.options.collision == Collision::Merge ? "merge" : "limit"},
           {"solver", args.options.solver == Solver::Eikonal ? "eikonal" : "closest"},
           {"weld", args.weld_text},
+          {"orient", args.orient_text},
           {"normals", args.write.normals == io::Normals::Keep ? "keep" : "recompute"},
           {"precision", args.write.digits > 0 ? fmt::format("{}", args.write.digits) : "automatic"},
           {"threads", fmt::format("{}", args.options.threads)},
@@ -88,6 +89,24 @@ void print_facts(std::FILE* out, const OffsetStatistics& statistics) {
   fmt::print(out,
              "           {} boundary edges, {} non-manifold edges, {} degenerate faces, {} orientation conflicts\n",
              facts.boundary_edges, facts.non_manifold_edges, facts.degenerate_faces, facts.orientation_conflicts);
+  if (facts.repeated_faces + facts.folded_triangles > 0)
+    fmt::print(
+        out, "           {} repeated faces, {} folded triangles; without them {} boundary and {} non-manifold edges\n",
+        facts.repeated_faces, facts.folded_triangles, facts.boundary_left, facts.non_manifold_left);
+}
+
+/// Where it is not clear which side is outward, and what to do about it.
+void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient) {
+  if (facts.inside_out_components > 0)
+    fmt::print(out, "{} of {} closed components point inward as a whole: {}\n", facts.inside_out_components,
+               facts.closed_components,
+               orient == Orient::Keep
+                   ? "a distance above 0 shrinks them (--orient fix-direction-only enlarges them)"
+                   : "taken as turned, a distance above 0 enlarges them; the faces stay as they are");
+  if (facts.orientation_conflicts > 0)
+    fmt::print(out,
+               "{} edges between faces that disagree about the outside: {} triangles taken as turned, {} edges left\n",
+               facts.orientation_conflicts, facts.turned_triangles, facts.unsettled_conflicts);
 }
 
 void print_plan(std::FILE* out, const OffsetStatistics& statistics, double distance) {
@@ -117,6 +136,7 @@ void print_summary(const Arguments& args, const OffsetResult& result, double tot
   if (in(VertexState::Limited)) fmt::print(out, ", {} held back to stay valid", in(VertexState::Limited));
   if (in(VertexState::OutsideField)) fmt::print(out, ", {} outside the field", in(VertexState::OutsideField));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
+  print_orientation(out, result.statistics.facts, args.options.orient);
   const LimitStatistics& limit = result.statistics.limit;
   if (limit.source_crossings > 0)
     fmt::print(out, "the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
@@ -195,6 +215,7 @@ int run(Arguments args) {
     const OffsetStatistics statistics = plan_offset(source.view(), args.options);
     print_facts(stdout, statistics);
     print_plan(stdout, statistics, args.options.distance);
+    print_orientation(stdout, statistics.facts, args.options.orient);
     return kDone;
   }
   args.options.keep_field = !args.vdb.empty();
