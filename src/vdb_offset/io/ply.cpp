@@ -3,205 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/formats.h"
-#include "vdb_offset/io/scanner.h"
+#include "vdb_offset/io/ply_header.h"
 #include "vdb_offset/io/text.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
+namespace ply {
 namespace {
 
 // Bytes of "0 0 0" and its line end.
 constexpr std::size_t kLeastVertexLine = 6;
-
-struct Type {
-  char kind;  // 'i' signed, 'u' unsigned, 'f' floating
-  std::uint8_t bytes;
-};
-
-struct Property {
-  std::string name;
-  Type type;
-  std::optional<Type> count;  // of a list
-};
-
-struct Element {
-  std::string name;
-  std::size_t count = 0;
-  std::vector<Property> properties;
-};
-
-std::optional<Type> type_of(std::string_view name) {
-  constexpr std::pair<std::string_view, Type> kTypes[] = {
-      {"char", {'i', 1}},  {"int8", {'i', 1}},    {"uchar", {'u', 1}},  {"uint8", {'u', 1}},
-      {"short", {'i', 2}}, {"int16", {'i', 2}},   {"ushort", {'u', 2}}, {"uint16", {'u', 2}},
-      {"int", {'i', 4}},   {"int32", {'i', 4}},   {"uint", {'u', 4}},   {"uint32", {'u', 4}},
-      {"float", {'f', 4}}, {"float32", {'f', 4}}, {"double", {'f', 8}}, {"float64", {'f', 8}}};
-  for (const auto& [known, type] : kTypes)
-    if (known == name) return type;
-  return std::nullopt;
-}
-
-struct Header {
-  Encoding encoding = Encoding::Ascii;
-  std::vector<Element> elements;
-  std::size_t end = 0;  // first byte of the body
-};
-
-Type read_type(Scanner& scanner) {
-  const std::string_view word = scanner.token();
-  const auto type = type_of(word);
-  if (!type) scanner.fail("a PLY type", scanner.position() - word.size());
-  return *type;
-}
-
-Property read_property(Scanner& scanner) {
-  Property property;
-  if (Scanner(scanner).token() == "list") {
-    scanner.token();
-    property.count = read_type(scanner);
-    if (property.count->kind == 'f') scanner.fail("an integer type for the length of a list");
-  }
-  property.type = read_type(scanner);
-  property.name = scanner.token();
-  if (property.name.empty()) scanner.fail("the name of a property");
-  return property;
-}
-
-Encoding read_encoding(Scanner& scanner) {
-  const std::string_view word = scanner.token();
-  if (word == "ascii") return Encoding::Ascii;
-  if (word == "binary_little_endian") return Encoding::LittleEndian;
-  if (word == "binary_big_endian") return Encoding::BigEndian;
-  scanner.fail("ascii, binary_little_endian or binary_big_endian", scanner.position() - word.size());
-}
-
-Header read_header(const MeshFile& file) {
-  Scanner scanner(file.path, file.text());
-  if (scanner.token() != "ply") scanner.fail("the keyword ply", 0);
-  Header header;
-  bool has_format = false;
-  for (;;) {
-    scanner.next_line();
-    if (scanner.at_end()) scanner.fail("a header line or 'end_header'");
-    const std::string_view keyword = scanner.token();
-    if (keyword == "format") {
-      header.encoding = read_encoding(scanner);
-      has_format = true;
-    } else if (keyword == "element") {
-      Element& element = header.elements.emplace_back();
-      element.name = scanner.token();
-      const std::int64_t count = scanner.integer("a number of elements");
-      // A row of one byte is the least there is; a row without properties takes none and is of no use.
-      if (count < 0 || static_cast<std::uint64_t>(count) > file.text().size())
-        scanner.fail(
-            fmt::format("a number of '{}' that {} bytes can hold, not {},", element.name, file.text().size(), count));
-      element.count = static_cast<std::size_t>(count);
-    } else if (keyword == "property") {
-      if (header.elements.empty()) scanner.fail("an element before its properties");
-      header.elements.back().properties.push_back(read_property(scanner));
-    } else if (keyword == "end_header") {
-      break;
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      scanner.fail("a header line", scanner.position() - keyword.size());
-    }
-  }
-  if (!has_format) scanner.fail("a 'format' line before the end of the header");
-  scanner.next_line();
-  header.end = scanner.position();
-  return header;
-}
-
-template <class T>
-double load(const char* raw) {
-  T value;
-  std::memcpy(&value, raw, sizeof value);
-  return static_cast<double>(value);
-}
-
-double binary_number(const char* at, Type type, Encoding encoding) {
-  static_assert(std::endian::native == std::endian::little, "numbers of the other order are turned round");
-  char raw[8];
-  if (encoding == Encoding::BigEndian) std::reverse_copy(at, at + type.bytes, raw);
-  else std::memcpy(raw, at, type.bytes);
-  if (type.kind == 'f') return type.bytes == 4 ? load<float>(raw) : load<double>(raw);
-  if (type.kind == 'u')
-    return type.bytes == 1   ? load<std::uint8_t>(raw)
-           : type.bytes == 2 ? load<std::uint16_t>(raw)
-                             : load<std::uint32_t>(raw);
-  return type.bytes == 1 ? load<std::int8_t>(raw) : type.bytes == 2 ? load<std::int16_t>(raw) : load<std::int32_t>(raw);
-}
-
-/// Digits that a text has beyond its declared type are not there for anyone who reads it.
-double as_declared(Type type, double value) {
-  return type.bytes == 4 ? static_cast<double>(static_cast<float>(value)) : value;
-}
-
-/// Takes numbers of either kind off the body, one after the other.
-class Body {
- public:
-  Body(const MeshFile& file, const Header& header)
-      : file_(file), text_(file.path, file.text(), header.end), at_(header.end), encoding_(header.encoding) {}
-
-  /// `at` receives the number's first byte. Numbers above 2^53 do not occur in what is used.
-  double take(Type type, const char* what, std::uint64_t& at) {
-    if (encoding_ == Encoding::Ascii) {
-      if (text_.at_text_end()) text_.fail(what);
-      Scanner before = text_;
-      const std::string_view word = before.token();
-      at = before.position() - word.size();
-      return type.kind == 'f' ? as_declared(type, text_.number(what)) : static_cast<double>(text_.integer(what));
-    }
-    at = at_;
-    return take_binary(type, what);
-  }
-  /// First byte of a number whose value does not matter: a normal, which may be a NaN.
-  std::uint64_t place(Type type, const char* what) {
-    if (encoding_ == Encoding::Ascii) {
-      text_.token_anywhere(what);
-      return text_.last_token();
-    }
-    skip(type, 1, what);
-    return at_ - type.bytes;
-  }
-  void skip(Type type, std::size_t count, const char* what) {
-    if (encoding_ == Encoding::Ascii) {
-      for (std::size_t i = 0; i < count; ++i) text_.token_anywhere(what);
-      return;
-    }
-    if (count > (file_.text().size() - at_) / type.bytes) truncated(what);
-    at_ += count * type.bytes;
-  }
-  std::size_t position() const { return encoding_ == Encoding::Ascii ? text_.position() : at_; }
-  void go_to(std::size_t at) {
-    if (encoding_ == Encoding::Ascii) text_ = Scanner(file_.path, file_.text(), at);
-    else at_ = at;
-  }
-  [[noreturn]] void fail(const std::string& expected, const std::string& found, std::uint64_t at) const {
-    if (encoding_ == Encoding::Ascii) text_.fail_with(expected, found, at);
-    throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", file_.path, at, expected, found));
-  }
-
- private:
-  double take_binary(Type type, const char* what) {
-    if (file_.text().size() - at_ < type.bytes) truncated(what);
-    at_ += type.bytes;
-    return binary_number(file_.text().data() + at_ - type.bytes, type, encoding_);
-  }
-  [[noreturn]] void truncated(const char* what) const {
-    throw InvalidInput(fmt::format("{}, byte {}: expected {}, got the end of the file", file_.path, at_, what));
-  }
-
-  const MeshFile& file_;
-  Scanner text_;
-  std::size_t at_;
-  Encoding encoding_;
-};
 
 class PlyParser {
  public:
@@ -209,18 +24,18 @@ class PlyParser {
 
   void run() {
     file_.encoding = header_.encoding;
-    if (!find("vertex")) missing("an element 'vertex'");
-    const Element* faces = find("face");
+    if (!find(header_, "vertex")) missing("an element 'vertex'");
+    const Element* faces = find(header_, "face");
     if (!faces || std::none_of(faces->properties.begin(), faces->properties.end(), is_corner_list))
       missing("an element 'face' with a list 'vertex_indices'");
     for (const Element& element : header_.elements) {
-      if (find(element.name) != &element) missing("each element once");
+      if (find(header_, element.name) != &element) missing("each element once");
       if (element.properties.empty()) continue;  // takes no bytes, however many there are
       if (element.name == "vertex") read_vertices(element);
       else if (element.name == "face") read_faces(element);
       else {
         for (std::size_t i = 0; i < element.count; ++i)
-          for (const Property& property : element.properties) skip(property);
+          for (const Property& property : element.properties) body_.skip(property);
         file_.extras.push_back("element '" + element.name + "'");
       }
     }
@@ -229,24 +44,8 @@ class PlyParser {
   }
 
  private:
-  static bool is_corner_list(const Property& p) {
-    return p.count && p.type.kind != 'f' && (p.name == "vertex_indices" || p.name == "vertex_index");
-  }
-  const Element* find(std::string_view name) const {
-    for (const Element& element : header_.elements)
-      if (element.name == name) return &element;
-    return nullptr;
-  }
   [[noreturn]] void missing(const char* what) const {
     throw InvalidInput(fmt::format("{}, header: expected {}, got none", file_.path, what));
-  }
-
-  void skip(const Property& property) {
-    std::uint64_t at = 0;
-    if (!property.count) return body_.skip(property.type, 1, "a property");
-    const double count = body_.take(*property.count, "the length of a list", at);
-    if (count < 0) body_.fail("a list length from 0 on", fmt::format("{}", count), at);
-    body_.skip(property.type, static_cast<std::size_t>(count), "an item of a list");
   }
 
   void read_vertices(const Element& element) {
@@ -354,7 +153,7 @@ class PlyParser {
       for (std::size_t i = 0; i < layout.component.size(); ++i) {
         const Property& property = element.properties[i];
         if (layout.component[i] < 0) {
-          skip(property);
+          body_.skip(property);
           continue;
         }
         const auto c = static_cast<std::size_t>(layout.component[i]);
@@ -474,7 +273,7 @@ class PlyParser {
       bool read = false;
       for (const Property& property : element.properties) {
         if (read || !is_corner_list(property)) {
-          skip(property);
+          body_.skip(property);
           continue;
         }
         read_corners(property, f);
@@ -507,7 +306,8 @@ class PlyParser {
 };
 
 }  // namespace
+}  // namespace ply
 
-void parse_ply(MeshFile& file) { PlyParser(file).run(); }
+void parse_ply(MeshFile& file) { ply::PlyParser(file).run(); }
 
 }  // namespace vdb_offset::io
