@@ -4,8 +4,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
+#include "folder.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -15,25 +15,6 @@ using namespace vdb_offset;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder of its own for each test case.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("vdb_offset_io_test_" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-  std::string file(const std::string& name) const { return (path / name).string(); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary) << bytes;
-    return file(name);
-  }
-};
-
-std::string slurp(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 template <class T>
 std::string raw(T value, bool swap = false) {
