@@ -177,7 +177,7 @@ TEST_CASE("io: conversion keeps positions and faces and says what is lost", "[io
   const Folder folder;
   const io::MeshFile file = io::read_mesh(folder.write("a.obj", kObj));
   const std::string lost = io::write_mesh(folder.file("a.off"), file, file.polygons.positions).lost;
-  for (const char* what : {"texture coordinates", "normals", "materials", "groups", "smoothing", "weights or colours"})
+  for (const char* what : {"texture coordinates", "materials", "groups", "smoothing", "weights or colours"})
     CHECK_THAT(lost, Catch::Contains(what));
   CHECK(io::read_mesh(folder.file("a.off")).polygons.corners == file.polygons.corners);
 

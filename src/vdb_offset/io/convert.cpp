@@ -2,152 +2,125 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 
-#include "vdb_offset/io/numbers.h"
-#include "vdb_offset/triangulate.h"
+#include "vdb_offset/io/encode.h"
+#include "vdb_offset/io/normals.h"
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
 namespace {
 
-// Vertices or faces in a piece of a file.
-constexpr std::size_t kPerPiece = 1 << 15;
-
-using AppendVertex = std::function<void(std::string&, const Vec3d&)>;
-using AppendFace = std::function<void(std::string&, std::span<const std::uint32_t>)>;
-
-/// A header, all vertices, then all faces.
-Pieces indexed(PolygonView mesh, std::string header, AppendVertex append_vertex, AppendFace append_face) {
-  const auto pieces_of = [](std::size_t items) { return (items + kPerPiece - 1) / kPerPiece; };
-  const std::size_t of_vertices = pieces_of(mesh.positions.size()), of_faces = pieces_of(mesh.face_count());
-  return {1 + of_vertices + of_faces, [=](std::size_t piece) {
-            if (piece == 0) return header;
-            std::string bytes;
-            const bool vertices = piece <= of_vertices;
-            const std::size_t first = (piece - 1 - (vertices ? 0 : of_vertices)) * kPerPiece;
-            if (vertices)
-              for (std::size_t v = first; v < std::min(first + kPerPiece, mesh.positions.size()); ++v)
-                append_vertex(bytes, mesh.positions[v]);
-            else
-              for (std::size_t f = first; f < std::min(first + kPerPiece, mesh.face_count()); ++f)
-                append_face(bytes, mesh.face(f));
-            return bytes;
-          }};
+/// Normals of faces that moved are computed from the coordinates as written, and need no more than single precision.
+void update_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
+                    std::vector<Vec3d>& normals, std::size_t& disagreeing) {
+  std::vector<Vec3d> stored(positions.size());
+  std::vector<std::uint8_t> moved(positions.size());
+  for_each_index(positions.size(), [&](std::size_t v) {
+    moved[v] = !(positions[v] == source.polygons.positions[v]);
+    stored[v] = precision(positions[v]);
+  });
+  const NewNormals computed = new_normals(source, stored, moved);
+  disagreeing = computed.disagreeing;
+  const Precision single{Precision::Kind::Single};
+  for (std::size_t n = 0; n < normals.size(); ++n)
+    if (computed.value[n].lengthSqr() > 0) normals[n] = single(computed.value[n]);
 }
 
-void append_point(std::string& text, const Vec3d& p, const Precision& precision) {
-  for (int k = 0; k < 3; ++k) {
-    if (k > 0) text += ' ';
-    append_number(text, p[k], precision);
+/// Turns values of corners into those of vertices, zero where a vertex is no corner. False, and they stay, if the
+/// corners of a vertex have different ones or none.
+template <class Value>
+bool make_per_vertex(PolygonView mesh, CornerValues<Value>& values) {
+  if (values.empty() || values.of_corner.empty()) return true;
+  std::vector<Value> of_vertex(mesh.positions.size(), Value(0.0));
+  std::vector<std::uint8_t> is_known(mesh.positions.size(), 0);
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
+    const std::uint32_t v = mesh.corners[c], index = values.of_corner[c];
+    if (index == kNoNormal || (is_known[v] && !(of_vertex[v] == values.value[index]))) return false;
+    of_vertex[v] = values.value[index];
+    is_known[v] = 1;
   }
-  text += '\n';
+  values.value = std::move(of_vertex);
+  values.of_corner.clear();
+  return true;
 }
 
-Pieces to_obj(PolygonView mesh, const Precision& precision) {
-  return indexed(
-      mesh, {},
-      [=](std::string& text, const Vec3d& p) {
-        text += "v ";
-        append_point(text, p, precision);
-      },
-      [](std::string& text, std::span<const std::uint32_t> face) {
-        text += 'f';
-        for (const std::uint64_t v : face) {
-          text += ' ';
-          append_integer(text, v + 1);
-        }
-        text += '\n';
-      });
+/// Whether all colours are bytes, to the three digits that a text has of a byte.
+bool are_bytes(const std::vector<std::array<double, 4>>& colours) {
+  const auto is_byte = [](double colour) { return std::abs(colour - colour_byte(colour) / 255.0) <= 0.0005; };
+  return std::all_of(colours.begin(), colours.end(),
+                     [&](const auto& colour) { return std::all_of(colour.begin(), colour.end(), is_byte); });
 }
 
-Pieces to_off(PolygonView mesh, const Precision& precision) {
-  return indexed(
-      mesh, fmt::format("OFF\n{} {} 0\n", mesh.positions.size(), mesh.face_count()),
-      [=](std::string& text, const Vec3d& p) { append_point(text, p, precision); },
-      [](std::string& text, std::span<const std::uint32_t> face) {
-        append_integer(text, face.size());
-        for (const auto v : face) {
-          text += ' ';
-          append_integer(text, v);
-        }
-        text += '\n';
-      });
+/// Takes the values of faces that have them at some corners only. False if there are none of these.
+template <class Value>
+bool take_off_partial_faces(PolygonView mesh, CornerValues<Value>& values) {
+  bool taken = false, left = false;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto first = values.of_corner.begin() + mesh.face_begin[f],
+               last = values.of_corner.begin() + mesh.face_begin[f + 1];
+    const auto without = std::count(first, last, kNoNormal);
+    left |= without == 0;
+    if (without == 0 || without == last - first) continue;
+    std::fill(first, last, kNoNormal);
+    taken = true;
+  }
+  if (!left) values = {};
+  return taken;
 }
 
-Pieces to_ply(PolygonView mesh) {
-  return indexed(
-      mesh,
-      fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
-                  "property double z\nelement face {}\nproperty list uint uint vertex_indices\nend_header\n",
-                  mesh.positions.size(), mesh.face_count()),
-      [](std::string& bytes, const Vec3d& p) {
-        for (int k = 0; k < 3; ++k) append_binary(bytes, p[k]);
-      },
-      [](std::string& bytes, std::span<const std::uint32_t> face) {
-        append_binary(bytes, static_cast<std::uint32_t>(face.size()));
-        for (const auto v : face) append_binary(bytes, v);
-      });
+/// Drops what the format has no place for, and names it.
+void fit(Format target, PolygonView mesh, Attributes& attributes) {
+  auto& [colours, has_alpha, texture, normals, lost] = attributes;
+  const auto drop = [&lost = lost](auto& what, const char* in_words) {
+    if (!what.empty()) lost.emplace_back(in_words);
+    what = {};
+  };
+  if (target == Format::Obj) return;
+  if (target == Format::Stl) {
+    drop(colours, "vertex colours");
+    drop(texture, "texture coordinates");
+    drop(normals, "normals of vertices");
+    return;
+  }
+  if (!are_bytes(colours)) lost.emplace_back("digits of colours beyond 8 bits");
+  if (!make_per_vertex(mesh, normals)) drop(normals, "normals (not one for each vertex)");
+  if (make_per_vertex(mesh, texture)) return;
+  if (target == Format::Off) drop(texture, "texture coordinates (not one for each vertex)");
+  else if (take_off_partial_faces(mesh, texture))
+    lost.emplace_back("texture coordinates of faces that have them at some corners only");
 }
 
-void append_facet(std::string& bytes, const std::array<Vec3d, 3>& corner) {
-  Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  if (normal.length() > 0) normal /= normal.length();
-  for (const Vec3d& row : {normal, corner[0], corner[1], corner[2]})
-    for (int k = 0; k < 3; ++k) append_binary(bytes, static_cast<float>(row[k]));
-  append_binary(bytes, std::uint16_t{0});
-}
-
-Pieces to_stl(PolygonView mesh) {
-  using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-  const auto triangles = std::make_shared<Triangles>();
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) triangulate(mesh.positions, mesh.face(f), *triangles);
-  const std::size_t pieces = 1 + (triangles->size() + kPerPiece - 1) / kPerPiece;
-  return {pieces, [=](std::size_t piece) {
-            std::string bytes;
-            if (piece == 0) {
-              bytes.assign(80, '\0');
-              append_binary(bytes, static_cast<std::uint32_t>(triangles->size()));
-              return bytes;
-            }
-            const std::size_t first = (piece - 1) * kPerPiece;
-            const Precision single{Precision::Kind::Single};
-            for (std::size_t t = first; t < std::min(first + kPerPiece, triangles->size()); ++t) {
-              const auto& [a, b, c] = (*triangles)[t];
-              append_facet(bytes, {single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
-            }
-            return bytes;
-          }};
+/// What triangles of single precision cannot hold.
+void name_losses_of_triangles(const MeshFile& source, std::vector<std::string>& lost) {
+  lost.emplace_back("shared vertices");
+  const auto& begin = source.polygons.face_begin;
+  for (std::size_t f = 0; f + 1 < begin.size(); ++f)
+    if (begin[f + 1] - begin[f] > 3) {
+      lost.emplace_back("faces of more than three corners (split into triangles)");
+      break;
+    }
+  lost.emplace_back("digits beyond single precision");
 }
 
 }  // namespace
 
-Pieces encode(Format format, PolygonView mesh, const Precision& precision) {
-  switch (format) {
-    case Format::Obj:
-      return to_obj(mesh, precision);
-    case Format::Off:
-      return to_off(mesh, precision);
-    case Format::Ply:
-      return to_ply(mesh);
-    case Format::Stl:
-      break;
+Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Precision& precision,
+               Normals normals, WriteResult& result) {
+  const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
+  const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source)});
+  Attributes& with = content->with;
+  if (!with.normals.empty() && normals == Normals::Recompute)
+    update_normals(source, positions, precision, with.normals.value, result.disagreeing_normals);
+  if (!std::all_of(with.normals.value.begin(), with.normals.value.end(), [](const Vec3d& n) { return n.isFinite(); })) {
+    with.normals = {};
+    with.lost.emplace_back("normals");
   }
-  return to_stl(mesh);
-}
-
-std::string lost_on_conversion(const MeshFile& source, Format target) {
-  std::vector<std::string> lost = source.extras;
-  if (target == Format::Stl && source.format != Format::Stl) {
-    lost.emplace_back("shared vertices");
-    const auto& begin = source.polygons.face_begin;
-    for (std::size_t f = 0; f + 1 < begin.size(); ++f)
-      if (begin[f + 1] - begin[f] > 3) {
-        lost.emplace_back("faces of more than three corners (split into triangles)");
-        break;
-      }
-    lost.emplace_back("digits beyond single precision");
-  }
-  return fmt::format("{}", fmt::join(lost, ", "));
+  fit(target, mesh, with);
+  if (target == Format::Stl) name_losses_of_triangles(source, with.lost);
+  result.lost = fmt::format("{}", fmt::join(with.lost, ", "));
+  return encode(target, content);
 }
 
 }  // namespace vdb_offset::io

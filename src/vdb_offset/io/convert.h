@@ -5,10 +5,9 @@
 
 namespace vdb_offset::io {
 
-/// A plain mesh as a file of that format. PLY: binary, doubles. STL: binary, triangles. The pieces refer to `mesh`.
-Pieces encode(Format format, PolygonView mesh, const Precision& precision);
-
-/// What stays behind when a file becomes one of another format, in words; empty if nothing.
-std::string lost_on_conversion(const MeshFile& source, Format target);
+/// The source as a file of another format, with other positions and, if asked for, other normals where a face moved:
+/// all that the format can hold. `result` receives the rest. The pieces refer to `source` and `positions`.
+Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Precision& precision,
+               Normals normals, WriteResult& result);
 
 }  // namespace vdb_offset::io

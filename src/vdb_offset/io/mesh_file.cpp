@@ -5,6 +5,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
 #include "vdb_offset/io/convert.h"
+#include "vdb_offset/io/encode.h"
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/patch.h"
 #include "vdb_offset/io/pieces.h"
@@ -87,8 +88,7 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
   if (format == source.format) {
     pieces = patch(source, positions, precision, options.normals, result.disagreeing_normals);
   } else {
-    pieces = encode(format, {positions, source.polygons.corners, source.polygons.face_begin}, precision);
-    result.lost = lost_on_conversion(source, format);
+    pieces = convert(source, format, positions, precision, options.normals, result);
   }
   write_pieces(path, pieces, [&] {
     source.bytes.require_unchanged(source.path);
@@ -105,7 +105,8 @@ std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positio
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
-  write_pieces(path, encode(format, polygons, precision), options.before_rename);
+  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}})),
+               options.before_rename);
 }
 
 }  // namespace vdb_offset::io

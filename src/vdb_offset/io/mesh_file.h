@@ -75,8 +75,9 @@ struct WriteResult {
 
 /// Writes the mesh with other positions to `path`, through a temporary file that is renamed at the end; "-" is standard
 /// output. In the source's own format every byte stays but for the coordinates of vertices that moved and the normals
-/// of faces that moved, which are computed anew from the coordinates as written. In another format the file holds
-/// the positions and faces (STL: triangles). Binary numbers keep the source's width.
+/// of faces that moved, which are computed anew from the coordinates as written; binary numbers keep their width. In
+/// another format the file holds positions and faces (STL: triangles) and, as far as the format can, vertex colours,
+/// texture coordinates and normals.
 /// \pre one position a vertex. \throw InvalidInput for an unknown ending, WriteError, ReadError if the source's file
 /// was written to meanwhile.
 WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,

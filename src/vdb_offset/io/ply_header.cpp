@@ -142,6 +142,12 @@ void Body::skip(const Property& property) {
   else skip(property.type, 1, "a property");
 }
 
+void Body::skip_to(const Element& element, const Header& header) {
+  for (auto before = header.elements.begin(); before->name != element.name; ++before)
+    for (std::size_t row = 0; row < before->count && !before->properties.empty(); ++row)
+      for (const Property& property : before->properties) skip(property);
+}
+
 void Body::go_to(std::size_t at) {
   if (encoding_ == Encoding::Ascii) text_ = Scanner(file_.path, file_.text(), at);
   else at_ = at;

@@ -85,6 +85,8 @@ class Body {
   std::uint64_t place(Type type, const char* what);
   void skip(Type type, std::size_t count, const char* what);
   void skip(const Property& property);
+  /// From the start of the body to that of an element's first row.
+  void skip_to(const Element& element, const Header& header);
 
   std::size_t position() const { return encoding_ == Encoding::Ascii ? text_.position() : at_; }
   void go_to(std::size_t at);

@@ -28,6 +28,13 @@ bool skip_plus(const char*& first, const char* last) {
   return first != last && *first != '-';
 }
 
+}  // namespace
+
+bool is_word(std::string_view text, std::string_view word) {
+  return std::equal(text.begin(), text.end(), word.begin(), word.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
 bool parse_double(std::string_view token, double& value) {
   const char* first = token.data();
   const char* last = first + token.size();
@@ -36,13 +43,6 @@ bool parse_double(std::string_view token, double& value) {
   if (end != last || first == last) return false;
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(first, last).c_str(), nullptr);
   return error != std::errc::invalid_argument;
-}
-
-}  // namespace
-
-bool is_word(std::string_view text, std::string_view word) {
-  return std::equal(text.begin(), text.end(), word.begin(), word.end(),
-                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
 bool parse_integer(std::string_view token, std::int64_t& value) {

@@ -71,6 +71,9 @@ inline std::size_t byte_order_mark(std::string_view text) { return text.starts_w
 /// True if `text` is `word` in any case; `word` is lower case.
 bool is_word(std::string_view text, std::string_view word);
 
+/// Parses a whole token as a number, which may be an infinity or a NaN; false if it is none.
+bool parse_double(std::string_view token, double& value);
+
 /// Parses a whole token as an integer; false if it is none or does not fit.
 bool parse_integer(std::string_view token, std::int64_t& value);
 

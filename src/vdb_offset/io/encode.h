@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/pieces.h"
+
+namespace vdb_offset::io {
+
+/// What a file is made of.
+struct Content {
+  PolygonView mesh;
+  Precision precision;  ///< Of coordinates in a text.
+  Attributes with;
+};
+using SharedContent = std::shared_ptr<const Content>;
+
+/// The content as a file of that format. PLY: binary, coordinates are doubles. STL: binary, triangles and nothing else.
+/// OBJ: all attributes; the others: \pre normals are those of vertices, for OFF texture coordinates are, too. The
+/// pieces refer to the mesh.
+Pieces encode(Format format, const SharedContent& content);
+
+/// A colour from 0 to 1, as the formats that store bytes have it.
+std::uint8_t colour_byte(double colour);
+
+}  // namespace vdb_offset::io
