@@ -1,6 +1,8 @@
 // A libFuzzer target for one format, FUZZ_FORMAT: whatever the bytes are, they are refused with InvalidInput or are a
 // mesh that keeps the promises of io/mesh_file.h. What else is thrown ends the process, as do the sanitizers.
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -121,6 +123,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  // Small inputs are not worth a second thread; the result is the same.
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   const std::optional<io::MeshFile> file = parsed(bytes);
   if (!file) return 0;

@@ -23,7 +23,7 @@ struct Section {
 };
 
 /// A header, then all items of the sections.
-Pieces in_sections(std::string header, std::vector<Section> sections) {
+Pieces in_sections(const std::string& header, std::vector<Section> sections) {
   std::erase_if(sections, [](const Section& section) { return section.items == 0; });
   const auto pieces_of = [](const Section& section) { return (section.items + kPerPiece - 1) / kPerPiece; };
   std::size_t count = 1;

@@ -11,7 +11,7 @@
 namespace vdb_offset::io {
 namespace {
 
-std::string csv(const VertexStates& states) {
+std::string as_csv(const VertexStates& states) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "vertex,state,target,achieved\n");
   for (std::size_t v = 0; v < states.state.size(); ++v)
@@ -27,7 +27,7 @@ void append(std::string& bytes, Number number) {
   bytes.append(raw, sizeof number);
 }
 
-std::string ply(PolygonView mesh, const VertexStates& states) {
+std::string as_ply(PolygonView mesh, const VertexStates& states) {
   std::string bytes = fmt::format(
       "ply\nformat binary_{}_endian 1.0\ncomment state: 0 reached, 1 collision, 2 limited, 3 outside_field, 4 unused\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -57,7 +57,7 @@ bool ends_with(const std::string& path, const char* ending) {
 bool is_states_file(const std::string& path) { return ends_with(path, ".csv") || ends_with(path, ".ply"); }
 
 void write_states(const std::string& path, PolygonView mesh, const VertexStates& states) {
-  write_file(path, ends_with(path, ".csv") ? csv(states) : ply(mesh, states));
+  write_file(path, ends_with(path, ".csv") ? as_csv(states) : as_ply(mesh, states));
 }
 
 }  // namespace vdb_offset::io
