@@ -111,7 +111,7 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source)});
   Attributes& with = content->with;
-  if (!with.normals.empty() && normals == Normals::Recompute)
+  if (!with.normals.empty() && normals == Normals::Recompute && target != Format::Stl)
     update_normals(source, positions, precision, with.normals.value, result.disagreeing_normals);
   if (!std::all_of(with.normals.value.begin(), with.normals.value.end(), [](const Vec3d& n) { return n.isFinite(); })) {
     with.normals = {};
