@@ -423,6 +423,26 @@ double angle_at(const Vec3d& tip, const Vec3d& a, const Vec3d& b) {
   return std::atan2(u.cross(v).length(), u.dot(v));
 }
 
+void find_normals(Surface& surface) {
+  surface.triangle_normals.resize(surface.triangles.size());
+  for_each_index(surface.triangles.size(),
+                 [&](std::size_t t) { surface.triangle_normals[t] = shape_of(surface, t).normal; });
+  surface.vertex_normals.resize(surface.vertices.size());
+  for_each_index(surface.vertices.size(), [&](std::size_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    Vec3d sum(0.0);
+    for (const auto t : surface.triangles_around(vertex)) {
+      const auto& corners = surface.triangles[t];
+      for (int k = 0; k < 3; ++k)
+        if (corners[k] == vertex)
+          sum +=
+              surface.triangle_normals[t] * angle_at(surface.vertices[vertex], surface.vertices[corners[(k + 1) % 3]],
+                                                     surface.vertices[corners[(k + 2) % 3]]);
+    }
+    surface.vertex_normals[v] = sum;
+  });
+}
+
 }  // namespace
 
 Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
@@ -498,23 +518,19 @@ void place(Surface& surface, double voxel_size) {
   const double leaf = 8 * voxel_size;
   for (int k = 0; k < 3; ++k) surface.origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);
   for_each_index(surface.vertices.size(), [&](std::size_t v) { surface.vertices[v] -= surface.origin; });
-  surface.triangle_normals.resize(surface.triangles.size());
-  for_each_index(surface.triangles.size(),
-                 [&](std::size_t t) { surface.triangle_normals[t] = shape_of(surface, t).normal; });
-  surface.vertex_normals.resize(surface.vertices.size());
-  for_each_index(surface.vertices.size(), [&](std::size_t v) {
-    const auto vertex = static_cast<std::uint32_t>(v);
-    Vec3d sum(0.0);
-    for (const auto t : surface.triangles_around(vertex)) {
-      const auto& corners = surface.triangles[t];
-      for (int k = 0; k < 3; ++k)
-        if (corners[k] == vertex)
-          sum +=
-              surface.triangle_normals[t] * angle_at(surface.vertices[vertex], surface.vertices[corners[(k + 1) % 3]],
-                                                     surface.vertices[corners[(k + 2) % 3]]);
-    }
-    surface.vertex_normals[v] = sum;
+  find_normals(surface);
+}
+
+std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld, Orient orient) {
+  Surface surface = build_surface(polygons, weld, orient);
+  find_normals(surface);
+  std::vector<Vec3d> normals(polygons.positions.size(), Vec3d(0.0));
+  for_each_index(normals.size(), [&](std::size_t v) {
+    if (surface.welded[v] == kNone) return;
+    const Vec3d& sum = surface.vertex_normals[surface.welded[v]];
+    if (const double length = sum.length(); length > 0) normals[v] = sum / length;
   });
+  return normals;
 }
 
 }  // namespace vdb_offset

@@ -101,4 +101,9 @@ Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orie
 /// box, and computes its normals there. \pre voxel_size > 0, called once.
 void place(Surface& surface, double voxel_size);
 
+/// Unit normals of the mesh's vertices, outward: of the welded surface and weighted by angles, as the offset itself
+/// takes them. Zero for a vertex that no face uses, and where the faces around have no normals or these cancel out.
+/// \throw InvalidInput as build_surface()
+std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld = {}, Orient orient = Orient::Keep);
+
 }  // namespace vdb_offset
