@@ -372,4 +372,20 @@ Attributes read_attributes(const MeshFile& source) {
   return attributes;
 }
 
+std::vector<Vec2d> vertex_texture(const MeshFile& source) {
+  const CornerValues<Vec2d> texture = read_attributes(source).texture;
+  if (texture.empty())
+    throw InvalidInput(source.path + ": expected texture coordinates, which the distance uses (u, v), found none");
+  const Polygons& mesh = source.polygons;
+  std::vector<Vec2d> of_vertex(mesh.positions.size(), Vec2d(0.0));
+  std::vector<std::uint8_t> has_value(of_vertex.size(), 0);
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
+    const std::uint32_t v = mesh.corners[c], t = texture.index(c, v);
+    if (has_value[v]) continue;
+    has_value[v] = t != kNoNormal;
+    of_vertex[v] = t == kNoNormal ? Vec2d(kNaN) : texture.value[t];
+  }
+  return of_vertex;
+}
+
 }  // namespace vdb_offset::io

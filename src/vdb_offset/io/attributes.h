@@ -37,4 +37,8 @@ struct Attributes {
 /// Goes over the file again for them, so that reading a mesh does not have to.
 Attributes read_attributes(const MeshFile& source);
 
+/// Texture coordinates, one for each vertex: those of the first corner at the vertex that has any, NaNs if none has.
+/// Zero for a vertex that no face uses. \throw InvalidInput if the file holds no texture coordinates at all.
+std::vector<Vec2d> vertex_texture(const MeshFile& source);
+
 }  // namespace vdb_offset::io
