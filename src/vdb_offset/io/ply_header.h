@@ -53,6 +53,7 @@ double load(const char* raw) {
   return static_cast<double>(value);
 }
 
+/// Of eight bytes, too, which integers of a PLY file never have.
 inline double binary_number(const char* at, Type type, Encoding encoding) {
   static_assert(std::endian::native == std::endian::little, "numbers of the other order are turned round");
   char raw[8];
@@ -62,8 +63,12 @@ inline double binary_number(const char* at, Type type, Encoding encoding) {
   if (type.kind == 'u')
     return type.bytes == 1   ? load<std::uint8_t>(raw)
            : type.bytes == 2 ? load<std::uint16_t>(raw)
-                             : load<std::uint32_t>(raw);
-  return type.bytes == 1 ? load<std::int8_t>(raw) : type.bytes == 2 ? load<std::int16_t>(raw) : load<std::int32_t>(raw);
+           : type.bytes == 4 ? load<std::uint32_t>(raw)
+                             : load<std::uint64_t>(raw);
+  return type.bytes == 1   ? load<std::int8_t>(raw)
+         : type.bytes == 2 ? load<std::int16_t>(raw)
+         : type.bytes == 4 ? load<std::int32_t>(raw)
+                           : load<std::int64_t>(raw);
 }
 
 /// Digits that a text has beyond its declared type are not there for anyone who reads it.
