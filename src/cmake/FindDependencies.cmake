@@ -18,6 +18,8 @@ find_library(MPFR_LIBRARY mpfr REQUIRED)
 find_package(ZLIB REQUIRED)
 find_library(ZSTD_LIBRARY zstd REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
+# For distances that are expressions.
+find_package(muparser 2.3 REQUIRED)
 if(VDB_OFFSET_TOOLS)
   find_package(CLI11 2 REQUIRED)
 endif()

@@ -15,6 +15,11 @@ struct InvalidInput : Error {
   using Error::Error;
 };
 
+/// An expression that cannot be understood. The message holds the column, counted from 1.
+struct InvalidExpression : Error {
+  using Error::Error;
+};
+
 /// A file that cannot be opened or read. The message starts with the file's name.
 struct ReadError : Error {
   using Error::Error;
