@@ -1,4 +1,5 @@
-// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl: what fuzzing starts from.
+// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, and numbers of three vertices
+// to FOLDER/numbers: what fuzzing starts from.
 
 #include <algorithm>
 #include <cstdint>
@@ -10,6 +11,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;
@@ -188,6 +190,29 @@ void stl_seeds() {
   seed("longer.stl", binary_stl("", 1, 1) + "bytes behind the last facet");
 }
 
+/// A number for each of three vertices.
+void numbers_seed(const std::string& name, const std::string& bytes) {
+  io::read_vertex_numbers(write(name + ".numbers", bytes), 3);
+}
+
+std::string npy(char version, const std::string& type, const std::string& shape, const std::string& numbers) {
+  const std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }   \n";
+  const std::string bytes = std::string("\x93NUMPY", 6) + version + '\0';
+  const auto length = static_cast<std::uint32_t>(header.size());
+  return bytes + (version == 1 ? raw(static_cast<std::uint16_t>(length)) : raw(length)) + header + numbers;
+}
+
+void numbers_seeds() {
+  numbers_seed("lines", "# a comment\n0.5\n-1e-3 # near\n+2\n");
+  numbers_seed("crlf",
+               "\xef\xbb\xbf"
+               "1\r\n2 .5\r\n");
+  numbers_seed("f8", npy(1, "<f8", "(3,)", raw(0.1) + raw(-2.0) + raw(1e300)));
+  numbers_seed("f4_big", npy(2, ">f4", "(3, 1)", raw(0.1f, true) + raw(-2.f, true) + raw(3.f, true)));
+  numbers_seed("i1", npy(3, "|i1", "(3L,)", "\x01\xff\x7f"));
+  numbers_seed("u8", npy(1, ">u8", "(3,1)", std::string(24, '\xab')));
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -207,6 +232,7 @@ int main(int count, char** arguments) {
       seed("triangles_" + name, triangles_ply(big));
     }
     stl_seeds();
+    numbers_seeds();
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 4;

@@ -15,6 +15,8 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/ply_header.h"
+#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 
@@ -93,6 +95,21 @@ void check_moved(const io::MeshFile& file, const std::vector<Vec3d>& positions) 
   require(home.polygons.positions == file.polygons.positions, "vertices can be moved back");
 }
 
+/// The properties of a PLY file's vertices: refused, or finite numbers, one for each.
+void check_properties(const io::MeshFile& file) {
+  if (kFormat != io::Format::Ply) return;
+  const io::ply::Header header = io::ply::read_header(file);
+  for (const io::ply::Property& property : io::ply::find(header, "vertex")->properties) {
+    try {
+      const std::vector<double> numbers = io::vertex_property(file, property.name);
+      require(numbers.size() == file.polygons.positions.size(), "one number a vertex");
+      for (const double number : numbers) require(std::isfinite(number), "properties are finite");
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+}
+
 /// Takes a few lines away, copies or moves them: what single bytes seldom come to, such as a second element of a name.
 /// False if nothing was done.
 bool mutate_lines(std::string& text, std::minstd_rand& random) {
@@ -129,6 +146,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::optional<io::MeshFile> file = parsed(bytes);
   if (!file) return 0;
   check_mesh(*file);
+  check_properties(*file);
   require(io::patched_bytes(*file, file->polygons.positions) == bytes, "an unmoved mesh keeps every byte");
 
   std::vector<Vec3d> shifted = file->polygons.positions, turned = file->polygons.positions;
