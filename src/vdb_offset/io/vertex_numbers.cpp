@@ -84,7 +84,7 @@ class NpyHeaderReader {
   void read_length() {
     constexpr std::size_t kVersionAt = 6, kLengthAt = 8;
     if (text_.size() < kLengthAt) fail("the version of a NumPy array", text_.size());
-    const int version = text_[kVersionAt];
+    const auto version = static_cast<unsigned char>(text_[kVersionAt]);
     if (version < 1 || version > 3)
       fail_with("version 1, 2 or 3 of NumPy's format", fmt::format("version {}", version), kVersionAt);
     const std::size_t bytes = version == 1 ? 2 : 4;
