@@ -71,7 +71,8 @@ std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::ui
 Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner) {
   const auto vertices = static_cast<std::uint32_t>(outer.size()), corners = mesh.face_begin.back();
   Shell shell;
-  auto& [positions, all_corners, face_begin] = shell.polygons;
+  std::vector<Vec3d>& positions = shell.polygons.positions;
+  std::vector<std::uint32_t>&all_corners = shell.polygons.corners, &face_begin = shell.polygons.face_begin;
   positions.reserve(2 * outer.size());
   positions.assign(outer.begin(), outer.end());
   positions.insert(positions.end(), inner.begin(), inner.end());

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "vdb_offset/io/encode.h"
 #include "vdb_offset/io/normals.h"
@@ -125,7 +124,7 @@ std::vector<std::uint32_t> values_of_shell(PolygonView mesh, const Shell& shell,
 
 /// Normals of the inner skin point the other way. The rim has none of its own: in a format that has normals of vertices
 /// only, those of the skins.
-void add_inner_normals(PolygonView mesh, const Shell& shell, bool of_corners, std::vector<Vec3d> inner,
+void add_inner_normals(PolygonView mesh, const Shell& shell, bool of_corners, const std::vector<Vec3d>& inner,
                        CornerValues<Vec3d>& normals) {
   const auto count = static_cast<std::uint32_t>(normals.value.size());
   if (of_corners || !normals.of_corner.empty()) {
@@ -193,7 +192,7 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
       update_normals(source, shell.outer(), precision, with.normals.value, result.disagreeing_normals);
       update_normals(source, shell.inner(), precision, inner, result.disagreeing_normals);
     }
-    add_inner_normals(mesh, shell, target == Format::Obj, std::move(inner), with.normals);
+    add_inner_normals(mesh, shell, target == Format::Obj, inner, with.normals);
   }
   return encode_fitting(source, target, content, result);
 }

@@ -9,9 +9,10 @@ namespace vdb_offset::io {
 ///
 /// In the source's own format both skins have all that the source's vertices and faces have; numbers of vertices that
 /// did not move stay as they are, and the inner skin's normals point the other way.
-/// - OBJ: groups `outer`, `inner` and `rim`, each followed by the source's own names; materials, smoothing groups and
-///   objects are the source's on every part. Comments, lines and points and all that is not of faces comes once; lines
-///   and points join the skin that is the source. The rim has the border's texture coordinates, and no normals.
+/// - OBJ: groups `outer` and `inner`, each in front of the source's own names, and `rim`; materials and objects are the
+///   source's on every part, smoothing groups on the skins. Comments, lines and points and all that is not of faces
+///   comes once; lines and points join the skin that is the source. The rim has the border's texture coordinates, and
+///   no normals.
 /// - PLY: a face property `part`, 0 (outer), 1 (inner) or 2 (rim); faces of the rim have the values of the face at
 ///   their border. Other elements come once and refer to the outer skin.
 /// - STL: ASCII: a solid for each part; binary: the rim's facets have the attribute bytes of those at their border.
