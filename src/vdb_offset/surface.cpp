@@ -514,6 +514,16 @@ Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient o
   return surface;
 }
 
+std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& options) {
+  check(polygons);
+  Surface surface;
+  weld(polygons, options, surface);
+  std::vector<std::uint32_t> first(polygons.positions.size(), kNone);
+  for (std::size_t v = 0; v < first.size(); ++v)
+    if (surface.welded[v] != kNone) first[v] = surface.representative[surface.welded[v]];
+  return first;
+}
+
 void place(Surface& surface, double voxel_size) {
   const double leaf = 8 * voxel_size;
   for (int k = 0; k < 3; ++k) surface.origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);

@@ -97,6 +97,9 @@ struct Surface {
 /// finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
+/// For each vertex the first that stands where it does; kNone for one that is in no face. \throw as build_surface().
+std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& weld);
+
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
 /// box, and computes its normals there. \pre voxel_size > 0, called once.
 void place(Surface& surface, double voxel_size);

@@ -7,6 +7,7 @@
 
 #include "vdb_offset/io/encode.h"
 #include "vdb_offset/io/normals.h"
+#include "vdb_offset/io/shell_formats.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
@@ -15,14 +16,8 @@ namespace {
 /// Normals of faces that moved are computed from the coordinates as written, and need no more than single precision.
 void update_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
                     std::vector<Vec3d>& normals, std::size_t& disagreeing) {
-  std::vector<Vec3d> stored(positions.size());
-  std::vector<std::uint8_t> moved(positions.size());
-  for_each_index(positions.size(), [&](std::size_t v) {
-    moved[v] = !(positions[v] == source.polygons.positions[v]);
-    stored[v] = precision(positions[v]);
-  });
-  const NewNormals computed = new_normals(source, stored, moved);
-  disagreeing = computed.disagreeing;
+  const NewNormals computed = new_normals(source, positions, precision);
+  disagreeing += computed.disagreeing;
   const Precision single{Precision::Kind::Single};
   for (std::size_t n = 0; n < normals.size(); ++n)
     if (computed.value[n].lengthSqr() > 0) normals[n] = single(computed.value[n]);
@@ -104,23 +99,107 @@ void name_losses_of_triangles(const MeshFile& source, std::vector<std::string>& 
   lost.emplace_back("digits beyond single precision");
 }
 
+/// What each skin's vertices have.
+template <class Value>
+void double_up(std::vector<Value>& of_vertices) {
+  const std::size_t count = of_vertices.size();
+  of_vertices.resize(2 * count);
+  std::copy_n(of_vertices.begin(), count, of_vertices.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// What the corners of a shell name, by what those of its mesh do; those of the rim what the corners of its border
+/// face do.
+template <class Value>
+std::vector<std::uint32_t> values_of_shell(PolygonView mesh, const Shell& shell, const CornerValues<Value>& values) {
+  std::vector<std::uint32_t> of_corner(shell.polygons.corners.size());
+  for_each_index(shell.polygons.face_count(), [&](std::size_t f) {
+    const std::uint32_t begin = shell.polygons.face_begin[f], end = shell.polygons.face_begin[f + 1];
+    for (std::uint32_t c = begin; c < end; ++c) {
+      const std::uint32_t of_mesh = shell.source_corner(mesh, f, c - begin);
+      of_corner[c] = values.index(of_mesh, mesh.corners[of_mesh]);
+    }
+  });
+  return of_corner;
+}
+
+/// Normals of the inner skin point the other way. The rim has none of its own: in a format that has normals of vertices
+/// only, those of the skins.
+void add_inner_normals(PolygonView mesh, const Shell& shell, bool of_corners, const std::vector<Vec3d>& inner,
+                       CornerValues<Vec3d>& normals) {
+  const auto count = static_cast<std::uint32_t>(normals.value.size());
+  if (of_corners || !normals.of_corner.empty()) {
+    normals.of_corner = values_of_shell(mesh, shell, normals);
+    const std::size_t rim = shell.polygons.face_begin[2 * shell.source_faces()];
+    for (std::size_t c = 0; c < normals.of_corner.size(); ++c) {
+      std::uint32_t& normal = normals.of_corner[c];
+      if (of_corners && c >= rim) normal = kNoNormal;
+      if (normal != kNoNormal && shell.polygons.corners[c] >= shell.source_vertices()) normal += count;
+    }
+  }
+  for (const Vec3d& normal : inner) normals.value.push_back(Vec3d(0.0) - normal);
+}
+
+std::vector<Part> parts_of(const Shell& shell) {
+  std::vector<Part> parts;
+  const std::size_t faces[kShellPartCount] = {shell.source_faces(), shell.source_faces(), shell.rim.size()};
+  for (const ShellPart part : {ShellPart::Outer, ShellPart::Inner, ShellPart::Rim})
+    if (const std::size_t count = faces[static_cast<std::size_t>(part)]; count > 0)
+      parts.push_back({name(part), count});
+  return parts;
+}
+
+bool keeps_parts(Format format) { return format == Format::Obj || format == Format::Ply; }
+
+/// Drops what would be no number, and what the format has no place for.
+Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
+                      WriteResult& result) {
+  Attributes& with = content->with;
+  if (!std::all_of(with.normals.value.begin(), with.normals.value.end(), [](const Vec3d& n) { return n.isFinite(); })) {
+    with.normals = {};
+    with.lost.emplace_back("normals");
+  }
+  fit(target, content->mesh, with);
+  if (target == Format::Stl) name_losses_of_triangles(source, with.lost);
+  if (!content->parts.empty() && !keeps_parts(target)) with.lost.emplace_back(kShellParts);
+  result.lost = fmt::format("{}", fmt::join(with.lost, ", "));
+  return encode(target, content);
+}
+
 }  // namespace
 
 Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Precision& precision,
                Normals normals, WriteResult& result) {
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
-  const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source)});
+  const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}});
   Attributes& with = content->with;
   if (!with.normals.empty() && normals == Normals::Recompute && target != Format::Stl)
     update_normals(source, positions, precision, with.normals.value, result.disagreeing_normals);
-  if (!std::all_of(with.normals.value.begin(), with.normals.value.end(), [](const Vec3d& n) { return n.isFinite(); })) {
-    with.normals = {};
-    with.lost.emplace_back("normals");
+  return encode_fitting(source, target, content, result);
+}
+
+Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Precision& precision, Normals normals,
+               WriteResult& result) {
+  const PolygonView mesh = source.polygons.view();
+  const auto content =
+      std::make_shared<Content>(Content{shell.polygons.view(), precision, read_attributes(source), parts_of(shell)});
+  Attributes& with = content->with;
+  double_up(with.colours);
+  if (!with.texture.of_corner.empty()) with.texture.of_corner = values_of_shell(mesh, shell, with.texture);
+  else double_up(with.texture.value);
+  if (!with.normals.empty()) {
+    std::vector<Vec3d> inner = with.normals.value;
+    if (normals == Normals::Recompute && target != Format::Stl) {
+      update_normals(source, shell.outer(), precision, with.normals.value, result.disagreeing_normals);
+      update_normals(source, shell.inner(), precision, inner, result.disagreeing_normals);
+    }
+    add_inner_normals(mesh, shell, target == Format::Obj, inner, with.normals);
   }
-  fit(target, mesh, with);
-  if (target == Format::Stl) name_losses_of_triangles(source, with.lost);
-  result.lost = fmt::format("{}", fmt::join(with.lost, ", "));
-  return encode(target, content);
+  return encode_fitting(source, target, content, result);
+}
+
+Pieces convert(Format target, const Shell& shell, const Precision& precision, WriteResult& result) {
+  if (!keeps_parts(target)) result.lost = kShellParts;
+  return encode(target, std::make_shared<Content>(Content{shell.polygons.view(), precision, {}, parts_of(shell)}));
 }
 
 }  // namespace vdb_offset::io

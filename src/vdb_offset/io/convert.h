@@ -2,6 +2,7 @@
 
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/pieces.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::io {
 
@@ -9,5 +10,13 @@ namespace vdb_offset::io {
 /// all that the format can hold. `result` receives the rest. The pieces refer to `source` and `positions`.
 Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Precision& precision,
                Normals normals, WriteResult& result);
+
+/// A shell of the source's mesh in another format: both skins have what the source has; what is the same for all
+/// corners of a vertex, or of a border face, goes to the rim as well. The pieces refer to `source` and `shell`.
+Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Precision& precision, Normals normals,
+               WriteResult& result);
+
+/// A shell of a mesh that comes from no file.
+Pieces convert(Format target, const Shell& shell, const Precision& precision, WriteResult& result);
 
 }  // namespace vdb_offset::io

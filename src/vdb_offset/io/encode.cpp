@@ -13,33 +13,6 @@
 namespace vdb_offset::io {
 namespace {
 
-// Items of a section in a piece of a file.
-constexpr std::size_t kPerPiece = 1 << 15;
-
-/// Lines or records of one kind.
-struct Section {
-  std::size_t items;
-  std::function<void(std::string&, std::size_t)> append;
-};
-
-/// A header, then all items of the sections.
-Pieces in_sections(const std::string& header, std::vector<Section> sections) {
-  std::erase_if(sections, [](const Section& section) { return section.items == 0; });
-  const auto pieces_of = [](const Section& section) { return (section.items + kPerPiece - 1) / kPerPiece; };
-  std::size_t count = 1;
-  for (const Section& section : sections) count += pieces_of(section);
-  return {count, [=](std::size_t piece) {
-            if (piece == 0) return header;
-            std::size_t of_section = piece - 1;
-            auto section = sections.begin();
-            for (; of_section >= pieces_of(*section); ++section) of_section -= pieces_of(*section);
-            std::string bytes;
-            const std::size_t first = of_section * kPerPiece;
-            for (std::size_t i = first; i < std::min(first + kPerPiece, section->items); ++i) section->append(bytes, i);
-            return bytes;
-          }};
-}
-
 void append_point(std::string& text, const Vec3d& p, const Precision& precision) {
   for (int k = 0; k < 3; ++k) {
     if (k > 0) text += ' ';
@@ -65,7 +38,7 @@ void append_values(std::string& bytes, const Point& p, bool single) {
 }
 
 void append_obj_face(std::string& text, const Content& content, std::size_t f) {
-  const auto& [mesh, precision, with] = content;
+  const auto& [mesh, precision, with, parts] = content;
   const auto face = mesh.face(f);
   text += 'f';
   for (std::size_t k = 0; k < face.size(); ++k) {
@@ -73,18 +46,19 @@ void append_obj_face(std::string& text, const Content& content, std::size_t f) {
     const std::uint64_t texture = with.texture.empty() ? kNoNormal : with.texture.index(corner, face[k]);
     text += ' ';
     append_integer(text, std::uint64_t{face[k]} + 1);
-    if (texture != kNoNormal || !with.normals.empty()) text += '/';
+    const std::uint64_t normal = with.normals.empty() ? kNoNormal : with.normals.index(corner, face[k]);
+    if (texture != kNoNormal || normal != kNoNormal) text += '/';
     if (texture != kNoNormal) append_integer(text, texture + 1);
-    if (with.normals.empty()) continue;
+    if (normal == kNoNormal) continue;
     text += '/';
-    append_integer(text, std::uint64_t{with.normals.index(corner, face[k])} + 1);
+    append_integer(text, normal + 1);
   }
   text += '\n';
 }
 
 Pieces to_obj(const SharedContent& content) {
   const auto append_vertex = [content](std::string& text, std::size_t v) {
-    const auto& [mesh, precision, with] = *content;
+    const auto& [mesh, precision, with, parts] = *content;
     text += "v ";
     append_point(text, mesh.positions[v], precision);
     for (std::size_t k = 0; !with.colours.empty() && k < (with.has_alpha ? 4 : 3); ++k) {
@@ -103,15 +77,23 @@ Pieces to_obj(const SharedContent& content) {
     append_values(text, content->with.normals.value[i]);
     text += '\n';
   };
-  return in_sections({}, {{content->mesh.positions.size(), append_vertex},
-                          {content->with.texture.value.size(), append_texture},
-                          {content->with.normals.value.size(), append_normal},
-                          {content->mesh.face_count(),
-                           [content](std::string& text, std::size_t f) { append_obj_face(text, *content, f); }}});
+  std::vector<Section> sections = {{content->mesh.positions.size(), append_vertex},
+                                   {content->with.texture.value.size(), append_texture},
+                                   {content->with.normals.value.size(), append_normal}};
+  std::size_t first = 0;
+  for (const Part& part : content->parts) {
+    sections.push_back({1, [line = "g " + part.name + "\n"](std::string& text, std::size_t) { text += line; }});
+    sections.push_back(
+        {part.faces, [=](std::string& text, std::size_t f) { append_obj_face(text, *content, first + f); }});
+    first += part.faces;
+  }
+  const std::size_t others = content->mesh.face_count() - first;
+  sections.push_back({others, [=](std::string& text, std::size_t f) { append_obj_face(text, *content, first + f); }});
+  return in_sections({}, std::move(sections));
 }
 
 void append_off_vertex(std::string& text, const Content& content, std::size_t v) {
-  const auto& [mesh, precision, with] = content;
+  const auto& [mesh, precision, with, parts] = content;
   append_point(text, mesh.positions[v], precision);
   if (!with.normals.empty()) append_values(text, with.normals.value[v]);
   for (std::size_t k = 0; !with.colours.empty() && k < 4; ++k) {
@@ -123,7 +105,7 @@ void append_off_vertex(std::string& text, const Content& content, std::size_t v)
 }
 
 Pieces to_off(const SharedContent& content) {
-  const auto& [mesh, precision, with] = *content;
+  const auto& [mesh, precision, with, parts] = *content;
   const auto append_face = [content](std::string& text, std::size_t f) {
     const auto face = content->mesh.face(f);
     append_integer(text, face.size());
@@ -176,7 +158,7 @@ struct TextureLists {
 };
 
 std::string ply_header(const Content& content, const TextureLists& lists) {
-  const auto& [mesh, precision, with] = content;
+  const auto& [mesh, precision, with, parts] = content;
   std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.size());
   const auto add = [&](const char* type, std::initializer_list<const char*> names) {
     for (const char* name : names) header += fmt::format("property {} {}\n", type, name);
@@ -190,7 +172,14 @@ std::string ply_header(const Content& content, const TextureLists& lists) {
   header += fmt::format("element face {}\nproperty list uint uint vertex_indices\n", mesh.face_count());
   if (lists.exist)
     header += fmt::format("property list {} {} texcoord\n", lists.wide ? "uint" : "uchar", floating(lists.single));
+  if (!parts.empty()) add("uchar", {"part"});
   return header + "end_header\n";
+}
+
+std::uint8_t part_of(const Content& content, std::size_t f) {
+  std::uint8_t part = 0;
+  for (std::size_t end = content.parts[0].faces; f >= end; end += content.parts[part].faces) ++part;
+  return part;
 }
 
 Pieces to_ply(const SharedContent& content) {
@@ -208,6 +197,7 @@ Pieces to_ply(const SharedContent& content) {
     append_binary(bytes, static_cast<std::uint32_t>(face.size()));
     for (const auto v : face) append_binary(bytes, v);
     if (lists.exist) lists.append(bytes, *content, f);
+    if (!content->parts.empty()) append_binary(bytes, part_of(*content, f));
   };
   return in_sections(ply_header(*content, lists),
                      {{content->mesh.positions.size(), append_vertex}, {content->mesh.face_count(), append_face}});
@@ -225,22 +215,15 @@ Pieces to_stl(PolygonView mesh) {
   using Triangles = std::vector<std::array<std::uint32_t, 3>>;
   const auto triangles = std::make_shared<Triangles>();
   for (std::size_t f = 0; f < mesh.face_count(); ++f) triangulate(mesh.positions, mesh.face(f), *triangles);
-  const std::size_t pieces = 1 + (triangles->size() + kPerPiece - 1) / kPerPiece;
-  return {pieces, [=](std::size_t piece) {
-            std::string bytes;
-            if (piece == 0) {
-              bytes.assign(80, '\0');
-              append_binary(bytes, static_cast<std::uint32_t>(triangles->size()));
-              return bytes;
-            }
-            const std::size_t first = (piece - 1) * kPerPiece;
-            const Precision single{Precision::Kind::Single};
-            for (std::size_t t = first; t < std::min(first + kPerPiece, triangles->size()); ++t) {
-              const auto& [a, b, c] = (*triangles)[t];
-              append_facet(bytes, {single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
-            }
-            return bytes;
-          }};
+  std::string header(80, '\0');
+  append_binary(header, static_cast<std::uint32_t>(triangles->size()));
+  return in_sections(
+      header,
+      {{triangles->size(), [=](std::string& bytes, std::size_t t) {
+          const Precision single{Precision::Kind::Single};
+          const auto& [a, b, c] = (*triangles)[t];
+          append_facet(bytes, {single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
+        }}});
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ void parse_off(MeshFile& file);
 void parse_ply(MeshFile& file);
 void parse_stl(MeshFile& file);
 
+/// As told, else by the file's ending. \throw InvalidInput for an ending that is unknown.
+Format require_format(const std::string& path, const std::optional<Format>& told);
+
 /// Vertex indices are 32 bits wide; the largest value means "none".
 inline constexpr std::uint64_t kMostVertices = 0xfffffffe;
 

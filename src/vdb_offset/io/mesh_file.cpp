@@ -1,26 +1,20 @@
 #include "vdb_offset/io/mesh_file.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
 #include "vdb_offset/io/convert.h"
 #include "vdb_offset/io/encode.h"
 #include "vdb_offset/io/formats.h"
+#include "vdb_offset/io/normals.h"
 #include "vdb_offset/io/patch.h"
 #include "vdb_offset/io/pieces.h"
 #include "vdb_offset/io/scanner.h"
 
 namespace vdb_offset::io {
 namespace {
-
-Format require_format(const std::string& path, const std::optional<Format>& told) {
-  const auto format = told ? told : format_of(path);
-  if (!format)
-    throw InvalidInput(path +
-                       ": expected a name that ends in .obj, .off, .ply or .stl (or one of these and .gz or .zst)");
-  return *format;
-}
 
 MeshFile parse(std::string name, Format format, FileBytes bytes) {
   MeshFile file;
@@ -46,6 +40,14 @@ MeshFile parse(std::string name, Format format, FileBytes bytes) {
 }
 
 }  // namespace
+
+Format require_format(const std::string& path, const std::optional<Format>& told) {
+  const auto format = told ? told : format_of(path);
+  if (!format)
+    throw InvalidInput(path +
+                       ": expected a name that ends in .obj, .off, .ply or .stl (or one of these and .gz or .zst)");
+  return *format;
+}
 
 std::optional<Format> format_of(std::string_view path) {
   path = without_compression(path);
@@ -86,7 +88,10 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
   WriteResult result;
   Pieces pieces;
   if (format == source.format) {
-    pieces = patch(source, positions, precision, options.normals, result.disagreeing_normals);
+    NewNormals normals;
+    if (options.normals == Normals::Recompute) normals = new_normals(source, positions, precision);
+    result.disagreeing_normals = normals.disagreeing;
+    pieces = patch(source, positions, precision, std::move(normals));
   } else {
     pieces = convert(source, format, positions, precision, options.normals, result);
   }
@@ -98,14 +103,13 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
 }
 
 std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions) {
-  std::size_t ignored = 0;
-  return join(patch(source, positions, source.precision, Normals::Recompute, ignored));
+  return join(patch(source, positions, source.precision, new_normals(source, positions, source.precision)));
 }
 
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
-  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}})),
+  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}})),
                options.before_rename);
 }
 

@@ -98,10 +98,8 @@ NewNormals facet_normals(PolygonView mesh, std::span<const Vec3d> positions, con
   return normals;
 }
 
-}  // namespace
-
-NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions,
-                       const std::vector<std::uint8_t>& moved) {
+NewNormals normals_of_moved(const MeshFile& source, std::span<const Vec3d> positions,
+                            const std::vector<std::uint8_t>& moved) {
   const PolygonView mesh = source.polygons.view();
   if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
   const Users users = find_users(source);
@@ -121,6 +119,19 @@ NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions,
   });
   normals.disagreeing = disagreeing;
   return normals;
+}
+
+}  // namespace
+
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision) {
+  if (source.normal_at.empty()) return {};
+  std::vector<Vec3d> stored(positions.size());
+  std::vector<std::uint8_t> moved(positions.size());
+  for_each_index(positions.size(), [&](std::size_t v) {
+    moved[v] = has_moved(source.polygons.positions[v], positions[v], precision);
+    stored[v] = moved[v] ? precision(positions[v]) : source.polygons.positions[v];
+  });
+  return normals_of_moved(source, stored, moved);
 }
 
 }  // namespace vdb_offset::io

@@ -13,9 +13,13 @@ struct NewNormals {
   std::size_t disagreeing = 0;  ///< Normals shared by vertices that ask for different ones now.
 };
 
+/// Whether the file, at its precision, holds another position now.
+inline bool has_moved(const Vec3d& before, const Vec3d& after, const Precision& precision) {
+  return !(after == before) && !(precision(after) == before);
+}
+
 /// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners
-/// that name a normal, of the corner's face normal times its angle.
-NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions,
-                       const std::vector<std::uint8_t>& moved);
+/// that name a normal, of the corner's face normal times its angle. They are those of the positions as written.
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision);
 
 }  // namespace vdb_offset::io

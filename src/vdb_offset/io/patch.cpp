@@ -5,8 +5,8 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <utility>
 
-#include "vdb_offset/io/normals.h"
 #include "vdb_offset/io/numbers.h"
 #include "vdb_offset/io/text.h"
 #include "vdb_offset/parallel.h"
@@ -26,14 +26,12 @@ struct Patch {
 
 class Patcher {
  public:
-  Patcher(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, Normals normals)
-      : source_(source), positions_(positions), precision_(precision) {
-    if (!source.normal_at.empty() && normals == Normals::Recompute) update_normals();
+  Patcher(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, NewNormals normals)
+      : source_(source), positions_(positions), precision_(precision), normals_(std::move(normals)) {
     cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text(), 0) : cut_between_numbers();
   }
 
   std::size_t pieces() const { return cuts_.size() - 1; }
-  std::size_t disagreeing() const { return normals_.disagreeing; }
 
   std::string make(std::size_t piece) const {
     const std::uint64_t begin = cuts_[piece], end = cuts_[piece + 1];
@@ -41,19 +39,7 @@ class Patcher {
   }
 
  private:
-  void update_normals() {
-    std::vector<Vec3d> stored(positions_.size());
-    std::vector<std::uint8_t> moved(positions_.size());
-    for_each_index(positions_.size(), [&](std::size_t v) {
-      moved[v] = has_moved(v);
-      stored[v] = moved[v] ? precision_(positions_[v]) : positions_[v];
-    });
-    normals_ = new_normals(source_, stored, moved);
-  }
-  bool has_moved(std::size_t v) const {
-    const Vec3d& before = source_.polygons.positions[v];
-    return !(positions_[v] == before) && !(precision_(positions_[v]) == before);
-  }
+  bool moved(std::size_t v) const { return has_moved(source_.polygons.positions[v], positions_[v], precision_); }
 
   /// Cuts of a binary file of which none runs through the numbers of a vertex or a normal.
   std::vector<std::size_t> cut_between_numbers() const {
@@ -88,7 +74,7 @@ class Patcher {
       }
     };
     each(source_.position_at, false, [&](std::size_t v) -> std::optional<Vec3d> {
-      if (has_moved(v)) return precision_(positions_[v]);
+      if (moved(v)) return precision_(positions_[v]);
       return std::nullopt;
     });
     if (!normals_.value.empty())
@@ -152,10 +138,8 @@ class Patcher {
 
 }  // namespace
 
-Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, Normals normals,
-             std::size_t& disagreeing) {
-  const auto patcher = std::make_shared<const Patcher>(source, positions, precision, normals);
-  disagreeing = patcher->disagreeing();
+Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, NewNormals normals) {
+  const auto patcher = std::make_shared<const Patcher>(source, positions, precision, std::move(normals));
   return {patcher->pieces(), [patcher](std::size_t piece) { return patcher->make(piece); }};
 }
 

@@ -3,11 +3,16 @@
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 
+#include <algorithm>
+
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/compression.h"
 
 namespace vdb_offset::io {
 namespace {
+
+// Items of a section in a piece of a file.
+constexpr std::size_t kPerPiece = 1 << 15;
 
 void produce(const Pieces& pieces, Compression compression, const Sink& sink) {
   std::size_t next = 0;
@@ -24,6 +29,33 @@ void produce(const Pieces& pieces, Compression compression, const Sink& sink) {
 }
 
 }  // namespace
+
+Pieces in_sections(const std::string& header, std::vector<Section> sections) {
+  std::erase_if(sections, [](const Section& section) { return section.items == 0; });
+  const auto pieces_of = [](const Section& section) { return (section.items + kPerPiece - 1) / kPerPiece; };
+  std::size_t count = 1;
+  for (const Section& section : sections) count += pieces_of(section);
+  return {count, [=](std::size_t piece) {
+            if (piece == 0) return header;
+            std::size_t of_section = piece - 1;
+            auto section = sections.begin();
+            for (; of_section >= pieces_of(*section); ++section) of_section -= pieces_of(*section);
+            std::string bytes;
+            const std::size_t first = of_section * kPerPiece;
+            for (std::size_t i = first; i < std::min(first + kPerPiece, section->items); ++i) section->append(bytes, i);
+            return bytes;
+          }};
+}
+
+Pieces in_a_row(std::vector<Pieces> files) {
+  std::size_t count = 0;
+  for (const Pieces& file : files) count += file.count;
+  return {count, [files = std::move(files)](std::size_t piece) {
+            auto file = files.begin();
+            for (; piece >= file->count; ++file) piece -= file->count;
+            return file->make(piece);
+          }};
+}
 
 void write_pieces(const std::string& path, const Pieces& pieces, const std::function<void()>& before_rename) {
   write_file(

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace vdb_offset::io {
 
@@ -11,6 +12,18 @@ struct Pieces {
   std::size_t count;
   std::function<std::string(std::size_t)> make;
 };
+
+/// Lines or records of one kind; append(bytes, i) adds number i.
+struct Section {
+  std::size_t items;
+  std::function<void(std::string&, std::size_t)> append;
+};
+
+/// A header, then all items of the sections.
+Pieces in_sections(const std::string& header, std::vector<Section> sections);
+
+/// All pieces of the first, then all of the second, and so on.
+Pieces in_a_row(std::vector<Pieces> files);
 
 /// Writes the pieces one behind the other to `path` (file_replace.h), a few of them in memory at a time; compressed,
 /// piece by piece, if the path ends in .gz or .zst. \throw WriteError

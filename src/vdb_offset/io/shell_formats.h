@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/normals.h"
+#include "vdb_offset/io/pieces.h"
+#include "vdb_offset/shell.h"
+
+namespace vdb_offset::io {
+
+/// What a format without names or properties of faces loses.
+inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
+
+/// One skin of a shell, as a file of its source's format has it. Refers to what it is made of.
+class Skin {
+ public:
+  Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision, Normals normals);
+
+  /// What is added to the number of a vertex of the source.
+  std::uint32_t first_vertex() const { return first_vertex_; }
+  bool is_reversed() const { return first_vertex_ > 0; }
+  /// No vertex has moved.
+  bool is_source() const;
+  /// The source's normals as they are now, not turned round.
+  const NewNormals& new_normals() const { return normals_; }
+
+  /// As written.
+  Vec3d position(std::size_t v) const;
+  /// None for a vertex, or a normal, whose numbers stay as they are, but for an inner normal's sign.
+  std::optional<Vec3d> new_position(std::size_t v) const;
+  std::optional<Vec3d> new_normal(std::size_t n) const;
+
+  /// The three numbers of a text, each behind a blank.
+  void append_position(std::string& text, std::size_t v) const;
+  void append_normal(std::string& text, std::size_t n) const;
+  /// One of them; `word` is what the source has.
+  void append_coordinate(std::string& text, std::size_t v, int k, std::string_view word) const;
+  void append_normal_component(std::string& text, std::size_t n, int k, std::string_view word) const;
+
+ private:
+  std::string_view word_at(std::uint64_t byte) const;
+
+  const MeshFile& source_;
+  std::span<const Vec3d> positions_;
+  std::uint32_t first_vertex_;
+  Precision precision_;
+  NewNormals normals_;
+};
+
+/// A shell that is to be a file of its source's format. Refers to what it is made of.
+struct ShellContent {
+  const MeshFile& source;
+  const Shell& shell;
+  Precision precision;
+  Normals normals;
+  Skin outer{source, shell, ShellPart::Outer, precision, normals};
+  Skin inner{source, shell, ShellPart::Inner, precision, normals};
+
+  const Skin& skin(ShellPart part) const { return part == ShellPart::Inner ? inner : outer; }
+};
+using SharedShell = std::shared_ptr<const ShellContent>;
+
+// One writer a format. They add to `lost` what they do not keep. \throw InvalidInput if the source's file is not what
+// it was.
+Pieces shell_to_obj(const SharedShell& content, std::vector<std::string>& lost);
+Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost);
+Pieces shell_to_ply(const SharedShell& content, std::vector<std::string>& lost);
+Pieces shell_to_stl(const SharedShell& content, std::vector<std::string>& lost);
+
+}  // namespace vdb_offset::io

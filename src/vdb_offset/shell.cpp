@@ -1,0 +1,182 @@
+#include "vdb_offset/shell.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/parallel.h"
+#include "vdb_offset/triangulate.h"
+
+namespace vdb_offset {
+namespace {
+
+/// The side of a face along an edge: from its corner `corner` to the next one.
+struct EdgeSide {
+  std::uint32_t larger_end;  // of the edge's two places
+  std::uint32_t corner;
+};
+
+/// Calls visit(corner, from, to) for the sides of the faces that have an extent, in order: not for those between
+/// corners at one place, nor for faces that are no more than a line.
+template <class Visit>
+void for_each_side(PolygonView mesh, std::span<const std::uint32_t> place, Visit&& visit) {
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    const auto from = [&](std::size_t k) { return place[face[k]]; };
+    const auto to = [&](std::size_t k) { return place[face[k + 1 < face.size() ? k + 1 : 0]]; };
+    std::size_t sides = 0;
+    for (std::size_t k = 0; k < face.size(); ++k) sides += from(k) != to(k);
+    for (std::size_t k = 0; sides > 2 && k < face.size(); ++k)
+      if (from(k) != to(k)) visit(mesh.face_begin[f] + static_cast<std::uint32_t>(k), from(k), to(k));
+  }
+}
+
+/// Calls visit(smaller end, sides) for every edge, by place.
+template <class Visit>
+void visit_edges(PolygonView mesh, std::span<const std::uint32_t> place, Visit&& visit) {
+  std::vector<std::uint32_t> begin(mesh.positions.size() + 2, 0);
+  for_each_side(mesh, place, [&](auto, std::uint32_t from, std::uint32_t to) { ++begin[std::min(from, to) + 2]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<EdgeSide> sides(begin.back());
+  for_each_side(mesh, place, [&](std::uint32_t corner, std::uint32_t from, std::uint32_t to) {
+    sides[begin[std::min(from, to) + 1]++] = {std::max(from, to), corner};
+  });
+  const auto around = [&](std::size_t v) { return std::span(sides).subspan(begin[v], begin[v + 1] - begin[v]); };
+  for_each_index(mesh.positions.size(), [&](std::size_t v) {
+    std::sort(around(v).begin(), around(v).end(), [](const EdgeSide& a, const EdgeSide& b) {
+      return std::pair(a.larger_end, a.corner) < std::pair(b.larger_end, b.corner);
+    });
+  });
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    for (auto rest = around(v); !rest.empty();) {
+      std::size_t size = 1;
+      while (size < rest.size() && rest[size].larger_end == rest[0].larger_end) ++size;
+      visit(static_cast<std::uint32_t>(v), std::span<const EdgeSide>(rest.first(size)));
+      rest = rest.subspan(size);
+    }
+}
+
+/// The corners at which the mesh's border edges start, in ascending order.
+std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::uint32_t> place) {
+  std::vector<std::uint32_t> corners;
+  visit_edges(mesh, place, [&](auto, std::span<const EdgeSide> sides) {
+    if (sides.size() == 1) corners.push_back(sides[0].corner);
+  });
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+/// Both skins, without a rim.
+Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner) {
+  const auto vertices = static_cast<std::uint32_t>(outer.size()), corners = mesh.face_begin.back();
+  Shell shell;
+  std::vector<Vec3d>& positions = shell.polygons.positions;
+  std::vector<std::uint32_t>&all_corners = shell.polygons.corners, &face_begin = shell.polygons.face_begin;
+  positions.reserve(2 * outer.size());
+  positions.assign(outer.begin(), outer.end());
+  positions.insert(positions.end(), inner.begin(), inner.end());
+  all_corners.assign(mesh.corners.begin(), mesh.corners.end());
+  all_corners.resize(2 * mesh.corners.size());
+  face_begin.assign(mesh.face_begin.begin(), mesh.face_begin.end());
+  face_begin.resize(2 * mesh.face_count() + 1);
+  for_each_index(mesh.face_count(), [&](std::size_t f) {
+    const auto face = mesh.face(f);
+    face_begin[mesh.face_count() + f + 1] = corners + mesh.face_begin[f + 1];
+    for (std::size_t k = 0; k < face.size(); ++k)
+      all_corners[corners + mesh.face_begin[f] + k] = vertices + face[(face.size() - k) % face.size()];
+  });
+  return shell;
+}
+
+/// For each vertex of the shell one that stands for its place; kNone for one in no face. Vertices that are one in the
+/// mesh are one in each skin; whether others are, both skins' positions decide, so far as vertices are welded at all.
+std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::uint32_t> place_in_mesh,
+                                     bool by_position) {
+  const std::size_t count = shell.source_vertices();
+  std::vector<Vec3d> positions = shell.polygons.positions;
+  for_each_index(2 * count, [&](std::size_t v) {
+    const std::uint32_t first = place_in_mesh[v % count];
+    if (first != kNone) positions[v] = shell.polygons.positions[v < count ? first : count + first];
+  });
+  if (by_position) return weld_by_position({positions, shell.polygons.corners, shell.polygons.face_begin}, {});
+  std::vector<std::uint32_t> place(2 * count);
+  for_each_index(2 * count, [&](std::size_t v) {
+    place[v] = static_cast<std::uint32_t>(v >= count && positions[v] == positions[v - count] ? v - count : v);
+  });
+  return place;
+}
+
+/// Runs through each border edge against its face on the outer skin, and so with the face's own direction on the inner
+/// one, where faces are reversed.
+void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<const std::uint32_t> place,
+             Shell& shell) {
+  const auto inner = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const std::uint32_t corner : border) {
+    const auto face = std::upper_bound(mesh.face_begin.begin(), mesh.face_begin.end(), corner) - 1;
+    const Shell::RimOrigin edge{static_cast<std::uint32_t>(face - mesh.face_begin.begin()), corner};
+    const std::uint32_t from = mesh.corners[corner], to = mesh.corners[next_corner(mesh, edge)];
+    const std::uint32_t quad[4] = {to, from, from + inner, to + inner};
+    auto& corners = shell.polygons.corners;
+    const std::size_t first = corners.size();
+    for (const std::uint32_t v : quad)
+      if (corners.size() == first || place[v] != place[corners.back()]) corners.push_back(v);
+    while (corners.size() > first && place[corners.back()] == place[corners[first]]) corners.pop_back();
+    const std::size_t size = corners.size() - first;
+    if (size < 3) {
+      corners.resize(first);
+      continue;
+    }
+    shell.polygons.close_face();
+    shell.rim.push_back(edge);
+    ++(size == 4 ? shell.facts.rim_quads : shell.facts.rim_triangles);
+  }
+}
+
+void count_edges(std::span<const std::uint32_t> place, Shell& shell) {
+  ShellFacts& facts = shell.facts;
+  facts.closed = facts.oriented = true;
+  visit_edges(shell.polygons.view(), place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
+    const auto forwards = std::count_if(sides.begin(), sides.end(), [&](const EdgeSide& side) {
+      return place[shell.polygons.corners[side.corner]] == smaller;
+    });
+    facts.border_edges_left += sides.size() == 1;
+    facts.non_manifold_edges += sides.size() > 2;
+    facts.closed = facts.closed && sides.size() % 2 == 0;
+    facts.oriented = facts.oriented && 2 * static_cast<std::size_t>(forwards) == sides.size();
+  });
+}
+
+/// By the divergence theorem, from a corner of the shell so that far-away solids keep their digits.
+double enclosed_volume(PolygonView mesh) {
+  const Vec3d origin = mesh.positions[mesh.corners[0]];
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double six_times = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    triangles.clear();
+    triangulate(mesh.positions, mesh.face(f), triangles);
+    for (const auto& [i, j, k] : triangles)
+      six_times += (mesh.positions[i] - origin).dot((mesh.positions[j] - origin).cross(mesh.positions[k] - origin));
+  }
+  return six_times / 6;
+}
+
+}  // namespace
+
+Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner,
+                 const WeldOptions& weld) {
+  if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())
+    throw InvalidInput("shell: expected two skins of " + std::to_string(mesh.positions.size()) + " vertices, got " +
+                       std::to_string(outer.size()) + " and " + std::to_string(inner.size()));
+  const std::vector<std::uint32_t> place_in_mesh = weld_by_position(mesh, weld);
+  if (2 * mesh.positions.size() >= kNone)
+    throw InvalidInput("shell: expected fewer than 2^31 vertices, got " + std::to_string(mesh.positions.size()));
+  Shell shell = both_skins(mesh, outer, inner);
+  const std::vector<std::uint32_t> place = places_of(shell, place_in_mesh, weld.enabled);
+  add_rim(mesh, find_border(mesh, place_in_mesh), place, shell);
+  count_edges(place, shell);
+  shell.facts.volume = enclosed_volume(shell.polygons.view());
+  return shell;
+}
+
+}  // namespace vdb_offset
