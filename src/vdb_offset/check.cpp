@@ -89,13 +89,15 @@ void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOp
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  FaultFinder finder(query, places.source, result.distance, {});
+  const Body body{query, surface, {}, {}, {}, nullptr};
+  const Distances distances(result.distance);
+  FaultFinder finder(body, places.source, distances, {});
   finder.look_everywhere([&](std::uint32_t v) { return places.offset[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().size();
   result.crossings_near_source = finder.crossings_near_source();
   judge_vertices(surface, finder, options.precision, result);
-  result.interior = measure_interior(query, places.offset, std::abs(result.distance));
+  result.interior = measure_interior(body, places.offset, distances);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct CheckResult {
   std::size_t source_crossings = 0, crossings_near_source = 0;
   InteriorError interior;  ///< Of all faces.
 
-  bool valid() const { return faults.inverted + faults.collapsed + faults.crossings + wrong_side + torn == 0; }
+  bool valid() const { return faults.total() + wrong_side + torn == 0; }
 };
 
 /// Measures `positions` as an offset of `source`: exact distances, and what the faults of FaultFinder are. The result

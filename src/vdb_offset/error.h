@@ -15,9 +15,14 @@ struct InvalidInput : Error {
   using Error::Error;
 };
 
-/// An expression that cannot be understood. The message holds the column, counted from 1.
-struct InvalidExpression : Error {
+/// An option whose value cannot be understood, or names what the mesh does not have.
+struct InvalidOption : Error {
   using Error::Error;
+};
+
+/// An expression that cannot be understood. The message holds the column, counted from 1.
+struct InvalidExpression : InvalidOption {
+  using InvalidOption::InvalidOption;
 };
 
 /// A file that cannot be opened or read. The message starts with the file's name.

@@ -26,12 +26,13 @@ void sort_unique(Indices& indices) {
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-FaultFinder::FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance, Precision precision)
-    : query_(query),
-      surface_(query.surface()),
+FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
+                         Precision precision)
+    : body_(body),
+      surface_(body.surface),
       source_(source),
-      target_(std::abs(distance)),
-      side_(distance < 0 ? -1 : 1),
+      distances_(distances),
+      near_(1e-3 * distances.scale()),
       precision_(precision),
       place_(source.begin(), source.end()),
       away_(source.size()),
@@ -39,6 +40,7 @@ FaultFinder::FaultFinder(const ClosestQuery& query, std::span<const Vec3d> sourc
       right_side_(source.size(), 1),
       fault_(surface_.triangles.size(), Fault::None),
       finder_(surface_, place_) {
+  if (body.obstacles) clearance_.emplace(*body.obstacles);
   source_crossings_ = finder_.all();
   mark_near_source();
 }
@@ -89,14 +91,20 @@ void FaultFinder::look_for_crossings(const Indices& touched) {
 }
 
 void FaultFinder::measure(std::size_t v) {
-  const Vec3d x = place_[v] - surface_.origin;
   const auto vertex = static_cast<std::uint32_t>(v);
-  const Closest closest = query_(x, surface_.triangles_around(vertex).front());
+  distance_[v] = 0;
+  away_[v] = Vec3d(0.0);
+  right_side_[v] = 1;
+  // What stands where it was is on the front, or no part of it.
+  if (place_[v] == source_[v] || !body_.on_front(vertex)) return;
+  const Surface& front = body_.front.surface();
+  const Vec3d x = place_[v] - front.origin;
+  const Closest closest = body_.front(x, body_.hint(vertex));
   distance_[v] = closest.distance;
   away_[v] = x - closest.point;
-  const bool sided = surface_.facts.closed() && surface_.facts.oriented();
-  right_side_[v] = !sided || closest.distance <= 1e-3 * target_ ||
-                   side_ * surface_.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
+  const int side = distances_[v] < 0 ? -1 : 1;
+  if (front.facts.closed() && front.facts.oriented() && closest.distance > near_)
+    right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
 }
 
 /// How far rounding may have moved a vertex.
@@ -116,19 +124,36 @@ FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
   const Vec3d before = twice_area(t, source_), now = twice_area(t, place_);
   if (!(before.lengthSqr() > 0)) return Fault::None;
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
-  // A place very near the source says nothing; with none left the source's normal decides.
-  const double near = 1e-3 * target_;
-  bool any = false;
-  for (const auto v : surface_.triangles[t]) {
-    if (distance_[v] < near) continue;
-    any = true;
-    if (side_ * now.dot(away_[v]) >= 0) return Fault::None;
-  }
+  const bool against = body_.is_front(t) ? faces_against_front(t, before, now) : now.dot(before) < 0;
+  if (against) return Fault::Inverted;
+  return is_crowded(t) ? Fault::Crowded : Fault::None;
+}
+
+/// Faces that have not moved may be anywhere, obstacles themselves above all.
+bool FaultFinder::is_crowded(std::uint32_t t) const {
+  if (!clearance_) return false;
+  const auto& corners = surface_.triangles[t];
+  if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return place_[v] == source_[v]; }))
+    return false;
+  const Vec3d& origin = surface_.origin;
+  return clearance_->is_crowded(
+      {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
+}
+
+/// At each corner and at the centre, as far as they are off the front; with none of them, against the source's normal.
+bool FaultFinder::faces_against_front(std::uint32_t t, const Vec3d& before, const Vec3d& now) const {
   const auto& [a, b, c] = surface_.triangles[t];
-  const Vec3d centre = (place_[a] + place_[b] + place_[c]) / 3.0 - surface_.origin;
-  const Closest closest = query_(centre, t);
-  if (closest.distance >= near) return side_ * now.dot(centre - closest.point) < 0 ? Fault::Inverted : Fault::None;
-  return any || now.dot(before) < 0 ? Fault::Inverted : Fault::None;
+  const int side = distances_[a] + distances_[b] + distances_[c] < 0 ? -1 : 1;
+  bool any = false;
+  for (const auto v : {a, b, c}) {
+    if (distance_[v] < near_) continue;
+    any = true;
+    if (side * now.dot(away_[v]) >= 0) return false;
+  }
+  const Vec3d centre = (place_[a] + place_[b] + place_[c]) / 3.0 - body_.front.surface().origin;
+  const Closest closest = body_.front(centre, body_.hint(a));
+  if (closest.distance >= near_) return side * now.dot(centre - closest.point) < 0;
+  return any || now.dot(before) < 0;
 }
 
 void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of) {
@@ -149,15 +174,20 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
   for_each_index(
       touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
-  replace(misplaced_, moved, [&](std::uint32_t v) {
-    return !right_side_[v] || distance_[v] > target_ * (1 + kReachedTolerance) + rounding(v);
-  });
+  replace(misplaced_, moved, [&](std::uint32_t v) { return is_misplaced(v); });
   look_for_crossings(touched);
+}
+
+bool FaultFinder::is_misplaced(std::uint32_t v) const {
+  return !right_side_[v] || distance_[v] > std::abs(distances_[v]) * (1 + kReachedTolerance) + rounding(v);
 }
 
 FaultCounts FaultFinder::count() const {
   FaultCounts counts;
-  for (const auto t : faces_) ++(fault_[t] == Fault::Inverted ? counts.inverted : counts.collapsed);
+  for (const auto t : faces_)
+    ++(fault_[t] == Fault::Inverted    ? counts.inverted
+       : fault_[t] == Fault::Collapsed ? counts.collapsed
+                                       : counts.crowded);
   counts.crossings = crossings_.size();
   return counts;
 }

@@ -3,11 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "vdb_offset/closest.h"
+#include "vdb_offset/body.h"
+#include "vdb_offset/clearance.h"
 #include "vdb_offset/crossings.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/precision.h"
 
 namespace vdb_offset {
@@ -15,7 +18,10 @@ namespace vdb_offset {
 /// What may be wrong with a result.
 struct FaultCounts {
   std::size_t inverted = 0, collapsed = 0;  ///< Faces.
+  std::size_t crowded = 0;                  ///< Faces nearer to an obstacle than may be.
   std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
+
+  std::size_t total() const { return inverted + collapsed + crowded + crossings; }
 };
 
 /// Indices of vertices or triangles: sorted, no two the same.
@@ -24,16 +30,17 @@ void sort_unique(Indices& indices);
 
 /// What is wrong with an offset of a surface, as its vertices are moved about.
 ///
-/// A face is inverted if it faces against the direction away from the surface at its centre and at each corner (there,
-/// its distance has folded over), collapsed if its area is below 1e-6 of the source's. Crossings are found with exact
+/// A face is inverted if it faces against the direction away from the front at its centre and at each corner (there,
+/// its distance has folded over) or, being no part of the front, against its own source; collapsed if its area is below
+/// 1e-6 of the source's, crowded if it is too near to an obstacle. Crossings are found with exact
 /// predicates. All is judged on coordinates as they will be written, and only around what has moved since the last
 /// look. The result does not depend on the number of threads.
 class FaultFinder {
  public:
-  /// `source` holds where the surface's vertices stand in the input, world coordinates; they begin there. `distance` in
-  /// world units, not 0; negative is inward. Places are rounded to `precision`.
-  /// Keeps references to the query and the source.
-  FaultFinder(const ClosestQuery& query, std::span<const Vec3d> source, double distance, Precision precision);
+  /// `source` holds where the body's vertices stand in the input, world coordinates; they begin there. `distances` are
+  /// theirs; those that are not on the front do not matter. Places are rounded to `precision`.
+  /// Keeps references to all but the last.
+  FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision);
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them.
@@ -62,22 +69,25 @@ class FaultFinder {
   std::size_t crossings_near_source() const { return crossings_near_source_; }
 
  private:
-  enum class Fault : std::uint8_t { None, Inverted, Collapsed };
+  enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
   void mark_near_source();
   bool is_near_source(std::uint32_t triangle) const;
   Indices triangles_around(const Indices& vertices) const;
   void measure(std::size_t vertex);
   double rounding(std::size_t vertex) const;
+  bool is_misplaced(std::uint32_t vertex) const;
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
   Fault judge(std::uint32_t triangle) const;
+  bool is_crowded(std::uint32_t triangle) const;
+  bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   void look_for_crossings(const Indices& touched);
 
-  const ClosestQuery& query_;
+  const Body& body_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
-  double target_;
-  int side_;
+  const Distances& distances_;
+  double near_;  // what is nearer to the front says nothing about sides
   Precision precision_;
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
@@ -87,6 +97,7 @@ class FaultFinder {
   std::vector<TrianglePair> crossings_, source_crossings_;
   std::size_t crossings_near_source_ = 0;
   CrossingFinder finder_;
+  std::optional<ClearanceFinder> clearance_;
 };
 
 template <class Visit>

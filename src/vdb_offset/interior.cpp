@@ -7,21 +7,33 @@
 
 namespace vdb_offset {
 
-InteriorError measure_interior(const ClosestQuery& query, std::span<const Vec3d> places, double target,
+InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, const Distances& distances,
                                std::size_t most) {
-  const Surface& surface = query.surface();
+  const Surface& surface = body.surface;
+  const Vec3d origin = body.front.surface().origin;
   const std::size_t all = surface.triangles.size(), count = most == 0 ? all : std::min(all, most);
   constexpr std::size_t kSamples = 4;
-  std::vector<double> error(kSamples * count);
+  constexpr double kLeftOut = -1;
+  const double least_target = 1e-3 * distances.scale();
+  std::vector<double> error(kSamples * count, kLeftOut);
   const auto look = [&](std::size_t i) {
     const auto t = static_cast<std::uint32_t>(i * all / count);
+    if (!body.is_front(t)) return;
     const auto& [a, b, c] = surface.triangles[t];
     const Vec3d samples[kSamples] = {(places[a] + places[b] + places[c]) / 3.0, (places[a] + places[b]) / 2.0,
                                      (places[b] + places[c]) / 2.0, (places[c] + places[a]) / 2.0};
-    for (std::size_t k = 0; k < kSamples; ++k)
-      error[kSamples * i + k] = std::abs(query(samples[k] - surface.origin, t).distance - target) / target;
+    const double da = distances[a], db = distances[b], dc = distances[c];
+    const double targets[kSamples] = {std::abs(da + db + dc) / 3, std::abs(da + db) / 2, std::abs(db + dc) / 2,
+                                      std::abs(dc + da) / 2};
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      if (targets[k] <= least_target) continue;
+      const double distance = body.front(samples[k] - origin, body.hint(a)).distance;
+      error[kSamples * i + k] = std::abs(distance - targets[k]) / targets[k];
+    }
   };
   for_each_index(count, look, 64);
+  std::erase(error, kLeftOut);
+  if (error.empty()) return {};
   InteriorError result;
   result.samples = error.size();
   for (const double e : error) {

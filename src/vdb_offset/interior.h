@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <span>
 
-#include "vdb_offset/closest.h"
+#include "vdb_offset/body.h"
+#include "vdb_offset/distances.h"
 
 namespace vdb_offset {
 
@@ -14,9 +15,10 @@ struct InteriorError {
   double mean = 0, quantile_99 = 0, worst = 0;
 };
 
-/// `places` of the surface's vertices in world coordinates; `target` > 0. Looks at no more than `most` triangles,
-/// evenly taken from all; 0 is all. The result does not depend on the number of threads.
-InteriorError measure_interior(const ClosestQuery& query, std::span<const Vec3d> places, double target,
+/// `places` of the body's vertices in world coordinates; between them, their distances' mean is asked for. Looks at no
+/// more than `most` triangles, evenly taken from all; 0 is all. Samples that are asked to stay on the front, and
+/// triangles off it, are left out. The result does not depend on the number of threads.
+InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, const Distances& distances,
                                std::size_t most = 0);
 
 }  // namespace vdb_offset

@@ -29,17 +29,17 @@ constexpr int kReleases = 12;
 
 class Limiter {
  public:
-  Limiter(const ClosestQuery& query, std::span<const Vec3d> source, const LimitOptions& options, Paths& paths)
-      : query_(query),
-        surface_(query.surface()),
+  Limiter(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
+          Paths& paths)
+      : body_(body),
+        surface_(body.surface),
         source_(source),
-        options_(options),
-        target_(std::abs(options.distance)),
+        distances_(distances),
         paths_(paths),
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
         patch_(source.size(), kNone),
-        faults_(query, source, options.distance, options.precision) {
+        faults_(body_, source, distances, precision) {
     statistics_.source_crossings = faults_.source_crossings().size();
   }
 
@@ -57,10 +57,7 @@ class Limiter {
   }
 
  private:
-  std::size_t fault_count() const {
-    const FaultCounts counts = faults_.count();
-    return counts.inverted + counts.collapsed + counts.crossings;
-  }
+  std::size_t fault_count() const { return faults_.count().total(); }
 
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
   /// wrong, fronts have run through each other, and large patches take long for little. False if it is not worth
@@ -131,16 +128,19 @@ class Limiter {
     return faults;
   }
 
+  /// What has collided may slide to where there is room; what stays put or is bound to its path may not.
+  bool may_slide(std::uint32_t v) const {
+    const bool there = paths_.state[v] == VertexState::Reached || paths_.state[v] == VertexState::Collision;
+    return there && distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v);
+  }
+
   /// The vertices that may slide, so many rings around what is wrong.
   Indices patch_vertices(int rings) const {
     Indices chosen;
     faults_.for_each_wrong_corner([&](std::uint32_t v) { chosen.push_back(v); });
     sort_unique(chosen);
     chosen = with_rings(std::move(chosen), rings);
-    // What has collided may slide to where there is room.
-    std::erase_if(chosen, [&](std::uint32_t v) {
-      return paths_.state[v] != VertexState::Reached && paths_.state[v] != VertexState::Collision;
-    });
+    std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
     return chosen;
   }
 
@@ -150,7 +150,7 @@ class Limiter {
     const std::vector<std::size_t> before = faults_by_patch(patches.size());
     std::vector<Vec3d> old_way(chosen.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
-    const Untangler untangler(query_, options_.distance, attempt);
+    const Untangler untangler(body_, distances_, attempt);
     tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
     look(chosen);
     const std::vector<std::size_t> after = faults_by_patch(patches.size());
@@ -209,28 +209,31 @@ class Limiter {
 
   void finish() {
     double lost = 0;
+    std::size_t moving = 0;
     for (std::size_t v = 0; v < share_.size(); ++v) {
+      const double target = std::abs(distances_[v]);
+      if (target == 0 || !body_.on_front(static_cast<std::uint32_t>(v))) continue;
+      ++moving;
       const bool stayed = paths_.displacement[v] == way(v);
       paths_.displacement[v] = way(v);
       if (stayed) continue;
       const double distance = faults_.distance_of(static_cast<std::uint32_t>(v));
-      lost += std::max(0.0, paths_.achieved[v] - distance);
+      lost += std::max(0.0, paths_.achieved[v] - distance) / target;
       paths_.achieved[v] = distance;
-      if (std::abs(distance - target_) <= kReachedTolerance * target_) {
+      if (std::abs(distance - target) <= kReachedTolerance * target) {
         paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
       } else if (share_[v] != 1) {
         paths_.state[v] = VertexState::Limited;
         ++statistics_.limited_vertices;
       }
     }
-    statistics_.thickness_lost = lost / (target_ * static_cast<double>(std::max<std::size_t>(1, share_.size())));
+    statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
   }
 
-  const ClosestQuery& query_;
+  Body body_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
-  LimitOptions options_;
-  double target_;
+  const Distances& distances_;
   Paths& paths_;
   std::vector<Vec3d> whole_way_;
   std::vector<double> share_;  // of the way that a vertex goes
@@ -242,11 +245,11 @@ class Limiter {
 
 }  // namespace
 
-LimitStatistics limit(const ClosestQuery& query, std::span<const Vec3d> source, const LimitOptions& options,
+LimitStatistics limit(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
                       Paths& paths, const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Limit, kExpectedRounds);
-  return Limiter(query, source, options, paths).run(progress);
+  return Limiter(body, source, distances, precision, paths).run(progress);
 }
 
 }  // namespace vdb_offset

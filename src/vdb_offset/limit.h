@@ -8,11 +8,6 @@
 
 namespace vdb_offset {
 
-struct LimitOptions {
-  double distance;      ///< World units, not 0; negative is inward.
-  Precision precision;  ///< The result will be stored so, and is checked as such.
-};
-
 /// What limit() found and did.
 struct LimitStatistics {
   FaultCounts before;                     ///< In what propagate() made.
@@ -34,9 +29,10 @@ struct LimitStatistics {
 /// goes wrong. A surface pulled back altogether is the source, so that it ends. Pulled vertices are `Limited`, with the
 /// distance that they keep.
 ///
-/// `source` holds where the surface's vertices stand in the input, world coordinates.
+/// `source` holds where the body's vertices stand in the input, world coordinates; `distances` and `paths` are theirs,
+/// and who is not on the front has no way to go. The result will be stored with `precision`, and is checked as such.
 /// The result does not depend on the number of threads.
-LimitStatistics limit(const ClosestQuery& query, std::span<const Vec3d> source, const LimitOptions& options,
+LimitStatistics limit(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
                       Paths& paths, const ProgressCallback& progress = {});
 
 }  // namespace vdb_offset

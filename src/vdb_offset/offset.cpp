@@ -11,6 +11,7 @@
 #include "vdb_offset/directions.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/rasterise.h"
+#include "vdb_offset/slide.h"
 
 namespace vdb_offset {
 namespace {
@@ -41,8 +42,10 @@ int thread_count(const OffsetOptions& options) {
   return options.threads > 0 ? std::min(options.threads, most) : most;
 }
 
-void require_finite_distance(const OffsetOptions& options) {
-  if (!std::isfinite(options.distance)) throw InvalidInput("offset: expected a finite distance");
+void require_one_each(PolygonView mesh, const Distances& distances) {
+  if (!distances.uniform() && distances.count() != mesh.positions.size())
+    throw InvalidInput("offset: expected a distance for each of " + std::to_string(mesh.positions.size()) +
+                       " vertices, got " + std::to_string(distances.count()));
 }
 
 OffsetResult unmoved(PolygonView mesh) {
@@ -53,28 +56,76 @@ OffsetResult unmoved(PolygonView mesh) {
   return result;
 }
 
+/// The distances of the body's vertices: the mean of those of the input's vertices at one place, who go as one; 0 for
+/// what stays.
+Distances distances_on(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing) {
+  const bool all_move = work.front_vertex.empty();
+  if (of_input.uniform() && all_move) return of_input;
+  const Surface& surface = work.surface();
+  const std::size_t count = surface.vertices.size();
+  std::vector<double> sum(count, 0.0);
+  std::vector<std::uint32_t> copies(count, 0), apart(count, 0);
+  for (std::size_t v = 0; v < surface.welded.size(); ++v) {
+    const auto w = surface.welded[v];
+    if (w == kNone) continue;
+    sum[w] += of_input[v];
+    ++copies[w];
+    apart[w] += of_input[v] != of_input[surface.representative[w]];
+  }
+  for (std::size_t w = 0; w < count; ++w) {
+    disagreeing += apart[w];
+    const bool stays = !all_move && (work.front_vertex[w] == kNone || (border == Border::Fixed && work.at_border[w]));
+    if (stays) sum[w] = 0;
+    else sum[w] = apart[w] ? sum[w] / copies[w] : of_input[surface.representative[w]];  // not rounded where all agree
+  }
+  return Distances(std::move(sum));
+}
+
+/// Those of the front's vertices among the body's.
+Distances distances_on_front(const Workpiece& work, const Distances& of_body) {
+  if (work.front_vertex.empty() || of_body.uniform()) return of_body;
+  std::vector<double> each(work.front.vertices.size(), 0.0);
+  for (std::size_t w = 0; w < work.front_vertex.size(); ++w)
+    if (work.front_vertex[w] != kNone) each[work.front_vertex[w]] = of_body[w];
+  return Distances(std::move(each));
+}
+
+/// The front's paths as those of the body's vertices; who is not on the front stays, as was asked.
+Paths paths_of_body(const Workpiece& work, Paths of_front) {
+  if (work.front_vertex.empty()) return of_front;
+  const std::size_t count = work.front_vertex.size();
+  Paths paths{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<double>(count, 0.0),
+              std::vector<VertexState>(count, VertexState::Reached), of_front.straight};
+  for (std::size_t w = 0; w < count; ++w) {
+    const auto f = work.front_vertex[w];
+    if (f == kNone) continue;
+    paths.displacement[w] = of_front.displacement[f];
+    paths.achieved[w] = of_front.achieved[f];
+    paths.state[w] = of_front.state[f];
+  }
+  return paths;
+}
+
+/// Hands the surface's distances back to the input's vertices.
+Distances distances_of_input(const Surface& surface, const Distances& distances) {
+  if (distances.uniform()) return distances;
+  std::vector<double> each(surface.welded.size(), 0.0);
+  for (std::size_t v = 0; v < each.size(); ++v)
+    if (surface.welded[v] != kNone) each[v] = distances[surface.welded[v]];
+  return Distances(std::move(each));
+}
+
 /// Hands the surface vertices' paths to the input's vertices.
 void move_vertices(PolygonView mesh, const Surface& surface, const Paths& paths, OffsetResult& result) {
   for (std::size_t v = 0; v < result.positions.size(); ++v) {
     const auto w = surface.welded[v];
     if (w == kNone) continue;
-    result.positions[v] = mesh.positions[surface.representative[w]] + paths.displacement[w];
+    if (paths.displacement[w] != Vec3d(0.0))  // else it keeps its place, welded with a tolerance though it may be
+      result.positions[v] = mesh.positions[surface.representative[w]] + paths.displacement[w];
     result.states[v] = paths.state[w];
     result.achieved[v] = paths.achieved[w];
   }
   result.statistics.straight_vertices = paths.straight;
-}
-
-/// Where the surface's vertices stand in the input, to the last bit.
-std::vector<Vec3d> source_positions(PolygonView mesh, const Surface& surface) {
-  std::vector<Vec3d> positions;
-  positions.reserve(surface.representative.size());
-  for (const auto v : surface.representative) positions.push_back(mesh.positions[v]);
-  return positions;
-}
-
-std::vector<Vec3d> moved_places(PolygonView mesh, const Surface& surface, const OffsetResult& result) {
-  return source_positions({result.positions, mesh.corners, mesh.face_begin}, surface);
 }
 
 void describe_field(const DistanceField& field, const DirectionField& directions, OffsetStatistics& statistics) {
@@ -85,63 +136,142 @@ void describe_field(const DistanceField& field, const DirectionField& directions
   statistics.gradient_bytes = directions.gradient->memUsage();
 }
 
-/// The pipeline: surface, front, field, directions, paths, and what of them is valid.
-void run(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
-  OffsetStatistics& statistics = result.statistics;
-  Front front;
-  Surface surface;
-  {
-    const StageTimer timer(statistics, Stage::Rasterise);
-    surface = build_surface(mesh, options.weld, options.orient);
-    statistics.facts = surface.facts;
-    statistics.plan = plan_grid(surface, options.distance, options.grid, options.max_memory, statistics.threads);
-    place(surface, statistics.plan.voxel_size);
-    front = rasterise(surface, {statistics.plan.voxel_size, statistics.plan.band}, options.progress);
-  }
-  DistanceField field;
-  {
-    const StageTimer timer(statistics, Stage::Sweep);
-    field = sweep(std::move(front), surface, {options.solver, statistics.plan.reach}, options.progress);
-  }
-  std::optional<ClosestQuery> query;
-  Paths paths;
-  {
-    const StageTimer timer(statistics, Stage::Propagate);
-    const DirectionField directions = make_directions(field, !surface.facts.closed() || !surface.facts.oriented());
-    describe_field(field, directions, statistics);
-    query.emplace(surface);
-    paths = propagate(*query, directions, {options.distance}, options.progress);
-  }
-  if (options.collision == Collision::Limit) {
-    const StageTimer timer(statistics, Stage::Limit);
-    statistics.limit =
-        limit(*query, source_positions(mesh, surface), {options.distance, options.precision}, paths, options.progress);
-  }
-  move_vertices(mesh, surface, paths, result);
-  statistics.interior =
-      measure_interior(*query, moved_places(mesh, surface, result), std::abs(options.distance), kInteriorTriangles);
-  if (options.keep_field) result.field = std::make_shared<DistanceField>(std::move(field));
+/// How far any vertex goes on each side, for any of the distances.
+Reach farthest_of(std::span<const Distances> distances) {
+  Reach farthest{0, 0};
+  for (const Distances& d : distances)
+    farthest = {std::max(farthest.inside, d.inward()), std::max(farthest.outside, d.outward())};
+  return farthest;
 }
 
-/// A distance of 0 needs no field: every vertex in use is where it should be.
-void run_nothing(PolygonView mesh, const OffsetOptions& options, OffsetResult& result) {
-  const Surface surface = build_surface(mesh, options.weld, options.orient);
-  result.statistics.facts = surface.facts;
-  for (std::size_t v = 0; v < result.states.size(); ++v)
-    if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
-}
+bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthest.outside > 0; }
+
+/// The pipeline: surface, front, field, directions, paths, and what of them is valid.
+class Pipeline {
+ public:
+  Pipeline(PolygonView mesh, const OffsetOptions& options, int threads)
+      : mesh_(mesh), options_(options), threads_(threads) {}
+
+  std::vector<OffsetResult> run(std::span<const Distances> wanted) {
+    const Reach farthest = farthest_of(wanted);
+    {
+      const StageTimer timer(shared_, Stage::Rasterise);
+      work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
+    }
+    shared_.facts = work_.surface().facts;
+    shared_.threads = threads_;
+    for (const Distances& distances : wanted) {
+      shared_.disagreeing_distances = 0;
+      distances_.push_back(distances_on(work_, options_.border, distances, shared_.disagreeing_distances));
+    }
+    std::vector<Paths> paths(wanted.size());
+    if (goes_anywhere(farthest)) {
+      make_field(farthest);
+      paths = march();
+    }
+    std::vector<OffsetResult> results;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      results.push_back(goes_anywhere(farthest) ? finish(distances_[i], paths[i]) : stay(distances_[i]));
+    if (options_.keep_field && goes_anywhere(farthest))
+      results.front().field = std::make_shared<DistanceField>(std::move(field_));
+    return results;
+  }
+
+ private:
+  void make_field(const Reach& farthest) {
+    Front front;
+    {
+      const StageTimer timer(shared_, Stage::Rasterise);
+      shared_.plan = plan_grid(work_.front, farthest, options_.grid, options_.max_memory, threads_);
+      place(work_, shared_.plan.voxel_size);
+      front = rasterise(work_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
+    }
+    const StageTimer timer(shared_, Stage::Sweep);
+    field_ = sweep(std::move(front), work_.front, {options_.solver, shared_.plan.reach}, options_.progress);
+  }
+
+  /// One march for all distances.
+  std::vector<Paths> march() {
+    const StageTimer timer(shared_, Stage::Propagate);
+    const MeshFacts& facts = work_.front.facts;
+    const DirectionField directions = make_directions(field_, !facts.closed() || !facts.oriented());
+    describe_field(field_, directions, shared_);
+    query_.emplace(work_.front);
+    if (work_.obstacles) obstacles_.emplace(*work_.obstacles);
+    if (obstacles_) keep_away_.emplace(Obstacles{*obstacles_, options_.clearance});
+    std::vector<Distances> on_front;
+    for (const Distances& distances : distances_) on_front.push_back(distances_on_front(work_, distances));
+    std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      if (options_.border == Border::Slide) slide_borders(work_, *query_, on_front[i], paths[i]);
+      paths[i] = paths_of_body(work_, std::move(paths[i]));
+    }
+    return paths;
+  }
+
+  /// Makes one of the results valid, and measures it.
+  OffsetResult finish(const Distances& distances, Paths& paths) {
+    OffsetResult result = unmoved(mesh_);
+    result.statistics = shared_;
+    const Surface& surface = work_.surface();
+    const Body body = work_.body(*query_, keep_away());
+    const std::vector<Vec3d> source = work_.source(mesh_);
+    if (options_.collision == Collision::Limit) {
+      const StageTimer timer(result.statistics, Stage::Limit);
+      result.statistics.limit = limit(body, source, distances, options_.precision, paths, options_.progress);
+    }
+    move_vertices(mesh_, surface, paths, result);
+    result.distances = distances_of_input(surface, distances);
+    std::vector<Vec3d> places = source;
+    for (std::size_t w = 0; w < places.size(); ++w) places[w] += paths.displacement[w];
+    result.statistics.interior = measure_interior(body, places, distances, kInteriorTriangles);
+    return result;
+  }
+
+  /// A distance of 0 needs no field: every vertex in use is where it should be.
+  OffsetResult stay(const Distances& distances) const {
+    OffsetResult result = unmoved(mesh_);
+    result.statistics = shared_;
+    result.distances = distances_of_input(work_.surface(), distances);
+    for (std::size_t v = 0; v < result.states.size(); ++v)
+      if (work_.surface().welded[v] != kNone) result.states[v] = VertexState::Reached;
+    return result;
+  }
+
+  const Obstacles* keep_away() const { return keep_away_ ? &*keep_away_ : nullptr; }
+
+  PolygonView mesh_;
+  const OffsetOptions& options_;
+  int threads_;
+  OffsetStatistics shared_;  // by all results
+  Workpiece work_;
+  std::vector<Distances> distances_;  // of the body's vertices, one set for each result
+  DistanceField field_;
+  std::optional<ClosestQuery> query_, obstacles_;
+  std::optional<Obstacles> keep_away_;
+};
 
 }  // namespace
 
-OffsetResult offset(PolygonView mesh, const OffsetOptions& options) {
-  require_finite_distance(options);
-  OffsetResult result = unmoved(mesh);
-  result.statistics.threads = thread_count(options);
+std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
+                                         const OffsetOptions& options) {
+  if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
+  for (const Distances& each : distances) require_one_each(mesh, each);
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
+    throw InvalidInput("clearance: expected a length >= 0, got " + std::to_string(options.clearance));
+  const int threads = thread_count(options);
+  std::vector<OffsetResult> results;
   // An arena of its own keeps the number of threads a matter of this call alone.
-  tbb::task_arena arena(result.statistics.threads);
-  arena.execute([&] { options.distance == 0 ? run_nothing(mesh, options, result) : run(mesh, options, result); });
-  for (const VertexState state : result.states) ++result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
-  return result;
+  tbb::task_arena arena(threads);
+  arena.execute([&] { results = Pipeline(mesh, options, threads).run(distances); });
+  for (OffsetResult& result : results)
+    for (const VertexState state : result.states)
+      ++result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
+  return results;
+}
+
+OffsetResult offset(PolygonView mesh, const OffsetOptions& options) {
+  return std::move(offset_several(mesh, {&options.distance, 1}, options).front());
 }
 
 OffsetResult offset(Mesh& mesh, const OffsetOptions& options) {
@@ -165,13 +295,17 @@ double used_diagonal(PolygonView mesh) {
 }
 
 OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options) {
-  require_finite_distance(options);
+  return plan_several(mesh, {&options.distance, 1}, options);
+}
+
+OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options) {
   OffsetStatistics statistics;
   statistics.threads = thread_count(options);
-  const Surface surface = build_surface(mesh, options.weld, options.orient);
-  statistics.facts = surface.facts;
-  if (options.distance != 0)
-    statistics.plan = plan_grid(surface, options.distance, options.grid, options.max_memory, statistics.threads);
+  const Workpiece work = build_workpiece(mesh, {options.only, options.obstacles, options.weld, options.orient});
+  statistics.facts = work.surface().facts;
+  const Reach farthest = farthest_of(distances);
+  if (goes_anywhere(farthest))
+    statistics.plan = plan_grid(work.front, farthest, options.grid, options.max_memory, statistics.threads);
   return statistics;
 }
 

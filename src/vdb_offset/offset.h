@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "vdb_offset/distances.h"
 #include "vdb_offset/interior.h"
 #include "vdb_offset/limit.h"
 #include "vdb_offset/mesh.h"
@@ -13,6 +14,7 @@
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/surface.h"
 #include "vdb_offset/sweep.h"
+#include "vdb_offset/workpiece.h"
 
 namespace vdb_offset {
 
@@ -23,8 +25,16 @@ enum class Collision {
 };
 
 struct OffsetOptions {
-  double distance = 0;  ///< World units; negative is inward, 0 leaves everything where it is.
+  /// World units, one for all or one for each vertex of the input; negative is inward, 0 leaves a vertex where it is.
+  /// Vertices that move as one go their numbers' mean.
+  Distances distance;
   GridOptions grid;
+  /// Of each face: 1 for those that are offset; the others stay, and are in the way. Distances are those from the part.
+  /// Empty: all are.
+  std::vector<std::uint8_t> only;
+  Border border = Border::Slide;  ///< What the edge of that part does.
+  PolygonView obstacles;          ///< Other geometry that nothing may touch, or come nearer to than `clearance`.
+  double clearance = 0;           ///< World units, >= 0.
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
@@ -46,6 +56,7 @@ struct OffsetStatistics {
   std::array<double, kStageCount> seconds{};  ///< By Stage.
   std::array<std::size_t, kVertexStateCount> vertices_by_state{};
   std::size_t straight_vertices = 0;
+  std::size_t disagreeing_distances = 0;  ///< Vertices that move with one of which another distance was asked.
   LimitStatistics limit;
   InteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
 };
@@ -54,6 +65,7 @@ struct OffsetResult {
   std::vector<Vec3d> positions;     ///< One per input vertex, in the input's order.
   std::vector<VertexState> states;  ///< One per input vertex.
   std::vector<double> achieved;     ///< Exact unsigned distance to the input surface, world units.
+  Distances distances;              ///< What was asked of each input vertex, in the end.
   OffsetStatistics statistics;
   std::shared_ptr<DistanceField> field;  ///< Only with keep_field and a distance other than 0.
 };
@@ -65,7 +77,12 @@ struct OffsetResult {
 /// Cancelled when the progress callback asks for it.
 OffsetResult offset(PolygonView mesh, const OffsetOptions& options);
 
-/// The same for a half-edge mesh, whose points are replaced. \pre no deleted elements.
+/// Several offsets of one mesh, for little more than one: one field and one march serve all. `options.distance` does
+/// not count. Directions are smoothed as for the farthest. Answers come in the order of `distances`.
+std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
+                                         const OffsetOptions& options);
+
+/// The same as offset() for a half-edge mesh, whose points are replaced. \pre no deleted elements.
 OffsetResult offset(Mesh& mesh, const OffsetOptions& options);
 
 /// Diagonal of the bounding box of the vertices that faces use, which percentages of a distance refer to.
@@ -73,5 +90,7 @@ double used_diagonal(PolygonView mesh);
 
 /// What offset() would do, without doing it: the mesh's facts and the plan of the grid.
 OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options);
+/// The same for offset_several().
+OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options);
 
 }  // namespace vdb_offset

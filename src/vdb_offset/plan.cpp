@@ -95,12 +95,13 @@ double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf)
   return std::min(counted * ratio * ratio * ratio, std::max(slab, counted * ratio));
 }
 
-GridPlan estimate(const Surface& surface, double distance, double h, int threads) {
+double longer(const Reach& farthest) { return std::max(farthest.inside, farthest.outside); }
+
+GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int threads) {
   GridPlan plan;
   plan.voxel_size = h;
   plan.band = kBandVoxels * h;
-  const double far = std::abs(distance) + kHaloVoxels * h, near = kHaloVoxels * h;
-  plan.reach = distance < 0 ? Reach{far, near} : Reach{near, far};
+  plan.reach = {farthest.inside + kHaloVoxels * h, farthest.outside + kHaloVoxels * h};
   const double leaves = count_leaf_nodes(surface, plan.reach, 8 * h);
   const double vertices = static_cast<double>(surface.facts.vertices),
                triangles = static_cast<double>(surface.triangles.size());
@@ -125,15 +126,15 @@ bool fits(const GridPlan& plan, const MeshFacts& facts, std::size_t max_memory) 
 constexpr double kCoarser = 1.25;  // one step when looking for a size that fits
 
 /// The finest size, in steps from `h`, that fits; 0 if even a grid of a few voxels does not.
-double coarsen_until_it_fits(const Surface& surface, double distance, double h, std::size_t max_memory) {
-  const double coarsest = 4 * (surface.facts.diagonal + std::abs(distance));
+double coarsen_until_it_fits(const Surface& surface, const Reach& farthest, double h, std::size_t max_memory) {
+  const double coarsest = 4 * (surface.facts.diagonal + longer(farthest));
   for (; h < coarsest; h *= kCoarser)
-    if (fits(estimate(surface, distance, h, 1), surface.facts, max_memory)) return h;
+    if (fits(estimate(surface, farthest, h, 1), surface.facts, max_memory)) return h;
   return 0;
 }
 
-void refuse(const GridPlan& plan, const Surface& surface, double distance, std::size_t max_memory) {
-  const double fitting = coarsen_until_it_fits(surface, distance, plan.voxel_size, max_memory);
+void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest, std::size_t max_memory) {
+  const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory);
   const auto mib = [](std::size_t bytes) { return static_cast<double>(bytes) / 1048576.0; };
   throw OutOfBudget(fmt::format(
       "plan: expected a grid that fits into {:.0f} MiB and {:.0f} voxels across, got about {:.0f} MiB in {} leaf nodes "
@@ -147,8 +148,8 @@ struct Choice {
   std::string reason;
 };
 
-Choice choose(const MeshFacts& facts, double distance) {
-  const double d = std::abs(distance), edge_floor = facts.median_edge / 2, diagonal_floor = facts.diagonal / 1024;
+Choice choose(const MeshFacts& facts, double d) {
+  const double edge_floor = facts.median_edge / 2, diagonal_floor = facts.diagonal / 1024;
   const double floor = std::max(edge_floor, diagonal_floor), ceiling = std::max(facts.diagonal / 64, d / 16);
   if (d < floor && floor <= ceiling)
     return {floor, edge_floor >= diagonal_floor ? "half the median edge, as the distance is smaller"
@@ -161,15 +162,16 @@ Choice choose(const MeshFacts& facts, double distance) {
 
 }  // namespace
 
-GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
+GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
                    int threads) {
   const MeshFacts& facts = surface.facts;
+  const double distance = longer(farthest);
   if (!std::isfinite(distance) || distance == 0)
     throw InvalidInput(fmt::format("plan: expected a finite distance other than 0, got {}", distance));
   if (!(facts.diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point");
   // phi is stored in single precision.
-  for (const double length : {facts.diagonal, std::abs(distance), options.voxel_size.value_or(facts.diagonal),
-                              std::abs(distance) / options.voxels_per_distance.value_or(1)})
+  for (const double length : {facts.diagonal, distance, options.voxel_size.value_or(facts.diagonal),
+                              distance / options.voxels_per_distance.value_or(1)})
     if (!(length > 1e-30 && length < 1e30))
       throw InvalidInput(
           fmt::format("plan: expected a diagonal, a distance and a voxel size from 1e-30 to 1e30, got "
@@ -185,17 +187,22 @@ GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& o
   if (options.voxel_size) {
     choice = {*options.voxel_size, "as given"};
   } else if (options.voxels_per_distance) {
-    choice = {std::abs(distance) / *options.voxels_per_distance,
+    choice = {distance / *options.voxels_per_distance,
               fmt::format("distance / {:.6g}, as given", *options.voxels_per_distance)};
   } else {
     choice = choose(facts, distance);
-    const double fitting = coarsen_until_it_fits(surface, distance, choice.voxel_size, max_memory);
+    const double fitting = coarsen_until_it_fits(surface, farthest, choice.voxel_size, max_memory);
     if (fitting > choice.voxel_size) choice = {fitting, "the finest that the memory allows"};
   }
-  GridPlan plan = estimate(surface, distance, choice.voxel_size, threads);
+  GridPlan plan = estimate(surface, farthest, choice.voxel_size, threads);
   plan.reason = choice.reason;
-  if (!fits(plan, facts, max_memory)) refuse(plan, surface, distance, max_memory);
+  if (!fits(plan, facts, max_memory)) refuse(plan, surface, farthest, max_memory);
   return plan;
+}
+
+GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
+                   int threads) {
+  return plan_grid(surface, distance < 0 ? Reach{-distance, 0} : Reach{0, distance}, options, max_memory, threads);
 }
 
 }  // namespace vdb_offset

@@ -84,6 +84,35 @@ Start start_of(const Surface& surface, std::uint32_t vertex) {
   return best;
 }
 
+/// A distance, above 0, that a vertex is to stop at, and the set of distances that asks for it.
+struct Stop {
+  double distance;
+  std::size_t set;
+};
+
+/// How far a point may go in any direction before it is too near to an obstacle; below 0 if it is.
+double room_at(const Obstacles& obstacles, const Vec3d& x, std::uint32_t& hint) {
+  const Closest closest = obstacles.query(x, hint);
+  hint = closest.triangle;
+  return closest.distance - obstacles.clearance;
+}
+
+/// The first point from `from` to `to` that is as near to an obstacle as may be: balls that hold no obstacle, one after
+/// the other. `to`, if there is none.
+Vec3d stop_at_obstacle(const Obstacles& obstacles, const Vec3d& from, const Vec3d& to) {
+  constexpr int kMostBalls = 1000;
+  constexpr double kTouches = 1e-9;
+  const double length = (to - from).length();
+  std::uint32_t hint = 0;
+  double gone = 0;
+  for (int i = 0; i < kMostBalls && gone < length; ++i) {
+    const double room = room_at(obstacles, from + (to - from) * (gone / length), hint);
+    if (room <= kTouches * length) return from + (to - from) * (gone / length);
+    gone += room;
+  }
+  return gone < length ? from + (to - from) * (gone / length) : to;
+}
+
 /// One vertex on its way.
 class Traveller {
  public:
@@ -92,13 +121,14 @@ class Traveller {
   /// it is nearer to that than it believes.
   enum class Pace { Careful, Hasty };
 
-  Traveller(const ClosestQuery& query, const DirectionField& field, const DirectionSampler& sampler, double distance,
-            std::uint32_t vertex, Pace pace)
+  /// `side` is 1 on the way outward, -1 inward.
+  Traveller(const ClosestQuery& query, const DirectionField& field, const DirectionSampler& sampler, int side,
+            std::uint32_t vertex, Pace pace, const Obstacles* obstacles = nullptr)
       : query_(query),
+        obstacles_(obstacles),
         sampler_(sampler),
         surface_(query.surface()),
-        side_(distance < 0 ? -1 : 1),
-        target_(std::abs(distance)),
+        side_(side),
         h_(field.voxel_size),
         sided_(surface_.facts.closed() && surface_.facts.oriented()),
         origin_(surface_.vertices[vertex]),
@@ -114,9 +144,10 @@ class Traveller {
     bool outside_field = false;
   };
 
-  /// The point at distance d on the line along the normal, if nothing but the faces around the vertex decides phi
-  /// on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
-  std::optional<Vec3d> go_straight() {
+  /// The point at distance `target` on the line along the normal, if nothing but the faces around the vertex decides
+  /// phi on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
+  std::optional<Vec3d> go_straight(double target) {
+    target_ = target;
     if (slope_ < kLeastStraightSlope) return std::nullopt;
     const double longest = target_ / slope_ * (1 + kStraightTolerance);
     double t = target_, before = 0, phi_before = 0;
@@ -133,30 +164,47 @@ class Traveller {
     return std::nullopt;
   }
 
-  /// Where the smooth directions lead.
-  Arrival march() {
+  /// Where the smooth directions lead: tell(stop, arrival) for each of the stops, which are at rising distances.
+  template <class Tell>
+  void march(std::span<const Stop> stops, Tell&& tell) {
+    target_ = stops.front().distance;
     const auto first = leave_surface();
-    if (!first) return {origin_};
-    Sample here = *first;
-    Peak peak{{origin_, 0, normal_}, here, here};
+    if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
+      for (const Stop& stop : stops) tell(stop, Arrival{origin_});
+      return;
+    }
+    std::size_t passed = 0;
+    Sample before{origin_, 0, normal_}, here = *first;
+    Peak peak{before, here, here};
     double since_peak = 0;
-    for (int i = 0; i < kMaxSteps && since_peak < kPatience * target_; ++i) {
-      if (here.phi >= target_) return {cut({origin_, 0, normal_}, here), outside_};
+    for (int i = 0;; ++i) {
+      for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
+        tell(stops[passed], Arrival{arrived(here.phi) ? here.x : cut(before, here), outside_});
+        if (++passed == stops.size()) return;
+      }
+      if (i == kMaxSteps || !(since_peak < kPatience * target_)) break;
       // Not far beyond the target, which the last step is cut at; not much less than a voxel, for a slow climb.
       const double step = std::min(
           {kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, kLeastStep * std::min(h_, target_))});
-      const Sample next = measure(runge_kutta(here, step));
-      if (arrived(next.phi)) return {next.x, outside_};
-      if (next.phi > target_) return {cut(here, next), outside_};
+      Sample next = measure(runge_kutta(here, step));
+      bool in_the_way = false;
+      if (obstacles_) {
+        const Vec3d end = stop_at_obstacle(*obstacles_, here.x, next.x);
+        in_the_way = end != next.x;
+        if (in_the_way) next = measure(end);
+      }
       since_peak += step;
       if (peak.at.x == here.x) peak.after = next;
       if (next.phi > peak.at.phi) {
         if (next.phi - peak.at.phi > kSlowest * step) since_peak = 0;
         peak = {here, next, next};
       }
+      before = here;
       here = next;
+      if (in_the_way) return tell_blocked(before, here, stops.subspan(passed), tell);
     }
-    return {climb(peak), outside_};
+    const Vec3d end = climb(peak);
+    for (const Stop& stop : stops.subspan(passed)) tell(stop, Arrival{end, outside_});
   }
 
  private:
@@ -169,6 +217,15 @@ class Traveller {
   struct Peak {
     Sample before, at, after;
   };
+
+  /// An obstacle ends the way at `end`; some stops may lie before that.
+  template <class Tell>
+  void tell_blocked(const Sample& before, const Sample& end, std::span<const Stop> stops, Tell&& tell) {
+    for (const Stop& stop : stops) {
+      target_ = stop.distance;
+      tell(stop, Arrival{end.phi > target_ ? cut(before, end) : end.x, outside_});
+    }
+  }
 
   Sample measure(const Vec3d& x) {
     if (pace_ == Pace::Careful) {
@@ -287,10 +344,11 @@ class Traveller {
   }
 
   const ClosestQuery& query_;
+  const Obstacles* obstacles_;
   const DirectionSampler& sampler_;
   const Surface& surface_;
   int side_;
-  double target_, h_;
+  double target_ = 0, h_;
   bool sided_;
   Vec3d origin_, normal_;  // of the vertex; the normal points to the side asked for
   double slope_;
@@ -302,8 +360,8 @@ class Traveller {
 
 /// Tries the straight paths of all vertices; a component of which one vertex has none has none at all.
 /// Returns, by component, whether all of its vertices have arrived that way.
-std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const DirectionField& directions, double distance,
-                                      std::vector<Vec3d>& arrival) {
+std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const DirectionField& directions,
+                                      const Distances& distances, std::vector<Vec3d>& arrival) {
   const Surface& surface = query.surface();
   // A flag only ever falls; who sees it late does work that is not used.
   std::vector<std::atomic<std::uint8_t>> straight(surface.facts.components);
@@ -312,15 +370,101 @@ std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const Direction
     const DirectionSampler sampler(directions);
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
       auto& flag = straight[surface.component[v]];
-      if (!flag.load(std::memory_order_relaxed)) continue;
-      const auto vertex = static_cast<std::uint32_t>(v);
-      const auto end = Traveller(query, directions, sampler, distance, vertex, Traveller::Pace::Careful).go_straight();
+      if (!flag.load(std::memory_order_relaxed) || distances[v] == 0) continue;
+      const int side = distances[v] < 0 ? -1 : 1;
+      const auto end =
+          Traveller(query, directions, sampler, side, static_cast<std::uint32_t>(v), Traveller::Pace::Careful)
+              .go_straight(std::abs(distances[v]));
       if (end) arrival[v] = *end;
       else flag.store(0, std::memory_order_relaxed);
     }
   });
   return {straight.begin(), straight.end()};
 }
+
+/// The marches of a run: all vertices, for all sets of distances.
+class Marches {
+ public:
+  Marches(const ClosestQuery& query, const DirectionField& directions, std::span<const Distances> distances,
+          const Obstacles* obstacles, std::vector<Paths>& paths)
+      : query_(query),
+        surface_(query.surface()),
+        directions_(directions),
+        distances_(distances),
+        obstacles_(obstacles),
+        paths_(paths) {
+    const std::size_t count = surface_.vertices.size();
+    for (std::size_t set = 0; set < distances.size(); ++set) {
+      paths[set].displacement.resize(count);
+      paths[set].achieved.resize(count);
+      paths[set].state.resize(count);
+      arrival_.emplace_back(count);
+      straight_.push_back(go_straight(query, directions, distances[set], arrival_.back()));
+      for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_straight(set, v);
+    }
+  }
+
+  /// Moves the vertices of a range.
+  void operator()(const tbb::blocked_range<std::size_t>& range) const {
+    const DirectionSampler sampler(directions_);
+    std::vector<Stop> stops;
+    for (std::size_t v = range.begin(); v != range.end(); ++v)
+      for (const int side : {1, -1}) {
+        stops.clear();
+        for (std::size_t set = 0; set < distances_.size(); ++set) add_stop(set, v, side, stops);
+        if (!stops.empty()) march(sampler, v, side, stops);
+      }
+  }
+
+ private:
+  bool is_straight(std::size_t set, std::size_t v) const { return straight_[set][surface_.component[v]]; }
+
+  /// Where vertex v has to march to for one set, if it goes to this side at all.
+  void add_stop(std::size_t set, std::size_t v, int side, std::vector<Stop>& stops) const {
+    const double distance = distances_[set][v];
+    if (distance == 0) paths_[set].state[v] = VertexState::Reached;
+    else if (distance * side < 0) return;
+    else if (is_straight(set, v)) arrive({std::abs(distance), set}, v, {straight_end(set, v)});
+    else stops.push_back({std::abs(distance), set});
+  }
+
+  Vec3d straight_end(std::size_t set, std::size_t v) const {
+    const Vec3d& end = arrival_[set][v];
+    return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
+  }
+
+  void march(const DirectionSampler& sampler, std::size_t v, int side, std::vector<Stop>& stops) const {
+    std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
+    for (const auto pace : {Traveller::Pace::Hasty, Traveller::Pace::Careful}) {
+      Traveller traveller(query_, directions_, sampler, side, static_cast<std::uint32_t>(v), pace, obstacles_);
+      traveller.march(stops, [&](const Stop& stop, const Traveller::Arrival& end) { arrive(stop, v, end); });
+      std::erase_if(stops, [&](const Stop& stop) { return paths_[stop.set].state[v] == VertexState::Reached; });
+      if (stops.empty()) return;
+    }
+  }
+
+  void arrive(const Stop& stop, std::size_t v, const Traveller::Arrival& end) const {
+    Paths& paths = paths_[stop.set];
+    paths.displacement[v] = round_way(end.position - surface_.vertices[v], stop.distance);
+    // Judged where the vertex will be: far from the origin its coordinates are rounded.
+    const Vec3d place = (surface_.vertices[v] + surface_.origin) + paths.displacement[v];
+    const std::uint32_t hint = surface_.triangles_around(static_cast<std::uint32_t>(v)).front();
+    paths.achieved[v] = query_(place - surface_.origin, hint).distance;
+    paths.state[v] = std::abs(paths.achieved[v] - stop.distance) <= kReachedTolerance * stop.distance
+                         ? VertexState::Reached
+                     : end.outside_field ? VertexState::OutsideField
+                                         : VertexState::Collision;
+  }
+
+  const ClosestQuery& query_;
+  const Surface& surface_;
+  const DirectionField& directions_;
+  std::span<const Distances> distances_;
+  const Obstacles* obstacles_;
+  std::vector<Paths>& paths_;
+  std::vector<std::vector<Vec3d>> arrival_;          // of each set, on straight paths
+  std::vector<std::vector<std::uint8_t>> straight_;  // of each set, by component
+};
 
 }  // namespace
 
@@ -335,43 +479,17 @@ Vec3d round_way(const Vec3d& way, double target) {
           std::nearbyint(way[2] / quantum) * quantum};
 }
 
-Paths propagate(const ClosestQuery& query, const DirectionField& directions, const PropagateOptions& options,
-                const ProgressCallback& callback) {
-  const Surface& surface = query.surface();
-  const std::size_t count = surface.vertices.size();
-  const double target = std::abs(options.distance);
+std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
+                             std::span<const Distances> distances, const Obstacles* obstacles,
+                             const ProgressCallback& callback) {
+  const std::size_t count = query.surface().vertices.size();
   Progress progress(callback, Stage::Propagate, count);
-  Paths paths;
-  paths.displacement.resize(count);
-  paths.achieved.resize(count);
-  paths.state.resize(count);
-  std::vector<Vec3d> arrival(count);
-  const std::vector<std::uint8_t> straight = go_straight(query, directions, options.distance, arrival);
+  std::vector<Paths> paths(distances.size());
+  const Marches marches(query, directions, distances, obstacles, paths);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
-    const DirectionSampler sampler(directions);
-    for (std::size_t v = range.begin(); v != range.end(); ++v) {
-      const auto vertex = static_cast<std::uint32_t>(v);
-      const auto arrive = [&](const Traveller::Arrival& end) {
-        paths.displacement[v] = round_way(end.position - surface.vertices[v], target);
-        // Judged where the vertex will be: far from the origin its coordinates are rounded.
-        const Vec3d place = (surface.vertices[v] + surface.origin) + paths.displacement[v];
-        paths.achieved[v] = query(place - surface.origin, surface.triangles_around(vertex).front()).distance;
-        paths.state[v] = std::abs(paths.achieved[v] - target) <= kReachedTolerance * target ? VertexState::Reached
-                         : end.outside_field                                                ? VertexState::OutsideField
-                                                                                            : VertexState::Collision;
-      };
-      if (straight[surface.component[v]]) {
-        arrive({arrival[v]});
-        continue;
-      }
-      for (const auto pace : {Traveller::Pace::Hasty, Traveller::Pace::Careful}) {
-        arrive(Traveller(query, directions, sampler, options.distance, vertex, pace).march());
-        if (paths.state[v] == VertexState::Reached) break;
-      }
-    }
+    marches(range);
     progress.advance(range.size());
   });
-  for (std::size_t v = 0; v < count; ++v) paths.straight += straight[surface.component[v]];
   return paths;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "vdb_offset/closest.h"
+#include "vdb_offset/body.h"
 #include "vdb_offset/directions.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/progress.h"
 
 namespace vdb_offset {
@@ -23,13 +25,9 @@ const char* name(VertexState state);
 /// A vertex is at its distance if it is that near to it, relative to the distance.
 inline constexpr double kReachedTolerance = 1e-6;
 
-struct PropagateOptions {
-  double distance;  ///< World units, not 0; negative is inward.
-};
-
 /// Where each surface vertex went.
 struct Paths {
-  std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 |distance|.
+  std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 of the distance.
   std::vector<double> achieved;     ///< Exact unsigned distance of the end point to the surface.
   std::vector<VertexState> state;
   std::size_t straight = 0;  ///< Vertices of components that moved along their normals alone.
@@ -39,16 +37,20 @@ struct Paths {
 /// the result independent of where the mesh stands.
 Vec3d round_way(const Vec3d& way, double target);
 
-/// Moves every surface vertex to distance |d| from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
-/// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls).
+/// Moves every surface vertex to its distance from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
+/// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls). `distances` are those of the surface's vertices;
+/// where there are several sets of them, one march serves all that a vertex has on one side, and each set has its own
+/// answer.
 ///
 /// Where the straight paths along the normals of all vertices of a component are characteristics of the faces around
 /// them, they are the exact offset: one or two exact distances a vertex prove it, phi being 1-Lipschitz. The vertices
 /// of any other component all march by RK4 along the smooth directions, since neighbours of which one goes straight
 /// and one follows the field lose their order. Steps are no longer than the exact distance, so that no path can
 /// cross the surface; the last is cut where the exact distance is d; where the distance falls and does not recover,
-/// the path ends at its largest. The result does not depend on the number of threads.
-Paths propagate(const ClosestQuery& query, const DirectionField& directions, const PropagateOptions& options,
-                const ProgressCallback& progress = {});
+/// the path ends at its largest. Where it comes as near to an obstacle as may be, it ends, too. The result does not
+/// depend on the number of threads.
+std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
+                             std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
+                             const ProgressCallback& progress = {});
 
 }  // namespace vdb_offset

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "vdb_offset/memory.h"
@@ -52,7 +53,10 @@ Json facts_json(const MeshFacts& facts) {
 }
 
 Json faults_json(const FaultCounts& counts) {
-  return {{"inverted_faces", counts.inverted}, {"collapsed_faces", counts.collapsed}, {"crossings", counts.crossings}};
+  return {{"inverted_faces", counts.inverted},
+          {"collapsed_faces", counts.collapsed},
+          {"crowded_faces", counts.crowded},
+          {"crossings", counts.crossings}};
 }
 
 Json limit_json(const LimitStatistics& limit) {
@@ -64,6 +68,7 @@ Json limit_json(const LimitStatistics& limit) {
 
 Json achieved_json(const AchievedSummary& achieved) {
   return {{"vertices", achieved.vertices},
+          {"asked", {{"least", achieved.asked_least}, {"mean", achieved.asked_mean}, {"most", achieved.asked_most}}},
           {"share_reached", achieved.share_reached},
           {"least", achieved.least},
           {"quantile_01", achieved.quantile_01},
@@ -77,6 +82,16 @@ Json achieved_json(const AchievedSummary& achieved) {
 
 Json interior_json(const InteriorError& error) {
   return {{"samples", error.samples}, {"mean", error.mean}, {"quantile_99", error.quantile_99}, {"worst", error.worst}};
+}
+
+Json shell_json(const ShellFacts& shell) {
+  return {{"closed", shell.closed},
+          {"oriented", shell.oriented},
+          {"volume", shell.volume},
+          {"rim_quads", shell.rim_quads},
+          {"rim_triangles", shell.rim_triangles},
+          {"border_edges_left", shell.border_edges_left},
+          {"non_manifold_edges", shell.non_manifold_edges}};
 }
 
 Json grids_json(const OffsetStatistics& statistics) {
@@ -94,22 +109,30 @@ Json grids_json(const OffsetStatistics& statistics) {
 
 const char* version() { return VDB_OFFSET_VERSION; }
 
-AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> distances, double distance) {
+AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> all_achieved,
+                          const Distances& distances) {
   AchievedSummary summary;
-  const double target = std::abs(distance);
   std::vector<double> achieved;
   achieved.reserve(states.size());
   std::size_t reached = 0;
+  double asked = 0;
+  summary.asked_least = std::numeric_limits<double>::infinity();
+  summary.asked_most = -summary.asked_least;
   for (std::size_t v = 0; v < states.size(); ++v) {
     if (states[v] == VertexState::Unused) continue;
-    achieved.push_back(distances[v]);
+    achieved.push_back(all_achieved[v]);
+    asked += distances[v];
+    summary.asked_least = std::min(summary.asked_least, distances[v]);
+    summary.asked_most = std::max(summary.asked_most, distances[v]);
     if (states[v] != VertexState::Reached) continue;
     ++reached;
+    const double target = std::abs(distances[v]);
     if (target > 0)
-      summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(distances[v] - target) / target);
+      summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(achieved.back() - target) / target);
   }
   summary.vertices = achieved.size();
-  if (achieved.empty()) return summary;
+  if (achieved.empty()) return {};
+  summary.asked_mean = asked / static_cast<double>(achieved.size());
   summary.share_reached = static_cast<double>(reached) / static_cast<double>(achieved.size());
   double sum = 0;
   for (const double x : achieved) sum += x;
@@ -132,24 +155,25 @@ std::string report_json(const OffsetResult& result, const RunFacts& run) {
   seconds["total"] = run.total_seconds;
   for (std::size_t s = 0; s < kVertexStateCount; ++s)
     states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
-  const Json report = {{"version", version()},
-                       {"input", run.input},
-                       {"output", run.output},
-                       {"options", options},
-                       {"distance", run.distance},
-                       {"distance_as_given", run.distance_text},
-                       {"voxel_size", statistics.plan.voxel_size},
-                       {"voxel_size_reason", statistics.plan.reason},
-                       {"threads", statistics.threads},
-                       {"mesh", facts_json(statistics.facts)},
-                       {"grid", grids_json(statistics)},
-                       {"seconds", seconds},
-                       {"peak_memory_bytes", peak_memory()},
-                       {"vertices_by_state", states},
-                       {"vertices_straight", statistics.straight_vertices},
-                       {"limit", limit_json(statistics.limit)},
-                       {"achieved", achieved_json(summarise(result, run.distance))},
-                       {"face_interior_error", interior_json(statistics.interior)}};
+  Json report = {{"version", version()},
+                 {"input", run.input},
+                 {"output", run.output},
+                 {"options", options},
+                 {"distance", result.distances.farthest()},
+                 {"distance_as_given", run.distance_text},
+                 {"voxel_size", statistics.plan.voxel_size},
+                 {"voxel_size_reason", statistics.plan.reason},
+                 {"threads", statistics.threads},
+                 {"mesh", facts_json(statistics.facts)},
+                 {"grid", grids_json(statistics)},
+                 {"seconds", seconds},
+                 {"peak_memory_bytes", peak_memory()},
+                 {"vertices_by_state", states},
+                 {"vertices_straight", statistics.straight_vertices},
+                 {"limit", limit_json(statistics.limit)},
+                 {"achieved", achieved_json(summarise(result))},
+                 {"face_interior_error", interior_json(statistics.interior)}};
+  if (run.shell) report["shell"] = shell_json(*run.shell);
   return report.dump(2) + "\n";
 }
 

@@ -5,6 +5,7 @@
 
 #include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset {
 
@@ -12,21 +13,23 @@ namespace vdb_offset {
 struct AchievedSummary {
   std::size_t vertices = 0;  ///< In use.
   double share_reached = 0;
+  double asked_least = 0, asked_mean = 0, asked_most = 0;                ///< Signed, world units.
   double least = 0, mean = 0, most = 0;                                  ///< Achieved distance, world units.
   double quantile_01 = 0, quantile_05 = 0, median = 0, quantile_95 = 0;  ///< Of the achieved distance.
   double worst_reached_error = 0;  ///< Largest |achieved - target| / target among the reached.
 };
-AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> achieved, double distance);
-inline AchievedSummary summarise(const OffsetResult& result, double distance) {
-  return summarise(result.states, result.achieved, distance);
+AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> achieved,
+                          const Distances& distances);
+inline AchievedSummary summarise(const OffsetResult& result) {
+  return summarise(result.states, result.achieved, result.distances);
 }
 
 /// What a report adds to a result: what was asked for, and where.
 struct RunFacts {
   std::string input, output;
-  double distance = 0;        ///< World units.
   std::string distance_text;  ///< As given.
   double total_seconds = 0;
+  std::optional<ShellFacts> shell;                           ///< Of what was written, if it is one.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };
 

@@ -526,7 +526,13 @@ std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOpti
 
 void place(Surface& surface, double voxel_size) {
   const double leaf = 8 * voxel_size;
-  for (int k = 0; k < 3; ++k) surface.origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);
+  Vec3d origin;
+  for (int k = 0; k < 3; ++k) origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);
+  place_in_frame(surface, origin);
+}
+
+void place_in_frame(Surface& surface, const Vec3d& origin) {
+  surface.origin = origin;
   for_each_index(surface.vertices.size(), [&](std::size_t v) { surface.vertices[v] -= surface.origin; });
   find_normals(surface);
 }
@@ -541,6 +547,32 @@ std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld,
     if (const double length = sum.length(); length > 0) normals[v] = sum / length;
   });
   return normals;
+}
+
+void append(Surface& surface, const Surface& other) {
+  const auto vertices = static_cast<std::uint32_t>(surface.vertices.size()),
+             triangles = static_cast<std::uint32_t>(surface.triangles.size()),
+             components = static_cast<std::uint32_t>(surface.facts.components);
+  const auto add_all = [](auto& to, const auto& from, auto&& of) {
+    to.reserve(to.size() + from.size());
+    for (const auto& value : from) to.push_back(of(value));
+  };
+  const auto as_it_is = [](const auto& value) { return value; };
+  const auto shifted = [](std::uint32_t by) { return [by](std::uint32_t i) { return i + by; }; };
+  add_all(surface.vertices, other.vertices, as_it_is);
+  add_all(surface.triangles, other.triangles, [&](const std::array<std::uint32_t, 3>& t) {
+    return std::array<std::uint32_t, 3>{t[0] + vertices, t[1] + vertices, t[2] + vertices};
+  });
+  add_all(surface.face, other.face, as_it_is);
+  add_all(surface.next_around_edge, other.next_around_edge, shifted(3 * triangles));
+  add_all(surface.triangle_normals, other.triangle_normals, as_it_is);
+  add_all(surface.vertex_normals, other.vertex_normals, as_it_is);
+  const auto incident = static_cast<std::uint32_t>(surface.incident.size());
+  add_all(surface.incident, other.incident, shifted(triangles));
+  surface.incident_begin.pop_back();
+  add_all(surface.incident_begin, other.incident_begin, shifted(incident));
+  add_all(surface.component, other.component, shifted(components));
+  surface.representative.resize(surface.vertices.size(), kNone);
 }
 
 }  // namespace vdb_offset

@@ -103,6 +103,12 @@ std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOpti
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
 /// box, and computes its normals there. \pre voxel_size > 0, called once.
 void place(Surface& surface, double voxel_size);
+/// The same with the origin of another surface's frame.
+void place_in_frame(Surface& surface, const Vec3d& origin);
+
+/// Puts another surface beside one, without joining them. \pre both stand in one frame. Facts, and what is said of the
+/// input's vertices, stay those of the first; the other's have no representative (kNone).
+void append(Surface& surface, const Surface& other);
 
 /// Unit normals of the mesh's vertices, outward: of the welded surface and weighted by angles, as the offset itself
 /// takes them. Zero for a vertex that no face uses, and where the faces around have no normals or these cancel out.

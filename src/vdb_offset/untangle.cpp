@@ -92,15 +92,18 @@ class QuasiNewton {
 
 class Patch {
  public:
-  Patch(const ClosestQuery& query, double target, int side, const Untangler::Options& options,
+  Patch(const Body& body, const Distances& distances, const Untangler::Options& options,
         std::span<const std::uint32_t> vertices, std::span<Vec3d> way)
-      : query_(query),
-        surface_(query.surface()),
-        target_(target),
-        side_(side),
+      : body_(body),
+        surface_(body.surface),
+        front_(body.front.surface()),
+        distances_(distances),
         options_(options),
         free_(vertices.size()) {
-    for (const auto v : vertices) add_point(v, way);
+    for (const auto v : vertices) {
+      add_point(v, way);
+      scale_ = std::max(scale_, points_.back().target);
+    }
     collect_faces(vertices, way);
   }
 
@@ -121,14 +124,16 @@ class Patch {
 
   void store(std::span<Vec3d> way) const {
     for (std::size_t i = 0; i < free_; ++i)
-      way[points_[i].vertex] = round_way(points_[i].x - surface_.vertices[points_[i].vertex], target_);
+      way[points_[i].vertex] = round_way(points_[i].x - surface_.vertices[points_[i].vertex], points_[i].target);
   }
 
  private:
   struct Point {
     std::uint32_t vertex, hint;
-    double distance;               // to the surface when planes were renewed
-    Vec3d x, normal;               // local frame; away from the surface, smoothed over the neighbours
+    double target;                 // distance to the front that is asked for
+    int side;                      // of the front, 1 or -1
+    double distance;               // to the front when planes were renewed
+    Vec3d x, normal;               // local frame; outward from the front, smoothed over the neighbours
     std::array<Vec3d, 2> tangent;  // at right angles to it
   };
   struct Face {
@@ -140,7 +145,8 @@ class Patch {
   };
 
   void add_point(std::uint32_t v, std::span<const Vec3d> way) {
-    points_.push_back({v, surface_.triangles_around(v).front(), 0, surface_.vertices[v] + way[v], {}, {}});
+    const double d = distances_[v];
+    points_.push_back({v, body_.hint(v), std::abs(d), d < 0 ? -1 : 1, 0, surface_.vertices[v] + way[v], {}, {}});
   }
 
   std::uint32_t index_of(std::uint32_t v, std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
@@ -173,9 +179,14 @@ class Patch {
 
   void renew_planes() {
     for (Point& p : points_) {
-      const TrianglePoint nearest = surface_.walk_to_closest(p.x, p.hint);
+      if (p.x == surface_.vertices[p.vertex]) {
+        p.normal = surface_.vertex_normals[p.vertex];
+        if (p.normal.lengthSqr() > 1e-12) p.normal.normalize();
+        continue;
+      }
+      const TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
       p.distance = std::sqrt(nearest.squared_distance);
-      p.normal = p.distance > 0 ? (p.x - nearest.point) / p.distance : Vec3d(0.0);
+      p.normal = p.distance > 0 ? (p.x - nearest.point) / (p.side * p.distance) : Vec3d(0.0);
     }
     for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
@@ -185,7 +196,7 @@ class Patch {
       Vec3d n(0.0);
       for (const auto i : face.point) n += points_[i].normal;
       if (!(n.lengthSqr() > 1e-12)) n = points_[face.point[0]].normal;
-      const std::array<Vec3d, 2> plane = plane_of(n.unit() * side_);
+      const std::array<Vec3d, 2> plane = plane_of(n.unit());
       for (std::size_t row = 0; row < 2; ++row) {
         for (std::size_t k = 0; k < 3; ++k)
           for (std::size_t axis = 0; axis < 2; ++axis)
@@ -301,7 +312,7 @@ class Patch {
     double longest2 = 0;
     for (std::size_t k = 0; k < step.size(); k += 2)
       longest2 = std::max(longest2, step[k] * step[k] + step[k + 1] * step[k + 1]);
-    const double most = kLongestStep * target_ / std::sqrt(longest2);
+    const double most = kLongestStep * scale_ / std::sqrt(longest2);
     return scaled_by_nothing ? most : std::min(1.0, most);
   }
 
@@ -320,30 +331,32 @@ class Patch {
   void return_to_distance(Point& p, const Vec3d& before) const {
     constexpr int kMostSteps = 40;
     constexpr double kSettled = 1e-9, kLeastSlope = 0.1;
+    const Vec3d away = p.normal * p.side;
     for (int i = 0; i < kMostSteps; ++i) {
-      TrianglePoint nearest = surface_.walk_to_closest(p.x, p.hint);
+      TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
       double distance = std::sqrt(nearest.squared_distance);
-      if (std::abs(distance - target_) <= kSettled * target_) {
-        const Closest closest = query_(p.x, p.hint);
-        if (std::abs(closest.distance - target_) <= kSettled * target_) return;
+      if (std::abs(distance - p.target) <= kSettled * p.target) {
+        const Closest closest = body_.front(p.x, p.hint);
+        if (std::abs(closest.distance - p.target) <= kSettled * p.target) return;
         p.hint = closest.triangle;
         distance = closest.distance;
         nearest.point = closest.point;
       }
-      if (!(distance > 1e-3 * target_)) break;
-      const double slope = p.normal.dot(p.x - nearest.point) / distance, free = kFreeShare * distance;
-      p.x += p.normal * std::clamp((target_ - distance) / std::max(slope, kLeastSlope), -free, free);
-      if (!((p.x - before).length() < 2 * target_)) break;
+      if (!(distance > 1e-3 * p.target)) break;
+      const double slope = away.dot(p.x - nearest.point) / distance, free = kFreeShare * distance;
+      p.x += away * std::clamp((p.target - distance) / std::max(slope, kLeastSlope), -free, free);
+      if (!((p.x - before).length() < 2 * p.target)) break;
     }
     p.x = before;
   }
 
-  const ClosestQuery& query_;
+  const Body& body_;
   const Surface& surface_;
-  double target_;
-  int side_;
+  const Surface& front_;
+  const Distances& distances_;
   Untangler::Options options_;
   std::size_t free_;  // the first points are the patch's, the others stand around it
+  double scale_ = 0;  // the farthest that a point of the patch goes
   std::vector<Point> points_;
   std::vector<Face> faces_;
   double least_det_ = 1;  // of the faces, as planes were renewed, and how many are folded over
@@ -353,7 +366,7 @@ class Patch {
 }  // namespace
 
 void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const {
-  Patch work(query_, target_, side_, options_, patch, way);
+  Patch work(body_, distances_, options_, patch, way);
   work.untangle();
   work.store(way);
 }

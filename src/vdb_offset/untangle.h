@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 
-#include "vdb_offset/closest.h"
+#include "vdb_offset/body.h"
+#include "vdb_offset/distances.h"
 
 namespace vdb_offset {
 
@@ -24,19 +24,18 @@ class Untangler {
     double area_weight;  ///< lambda: of the faces' areas against their shapes.
   };
 
-  /// Keeps a reference to the query. `distance` in world units, not 0; negative is inward.
-  Untangler(const ClosestQuery& query, double distance, const Options& options)
-      : query_(query), target_(std::abs(distance)), side_(distance < 0 ? -1 : 1), options_(options) {}
+  /// Keeps references to the body and the distances of its vertices.
+  Untangler(const Body& body, const Distances& distances, const Options& options)
+      : body_(body), distances_(distances), options_(options) {}
 
-  /// Moves the patch's vertices: `way` leads from each of the surface's vertices to its place, at the distance for
-  /// those of the patch, which are sorted. Reads the ways of the vertices around the patch.
-  /// Safe for patches that share no face, from any number of threads.
+  /// Moves the patch's vertices, which are on the front and not at distance 0: `way` leads from each of the body's
+  /// vertices to its place, at its distance for those of the patch, which are sorted. Reads the ways of the vertices
+  /// around the patch. Safe for patches that share no face, from any number of threads.
   void operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const;
 
  private:
-  const ClosestQuery& query_;
-  double target_;
-  int side_;
+  const Body& body_;
+  const Distances& distances_;
   Options options_;
 };
 

@@ -15,7 +15,7 @@ std::string as_csv(const VertexStates& states) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "vertex,state,target,achieved\n");
   for (std::size_t v = 0; v < states.state.size(); ++v)
-    fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", v, name(states.state[v]), states.target,
+    fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", v, name(states.state[v]), states.target[v],
                    states.achieved[v]);
   return fmt::to_string(text);
 }
@@ -37,7 +37,7 @@ std::string as_ply(PolygonView mesh, const VertexStates& states) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     for (int k = 0; k < 3; ++k) append(bytes, mesh.positions[v][k]);
     append(bytes, states.state[v]);
-    append(bytes, static_cast<float>(states.target));
+    append(bytes, static_cast<float>(states.target[v]));
     append(bytes, static_cast<float>(states.achieved[v]));
   }
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {

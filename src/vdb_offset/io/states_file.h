@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "vdb_offset/distances.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/propagate.h"
 
@@ -12,7 +13,7 @@ namespace vdb_offset::io {
 struct VertexStates {
   std::span<const VertexState> state;
   std::span<const double> achieved;  ///< World units, as is the target.
-  double target;                     ///< Negative is inward.
+  const Distances& target;           ///< Negative is inward.
 };
 
 /// True of the endings that write_states() knows: .csv and .ply.

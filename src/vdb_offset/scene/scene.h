@@ -1,23 +1,33 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "vdb_offset/expression.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset::scene {
 
 /// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
-/// use ("1.5%").
+/// use ("1.5%"); or an expression that tells each vertex its own.
 struct Distance {
   double value = 0;
   bool percent = false;
+  std::optional<DistanceExpression> expression;  ///< Then the two above do not count.
 
   double in_world_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
 };
 /// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
 Distance parse_distance(const std::string& text);
+/// The same, or an expression. \throw InvalidExpression
+Distance parse_distance_or_expression(const std::string& text);
+
+/// The distances of a mesh's vertices. `texture_of` is called only by an expression that uses texture coordinates.
+/// \throw InvalidInput, see DistanceExpression
+Distances distances_of(const Distance& distance, PolygonView mesh, const WeldOptions& weld, Orient orient,
+                       const std::function<std::vector<Vec2d>()>& texture_of);
 
 /// Where every reached vertex should be, in closed form.
 struct Answer {
@@ -26,12 +36,21 @@ struct Answer {
     Box,     ///< The source vertex, clamped to the box of half sizes `half` around the origin.
     Torus,   ///< At `minor` from the circle of radius `major` around the z axis, on the ray from its centre.
     Shift,   ///< The source vertex plus `shift`.
+    Ray,     ///< At the vertex's own distance from the source vertex, on the ray from the origin.
+    Lift,    ///< Over the square of half side `radius` around the origin in the plane z = 0: see Answer::lifted.
+    Under,   ///< As Ray, but on the way there no higher than z = `shift[2]`.
   };
   Form form = Form::Sphere;
   double radius = 0, major = 0, minor = 0;
   Vec3d half{0.0}, shift{0.0};
 
-  Vec3d operator()(const Vec3d& source) const;
+  /// `distance` is the vertex's own.
+  Vec3d operator()(const Vec3d& source, double distance) const;
+
+ private:
+  /// What lies in the square goes up by its distance; its edge, if `shift` is (1, 1, 0), as far out within the plane,
+  /// if (0, 0, 1), up as well, and if zero it stays. What lies beyond stays, too.
+  Vec3d lifted(const Vec3d& source, double distance) const;
 };
 
 struct Expectations {
@@ -49,7 +68,14 @@ struct Scene {
   GridOptions grid;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
+  std::vector<std::uint8_t> only;  ///< As in OffsetOptions.
+  Border border = Border::Slide;
+  Polygons obstacle;
+  double clearance = 0;
   Expectations expect;
+
+  /// Its part of the options: all but the distance, into `options`. They refer to the scene.
+  void set(OffsetOptions& options) const;
 };
 
 /// True of file names that end in .json.

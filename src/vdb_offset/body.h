@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "vdb_offset/closest.h"
+
+namespace vdb_offset {
+
+/// Other geometry, that nothing which moves may come nearer to than this, in world units.
+struct Obstacles {
+  const ClosestQuery& query;
+  double clearance;
+};
+
+/// All that must stay valid, beside the front that distances are measured from.
+///
+/// The surface holds what moves and what is in its way: the whole mesh where only a part of it is offset, and obstacles
+/// behind it. It stands in the front's frame. Spans are empty where the surface is the front itself.
+struct Body {
+  const ClosestQuery& front;
+  const Surface& surface;
+  std::span<const std::uint32_t> front_vertex;  ///< Of each vertex; kNone where it is not on the front.
+  std::span<const std::uint8_t> off_front;      ///< Of each triangle: 1 if it is no part of the front.
+  std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave the path it went.
+  const Obstacles* obstacles = nullptr;         ///< Those to keep away from, if there are any.
+
+  bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
+  bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
+  bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
+  /// A triangle of the front to start a search from.
+  std::uint32_t hint(std::uint32_t vertex) const {
+    const std::uint32_t v = front_vertex.empty() ? vertex : front_vertex[vertex];
+    return v == kNone ? 0 : front.surface().triangles_around(v).front();
+  }
+};
+
+}  // namespace vdb_offset

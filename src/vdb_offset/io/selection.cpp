@@ -1,0 +1,161 @@
+#include "vdb_offset/io/selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/scanner.h"
+
+namespace vdb_offset::io {
+namespace {
+
+/// Names that faces are under, in the order of the file.
+struct Labels {
+  std::set<std::string, std::less<>> groups, materials;  // that any face is under
+  std::vector<std::uint8_t> chosen;                      // of each face: by one of the selectors
+};
+
+/// What is left of a line, without blanks at its end.
+std::string rest_of_line(Scanner& scanner) {
+  std::string rest;
+  while (!scanner.at_line_end()) {
+    if (!rest.empty()) rest += ' ';
+    rest += scanner.token();
+  }
+  return rest;
+}
+
+std::vector<std::string> words_of_line(Scanner& scanner) {
+  std::vector<std::string> words;
+  while (!scanner.at_line_end()) words.emplace_back(scanner.token());
+  return words;
+}
+
+class Chooser {
+ public:
+  Chooser(std::span<const Selector> selectors, std::size_t faces) : selectors_(selectors) {
+    labels_.chosen.reserve(faces);
+  }
+
+  void set_groups(std::vector<std::string> names) { groups_ = std::move(names), settle(); }
+  void set_object(std::string name) { object_ = std::move(name), settle(); }
+  void set_material(std::string name) { material_ = std::move(name), settle(); }
+  void add_face() {
+    if (!counted_) count_names();
+    labels_.chosen.push_back(chosen_);
+  }
+  Labels take() { return std::move(labels_); }
+
+ private:
+  bool names(const Selector& selector) const {
+    if (selector.by == Selector::By::Material) return selector.name == material_;
+    return selector.by == Selector::By::Group &&
+           (selector.name == object_ || std::find(groups_.begin(), groups_.end(), selector.name) != groups_.end());
+  }
+  void settle() {
+    chosen_ = std::any_of(selectors_.begin(), selectors_.end(), [&](const Selector& s) { return names(s); });
+    counted_ = false;
+  }
+  void count_names() {
+    counted_ = true;
+    for (const std::string& group : groups_) labels_.groups.insert(group);
+    if (!object_.empty()) labels_.groups.insert(object_);
+    if (!material_.empty()) labels_.materials.insert(material_);
+  }
+
+  std::span<const Selector> selectors_;
+  Labels labels_;
+  std::vector<std::string> groups_;
+  std::string object_, material_;
+  bool chosen_ = false, counted_ = false;
+};
+
+Labels label_obj(const MeshFile& mesh, std::span<const Selector> selectors) {
+  Chooser chooser(selectors, mesh.polygons.face_count());
+  Scanner scanner(mesh.path, mesh.text(), byte_order_mark(mesh.text()), true, '#');
+  for (; !scanner.at_end(); scanner.next_line()) {
+    const std::string_view keyword = scanner.token();
+    if (keyword == "f") chooser.add_face();
+    else if (keyword == "g") chooser.set_groups(words_of_line(scanner));
+    else if (keyword == "o") chooser.set_object(rest_of_line(scanner));
+    else if (keyword == "usemtl") chooser.set_material(rest_of_line(scanner));
+  }
+  return chooser.take();
+}
+
+Labels label_ascii_stl(const MeshFile& mesh, std::span<const Selector> selectors) {
+  Chooser chooser(selectors, mesh.polygons.face_count());
+  Scanner scanner(mesh.path, mesh.text());
+  for (; !scanner.at_text_end(); scanner.next_line()) {
+    const std::string_view keyword = scanner.token();
+    if (is_word(keyword, "solid")) chooser.set_groups({rest_of_line(scanner)});
+    else if (is_word(keyword, "facet")) chooser.add_face();
+  }
+  return chooser.take();
+}
+
+Labels label(const MeshFile& mesh, std::span<const Selector> selectors) {
+  if (mesh.format == Format::Obj) return label_obj(mesh, selectors);
+  if (mesh.format == Format::Stl && mesh.encoding == Encoding::Ascii) return label_ascii_stl(mesh, selectors);
+  return {{}, {}, std::vector<std::uint8_t>(mesh.polygons.face_count(), 0)};
+}
+
+void require_known(const MeshFile& mesh, const Labels& labels, const Selector& selector) {
+  const bool group = selector.by == Selector::By::Group;
+  const auto& known = group ? labels.groups : labels.materials;
+  if (known.contains(selector.name)) return;
+  const char* const kind = group ? "group" : "material";
+  throw InvalidOption(
+      known.empty() ? fmt::format("{}: expected a {} '{}', got a file without any", mesh.path, kind, selector.name)
+                    : fmt::format("{}: expected a {} among {}, got '{}'", mesh.path, kind, fmt::join(known, ", "),
+                                  selector.name));
+}
+
+/// Marks the faces that a file names: a number for each face, 0 or 1, or else indices.
+void mark_from_file(const std::string& path, std::vector<std::uint8_t>& marks) {
+  FileBytes bytes = FileBytes::open(path);
+  Scanner scanner(path, bytes.view(), byte_order_mark(bytes.view()), false, '#');
+  std::vector<std::int64_t> numbers;
+  while (!scanner.at_text_end()) {
+    numbers.push_back(scanner.integer_anywhere("the index of a face, or a mark of 0 or 1"));
+    if (numbers.back() < 0 || numbers.back() >= static_cast<std::int64_t>(marks.size()))
+      scanner.fail(fmt::format("the index of a face, from 0 to {}", marks.size() - 1), scanner.last_token());
+  }
+  const bool mask = numbers.size() == marks.size() &&
+                    std::all_of(numbers.begin(), numbers.end(), [](std::int64_t n) { return n <= 1; });
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!mask) marks[static_cast<std::size_t>(numbers[i])] = 1;
+    else if (numbers[i] == 1) marks[i] = 1;
+}
+
+}  // namespace
+
+Selector parse_selector(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string kind = text.substr(0, equals), name = equals == std::string::npos ? "" : text.substr(equals + 1);
+  if (!name.empty()) {
+    if (kind == "group") return {Selector::By::Group, name};
+    if (kind == "material") return {Selector::By::Material, name};
+    if (kind == "faces") return {Selector::By::File, name};
+  }
+  throw InvalidOption(fmt::format("expected 'group=NAME', 'material=NAME' or 'faces=FILE', got '{}'", text));
+}
+
+std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors) {
+  const bool by_name =
+      std::any_of(selectors.begin(), selectors.end(), [](const Selector& s) { return s.by != Selector::By::File; });
+  Labels labels;
+  if (by_name) labels = label(mesh, selectors);
+  labels.chosen.resize(mesh.polygons.face_count(), 0);
+  for (const Selector& selector : selectors) {
+    if (selector.by == Selector::By::File) mark_from_file(selector.name, labels.chosen);
+    else require_known(mesh, labels, selector);
+  }
+  return std::move(labels.chosen);
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,89 @@
+#include "vdb_offset/workpiece.h"
+
+#include <algorithm>
+#include <string>
+
+#include "vdb_offset/error.h"
+
+namespace vdb_offset {
+namespace {
+
+/// The faces whose mark is `kept`, over the mesh's own vertices.
+struct SomeFaces {
+  std::vector<std::uint32_t> corners, face_begin{0};
+
+  SomeFaces(PolygonView mesh, std::span<const std::uint8_t> marks, std::uint8_t kept) {
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      if (marks[f] != kept) continue;
+      const auto face = mesh.face(f);
+      corners.insert(corners.end(), face.begin(), face.end());
+      face_begin.push_back(static_cast<std::uint32_t>(corners.size()));
+    }
+  }
+  PolygonView of(PolygonView mesh) const { return {mesh.positions, corners, face_begin}; }
+  bool empty() const { return corners.empty(); }
+};
+
+/// Tells the whole's vertices and triangles where they are on the front, and which lie at its border.
+void relate(PolygonView mesh, std::span<const std::uint8_t> only, Workpiece& work) {
+  const Surface& whole = *work.whole;
+  work.front_vertex.assign(whole.vertices.size(), kNone);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    if (work.front.welded[v] != kNone) work.front_vertex[whole.welded[v]] = work.front.welded[v];
+  work.off_front.assign(whole.triangles.size(), 0);
+  work.at_border.assign(whole.vertices.size(), 0);
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
+    if (only.empty() || only[whole.face[t]]) continue;
+    work.off_front[t] = 1;
+    for (const auto v : whole.triangles[t]) work.at_border[v] = work.front_vertex[v] != kNone;
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3d> Workpiece::source(PolygonView mesh) const {
+  std::vector<Vec3d> positions;
+  positions.reserve(surface().vertices.size());
+  for (const auto v : surface().representative)
+    if (v != kNone) positions.push_back(mesh.positions[v]);
+  for (std::size_t i = 0; positions.size() < surface().vertices.size(); ++i)
+    positions.push_back(obstacle_mesh.positions[obstacles->representative[i]]);
+  return positions;
+}
+
+Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options) {
+  const bool parts = !options.only.empty();
+  if (parts && options.only.size() != mesh.face_count())
+    throw InvalidInput("part: expected a mark for each of " + std::to_string(mesh.face_count()) + " faces, got " +
+                       std::to_string(options.only.size()));
+  Workpiece work;
+  if (!parts) {
+    work.front = build_surface(mesh, options.weld, options.orient);
+  } else {
+    const SomeFaces chosen(mesh, options.only, 1), left(mesh, options.only, 0);
+    if (chosen.empty()) throw InvalidInput("part: expected at least one face, got none");
+    work.front = build_surface(chosen.of(mesh), options.weld, options.orient);
+    work.whole = build_surface(mesh, options.weld, options.orient);
+    if (!left.empty()) work.rest = build_surface(left.of(mesh), options.weld, options.orient);
+  }
+  if (options.obstacles.face_count() > 0) {
+    if (!work.whole) work.whole = work.front;
+    work.obstacle_mesh = options.obstacles;
+    work.obstacles = build_surface(options.obstacles, {});
+  }
+  if (work.whole) relate(mesh, options.only, work);
+  return work;
+}
+
+void place(Workpiece& work, double voxel_size) {
+  place(work.front, voxel_size);
+  for (std::optional<Surface>* other : {&work.whole, &work.rest, &work.obstacles})
+    if (*other) place_in_frame(**other, work.front.origin);
+  if (!work.obstacles) return;
+  append(*work.whole, *work.obstacles);
+  work.front_vertex.resize(work.whole->vertices.size(), kNone);
+  work.at_border.resize(work.whole->vertices.size(), 0);
+  work.off_front.resize(work.whole->triangles.size(), 1);
+}
+
+}  // namespace vdb_offset
