@@ -26,13 +26,20 @@ INPUT and OUTPUT end in .obj, .ply, .stl or .off, compressed with .gz or .zst be
 output, with --format); INPUT may also be a scene (.json), which brings its distance. The same format in and out keeps
 every byte but coordinates and normals of what moved.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
-below zero it is inward. Write --distance=-1% or --distance -1%.
+below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which tells each vertex its
+own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
+functions (sin, sqrt, min ...); a % behind it makes it percent. Several distances give several outputs: NAME_001.obj,
+NAME_002.obj ..., or OUTPUT holds {i} (their number) or {d} (the distance as given).
 
 Examples:
   vdb_offset bunny.obj bigger.obj --distance 1%         enlarge by 1 % of the diagonal
   vdb_offset part.stl clearance.stl --distance -0.2     shrink by 0.2 units
   vdb_offset wing.ply out.ply --distance 0.5% --report out.json --strict
   vdb_offset big.obj out.obj --distance 2 --dry-run     what would it take?
+  vdb_offset wing.obj skin.obj --distance '0.02*(1 - u)'       thicker towards u = 0
+  vdb_offset car.obj out.obj --distance 5 --only group=roof    one part; the rest stays
+  vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
+  vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
 
@@ -59,8 +66,9 @@ std::size_t parse_size(const std::string& text) {
 
 /// What CLI11 fills in before it is checked.
 struct Raw {
-  std::string distance, max_memory, weld = "exact", orient = "keep";
-  std::optional<std::string> solver, collision, format;
+  std::vector<std::string> distances, only;
+  std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
+  std::optional<std::string> solver, collision, border, format;
   std::string normals = "recompute";
   std::optional<double> voxel_size, voxels_per_distance;
   int threads = 0;
@@ -71,9 +79,37 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
       ->required();
   app.add_option("OUTPUT", args.output, "Mesh to write, by extension; may be the input; '-' is standard output")
       ->required();
-  app.add_option("-d,--distance", raw.distance,
-                 "Distance: world units, or percent of the diagonal as in 1.5%; negative is inward")
-      ->type_name("D");
+  app.add_option(
+         "-d,--distance", raw.distances,
+         "Distance: world units, percent of the diagonal as in 1.5%, or an expression; negative is inward; given "
+         "several times: one output each")
+      ->type_name("D")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--distance-from", args.distance_from,
+                 "Each vertex's distance, world units: a file of numbers (text or .npy), or 'ply:NAME', a vertex "
+                 "property of INPUT")
+      ->type_name("FILE");
+  app.add_option("--only", raw.only,
+                 "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME' or "
+                 "'faces=FILE' (indices from 0, or a 0 or 1 for each face); may be repeated")
+      ->type_name("PART")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--border", raw.border,
+                 "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]")
+      ->type_name("MODE");
+  app.add_option("--obstacle", args.obstacles, "A mesh that nothing may touch; may be repeated")
+      ->type_name("FILE")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--clearance", raw.clearance,
+                 "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]")
+      ->type_name("C");
+  app.add_flag("--shell", args.shell,
+               "Write the source and its offset as one closed solid, joined by a rim where the surface is open");
+  app.add_option("--inner", raw.inner, "With --shell: the inner skin lies this far inward, not on the source")
+      ->type_name("E");
   app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")
       ->type_name("H");
   app.add_option("--voxels-per-distance", raw.voxels_per_distance, "The same as D / N")->type_name("N");
@@ -130,6 +166,12 @@ bool same_file(const std::string& a, const std::string& b) {
 /// The output may be the input; no other two files may be one.
 void check_apart(const Arguments& args) {
   std::vector<std::string> taken = {args.input, args.output};
+  for (const std::string& path : args.obstacles) {
+    require(!same_file(path, args.output), "--obstacle: expected a file other than the output, got " + path);
+    require(format_of(path, args).has_value(),
+            path + ": expected an obstacle that ends in .obj, .ply, .stl or .off (or these and .gz or .zst)");
+    taken.push_back(path);
+  }
   for (const auto& [name, path] :
        {std::pair{"--report", args.report}, {"--states", args.states}, {"--save-vdb", args.vdb}}) {
     for (const std::string& other : taken)
@@ -164,20 +206,62 @@ void check_file_options(const Raw& raw, Arguments& args) {
           fmt::format("--precision: expected 1 to 17 digits, got {}", args.write.digits));
 }
 
+DistanceRequest parse_request(const std::string& option, const std::string& text) {
+  try {
+    return {text, scene::parse_distance_or_expression(text)};
+  } catch (const InvalidOption& error) {
+    throw UsageError(option + ": " + error.what());
+  }
+}
+
+void check_distances(const Raw& raw, Arguments& args) {
+  for (const std::string& text : raw.distances) args.distances.push_back(parse_request("--distance", text));
+  require(args.distances.empty() || args.distance_from.empty(), "--distance-from: expected it or --distance, got both");
+  require(!args.distances.empty() || !args.distance_from.empty() || scene::is_scene(args.input),
+          "--distance: expected a distance (a scene alone brings its own)");
+  require(!args.distance_from.starts_with("ply:") || !scene::is_scene(args.input),
+          "--distance-from: expected a file, as a scene has no properties");
+  require(args.distances.size() < 2 || args.output != "-", "OUTPUT: expected a file for each distance, got '-'");
+  require(raw.inner.empty() || args.shell, "--inner: expected it with --shell");
+  if (raw.inner.empty()) return;
+  args.inner = parse_request("--inner", raw.inner);
+  const auto& inner = args.inner->distance;
+  require(inner.expression || inner.value > 0,
+          fmt::format("--inner: expected a distance above 0, got '{}'", raw.inner));
+}
+
+void check_surroundings(const Raw& raw, Arguments& args) {
+  args.only_texts = raw.only;
+  for (const std::string& text : raw.only) {
+    try {
+      args.only.push_back(io::parse_selector(text));
+    } catch (const InvalidOption& error) {
+      throw UsageError(std::string("--only: ") + error.what());
+    }
+  }
+  require(raw.only.empty() || !scene::is_scene(args.input), "--only: expected a mesh, as a scene names its own part");
+  if (raw.border) {
+    require(*raw.border == "slide" || *raw.border == "fixed" || *raw.border == "free",
+            fmt::format("--border: expected 'slide', 'fixed' or 'free', got '{}'", *raw.border));
+    args.border = *raw.border == "slide" ? Border::Slide : *raw.border == "fixed" ? Border::Fixed : Border::Free;
+  }
+  if (raw.clearance.empty()) return;
+  try {
+    args.clearance = scene::parse_distance(raw.clearance);
+  } catch (const InvalidInput&) {
+    args.clearance.value = -1;
+  }
+  require(args.clearance.value >= 0,
+          fmt::format("--clearance: expected a number of world units or percent, 0 or more, got '{}'", raw.clearance));
+  require(!args.obstacles.empty(), "--clearance: expected it with --obstacle");
+}
+
 void check(const Raw& raw, Arguments& args) {
   check_file_options(raw, args);
   check_names(args);
   check_apart(args);
-  if (!raw.distance.empty()) {
-    try {
-      args.distance = scene::parse_distance(raw.distance);
-    } catch (const InvalidInput& error) {
-      throw UsageError(std::string("--") + error.what());
-    }
-    args.distance_text = raw.distance;
-  }
-  require(args.distance || scene::is_scene(args.input),
-          "--distance: expected a distance (a scene alone brings its own)");
+  check_distances(raw, args);
+  check_surroundings(raw, args);
   require(!(raw.voxel_size && raw.voxels_per_distance), "--voxel-size: expected it or --voxels-per-distance, got both");
   for (const auto& [name, value] :
        {std::pair{"--voxel-size", raw.voxel_size}, {"--voxels-per-distance", raw.voxels_per_distance}})

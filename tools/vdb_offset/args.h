@@ -6,18 +6,31 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/selection.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/scene/scene.h"
 
 namespace vdb_offset::tool {
 
+/// One distance that is asked for, and how.
+struct DistanceRequest {
+  std::string text;
+  scene::Distance distance;
+};
+
 /// What the command line asks for.
 struct Arguments {
   std::string input, output;
-  std::optional<scene::Distance> distance;  ///< Empty only for a scene, which brings its own.
-  std::string distance_text;
-  OffsetOptions options;               ///< All but the distance, which may need the mesh's diagonal, and progress.
-  std::optional<Solver> solver;        ///< As given; a scene's own counts otherwise.
+  std::vector<DistanceRequest> distances;  ///< Empty for a scene that brings its own, and with `distance_from`.
+  std::string distance_from;               ///< A file of numbers, or ply:NAME.
+  std::optional<DistanceRequest> inner;    ///< Of the inner skin of a shell, above 0.
+  bool shell = false;
+  std::vector<io::Selector> only;
+  std::vector<std::string> only_texts, obstacles;
+  scene::Distance clearance;
+  OffsetOptions options;               ///< All but what depends on the mesh, and progress.
+  std::optional<Border> border;        ///< As given; a scene's own counts otherwise.
+  std::optional<Solver> solver;        ///< The same.
   std::optional<Collision> collision;  ///< The same.
   std::string weld_text, orient_text;  ///< As given.
   std::string report, states, vdb;

@@ -72,7 +72,7 @@ void require_same_faces(const CheckArguments& args, const Polygons& source, cons
 }
 
 void print(const CheckResult& result) {
-  const AchievedSummary achieved = summarise(result.states, result.achieved, result.distance);
+  const AchievedSummary achieved = summarise(result.states, result.achieved, Distances(result.distance));
   fmt::print("distance    {:.9g}: {:.3f} % of {} vertices there, {} beyond, {} on the wrong side\n", result.distance,
              100 * achieved.share_reached, achieved.vertices, result.beyond, result.wrong_side);
   fmt::print("achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
@@ -118,7 +118,7 @@ int run_check(int argc, const char* const* argv) {
   if (!args.report.empty()) write_file(args.report, json);
   if (args.json) fmt::print("{}", json);
   else print(result);
-  const bool all_there = summarise(result.states, result.achieved, result.distance).share_reached == 1;
+  const bool all_there = summarise(result.states, result.achieved, Distances(result.distance)).share_reached == 1;
   return result.valid() && (all_there || !args.strict) ? 0 : 3;
 }
 

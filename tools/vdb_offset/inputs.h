@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "args.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/scene/scene.h"
+
+namespace vdb_offset::tool {
+
+/// A mesh to offset, from a file or made by a scene, and what is in its way.
+struct Source {
+  std::optional<scene::Scene> scene;
+  std::optional<io::MeshFile> file;
+  Polygons obstacles;
+
+  PolygonView view() const { return file ? file->polygons.view() : scene->shape.view(); }
+};
+
+Source read_source(const Arguments& args);
+
+/// Takes from a scene what the command line leaves open, and settles all options that depend on the mesh. They refer to
+/// the source. Returns the distances: one set for each output, then that of the inner skin if there is one.
+std::vector<Distances> settle_options(Source& source, Arguments& args);
+
+}  // namespace vdb_offset::tool

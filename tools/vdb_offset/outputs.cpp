@@ -1,0 +1,169 @@
+#include "outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "vdb_offset/field.h"
+#include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/report.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+/// Where a name's endings begin, `.gz` and `.zst` counted with the one before.
+std::size_t ending_of(const std::string& name) {
+  const std::size_t folder = name.rfind('/') == std::string::npos ? 0 : name.rfind('/') + 1;
+  std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot <= folder) return name.size();
+  const std::string last = name.substr(dot);
+  if (last != ".gz" && last != ".zst") return dot;
+  const std::size_t before = name.rfind('.', dot - 1);
+  return before == std::string::npos || before <= folder ? dot : before;
+}
+
+/// A distance as given, without what may not be part of a file's name.
+std::string as_name(std::string distance) {
+  for (char& c : distance)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view(".+-%_").find(c) == std::string_view::npos)
+      c = '_';
+  return distance;
+}
+
+std::string name_of(std::string name, std::size_t number, std::size_t of, const std::string& distance) {
+  if (name.empty() || name == "-") return name;
+  bool marked = false;
+  for (const auto& [mark, value] :
+       {std::pair<std::string, std::string>{"{i}", fmt::format("{:03}", number)}, {"{d}", as_name(distance)}})
+    for (std::size_t at = name.find(mark); at != std::string::npos; at = name.find(mark, at + value.size())) {
+      name.replace(at, mark.size(), value);
+      marked = true;
+    }
+  if (!marked && of > 1) name.insert(ending_of(name), fmt::format("_{:03}", number));
+  return name;
+}
+
+/// Every option's name and value in force, once settle_options() has run.
+std::vector<std::pair<std::string, std::string>> options_in_force(const Arguments& args, const Destination& to) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : std::string("automatic");
+  };
+  const OffsetOptions& options = args.options;
+  const char* const border = options.border == Border::Slide   ? "slide"
+                             : options.border == Border::Fixed ? "fixed"
+                                                               : "free";
+  return {{"distance", to.distance},
+          {"only", fmt::format("{}", fmt::join(args.only_texts, " "))},
+          {"border", border},
+          {"obstacle", fmt::format("{}", fmt::join(args.obstacles, " "))},
+          {"clearance", fmt::format("{}", options.clearance)},
+          {"shell", args.shell ? "true" : "false"},
+          {"inner", args.inner ? args.inner->text : ""},
+          {"voxel-size", number(options.grid.voxel_size)},
+          {"voxels-per-distance", number(options.grid.voxels_per_distance)},
+          {"collision", options.collision == Collision::Merge ? "merge" : "limit"},
+          {"solver", options.solver == Solver::Eikonal ? "eikonal" : "closest"},
+          {"weld", args.weld_text},
+          {"orient", args.orient_text},
+          {"normals", args.write.normals == io::Normals::Keep ? "keep" : "recompute"},
+          {"precision", args.write.digits > 0 ? fmt::format("{}", args.write.digits) : "automatic"},
+          {"threads", fmt::format("{}", options.threads)},
+          {"max-memory", fmt::format("{}", options.max_memory)},
+          {"strict", args.strict ? "true" : "false"}};
+}
+
+void write_report(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+                  Clock::time_point start) {
+  RunFacts facts;
+  facts.input = args.input;
+  facts.output = outcome.to.mesh;
+  facts.distance_text = outcome.to.distance;
+  facts.total_seconds = seconds_since(start);
+  facts.options = options_in_force(args, outcome.to);
+  facts.shell = shell;
+  write_file(outcome.to.report, report_json(outcome.result, facts));
+}
+
+/// The skins of a shell: each vertex between where it was, or the inner skin, and where it went.
+Shell shell_of(PolygonView mesh, const Outcome& outcome, const WeldOptions& weld) {
+  std::vector<Vec3d> outer(mesh.positions.begin(), mesh.positions.end()), inner = outer;
+  for (std::size_t v = 0; v < outer.size(); ++v)
+    (outcome.result.distances[v] < 0 ? inner : outer)[v] = outcome.result.positions[v];
+  if (outcome.inner) inner = outcome.inner->positions;
+  return make_shell(mesh, outer, inner, weld);
+}
+
+io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome, const std::optional<Shell>& shell,
+                                    const io::WriteOptions& options) {
+  const std::string& path = outcome.to.mesh;
+  if (shell)
+    return source.file ? io::write_shell(path, *source.file, *shell, options) : io::write_shell(path, *shell, options);
+  if (source.file) return io::write_mesh(path, *source.file, outcome.result.positions, options);
+  const PolygonView made = source.view();
+  io::write_mesh(path, PolygonView{outcome.result.positions, made.corners, made.face_begin}, options);
+  return {};
+}
+
+void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written) {
+  if (args.quiet) return;
+  if (!written.lost.empty()) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", path, written.lost);
+  if (written.disagreeing_normals > 0)
+    fmt::print(stderr,
+               "vdb_offset: {}: {} normals (vn) are shared by vertices that ask for different ones now; they got "
+               "the mean (--normals keep leaves all as they were)\n",
+               path, written.disagreeing_normals);
+}
+
+}  // namespace
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::vector<Destination> destinations(const Arguments& args) {
+  std::vector<std::string> texts;
+  for (const DistanceRequest& request : args.distances) texts.push_back(request.text);
+  if (texts.empty()) texts.push_back(args.distance_from);
+  std::vector<Destination> all;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const auto named = [&](const std::string& name) { return name_of(name, i + 1, texts.size(), texts[i]); };
+    all.push_back({named(args.output), named(args.report), named(args.states), texts[i]});
+  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (all[i].mesh == all[j].mesh)
+        throw UsageError(fmt::format("OUTPUT: expected names that differ, got {} twice (use {{i}})", all[i].mesh));
+  return all;
+}
+
+std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,
+                                        Clock::time_point start) {
+  const auto& [to, result, inner] = outcome;
+  if (result.field)
+    save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
+             {{"source", args.input},
+              {"offset_distance", to.distance},
+              {"made_by", std::string("vdb_offset ") + version()}});
+  const PolygonView mesh = source.view();
+  if (!to.states.empty())
+    io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin},
+                     {result.states, result.achieved, result.distances});
+  const auto writing = Clock::now();
+  std::optional<Shell> shell;
+  std::optional<ShellFacts> facts;
+  if (args.shell) {
+    shell = shell_of(mesh, outcome, args.options.weld);
+    facts = shell->facts;
+  }
+  io::WriteOptions options = args.write;
+  options.format = format_of(to.mesh, args);
+  options.before_rename = [&] {
+    outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+    if (!to.report.empty()) write_report(args, outcome, facts, start);
+  };
+  tell_losses(args, to.mesh, write_mesh_or_shell(source, outcome, shell, options));
+  return facts;
+}
+
+}  // namespace vdb_offset::tool

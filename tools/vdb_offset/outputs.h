@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "inputs.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/shell.h"
+
+namespace vdb_offset::tool {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start);
+
+/// Where the offset for one distance goes. Names of files that were not asked for are empty.
+struct Destination {
+  std::string mesh, report, states;
+  std::string distance;  ///< As given.
+};
+
+/// One for each distance: `{i}` in a name becomes its number, from 001 on, `{d}` the distance as given; without either
+/// the number is put behind the name, if there are several. \throw UsageError if two would be one file.
+std::vector<Destination> destinations(const Arguments& args);
+
+/// What is written for one distance.
+struct Outcome {
+  const Destination& to;
+  OffsetResult& result;
+  const OffsetResult* inner = nullptr;  ///< The inner skin of a shell, if that was asked for.
+};
+
+/// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
+/// held before. Returns the facts of a shell, if it is one.
+std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,
+                                        Clock::time_point start);
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdio>
+#include <optional>
+
+#include "args.h"
+#include "outputs.h"
+
+namespace vdb_offset::tool {
+
+/// What --dry-run prints: the mesh's facts and the plan.
+void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest);
+
+/// What is printed of one output; with --verbose all that is known of the mesh and the grid. Goes to standard output
+/// unless the mesh does.
+void print_summary(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+                   double total_seconds);
+
+}  // namespace vdb_offset::tool
