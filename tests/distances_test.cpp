@@ -9,6 +9,7 @@
 #include <locale>
 #include <numbers>
 
+#include "bytes.h"
 #include "folder.h"
 #include "oracles.h"
 #include "vdb_offset/error.h"
@@ -62,14 +63,6 @@ struct DecimalComma : std::numpunct<char> {
   char do_thousands_sep() const override { return '.'; }
   std::string do_grouping() const override { return "\3"; }
 };
-
-template <class T>
-std::string raw(T value, bool swap = false) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  if (swap) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
-}
 
 std::string npy_with(const std::string& header, const std::string& numbers, char version = 1) {
   const std::string start = std::string("\x93NUMPY", 6) + version + '\0';

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bytes.h"
 #include "folder.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/file_replace.h"
@@ -15,14 +16,6 @@ using namespace vdb_offset;
 namespace fs = std::filesystem;
 
 namespace {
-
-template <class T>
-std::string raw(T value, bool swap = false) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  if (swap) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
-}
 
 std::vector<Vec3d> shifted(std::vector<Vec3d> positions, const Vec3d& by) {
   for (Vec3d& p : positions) p += by;

@@ -377,7 +377,8 @@ TEST_CASE("report: the summary counts what the states say", "[report]") {
   OffsetResult result;
   result.states = {VertexState::Reached, VertexState::Reached, VertexState::Collision, VertexState::Unused};
   result.achieved = {2, 2.000001, 1, 0};
-  const AchievedSummary summary = summarise(result, -2);
+  result.distances = -2;
+  const AchievedSummary summary = summarise(result);
   CHECK(summary.vertices == 3);
   CHECK(summary.share_reached == Approx(2.0 / 3));
   CHECK(summary.least == 1);

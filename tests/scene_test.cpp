@@ -40,16 +40,14 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     const scene::Scene scene = scene::read_scene(entry.path().string());
     REQUIRE(scene.mesh_path.empty());
     OffsetOptions options;
-    options.distance = scene.distance.in_world_units(used_diagonal(scene.shape.view()));
-    options.grid = scene.grid;
-    options.solver = scene.solver;
-    options.collision = scene.collision;
+    options.distance = scene::distances_of(scene.distance, scene.shape.view(), {}, Orient::Keep, {});
+    scene.set(options);
     CHECK(scene::unmet(scene.expect, scene.shape.view(), offset(scene.shape.view(), options)) ==
           std::vector<std::string>{});
     CHECK(scene.expect.min_reached);
     ++count;
   }
-  CHECK(count >= 14);
+  CHECK(count >= 23);
 }
 
 TEST_CASE("scenes: an expectation that does not hold is told", "[scene][oracle]") {
@@ -144,7 +142,7 @@ TEST_CASE("scenes: what is no scene is told with its key", "[scene]") {
   CHECK_THROWS_WITH(read("[]"), Catch::Contains("an object"));
   CHECK_THROWS_WITH(read(R"({"offset": {"distance": 1}})"), Catch::Contains("'shape'"));
   CHECK_THROWS_WITH(read("{" + shape + "}"), Catch::Contains("'offset'"));
-  CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": "x"}})"), Catch::Contains("distance"));
+  CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": "foo"}})"), Catch::Contains("unknown name"));
   CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": 1, "extra": 2}})"),
                     Catch::Contains("'offset.extra'"));
   CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": 1}, "typo": 1})"), Catch::Contains("'typo'"));
