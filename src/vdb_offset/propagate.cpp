@@ -168,6 +168,7 @@ class Traveller {
   template <class Tell>
   void march(std::span<const Stop> stops, Tell&& tell) {
     target_ = stops.front().distance;
+    const double last = stops.back().distance;
     const auto first = leave_surface();
     if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
       for (const Stop& stop : stops) tell(stop, Arrival{origin_});
@@ -182,10 +183,10 @@ class Traveller {
         tell(stops[passed], Arrival{arrived(here.phi) ? here.x : cut(before, here), outside_});
         if (++passed == stops.size()) return;
       }
-      if (i == kMaxSteps || !(since_peak < kPatience * target_)) break;
-      // Not far beyond the target, which the last step is cut at; not much less than a voxel, for a slow climb.
+      if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
+      // Not far beyond the last stop, which the last step is cut at; not much less than a voxel, for a slow climb.
       const double step = std::min(
-          {kFreeShare * here.phi, kStepVoxels * h_, std::max(target_ - here.phi, kLeastStep * std::min(h_, target_))});
+          {kFreeShare * here.phi, kStepVoxels * h_, std::max(last - here.phi, kLeastStep * std::min(h_, last))});
       Sample next = measure(runge_kutta(here, step));
       bool in_the_way = false;
       if (obstacles_) {
