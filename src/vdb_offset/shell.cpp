@@ -163,27 +163,6 @@ double enclosed_volume(PolygonView mesh) {
 
 }  // namespace
 
-const char* name(ShellPart part) {
-  constexpr const char* kNames[kShellPartCount] = {"outer", "inner", "rim"};
-  return kNames[static_cast<std::size_t>(part)];
-}
-
-std::uint32_t next_corner(PolygonView mesh, const Shell::RimOrigin& edge) {
-  return edge.corner + 1 < mesh.face_begin[edge.face + 1] ? edge.corner + 1 : mesh.face_begin[edge.face];
-}
-
-std::uint32_t Shell::source_corner(PolygonView mesh, std::size_t face, std::size_t k) const {
-  const std::size_t faces = source_faces();
-  if (face < faces) return mesh.face_begin[face] + static_cast<std::uint32_t>(k);
-  if (face < 2 * faces) {
-    const std::uint32_t begin = mesh.face_begin[face - faces], size = mesh.face_begin[face - faces + 1] - begin;
-    return begin + (size - static_cast<std::uint32_t>(k)) % size;
-  }
-  const RimOrigin& edge = rim[face - 2 * faces];
-  const std::size_t vertex = polygons.view().face(face)[k] % source_vertices();
-  return vertex == mesh.corners[edge.corner] ? edge.corner : next_corner(mesh, edge);
-}
-
 Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner,
                  const WeldOptions& weld) {
   if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())

@@ -10,7 +10,10 @@ namespace vdb_offset {
 
 enum class ShellPart : std::uint8_t { Outer, Inner, Rim };
 inline constexpr std::size_t kShellPartCount = 3;
-const char* name(ShellPart part);
+constexpr const char* name(ShellPart part) {
+  constexpr const char* kNames[kShellPartCount] = {"outer", "inner", "rim"};
+  return kNames[static_cast<std::size_t>(part)];
+}
 
 /// What a shell is, counted on its faces and by position: copies of a vertex, and vertices of both skins that stand at
 /// one place, are one.
@@ -57,7 +60,21 @@ struct Shell {
 };
 
 /// The other corner at which a border edge ends, as an index into the mesh's corners.
-std::uint32_t next_corner(PolygonView mesh, const Shell::RimOrigin& edge);
+inline std::uint32_t next_corner(PolygonView mesh, const Shell::RimOrigin& edge) {
+  return edge.corner + 1 < mesh.face_begin[edge.face + 1] ? edge.corner + 1 : mesh.face_begin[edge.face];
+}
+
+inline std::uint32_t Shell::source_corner(PolygonView mesh, std::size_t face, std::size_t k) const {
+  const std::size_t faces = source_faces();
+  if (face < faces) return mesh.face_begin[face] + static_cast<std::uint32_t>(k);
+  if (face < 2 * faces) {
+    const std::uint32_t begin = mesh.face_begin[face - faces], size = mesh.face_begin[face - faces + 1] - begin;
+    return begin + (size - static_cast<std::uint32_t>(k)) % size;
+  }
+  const RimOrigin& edge = rim[face - 2 * faces];
+  const std::size_t vertex = polygons.view().face(face)[k] % source_vertices();
+  return vertex == mesh.corners[edge.corner] ? edge.corner : next_corner(mesh, edge);
+}
 
 /// Joins two skins over a mesh's faces into one solid. `outer` and `inner` are positions of its vertices; either may be
 /// the mesh's own. The rim has a quad for each edge that has one face by the mesh's own positions, over the vertices
