@@ -107,6 +107,116 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
   CHECK_THAT(wrong.err, Catch::Contains("'keep' or 'fix-direction-only'"));
 }
 
+TEST_CASE("command: distances of each vertex, as an expression and from files", "[command]") {
+  const Shell shell;
+  const auto radii = [&](const std::string& name) {
+    std::vector<double> r;
+    for (const Vec3d& p : io::read_mesh(shell.file(name)).polygons.positions) r.push_back(p.length());
+    return r;
+  };
+  const Polygons sphere = io::read_mesh(shell.file("sphere.obj")).polygons;
+  CHECK(shell("sphere.obj a.obj -d '0.1*(1 + nz)' --report a.json --states a.csv").code == 0);
+  std::ofstream numbers(shell.file("numbers.txt"));
+  numbers.precision(17);
+  for (std::size_t v = 0; v < sphere.positions.size(); ++v) {
+    const double asked = 0.1 * (1 + sphere.positions[v][2]);
+    CHECK(radii("a.obj")[v] == Approx(1 + asked).epsilon(0.002));
+    numbers << asked << "\n";
+  }
+  numbers.close();
+  CHECK(shell("sphere.obj b.obj --distance-from numbers.txt").code == 0);
+  CHECK(radii("b.obj").front() == Approx(radii("a.obj").front()).epsilon(1e-3));
+  const auto report = nlohmann::json::parse(shell.slurp(shell.file("a.json")));
+  CHECK(report["achieved"]["share_reached"] == 1);
+  CHECK(report["achieved"]["asked"]["most"].get<double>() == Approx(0.2).epsilon(0.01));
+  CHECK(report["distance_as_given"] == "0.1*(1 + nz)");
+  CHECK_THAT(shell.slurp(shell.file("a.csv")), Catch::Contains("reached"));
+  check_failure(shell, "sphere.obj c.obj -d '0.1*foo'", 1, "column 5");
+  check_failure(shell, "sphere.obj c.obj -d '0.1*(1'", 1, "column");
+  check_failure(shell, "sphere.obj c.obj -d 'sqrt(z)'", 2, "vertex");
+  check_failure(shell, "sphere.obj c.obj -d 'u'", 2, "texture coordinates");
+  check_failure(shell, "sphere.obj c.obj --distance-from a.csv", 2, "a.csv");
+  check_failure(shell, "sphere.obj c.obj --distance-from ply:thickness", 2, "sphere.obj");
+  check_failure(shell, "sphere.obj c.obj -d 1 --distance-from numbers.txt", 1, "got both");
+}
+
+TEST_CASE("command: thickness by the surface's own parameters", "[command]") {
+  const Shell shell;
+  std::ofstream file(shell.file("strip.obj"));
+  for (int i = 0; i <= 8; ++i)
+    for (int j = 0; j <= 4; ++j) file << "v " << i << ' ' << j << " 0\n";
+  for (int i = 0; i <= 8; ++i)
+    for (int j = 0; j <= 4; ++j) file << "vt " << i / 8.0 << ' ' << j / 4.0 << "\n";
+  for (int i = 0; i < 8; ++i)
+    for (int j = 1; j <= 4; ++j) {
+      const int a = 5 * i + j;
+      for (const int v : {a, a + 5, a + 6, a + 1}) file << (v == a ? "f " : " ") << v << '/' << v;
+      file << "\n";
+    }
+  file.close();
+  CHECK(shell("strip.obj out.obj -d '0.1 + 0.2*u*u'").code == 0);
+  for (const Vec3d& p : io::read_mesh(shell.file("out.obj")).polygons.positions)
+    CHECK(p[2] == Approx(0.1 + 0.2 * (p[0] / 8) * (p[0] / 8)));
+}
+
+TEST_CASE("command: several distances, one output each", "[command]") {
+  const Shell shell;
+  CHECK(shell("sphere.obj out.obj -d 0.1 -d 0.2 -d -0.1 --report r.json").code == 0);
+  for (const auto& [number, radius] : {std::pair{"001", 1.1}, {"002", 1.2}, {"003", 0.9}}) {
+    const auto positions = io::read_mesh(shell.file("out_" + std::string(number) + ".obj")).polygons.positions;
+    for (const Vec3d& p : positions) CHECK(p.length() == Approx(radius).epsilon(1e-3));
+    CHECK(shell.has("r_" + std::string(number) + ".json"));
+  }
+  CHECK(shell("sphere.obj 'at_{d}_{i}.ply.gz' -d 1% -d 2%").code == 0);
+  CHECK(shell.has("at_1%_001.ply.gz"));
+  CHECK(shell.has("at_2%_002.ply.gz"));
+  CHECK(shell("sphere.obj one.obj -d 0.1").code == 0);
+  CHECK(shell.has("one.obj"));
+  check_failure(shell, "sphere.obj 'same_{d}.obj' -d 0.1 -d 0.1", 1, "names that differ");
+  check_failure(shell, "sphere.obj - --format obj -d 0.1 -d 0.2", 1, "for each distance");
+}
+
+TEST_CASE("command: parts, obstacles and shells", "[command]") {
+  const Shell shell;
+  std::ofstream(shell.file("two.obj")) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                                          "g left\nf 1 2 3 4\ng right\nf 2 5 6 3\n";
+  CHECK(shell("two.obj left.obj -d 0.1 --only group=left --border free").code == 0);
+  const auto left = io::read_mesh(shell.file("left.obj")).polygons.positions;
+  CHECK(left[0][2] == Approx(0.1));
+  CHECK(left[1][2] == Approx(0.1));
+  CHECK(left[4][2] == 0);
+  CHECK(shell("two.obj fixed.obj -d 0.1 --only group=left --border fixed").code == 0);
+  CHECK(io::read_mesh(shell.file("fixed.obj")).polygons.positions[1][2] == 0);
+  check_failure(shell, "two.obj no.obj -d 0.1 --only group=top", 1, "left, right");
+  check_failure(shell, "two.obj no.obj -d 0.1 --only top", 1, "group=NAME");
+  check_failure(shell, "two.obj no.obj -d 0.1 --border round", 1, "'slide', 'fixed' or 'free'");
+
+  Polygons lid = scene::patch(6, 0, 2);
+  for (Vec3d& p : lid.positions) p[2] += 1.2;
+  io::write_mesh(shell.file("lid.obj"), lid.view());
+  CHECK(shell("sphere.obj under.obj -d 0.5 --obstacle lid.obj --clearance 0.05").code == 0);
+  double highest = 0;
+  for (const Vec3d& p : io::read_mesh(shell.file("under.obj")).polygons.positions) highest = std::max(highest, p[2]);
+  CHECK(highest == Approx(1.15));
+  check_failure(shell, "sphere.obj no.obj -d 0.5 --obstacle none.obj", 2, "none.obj");
+  check_failure(shell, "sphere.obj no.obj -d 0.5 --clearance 0.1", 1, "--obstacle");
+  check_failure(shell, "sphere.obj no.obj -d 0.5 --obstacle lid.obj --clearance -1", 1, "0 or more");
+
+  const Run solid = shell("sphere.obj solid.obj -d 0.1 --inner 0.2 --shell --report solid.json");
+  CHECK(solid.code == 0);
+  CHECK_THAT(solid.out, Catch::Contains("shell closed, oriented"));
+  const auto facts = nlohmann::json::parse(shell.slurp(shell.file("solid.json")))["shell"];
+  CHECK(facts["closed"] == true);
+  CHECK(facts["crossings"] == 0);
+  CHECK(facts["pinched_vertices"] == 0);
+  CHECK(facts["volume"].get<double>() == Approx(4.18879 * (1.331 - 0.512)).epsilon(0.03));
+  CHECK_THAT(shell.slurp(shell.file("solid.obj")), Catch::Contains("g outer") && Catch::Contains("g inner"));
+  const Run open = shell("two.obj plate.obj -d -0.1 --shell");
+  CHECK_THAT(open.out, Catch::Contains("volume 0.2,") && Catch::Contains("rim of 6 quads"));
+  check_failure(shell, "sphere.obj no.obj -d 0.1 --inner 0.1", 1, "--shell");
+  check_failure(shell, "sphere.obj no.obj -d 0.1 --shell --inner -0.1", 1, "above 0");
+}
+
 TEST_CASE("command: 0 and an output when all is well", "[command]") {
   const Shell shell;
   const Run run = shell("sphere.obj out.obj --distance 0.1");

@@ -91,7 +91,9 @@ Json shell_json(const ShellFacts& shell) {
           {"rim_quads", shell.rim_quads},
           {"rim_triangles", shell.rim_triangles},
           {"border_edges_left", shell.border_edges_left},
-          {"non_manifold_edges", shell.non_manifold_edges}};
+          {"non_manifold_edges", shell.non_manifold_edges},
+          {"pinched_vertices", shell.pinched_vertices},
+          {"crossings", shell.crossings}};
 }
 
 Json grids_json(const OffsetStatistics& statistics) {

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <string>
 
+#include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/triangulate.h"
@@ -161,10 +162,27 @@ double enclosed_volume(PolygonView mesh) {
   return six_times / 6;
 }
 
+/// Vertices of faces at which the skins touch.
+std::size_t count_pinched(PolygonView mesh, const Shell& shell) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  for (const auto v : mesh.corners) used[v] = 1;
+  std::size_t pinched = 0;
+  for (std::size_t v = 0; v < used.size(); ++v) pinched += used[v] && shell.outer()[v] == shell.inner()[v];
+  return pinched;
+}
+
+std::size_t count_crossings(const Shell& shell, const Precision& precision) {
+  std::vector<Vec3d> rounded;
+  rounded.reserve(shell.polygons.positions.size());
+  for (const Vec3d& p : shell.polygons.positions) rounded.push_back(precision(p));
+  const Surface surface = build_surface({rounded, shell.polygons.corners, shell.polygons.face_begin}, {});
+  return CrossingFinder(surface, surface.vertices).all().size();
+}
+
 }  // namespace
 
-Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner,
-                 const WeldOptions& weld) {
+Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
+                 const Precision& precision) {
   if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())
     throw InvalidInput("shell: expected two skins of " + std::to_string(mesh.positions.size()) + " vertices, got " +
                        std::to_string(outer.size()) + " and " + std::to_string(inner.size()));
@@ -175,6 +193,8 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
   const std::vector<std::uint32_t> place = places_of(shell, place_in_mesh, weld.enabled);
   add_rim(mesh, find_border(mesh, place_in_mesh), place, shell);
   count_edges(place, shell);
+  shell.facts.pinched_vertices = count_pinched(mesh, shell);
+  shell.facts.crossings = count_crossings(shell, precision);
   shell.facts.volume = enclosed_volume(shell.polygons.view());
   return shell;
 }

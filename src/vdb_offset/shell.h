@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/precision.h"
 #include "vdb_offset/surface.h"
 
 namespace vdb_offset {
@@ -21,6 +22,8 @@ struct ShellFacts {
   std::size_t rim_quads = 0, rim_triangles = 0;
   std::size_t border_edges_left = 0;   ///< With one face.
   std::size_t non_manifold_edges = 0;  ///< With three faces or more.
+  std::size_t pinched_vertices = 0;    ///< Of the mesh: inner and outer skin are at one place there, and touch.
+  std::size_t crossings = 0;           ///< Pairs of triangles that meet but for shared edges and corners.
   bool closed = false;                 ///< Every edge has an even number of faces.
   bool oriented = false;               ///< As many faces run through every edge one way as the other.
   double volume = 0;  ///< World units^3, positive for faces that point outwards; of use if it is oriented.
@@ -81,7 +84,9 @@ inline std::uint32_t Shell::source_corner(PolygonView mesh, std::size_t face, st
 /// that this face uses; a triangle where one end did not move apart, and nothing where neither did. Edges of three
 /// faces or more have no rim. Inner faces start with the same corner as the mesh's, so that quads are split into the
 /// same triangles.
+/// The facts are those of coordinates rounded to `precision`.
 /// \throw InvalidInput for a mesh that cannot be used, or skins that do not have one position for each of its vertices.
-Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld);
+Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
+                 const Precision& precision = {});
 
 }  // namespace vdb_offset

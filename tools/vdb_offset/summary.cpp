@@ -67,6 +67,8 @@ void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shel
              shell.rim_quads, shell.rim_triangles);
   if (shell.border_edges_left) fmt::print(out, ", {} border edges left", shell.border_edges_left);
   if (shell.non_manifold_edges) fmt::print(out, ", {} non-manifold edges", shell.non_manifold_edges);
+  if (shell.pinched_vertices) fmt::print(out, ", without thickness at {} vertices", shell.pinched_vertices);
+  if (shell.crossings) fmt::print(out, ", {} pairs of triangles meet", shell.crossings);
   fmt::print(out, "\n");
 }
 
