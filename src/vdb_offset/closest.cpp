@@ -64,11 +64,22 @@ ClosestQuery::Discs ClosestQuery::discs_of(std::size_t leaf) const {
 /// One query's descent through the tree, nearest boxes first.
 class ClosestQuery::Search {
  public:
-  Search(const ClosestQuery& query, const Vec3d& x, std::uint32_t hint)
-      : query_(query), surface_(query.surface_), x_(x), triangle_(hint), best_(surface_.walk_to_closest(x, triangle_)) {
+  Search(const ClosestQuery& query, const Vec3d& x, std::uint32_t hint) : Search(query, x, hint, {}) {
+    best_ = surface_.walk_to_closest(x, triangle_);
+    tighten();
+  }
+  /// From a point of the surface that is known to be near, on a triangle.
+  Search(const ClosestQuery& query, const Vec3d& x, std::uint32_t triangle, const TrianglePoint& known)
+      : query_(query), surface_(query.surface_), x_(x), triangle_(triangle), best_(known) {
     for (int k = 0; k < 3; ++k) local_[k] = static_cast<float>(x[k] * query.scale_);
     rounding_ = query.slack_ + 4e-7f * std::max({std::abs(local_[0]), std::abs(local_[1]), std::abs(local_[2])});
     tighten();
+  }
+
+  /// Through these blocks of lowest boxes, which must hold all that may be nearer.
+  Closest run_through(std::span<const std::uint32_t> blocks) {
+    for (const auto block : blocks) open(0, block);
+    return {std::sqrt(best_.squared_distance), triangle_, best_.feature, best_.point};
   }
 
   Closest run() {
@@ -164,6 +175,71 @@ class ClosestQuery::Search {
 };
 
 Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const { return Search(*this, x, hint).run(); }
+
+/// Some points whose closest points are looked for together.
+class ClosestQuery::Group {
+ public:
+  static constexpr std::size_t kMost = 32;
+
+  Group(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
+        std::span<Closest> answers)
+      : query_(query), points_(points), answers_(answers) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      triangle_[i] = hints[i];
+      walked_[i] = query.surface_.walk_to_closest(points[i], triangle_[i]);
+    }
+  }
+
+  /// Points first .. last - 1: by halves, if the balls that nothing nearer lies outside of do not lie close together.
+  void answer(std::size_t first, std::size_t last) const {
+    constexpr std::size_t kMostBlocks = 24;
+    std::array<std::uint32_t, kMostBlocks> blocks;
+    std::size_t count = 0;
+    const auto take = [&](std::size_t block) {
+      if (count < kMostBlocks) blocks[count] = static_cast<std::uint32_t>(block);
+      ++count;
+    };
+    if (query_.tree_.levels().size() == 1) take(0);
+    else query_.tree_.for_each_overlap(box_of_balls(first, last), take, 1);
+    if (count > kMostBlocks && last - first > 1) {
+      answer(first, (first + last) / 2);
+      return answer((first + last) / 2, last);
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      Search search(query_, points_[i], triangle_[i], walked_[i]);
+      answers_[i] = count > kMostBlocks ? search.run() : search.run_through(std::span(blocks).first(count));
+    }
+  }
+
+ private:
+  FloatBox box_of_balls(std::size_t first, std::size_t last) const {
+    FloatBox box;
+    for (std::size_t i = first; i < last; ++i) {
+      const double radius = std::sqrt(walked_[i].squared_distance);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double x = points_[i][static_cast<int>(k)] * query_.scale_, r = radius * query_.scale_;
+        const auto slack = query_.slack_ + static_cast<float>((std::abs(x) + r) * 4e-7);
+        box.lower[k] = std::min(box.lower[k], static_cast<float>(x - r) - slack);
+        box.upper[k] = std::max(box.upper[k], static_cast<float>(x + r) + slack);
+      }
+    }
+    return box;
+  }
+
+  const ClosestQuery& query_;
+  std::span<const Vec3d> points_;
+  std::span<Closest> answers_;
+  std::array<std::uint32_t, kMost> triangle_;
+  std::array<TrianglePoint, kMost> walked_;
+};
+
+void ClosestQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
+                                   std::span<Closest> answers) const {
+  for (std::size_t i = 0; i < points.size(); i += Group::kMost) {
+    const std::size_t count = std::min(Group::kMost, points.size() - i);
+    Group(*this, points.subspan(i, count), hints.subspan(i, count), answers.subspan(i, count)).answer(0, count);
+  }
+}
 
 std::vector<Closest> closest_points(const ClosestQuery& query, std::span<const Vec3d> points) {
   const MeshFacts& facts = query.surface().facts;

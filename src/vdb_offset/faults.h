@@ -74,7 +74,7 @@ class FaultFinder {
   void mark_near_source();
   bool is_near_source(std::uint32_t triangle) const;
   Indices triangles_around(const Indices& vertices) const;
-  void measure(std::size_t vertex);
+  void measure(std::span<const std::uint32_t> vertices);
   double rounding(std::size_t vertex) const;
   bool is_misplaced(std::uint32_t vertex) const;
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;

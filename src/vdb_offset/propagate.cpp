@@ -8,6 +8,8 @@
 #include <cmath>
 #include <optional>
 
+#include "vdb_offset/parallel.h"
+
 namespace vdb_offset {
 namespace {
 
@@ -405,28 +407,48 @@ class Marches {
     }
   }
 
-  /// Moves the vertices of a range.
-  void operator()(const tbb::blocked_range<std::size_t>& range) const {
+  /// Vertices are moved in blocks of so many.
+  static constexpr std::size_t kBlock = 128;
+
+  /// Moves the vertices of a block: all in haste, then those carefully that did not arrive by that.
+  void operator()(std::size_t block) const {
     const DirectionSampler sampler(directions_);
+    const std::size_t first = block * kBlock, last = std::min(first + kBlock, surface_.vertices.size());
     std::vector<Stop> stops;
-    for (std::size_t v = range.begin(); v != range.end(); ++v)
-      for (const int side : {1, -1}) {
-        stops.clear();
-        for (std::size_t set = 0; set < distances_.size(); ++set) add_stop(set, v, side, stops);
-        if (!stops.empty()) march(sampler, v, side, stops);
-      }
+    std::vector<End> ends;
+    for (const auto pace : {Traveller::Pace::Hasty, Traveller::Pace::Careful}) {
+      ends.clear();
+      for (std::size_t v = first; v < last; ++v)
+        for (const int side : {1, -1}) {
+          stops.clear();
+          for (std::size_t set = 0; set < distances_.size(); ++set) add_stop(set, v, side, pace, stops, ends);
+          if (!stops.empty()) march(sampler, v, side, pace, stops, ends);
+        }
+      judge(ends);
+    }
   }
 
  private:
+  /// Where a vertex ended up on its way to a stop.
+  struct End {
+    std::uint32_t vertex;
+    Stop stop;
+    Traveller::Arrival arrival;
+  };
+
   bool is_straight(std::size_t set, std::size_t v) const { return straight_[set][surface_.component[v]]; }
 
-  /// Where vertex v has to march to for one set, if it goes to this side at all.
-  void add_stop(std::size_t set, std::size_t v, int side, std::vector<Stop>& stops) const {
+  /// Where vertex v has to march to for one set, if it goes to this side at all and has not arrived.
+  void add_stop(std::size_t set, std::size_t v, int side, Traveller::Pace pace, std::vector<Stop>& stops,
+                std::vector<End>& ends) const {
+    const bool careful = pace == Traveller::Pace::Careful;
     const double distance = distances_[set][v];
+    const Stop stop{std::abs(distance), set};
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
-    else if (distance * side < 0) return;
-    else if (is_straight(set, v)) arrive({std::abs(distance), set}, v, {straight_end(set, v)});
-    else stops.push_back({std::abs(distance), set});
+    if (distance * side <= 0 || (careful && (is_straight(set, v) || paths_[set].state[v] == VertexState::Reached)))
+      return;
+    if (is_straight(set, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {straight_end(set, v)}});
+    else stops.push_back(stop);
   }
 
   Vec3d straight_end(std::size_t set, std::size_t v) const {
@@ -434,27 +456,37 @@ class Marches {
     return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
   }
 
-  void march(const DirectionSampler& sampler, std::size_t v, int side, std::vector<Stop>& stops) const {
+  void march(const DirectionSampler& sampler, std::size_t v, int side, Traveller::Pace pace, std::vector<Stop>& stops,
+             std::vector<End>& ends) const {
     std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
-    for (const auto pace : {Traveller::Pace::Hasty, Traveller::Pace::Careful}) {
-      Traveller traveller(query_, directions_, sampler, side, static_cast<std::uint32_t>(v), pace, obstacles_);
-      traveller.march(stops, [&](const Stop& stop, const Traveller::Arrival& end) { arrive(stop, v, end); });
-      std::erase_if(stops, [&](const Stop& stop) { return paths_[stop.set].state[v] == VertexState::Reached; });
-      if (stops.empty()) return;
-    }
+    const auto vertex = static_cast<std::uint32_t>(v);
+    Traveller traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
+    traveller.march(stops, [&](const Stop& stop, const Traveller::Arrival& end) {
+      ends.push_back({vertex, stop, end});
+    });
   }
 
-  void arrive(const Stop& stop, std::size_t v, const Traveller::Arrival& end) const {
-    Paths& paths = paths_[stop.set];
-    paths.displacement[v] = round_way(end.position - surface_.vertices[v], stop.distance);
-    // Judged where the vertex will be: far from the origin its coordinates are rounded.
-    const Vec3d place = (surface_.vertices[v] + surface_.origin) + paths.displacement[v];
-    const std::uint32_t hint = surface_.triangles_around(static_cast<std::uint32_t>(v)).front();
-    paths.achieved[v] = query_(place - surface_.origin, hint).distance;
-    paths.state[v] = std::abs(paths.achieved[v] - stop.distance) <= kReachedTolerance * stop.distance
-                         ? VertexState::Reached
-                     : end.outside_field ? VertexState::OutsideField
-                                         : VertexState::Collision;
+  /// Tells how far the ends are from the surface, and what that makes of their vertices.
+  void judge(const std::vector<End>& ends) const {
+    std::vector<Vec3d> points;
+    std::vector<std::uint32_t> hints;
+    for (const auto& [v, stop, end] : ends) {
+      const Vec3d way = round_way(end.position - surface_.vertices[v], stop.distance);
+      paths_[stop.set].displacement[v] = way;
+      // Judged where the vertex will be: far from the origin its coordinates are rounded.
+      points.push_back((surface_.vertices[v] + surface_.origin) + way - surface_.origin);
+      hints.push_back(surface_.triangles_around(v).front());
+    }
+    std::vector<Closest> closest(points.size());
+    query_.answer_together(points, hints, closest);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const auto& [v, stop, end] = ends[i];
+      paths_[stop.set].achieved[v] = closest[i].distance;
+      paths_[stop.set].state[v] = std::abs(closest[i].distance - stop.distance) <= kReachedTolerance * stop.distance
+                                      ? VertexState::Reached
+                                  : end.outside_field ? VertexState::OutsideField
+                                                      : VertexState::Collision;
+    }
   }
 
   const ClosestQuery& query_;
@@ -487,10 +519,12 @@ std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& di
   Progress progress(callback, Stage::Propagate, count);
   std::vector<Paths> paths(distances.size());
   const Marches marches(query, directions, distances, obstacles, paths);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
-    marches(range);
-    progress.advance(range.size());
-  });
+  for_each_index((count + Marches::kBlock - 1) / Marches::kBlock,
+                 [&](std::size_t block) {
+                   marches(block);
+                   progress.advance(std::min(Marches::kBlock, count - block * Marches::kBlock));
+                 },
+                 1);
   return paths;
 }
 
