@@ -27,7 +27,7 @@ void sort_unique(Indices& indices) {
 }
 
 FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                         Precision precision)
+                         Precision precision, std::optional<std::vector<TrianglePair>> source_crossings)
     : body_(body),
       surface_(body.surface),
       source_(source),
@@ -41,7 +41,7 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       fault_(surface_.triangles.size(), Fault::None),
       finder_(surface_, place_) {
   if (body.obstacles) clearance_.emplace(*body.obstacles);
-  source_crossings_ = finder_.all();
+  source_crossings_ = source_crossings ? std::move(*source_crossings) : finder_.all();
   mark_near_source();
 }
 
@@ -90,10 +90,17 @@ void FaultFinder::look_for_crossings(const Indices& touched) {
   }
 }
 
-void FaultFinder::measure(std::span<const std::uint32_t> vertices) {
+/// Whether a vertex stands where its path ended, as good as: then what was found there holds here, phi being
+/// 1-Lipschitz.
+bool FaultFinder::is_known(std::uint32_t v, const Vec3d& x, const Paths& ends) const {
+  constexpr double kSamePlace = 1e-11;
+  const Vec3d end = surface_.vertices[v] + ends.displacement[v];
+  return ends.closest[v] != kNone && (x - end).length() <= kSamePlace * ends.achieved[v];
+}
+
+void FaultFinder::measure(std::span<const std::uint32_t> vertices, const Paths* ends) {
   const Surface& front = body_.front.surface();
-  const bool sided = front.facts.closed() && front.facts.oriented();
-  Indices away;  // from where they were
+  Indices unknown;
   std::vector<Vec3d> points;
   std::vector<std::uint32_t> hints;
   for (const auto v : vertices) {
@@ -102,21 +109,29 @@ void FaultFinder::measure(std::span<const std::uint32_t> vertices) {
     right_side_[v] = 1;
     // What stands where it was is on the front, or no part of it.
     if (place_[v] == source_[v] || !body_.on_front(v)) continue;
-    away.push_back(v);
-    points.push_back(place_[v] - front.origin);
+    const Vec3d x = place_[v] - front.origin;
+    if (ends && is_known(v, x, *ends)) {
+      std::uint32_t triangle = ends->closest[v];
+      const TrianglePoint nearest = front.walk_to_closest(x, triangle);
+      take(v, x, {std::sqrt(nearest.squared_distance), triangle, nearest.feature, nearest.point});
+      continue;
+    }
+    unknown.push_back(v);
+    points.push_back(x);
     hints.push_back(body_.hint(v));
   }
   std::vector<Closest> answers(points.size());
   body_.front.answer_together(points, hints, answers);
-  for (std::size_t i = 0; i < away.size(); ++i) {
-    const std::uint32_t v = away[i];
-    const Closest& closest = answers[i];
-    distance_[v] = closest.distance;
-    away_[v] = points[i] - closest.point;
-    const int side = distances_[v] < 0 ? -1 : 1;
-    if (sided && closest.distance > near_)
-      right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
-  }
+  for (std::size_t i = 0; i < unknown.size(); ++i) take(unknown[i], points[i], answers[i]);
+}
+
+void FaultFinder::take(std::uint32_t v, const Vec3d& x, const Closest& closest) {
+  const Surface& front = body_.front.surface();
+  distance_[v] = closest.distance;
+  away_[v] = x - closest.point;
+  const int side = distances_[v] < 0 ? -1 : 1;
+  if (front.facts.closed() && front.facts.oriented() && closest.distance > near_)
+    right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
 }
 
 /// How far rounding may have moved a vertex.
@@ -168,14 +183,18 @@ bool FaultFinder::faces_against_front(std::uint32_t t, const Vec3d& before, cons
   return any || now.dot(before) < 0;
 }
 
-void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of) {
+void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
   Indices everything(source_.size());
   std::iota(everything.begin(), everything.end(), 0u);
   crossings_near_source_ = 0;
-  look(everything, place_of);
+  look(everything, place_of, ends);
 }
 
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
+  look(moved, place_of, nullptr);
+}
+
+void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
   constexpr std::size_t kBlock = 64;
   const auto put = [&](std::size_t block) {
     const auto some = std::span(moved).subspan(block * kBlock, std::min(kBlock, moved.size() - block * kBlock));
@@ -183,7 +202,7 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
       const Vec3d p = place_of(v);
       place_[v] = p == source_[v] ? p : precision_(p);  // what has not moved keeps its bytes
     }
-    measure(some);
+    measure(some, ends);
   };
   for_each_index((moved.size() + kBlock - 1) / kBlock, put, 1);
   const Indices touched = triangles_around(moved);

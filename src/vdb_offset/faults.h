@@ -15,6 +15,8 @@
 
 namespace vdb_offset {
 
+struct Paths;
+
 /// What may be wrong with a result.
 struct FaultCounts {
   std::size_t inverted = 0, collapsed = 0;  ///< Faces.
@@ -40,12 +42,15 @@ class FaultFinder {
   /// `source` holds where the body's vertices stand in the input, world coordinates; they begin there. `distances` are
   /// theirs; those that are not on the front do not matter. Places are rounded to `precision`.
   /// Keeps references to all but the last.
-  FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision);
+  /// `source_crossings`, if they are known of the same source already, need not be looked for again.
+  FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
+              std::optional<std::vector<TrianglePair>> source_crossings = {});
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them.
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
-  void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of);
+  /// The same for all vertices. Where they stand at the ends of paths, what is known of those need not be found again.
+  void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
 
   bool any() const { return !faces_.empty() || !crossings_.empty(); }
   FaultCounts count() const;
@@ -74,7 +79,10 @@ class FaultFinder {
   void mark_near_source();
   bool is_near_source(std::uint32_t triangle) const;
   Indices triangles_around(const Indices& vertices) const;
-  void measure(std::span<const std::uint32_t> vertices);
+  void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends);
+  void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
+  bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
+  void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest);
   double rounding(std::size_t vertex) const;
   bool is_misplaced(std::uint32_t vertex) const;
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;

@@ -30,7 +30,7 @@ constexpr int kReleases = 12;
 class Limiter {
  public:
   Limiter(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
-          Paths& paths)
+          Paths& paths, const std::optional<std::vector<TrianglePair>>& source_crossings)
       : body_(body),
         surface_(body.surface),
         source_(source),
@@ -39,12 +39,14 @@ class Limiter {
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
         patch_(source.size(), kNone),
-        faults_(body_, source, distances, precision) {
+        faults_(body_, source, distances, precision, source_crossings) {
     statistics_.source_crossings = faults_.source_crossings().size();
   }
 
+  const std::vector<TrianglePair>& source_crossings() const { return faults_.source_crossings(); }
+
   LimitStatistics run(Progress& progress) {
-    faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); });
+    faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); }, &paths_);
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
     for (const Untangler::Options& attempt : kAttempts)
@@ -246,10 +248,13 @@ class Limiter {
 }  // namespace
 
 LimitStatistics limit(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
-                      Paths& paths, const ProgressCallback& callback) {
+                      Paths& paths, std::optional<std::vector<TrianglePair>>& source_crossings,
+                      const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Limit, kExpectedRounds);
-  return Limiter(body, source, distances, precision, paths).run(progress);
+  Limiter limiter(body, source, distances, precision, paths, source_crossings);
+  if (!source_crossings) source_crossings = limiter.source_crossings();
+  return limiter.run(progress);
 }
 
 }  // namespace vdb_offset

@@ -95,13 +95,15 @@ Paths paths_of_body(const Workpiece& work, Paths of_front) {
   if (work.front_vertex.empty()) return of_front;
   const std::size_t count = work.front_vertex.size();
   Paths paths{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<double>(count, 0.0),
-              std::vector<VertexState>(count, VertexState::Reached), of_front.straight};
+              std::vector<VertexState>(count, VertexState::Reached), std::vector<std::uint32_t>(count, kNone),
+              of_front.straight};
   for (std::size_t w = 0; w < count; ++w) {
     const auto f = work.front_vertex[w];
     if (f == kNone) continue;
     paths.displacement[w] = of_front.displacement[f];
     paths.achieved[w] = of_front.achieved[f];
     paths.state[w] = of_front.state[f];
+    paths.closest[w] = of_front.closest[f];
   }
   return paths;
 }
@@ -218,7 +220,8 @@ class Pipeline {
     const std::vector<Vec3d> source = work_.source(mesh_);
     if (options_.collision == Collision::Limit) {
       const StageTimer timer(result.statistics, Stage::Limit);
-      result.statistics.limit = limit(body, source, distances, options_.precision, paths, options_.progress);
+      result.statistics.limit =
+          limit(body, source, distances, options_.precision, paths, source_crossings_, options_.progress);
     }
     move_vertices(mesh_, surface, paths, result);
     result.distances = distances_of_input(surface, distances);
@@ -249,6 +252,7 @@ class Pipeline {
   DistanceField field_;
   std::optional<ClosestQuery> query_, obstacles_;
   std::optional<Obstacles> keep_away_;
+  std::optional<std::vector<TrianglePair>> source_crossings_;
 };
 
 }  // namespace

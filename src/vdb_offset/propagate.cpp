@@ -401,6 +401,7 @@ class Marches {
       paths[set].displacement.resize(count);
       paths[set].achieved.resize(count);
       paths[set].state.resize(count);
+      paths[set].closest.resize(count, kNone);
       arrival_.emplace_back(count);
       straight_.push_back(go_straight(query, directions, distances[set], arrival_.back()));
       for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_straight(set, v);
@@ -482,6 +483,7 @@ class Marches {
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const auto& [v, stop, end] = ends[i];
       paths_[stop.set].achieved[v] = closest[i].distance;
+      paths_[stop.set].closest[v] = closest[i].triangle;
       paths_[stop.set].state[v] = std::abs(closest[i].distance - stop.distance) <= kReachedTolerance * stop.distance
                                       ? VertexState::Reached
                                   : end.outside_field ? VertexState::OutsideField

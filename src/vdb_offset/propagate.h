@@ -30,7 +30,8 @@ struct Paths {
   std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 of the distance.
   std::vector<double> achieved;     ///< Exact unsigned distance of the end point to the surface.
   std::vector<VertexState> state;
-  std::size_t straight = 0;  ///< Vertices of components that moved along their normals alone.
+  std::vector<std::uint32_t> closest;  ///< The triangle of the front that is closest to the end point.
+  std::size_t straight = 0;            ///< Vertices of components that moved along their normals alone.
 };
 
 /// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes

@@ -158,7 +158,9 @@ void slide_borders(Workpiece& work, const ClosestQuery& front, const Distances& 
     const Vec3d end = BorderVertex(work, front, rest, v, distances[f]).slide();
     paths.displacement[f] = round_way(end - work.whole->vertices[v], target);
     const Vec3d place = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
-    paths.achieved[f] = front(place - front.surface().origin, front.surface().triangles_around(f).front()).distance;
+    const Closest closest = front(place - front.surface().origin, front.surface().triangles_around(f).front());
+    paths.achieved[f] = closest.distance;
+    paths.closest[f] = closest.triangle;
     paths.state[f] = std::abs(paths.achieved[f] - target) <= kReachedTolerance * target ? VertexState::Reached
                                                                                         : VertexState::Collision;
   };
