@@ -258,7 +258,7 @@ TEST_CASE("obstacle: it does not count for the distance", "[obstacle]") {
 }
 
 TEST_CASE("obstacle: distance between triangles", "[obstacle][oracle]") {
-  const Corners flat = {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)};
+  const TriangleCorners flat = {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)};
   CHECK(distance_between(flat, {Vec3d(0.2, 0.2, -1), Vec3d(0.2, 0.2, 1), Vec3d(0.3, 0.2, 1)}) == 0);
   CHECK(distance_between(flat, {Vec3d(0.2, 0.2, 2), Vec3d(0.2, 0.2, 0.5), Vec3d(0.3, 0.2, 3)}) == Approx(0.5));
   CHECK(distance_between(flat, {Vec3d(-1, -1, 0.5), Vec3d(-1, 2, 1.5), Vec3d(-5, 0, 1)}) ==

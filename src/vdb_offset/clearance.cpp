@@ -28,7 +28,7 @@ double squared_segment_distance(const Vec3d& p1, const Vec3d& q1, const Vec3d& p
 }
 
 /// Whether a segment runs through a triangle's inside.
-bool pierces(const Vec3d& p, const Vec3d& q, const Corners& triangle) {
+bool pierces(const Vec3d& p, const Vec3d& q, const TriangleCorners& triangle) {
   const Vec3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0], n = u.cross(v);
   const double at_p = n.dot(p - triangle[0]), at_q = n.dot(q - triangle[0]);
   if (at_p * at_q > 0 || at_p == at_q) return false;
@@ -38,7 +38,7 @@ bool pierces(const Vec3d& p, const Vec3d& q, const Corners& triangle) {
   return true;
 }
 
-FloatBox box_around(const Corners& corners, double margin) {
+FloatBox box_around(const TriangleCorners& corners, double margin) {
   FloatBox box;
   for (const Vec3d& p : corners)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -49,14 +49,14 @@ FloatBox box_around(const Corners& corners, double margin) {
   return box;
 }
 
-Corners corners_of(const Surface& surface, std::size_t t) {
+TriangleCorners corners_of(const Surface& surface, std::size_t t) {
   const auto& [a, b, c] = surface.triangles[t];
   return {surface.vertices[a], surface.vertices[b], surface.vertices[c]};
 }
 
 }  // namespace
 
-double distance_between(const Corners& a, const Corners& b) {
+double distance_between(const TriangleCorners& a, const TriangleCorners& b) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return 0;
@@ -74,7 +74,7 @@ ClearanceFinder::ClearanceFinder(const Obstacles& obstacles) : obstacles_(obstac
               [&](std::size_t t) { return box_around(corners_of(surface, t), obstacles_.clearance); });
 }
 
-bool ClearanceFinder::is_crowded(const Corners& triangle) const {
+bool ClearanceFinder::is_crowded(const TriangleCorners& triangle) const {
   const double least = obstacles_.clearance * (1 - 1e-6);
   if (!(least > 0)) return false;
   bool crowded = false;

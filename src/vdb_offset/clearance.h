@@ -9,10 +9,10 @@
 namespace vdb_offset {
 
 /// Three corners.
-using Corners = std::array<Vec3d, 3>;
+using TriangleCorners = std::array<Vec3d, 3>;
 
 /// Distance between two triangles, 0 if they meet.
-double distance_between(const Corners& a, const Corners& b);
+double distance_between(const TriangleCorners& a, const TriangleCorners& b);
 
 /// Finds what comes nearer to obstacles than may be, not at its vertices alone.
 class ClearanceFinder {
@@ -21,7 +21,7 @@ class ClearanceFinder {
   explicit ClearanceFinder(const Obstacles& obstacles);
 
   /// Whether a triangle, in the obstacles' frame, is nearer to any of them than the clearance by more than 1e-6 of it.
-  bool is_crowded(const Corners& triangle) const;
+  bool is_crowded(const TriangleCorners& triangle) const;
 
  private:
   const Obstacles& obstacles_;

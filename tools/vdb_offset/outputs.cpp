@@ -139,7 +139,8 @@ std::vector<Destination> destinations(const Arguments& args) {
 
 std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,
                                         Clock::time_point start) {
-  const auto& [to, result, inner] = outcome;
+  const Destination& to = outcome.to;
+  const OffsetResult& result = outcome.result;
   if (result.field)
     save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
              {{"source", args.input},
