@@ -24,6 +24,7 @@ struct Body {
   std::span<const std::uint8_t> off_front;      ///< Of each triangle: 1 if it is no part of the front.
   std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave the path it went.
   const Obstacles* obstacles = nullptr;         ///< Those to keep away from, if there are any.
+  bool off_source = false;                      ///< What has moved must not meet the source either, as in a shell.
 
   bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
   bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }

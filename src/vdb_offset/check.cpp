@@ -89,7 +89,7 @@ void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOp
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  const Body body{query, surface, {}, {}, {}, nullptr};
+  const Body body{query, surface, {}, {}, {}, nullptr, false};
   const Distances distances(result.distance);
   FaultFinder finder(body, places.source, distances, {});
   finder.look_everywhere([&](std::uint32_t v) { return places.offset[v]; });

@@ -27,19 +27,22 @@ struct Couple {
   std::array<Vec3d, 3> a, b;
   int shared = 0;
 
-  Couple(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
+  /// A triangle where its corners stand at some places, and one where they may stand at others. They share a corner
+  /// only if it is at one place.
+  Couple(const Surface& surface, std::span<const Vec3d> places_of_a, std::uint32_t s,
+         std::span<const Vec3d> places_of_b, std::uint32_t t) {
     std::array<std::uint32_t, 3> of_a = surface.triangles[s], of_b = surface.triangles[t];
     for (std::size_t i = 0; i < 3; ++i) {
       const auto n = static_cast<std::size_t>(shared);
       const auto found = std::find(of_b.begin() + shared, of_b.end(), of_a[i]);
-      if (found == of_b.end()) continue;
+      if (found == of_b.end() || places_of_a[of_a[i]] != places_of_b[*found]) continue;
       std::swap(*found, of_b[n]);
       std::swap(of_a[i], of_a[n]);
       ++shared;
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      a[k] = positions[of_a[k]];
-      b[k] = positions[of_b[k]];
+      a[k] = places_of_a[of_a[k]];
+      b[k] = places_of_b[of_b[k]];
     }
   }
 };
@@ -84,8 +87,7 @@ bool clearly_apart(const Couple& pair) {
   return pair.shared == 1 && on_either_side(pair.a, pair.b);
 }
 
-bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
-  const Couple pair(surface, positions, s, t);
+bool meet(const Couple& pair) {
   if (pair.shared == 3) return false;  // the same triangle twice, or a sheet's two sides
   if (clearly_apart(pair)) return false;
   std::array<Point, 3> a, b;
@@ -99,6 +101,10 @@ bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_
   if (pair.shared == 1)
     return CGAL::do_intersect(Segment(a[1], a[2]), of_b) || CGAL::do_intersect(Segment(b[1], b[2]), of_a);
   return CGAL::coplanar(a[0], a[1], a[2], b[2]) && CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::POSITIVE;
+}
+
+bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
+  return meet(Couple(surface, positions, s, positions, t));
 }
 
 /// Lets find(first, last, found) look at runs of 0 .. count - 1 in parallel; sorts what they find.
@@ -120,19 +126,19 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
 
 CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
     : surface_(surface), positions_(positions) {
-  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(t); });
+  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(t, positions_); });
 }
 
 void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
-  tree_.refit(triangles, [&](std::size_t t) { return box_of(t); });
+  tree_.refit(triangles, [&](std::size_t t) { return box_of(t, positions_); });
 }
 
 /// Rounded outwards, relative to the surface's own frame.
-FloatBox CrossingFinder::box_of(std::size_t t) const {
+FloatBox CrossingFinder::box_of(std::size_t t, std::span<const Vec3d> places) const {
   FloatBox box;
   for (const auto v : surface_.triangles[t])
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto x = static_cast<float>(positions_[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
+      const auto x = static_cast<float>(places[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
       const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
       box.lower[k] = std::min(box.lower[k], x - rounding);
       box.upper[k] = std::max(box.upper[k], x + rounding);
@@ -168,13 +174,21 @@ std::vector<TrianglePair> CrossingFinder::all() const {
 std::vector<TrianglePair> CrossingFinder::of(std::span<const std::uint32_t> triangles) const {
   return find_in_parallel(triangles.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
     const std::uint32_t t = triangles[i];
-    tree_.for_each_overlap(box_of(t), [&](std::size_t child) {
+    tree_.for_each_overlap(box_of(t, positions_), [&](std::size_t child) {
       const auto other = static_cast<std::uint32_t>(child);
       if (other == t || (other < t && std::binary_search(triangles.begin(), triangles.end(), other))) return;
       const TrianglePair pair = std::minmax(t, other);
       if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
     });
   });
+}
+
+bool CrossingFinder::is_met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
+  bool met = false;
+  tree_.for_each_overlap(box_of(triangle, places), [&](std::size_t other) {
+    met = met || meet(Couple(surface_, places, triangle, positions_, static_cast<std::uint32_t>(other)));
+  });
+  return met;
 }
 
 }  // namespace vdb_offset

@@ -40,6 +40,7 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       right_side_(source.size(), 1),
       fault_(surface_.triangles.size(), Fault::None),
       finder_(surface_, place_) {
+  if (body.off_source) source_finder_.emplace(surface_, source_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
   source_crossings_ = source_crossings ? std::move(*source_crossings) : finder_.all();
   mark_near_source();
@@ -158,13 +159,14 @@ FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
 
 /// Faces that have not moved may be anywhere, obstacles themselves above all.
 bool FaultFinder::is_crowded(std::uint32_t t) const {
-  if (!clearance_) return false;
+  if (!clearance_ && !source_finder_) return false;
   const auto& corners = surface_.triangles[t];
   if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return place_[v] == source_[v]; }))
     return false;
+  if (source_finder_ && source_finder_->is_met_by(t, place_)) return true;
   const Vec3d& origin = surface_.origin;
-  return clearance_->is_crowded(
-      {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
+  return clearance_ && clearance_->is_crowded(
+                           {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
 }
 
 /// At each corner and at the centre, as far as they are off the front; with none of them, against the source's normal.

@@ -20,7 +20,7 @@ struct Paths;
 /// What may be wrong with a result.
 struct FaultCounts {
   std::size_t inverted = 0, collapsed = 0;  ///< Faces.
-  std::size_t crowded = 0;                  ///< Faces nearer to an obstacle than may be.
+  std::size_t crowded = 0;                  ///< Faces nearer to an obstacle than may be, or through the source.
   std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
 
   std::size_t total() const { return inverted + collapsed + crowded + crossings; }
@@ -34,7 +34,8 @@ void sort_unique(Indices& indices);
 ///
 /// A face is inverted if it faces against the direction away from the front at its centre and at each corner (there,
 /// its distance has folded over) or, being no part of the front, against its own source; collapsed if its area is below
-/// 1e-6 of the source's, crowded if it is too near to an obstacle. Crossings are found with exact
+/// 1e-6 of the source's, crowded if it is too near to an obstacle
+/// or meets the source where it must not. Crossings are found with exact
 /// predicates. All is judged on coordinates as they will be written, and only around what has moved since the last
 /// look. The result does not depend on the number of threads.
 class FaultFinder {
@@ -105,6 +106,7 @@ class FaultFinder {
   std::vector<TrianglePair> crossings_, source_crossings_;
   std::size_t crossings_near_source_ = 0;
   CrossingFinder finder_;
+  std::optional<CrossingFinder> source_finder_;  // where what has moved must not meet the source
   std::optional<ClearanceFinder> clearance_;
 };
 

@@ -11,8 +11,9 @@
 namespace vdb_offset {
 namespace {
 
-// How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none.
-constexpr double kKept = 0.85, kLastShare = 0.02;
+// How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none. That share is
+// small, as the skins of a shell touch where a vertex has not moved at all.
+constexpr double kKept = 0.85, kLastShare = 1e-4;
 
 // Patches are tried in these ways, with so many rings around what is wrong. What frees one patch fails in the next.
 constexpr Untangler::Options kAttempts[] = {{4, 1}, {10, 0.1}, {30, 1}, {10, 0.01}};
@@ -173,7 +174,8 @@ class Limiter {
     std::erase_if(wrong, [&](std::uint32_t v) { return share_[v] == 0; });
     if (wrong.empty()) return false;
     for (const auto v : wrong) {
-      share_[v] = share_[v] * kKept < kLastShare ? 0 : share_[v] * kKept;
+      share_[v] *= kKept;
+      if (share_[v] < kLastShare) share_[v] = 0;
       pulled_.push_back(v);
     }
     sort_unique(pulled_);

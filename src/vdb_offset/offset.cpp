@@ -216,7 +216,7 @@ class Pipeline {
     OffsetResult result = unmoved(mesh_);
     result.statistics = shared_;
     const Surface& surface = work_.surface();
-    const Body body = work_.body(*query_, keep_away());
+    const Body body = work_.body(*query_, keep_away(), options_.off_source);
     const std::vector<Vec3d> source = work_.source(mesh_);
     if (options_.collision == Collision::Limit) {
       const StageTimer timer(result.statistics, Stage::Limit);

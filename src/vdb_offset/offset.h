@@ -35,6 +35,7 @@ struct OffsetOptions {
   Border border = Border::Slide;  ///< What the edge of that part does.
   PolygonView obstacles;          ///< Other geometry that nothing may touch, or come nearer to than `clearance`.
   double clearance = 0;           ///< World units, >= 0.
+  bool off_source = false;        ///< For shells: the result must not meet the surface that it comes from.
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.

@@ -39,6 +39,7 @@ void settle_surroundings(const Source& source, Arguments& args) {
   OffsetOptions& options = args.options;
   if (!args.only.empty()) options.only = io::select_faces(*source.file, args.only);
   if (args.border) options.border = *args.border;
+  options.off_source = args.shell;
   if (source.obstacles.face_count() == 0) return;
   options.obstacles = source.obstacles.view();
   options.clearance = args.clearance.in_world_units(args.clearance.percent ? used_diagonal(source.view()) : 0);
