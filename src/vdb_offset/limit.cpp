@@ -13,7 +13,7 @@ namespace {
 
 // How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none. That share is
 // small, as the skins of a shell touch where a vertex has not moved at all.
-constexpr double kKept = 0.85, kLastShare = 1e-4;
+constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
 // Patches are tried in these ways, with so many rings around what is wrong. What frees one patch fails in the next.
 constexpr Untangler::Options kAttempts[] = {{4, 1}, {10, 0.1}, {30, 1}, {10, 0.01}};
@@ -81,7 +81,20 @@ class Limiter {
     return fault_count() <= kManyFaults || fault_count() < kWorthwhile * static_cast<double>(before);
   }
 
-  Vec3d way(std::size_t v) const { return share_[v] == 1 ? whole_way_[v] : whole_way_[v] * share_[v]; }
+  /// A share of the way: back along the straight line; the last of it on a parabola that meets the surface in the
+  /// vertex's own direction, as the line may dip through the faces around it.
+  Vec3d way(std::size_t v) const {
+    const double share = share_[v];
+    const Vec3d& whole = whole_way_[v];
+    if (share == 1) return whole;
+    const auto vertex = static_cast<std::uint32_t>(v);
+    if (share >= kBent || share == 0 || body_.is_bound(vertex)) return whole * share;
+    const std::uint32_t on_front = body_.front_vertex.empty() ? vertex : body_.front_vertex[vertex];
+    const Vec3d start = start_direction(body_.front.surface(), on_front) * (distances_[v] < 0 ? -1.0 : 1.0);
+    if (!(start.lengthSqr() > 0)) return whole * share;
+    const double u = share / kBent;
+    return (whole * (u * u) + start * (whole.length() * u * (1 - u))) * kBent;
+  }
 
   void look(const Indices& moved) {
     faults_.look(moved, [&](std::uint32_t v) { return source_[v] + way(v); });

@@ -508,6 +508,8 @@ const char* name(VertexState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+Vec3d start_direction(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).direction; }
+
 Vec3d round_way(const Vec3d& way, double target) {
   const double quantum = std::ldexp(1.0, std::ilogb(target) - 36);
   return {std::nearbyint(way[0] / quantum) * quantum, std::nearbyint(way[1] / quantum) * quantum,

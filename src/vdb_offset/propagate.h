@@ -34,6 +34,10 @@ struct Paths {
   std::size_t straight = 0;            ///< Vertices of components that moved along their normals alone.
 };
 
+/// The unit direction in which a vertex sets out, outward: its normal, weighted by angles; where faces turn away from
+/// that, one that more of them face. Zero for a vertex without any.
+Vec3d start_direction(const Surface& surface, std::uint32_t vertex);
+
 /// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
 /// the result independent of where the mesh stands.
 Vec3d round_way(const Vec3d& way, double target);
