@@ -162,15 +162,14 @@ class Pipeline {
     }
     shared_.facts = work_.surface().facts;
     shared_.threads = threads_;
+    if (goes_anywhere(farthest)) make_field(farthest);
+    // The body is complete by now, obstacles and all.
     for (const Distances& distances : wanted) {
       shared_.disagreeing_distances = 0;
       distances_.push_back(distances_on(work_, options_.border, distances, shared_.disagreeing_distances));
     }
     std::vector<Paths> paths(wanted.size());
-    if (goes_anywhere(farthest)) {
-      make_field(farthest);
-      paths = march();
-    }
+    if (goes_anywhere(farthest)) paths = march();
     std::vector<OffsetResult> results;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       results.push_back(goes_anywhere(farthest) ? finish(distances_[i], paths[i]) : stay(distances_[i]));

@@ -31,11 +31,11 @@ struct Descriptor {
 
 std::string read_to_end(const std::string& path, int fd) {
   std::string bytes;
-  constexpr std::size_t kChunk = 1 << 20;
+  constexpr std::size_t kReadAtOnce = 1 << 20;
   for (;;) {
     const std::size_t before = bytes.size();
-    bytes.resize(before + kChunk);
-    const ssize_t got = ::read(fd, bytes.data() + before, kChunk);
+    bytes.resize(before + kReadAtOnce);
+    const ssize_t got = ::read(fd, bytes.data() + before, kReadAtOnce);
     if (got < 0 && errno != EINTR) cannot(path, "read");
     bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got == 0) return bytes;
