@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/offset.h"
+
+namespace vdb_offset {
+
+/// What growing layers found and did.
+struct LayerStatistics {
+  std::size_t wrong_cells = 0;        ///< Corners of cells that were not positive before anything was thinned.
+  std::size_t rounds = 0;             ///< Rounds in which layers were thinned or let out again.
+  std::size_t thinned_vertices = 0;   ///< Of the surface, that keep less than all of their heights.
+  std::size_t flat_vertices = 0;      ///< That keep none.
+};
+
+/// Layers on a mesh: one surface for each height, of the mesh's vertices and faces.
+struct LayersResult {
+  /// The wall, which is the mesh itself, and one surface for each height; one position for each vertex of the input.
+  std::vector<std::vector<Vec3d>> positions;
+  std::vector<Distances> heights;    ///< Asked of each input vertex, one set a layer; all of one sign.
+  std::vector<double> share;         ///< Of each input vertex: of its heights that it keeps, 0 .. 1, in all layers.
+  std::vector<VertexState> states;   ///< Of the outermost surface's vertices.
+  std::vector<double> achieved;      ///< Exact distance of the outermost surface's vertices, world units.
+  std::vector<double> first_achieved;  ///< The same of the first layer's.
+  std::vector<std::uint8_t> carries;  ///< Of each face of the input: 1 if it is part of what is offset. Empty: all are.
+  OffsetStatistics statistics;
+  LayerStatistics layer_statistics;
+
+  std::size_t count() const { return heights.size(); }
+};
+
+/// Grows layers of cells on a mesh's faces: one march passes all heights, so that exact distances are at each of them
+/// (1e-6 relative) where a vertex keeps all of its heights. The prisms over the faces' triangles have positive
+/// Jacobians at all corners, and neither cross each other nor the wall: where they would, all layers of the vertices
+/// there are thinned by one share, which changes by no more than a bounded step from neighbour to neighbour. A vertex
+/// that cannot move at all has the share 0, and cells of no height stand on it.
+/// `heights` are those of the layers from the wall outward: all above 0 or all below, in rising order of size at each
+/// vertex; 0 in all layers leaves a vertex where it is. `options.distance` and `options.collision` do not count.
+/// \throw InvalidInput as offset_several(), and for heights that do not rise, or are of both signs.
+LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options);
+
+}  // namespace vdb_offset
