@@ -4,28 +4,30 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/layer_stack.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset {
 
-/// What growing layers found and did.
-struct LayerStatistics {
-  std::size_t wrong_cells = 0;        ///< Corners of cells that were not positive before anything was thinned.
-  std::size_t rounds = 0;             ///< Rounds in which layers were thinned or let out again.
-  std::size_t thinned_vertices = 0;   ///< Of the surface, that keep less than all of their heights.
-  std::size_t flat_vertices = 0;      ///< That keep none.
+/// Whether cells stand on a face.
+enum class Carries : std::uint8_t {
+  None,
+  Cells,
+  Turned,  ///< They do; but the face points the other way than the surface around it, and its cells stand on its back.
 };
 
 /// Layers on a mesh: one surface for each height, of the mesh's vertices and faces.
 struct LayersResult {
   /// The wall, which is the mesh itself, and one surface for each height; one position for each vertex of the input.
   std::vector<std::vector<Vec3d>> positions;
-  std::vector<Distances> heights;    ///< Asked of each input vertex, one set a layer; all of one sign.
-  std::vector<double> share;         ///< Of each input vertex: of its heights that it keeps, 0 .. 1, in all layers.
-  std::vector<VertexState> states;   ///< Of the outermost surface's vertices.
-  std::vector<double> achieved;      ///< Exact distance of the outermost surface's vertices, world units.
+  std::vector<Distances> heights;      ///< Asked of each input vertex, one set a layer; all of one sign.
+  std::vector<double> share;           ///< Of each input vertex: of its heights that it keeps, 0 .. 1, in all layers.
+  std::vector<VertexState> states;     ///< Of the outermost surface's vertices.
+  std::vector<double> achieved;        ///< Exact distance of the outermost surface's vertices, world units.
   std::vector<double> first_achieved;  ///< The same of the first layer's.
-  std::vector<std::uint8_t> carries;  ///< Of each face of the input: 1 if it is part of what is offset. Empty: all are.
+  /// Of each face of the input: whether cells stand on it. Those that stay carry none, nor do faces without area, nor
+  /// copies of others.
+  std::vector<Carries> carries;
   OffsetStatistics statistics;
   LayerStatistics layer_statistics;
 

@@ -28,10 +28,12 @@ constexpr double kWorthwhile = 0.8;
 // Rounds in which pulled vertices are let out again, each by one step.
 constexpr int kReleases = 12;
 
+constexpr std::size_t kExpectedRounds = 32;
+
 class Limiter {
  public:
-  Limiter(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
-          Paths& paths, const std::optional<std::vector<TrianglePair>>& source_crossings)
+  Limiter(const Body& body, std::span<const Vec3d> source, const Distances& distances, Paths& paths,
+          FaultFinder& faults)
       : body_(body),
         surface_(body.surface),
         source_(source),
@@ -40,22 +42,46 @@ class Limiter {
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
         patch_(source.size(), kNone),
-        faults_(body_, source, distances, precision, source_crossings) {
+        faults_(faults) {
     statistics_.source_crossings = faults_.source_crossings().size();
   }
 
-  const std::vector<TrianglePair>& source_crossings() const { return faults_.source_crossings(); }
-
-  LimitStatistics run(Progress& progress) {
+  void untangle(Progress& progress) {
     faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); }, &paths_);
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
     for (const Untangler::Options& attempt : kAttempts)
       if (!untangle_with(attempt, progress)) break;
+  }
+
+  void pull_back_and_release(Progress& progress) {
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
     for (int i = 0; i < kReleases && release(); ++i) progress.advance(1);
-    finish();
+  }
+
+  /// Tells the paths what has become of them.
+  LimitStatistics finish() {
+    double lost = 0;
+    std::size_t moving = 0;
+    for (std::size_t v = 0; v < share_.size(); ++v) {
+      const double target = std::abs(distances_[v]);
+      if (target == 0 || !body_.on_front(static_cast<std::uint32_t>(v))) continue;
+      ++moving;
+      const bool stayed = paths_.displacement[v] == way(v);
+      paths_.displacement[v] = way(v);
+      if (stayed) continue;
+      const double distance = faults_.distance_of(static_cast<std::uint32_t>(v));
+      lost += std::max(0.0, paths_.achieved[v] - distance) / target;
+      paths_.achieved[v] = distance;
+      if (std::abs(distance - target) <= kReachedTolerance * target) {
+        paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
+      } else if (share_[v] != 1) {
+        paths_.state[v] = VertexState::Limited;
+        ++statistics_.limited_vertices;
+      }
+    }
+    statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
     return statistics_;
   }
 
@@ -224,29 +250,6 @@ class Limiter {
     return false;
   }
 
-  void finish() {
-    double lost = 0;
-    std::size_t moving = 0;
-    for (std::size_t v = 0; v < share_.size(); ++v) {
-      const double target = std::abs(distances_[v]);
-      if (target == 0 || !body_.on_front(static_cast<std::uint32_t>(v))) continue;
-      ++moving;
-      const bool stayed = paths_.displacement[v] == way(v);
-      paths_.displacement[v] = way(v);
-      if (stayed) continue;
-      const double distance = faults_.distance_of(static_cast<std::uint32_t>(v));
-      lost += std::max(0.0, paths_.achieved[v] - distance) / target;
-      paths_.achieved[v] = distance;
-      if (std::abs(distance - target) <= kReachedTolerance * target) {
-        paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
-      } else if (share_[v] != 1) {
-        paths_.state[v] = VertexState::Limited;
-        ++statistics_.limited_vertices;
-      }
-    }
-    statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
-  }
-
   Body body_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
@@ -256,20 +259,27 @@ class Limiter {
   std::vector<double> share_;  // of the way that a vertex goes
   Indices pulled_;             // vertices that have been pulled back at some time
   Indices patch_;              // of each vertex while patches are being untangled, else kNone
-  FaultFinder faults_;         // as things stand
+  FaultFinder& faults_;        // as things stand
   LimitStatistics statistics_;
 };
 
 }  // namespace
 
-LimitStatistics limit(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
-                      Paths& paths, std::optional<std::vector<TrianglePair>>& source_crossings,
-                      const ProgressCallback& callback) {
-  constexpr std::size_t kExpectedRounds = 32;
+LimitStatistics untangle(FaultFinder& faults, const Body& body, std::span<const Vec3d> source,
+                         const Distances& distances, Paths& paths, const ProgressCallback& callback) {
   Progress progress(callback, Stage::Limit, kExpectedRounds);
-  Limiter limiter(body, source, distances, precision, paths, source_crossings);
-  if (!source_crossings) source_crossings = limiter.source_crossings();
-  return limiter.run(progress);
+  Limiter limiter(body, source, distances, paths, faults);
+  limiter.untangle(progress);
+  return limiter.finish();
+}
+
+LimitStatistics limit(FaultFinder& faults, const Body& body, std::span<const Vec3d> source, const Distances& distances,
+                      Paths& paths, const ProgressCallback& callback) {
+  Progress progress(callback, Stage::Limit, kExpectedRounds);
+  Limiter limiter(body, source, distances, paths, faults);
+  limiter.untangle(progress);
+  limiter.pull_back_and_release(progress);
+  return limiter.finish();
 }
 
 }  // namespace vdb_offset

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,11 +31,13 @@ struct LimitStatistics {
 /// distance that they keep.
 ///
 /// `source` holds where the body's vertices stand in the input, world coordinates; `distances` and `paths` are theirs,
-/// and who is not on the front has no way to go. `source_crossings` receives the pairs that meet in the source, or
-/// tells them if they are known. The result will be stored with `precision`, and is checked as such. The result does
-/// not depend on the number of threads.
-LimitStatistics limit(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
-                      Paths& paths, std::optional<std::vector<TrianglePair>>& source_crossings,
-                      const ProgressCallback& progress = {});
+/// and who is not on the front has no way to go. `faults` looks at the same. The result does not depend on the number
+/// of threads.
+LimitStatistics limit(FaultFinder& faults, const Body& body, std::span<const Vec3d> source, const Distances& distances,
+                      Paths& paths, const ProgressCallback& progress = {});
+
+/// The first half of that alone: patches are untangled, nothing is pulled back. Faults may be left.
+LimitStatistics untangle(FaultFinder& faults, const Body& body, std::span<const Vec3d> source,
+                         const Distances& distances, Paths& paths, const ProgressCallback& progress = {});
 
 }  // namespace vdb_offset

@@ -3,6 +3,7 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,8 @@
 #include "vdb_offset/closest.h"
 #include "vdb_offset/directions.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/layers.h"
+#include "vdb_offset/parallel.h"
 #include "vdb_offset/rasterise.h"
 #include "vdb_offset/slide.h"
 
@@ -46,6 +49,33 @@ void require_one_each(PolygonView mesh, const Distances& distances) {
   if (!distances.uniform() && distances.count() != mesh.positions.size())
     throw InvalidInput("offset: expected a distance for each of " + std::to_string(mesh.positions.size()) +
                        " vertices, got " + std::to_string(distances.count()));
+}
+
+void require_clearance(const OffsetOptions& options) {
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
+    throw InvalidInput("clearance: expected a length >= 0, got " + std::to_string(options.clearance));
+}
+
+/// Heights of layers: all to one side, rising at every vertex, somewhere above 0.
+void require_heights(PolygonView mesh, std::span<const Distances> heights) {
+  if (heights.empty()) throw InvalidInput("layers: expected a height, got none");
+  for (const Distances& each : heights) {
+    require_one_each(mesh, each);
+    if (each.outward() > 0 && each.inward() > 0)
+      throw InvalidInput("layers: expected heights to one side, got some above 0 and some below");
+  }
+  if (heights.back().scale() == 0) throw InvalidInput("layers: expected a height other than 0");
+  const bool uniform = std::all_of(heights.begin(), heights.end(), [](const Distances& d) { return d.uniform(); });
+  const bool inward = heights.back().inward() > 0;
+  for (std::size_t k = 0; k < heights.size(); ++k)
+    for (std::size_t v = 0; v < (uniform ? 1 : mesh.positions.size()); ++v) {
+      const double below = k > 0 ? heights[k - 1][v] : 0, here = heights[k][v];
+      if (inward ? here < below : here > below) continue;
+      if (here == 0 && heights.back()[v] == 0) continue;  // this vertex stays
+      throw InvalidInput("layers: expected heights that rise from the wall on, got " + std::to_string(here) +
+                         " behind " + std::to_string(below) +
+                         (uniform ? "" : " at vertex " + std::to_string(v) + " (counted from 0)"));
+    }
 }
 
 OffsetResult unmoved(PolygonView mesh) {
@@ -156,18 +186,9 @@ class Pipeline {
 
   std::vector<OffsetResult> run(std::span<const Distances> wanted) {
     const Reach farthest = farthest_of(wanted);
-    {
-      const StageTimer timer(shared_, Stage::Rasterise);
-      work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
-    }
-    shared_.facts = work_.surface().facts;
-    shared_.threads = threads_;
-    if (goes_anywhere(farthest)) make_field(farthest);
+    prepare(farthest);
     // The body is complete by now, obstacles and all.
-    for (const Distances& distances : wanted) {
-      shared_.disagreeing_distances = 0;
-      distances_.push_back(distances_on(work_, options_.border, distances, shared_.disagreeing_distances));
-    }
+    for (const Distances& distances : wanted) distances_.push_back(on_body(distances));
     std::vector<Paths> paths(wanted.size());
     if (goes_anywhere(farthest)) paths = march();
     std::vector<OffsetResult> results;
@@ -178,7 +199,48 @@ class Pipeline {
     return results;
   }
 
+  /// Layers up to the last of the heights, which is the one that the march goes to.
+  LayersResult grow(std::span<const Distances> heights) {
+    prepare(farthest_of(heights.last(1)));
+    std::vector<Distances> on_vertices;
+    for (const Distances& each : heights) on_vertices.push_back(on_body(each));
+    distances_.push_back(on_vertices.back());
+    std::vector<Paths> paths = march();
+    OffsetStatistics statistics = shared_;
+    const Body body = work_.body(*query_, keep_away(), true);
+    const std::vector<Vec3d> source = work_.source(mesh_);
+    FaultFinder faults(body, source, distances_.front(), options_.precision);
+    {
+      const StageTimer timer(statistics, Stage::Limit);
+      statistics.limit = untangle(faults, body, source, distances_.front(), paths.front(), options_.progress);
+    }
+    std::optional<Columns> columns;
+    LayerStack stack;
+    {
+      const StageTimer timer(statistics, Stage::Layers);
+      columns.emplace(mesh_, body, source);
+      stack = stack_layers(body, *columns, source, on_vertices, faults, paths.front(), options_.progress);
+    }
+    statistics.limit.left = faults.count();
+    return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
+  }
+
  private:
+  void prepare(const Reach& farthest) {
+    {
+      const StageTimer timer(shared_, Stage::Rasterise);
+      work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
+    }
+    shared_.facts = work_.surface().facts;
+    shared_.threads = threads_;
+    if (goes_anywhere(farthest)) make_field(farthest);
+  }
+
+  Distances on_body(const Distances& of_input) {
+    shared_.disagreeing_distances = 0;
+    return distances_on(work_, options_.border, of_input, shared_.disagreeing_distances);
+  }
+
   void make_field(const Reach& farthest) {
     Front front;
     {
@@ -219,14 +281,45 @@ class Pipeline {
     const std::vector<Vec3d> source = work_.source(mesh_);
     if (options_.collision == Collision::Limit) {
       const StageTimer timer(result.statistics, Stage::Limit);
-      result.statistics.limit =
-          limit(body, source, distances, options_.precision, paths, source_crossings_, options_.progress);
+      FaultFinder faults(body, source, distances, options_.precision, source_crossings_);
+      source_crossings_ = faults.source_crossings();
+      result.statistics.limit = limit(faults, body, source, distances, paths, options_.progress);
     }
     move_vertices(mesh_, surface, paths, result);
     result.distances = distances_of_input(surface, distances);
     std::vector<Vec3d> places = source;
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += paths.displacement[w];
     result.statistics.interior = measure_interior(body, places, distances, kInteriorTriangles);
+    return result;
+  }
+
+  /// Layers as those of the input's vertices and faces.
+  LayersResult hand_over(OffsetStatistics statistics, const Columns& columns, const Paths& paths, LayerStack stack,
+                         std::span<const Distances> heights) const {
+    const Surface& surface = work_.surface();
+    const std::size_t count = mesh_.positions.size();
+    OffsetResult outermost = unmoved(mesh_);
+    move_vertices(mesh_, surface, paths, outermost);
+    LayersResult result;
+    result.statistics = std::move(statistics);
+    result.layer_statistics = stack.statistics;
+    result.states = std::move(outermost.states);
+    result.achieved = std::move(outermost.achieved);
+    result.share.assign(count, 0.0);
+    result.first_achieved.assign(count, 0.0);
+    result.positions.assign(heights.size() + 1, {mesh_.positions.begin(), mesh_.positions.end()});
+    for_each_index(count, [&](std::size_t v) {
+      const auto w = surface.welded[v];
+      if (w == kNone) return;
+      result.share[v] = stack.share[w];
+      result.first_achieved[v] = stack.first_achieved[w];
+      if (stack.stacks.is_flat(w)) return;  // keeps its place, welded with a tolerance though it may be
+      for (std::size_t k = 1; k <= heights.size(); ++k) result.positions[k][v] = stack.stacks.of(w)[k];
+    });
+    for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
+    result.carries.assign(mesh_.face_count(), Carries::None);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      result.carries[columns.face(c)] = columns.is_turned(c) ? Carries::Turned : Carries::Cells;
     return result;
   }
 
@@ -260,8 +353,7 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
                                          const OffsetOptions& options) {
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   for (const Distances& each : distances) require_one_each(mesh, each);
-  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
-    throw InvalidInput("clearance: expected a length >= 0, got " + std::to_string(options.clearance));
+  require_clearance(options);
   const int threads = thread_count(options);
   std::vector<OffsetResult> results;
   // An arena of its own keeps the number of threads a matter of this call alone.
@@ -271,6 +363,17 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
     for (const VertexState state : result.states)
       ++result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
   return results;
+}
+
+LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options) {
+  require_heights(mesh, heights);
+  require_clearance(options);
+  const int threads = thread_count(options);
+  LayersResult result;
+  tbb::task_arena arena(threads);
+  arena.execute([&] { result = Pipeline(mesh, options, threads).grow(heights); });
+  for (const VertexState state : result.states) ++result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
+  return result;
 }
 
 OffsetResult offset(PolygonView mesh, const OffsetOptions& options) {

@@ -58,8 +58,8 @@ struct VolumeMesh {
 
 /// A block of hexahedra: points in a grid, i fastest, k from wall to outer surface.
 struct StructuredBlock {
-  std::uint32_t ni = 0, nj = 0, nk = 0;      ///< Points in each direction.
-  std::vector<Vec3d> points;                 ///< ni nj nk of them, world units.
+  std::uint32_t ni = 0, nj = 0, nk = 0;  ///< Points in each direction.
+  std::vector<Vec3d> points;             ///< ni nj nk of them, world units.
   std::vector<VolumeField> point_fields;
 };
 

@@ -1,0 +1,90 @@
+#include "vdb_offset/columns.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vdb_offset {
+namespace {
+
+// The way up leans towards a cell's faces by no less than this sine.
+constexpr double kLeastLean = 1e-3;
+// From so many corners on, a cell is a polyhedron, whose faces need not be convex.
+constexpr std::size_t kPolyhedron = 5;
+
+/// Whether b follows a in the polygon, over its end.
+bool follows(std::span<const std::uint32_t> polygon, std::uint32_t a, std::uint32_t b) {
+  for (std::size_t k = 0; k < polygon.size(); ++k)
+    if (polygon[k] == a && polygon[(k + 1) % polygon.size()] == b) return true;
+  return false;
+}
+
+}  // namespace
+
+Columns::Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
+  const Surface& surface = body.surface;
+  std::vector<std::uint8_t> seen(mesh.face_count(), 0);
+  corners_.reserve(mesh.corners.size());
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!body.is_front(t) || seen[surface.face[t]]) continue;
+    const auto& [a, b, c] = surface.triangles[t];
+    if (!((source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0)) continue;
+    seen[surface.face[t]] = 1;
+    add(mesh, surface, t);
+  }
+  incident_begin_.assign(source.size() + 2, 0);
+  for (const auto v : corners_) ++incident_begin_[v + 2];
+  std::partial_sum(incident_begin_.begin(), incident_begin_.end(), incident_begin_.begin());
+  incident_.resize(corners_.size());
+  for (std::uint32_t column = 0; column < size(); ++column)
+    for (const auto v : base(column)) incident_[incident_begin_[v + 1]++] = column;
+}
+
+void Columns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle) {
+  const std::uint32_t face = surface.face[triangle];
+  const auto& [a, b, c] = surface.triangles[triangle];
+  const std::size_t first = corners_.size();
+  for (const auto v : mesh.face(face)) {
+    const std::uint32_t w = surface.welded[v];
+    if (corners_.size() == first || corners_.back() != w) corners_.push_back(w);
+  }
+  while (corners_.size() > first + 1 && corners_.back() == corners_[first]) corners_.pop_back();
+  const std::span<const std::uint32_t> polygon = std::span(corners_).subspan(first);
+  // One of the sides at least is the polygon's own.
+  const bool turned = follows(polygon, b, a) || follows(polygon, c, b) || follows(polygon, a, c);
+  if (turned) std::reverse(corners_.begin() + static_cast<std::ptrdiff_t>(first), corners_.end());
+  begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
+  face_.push_back(face);
+  turned_.push_back(turned);
+}
+
+Vec3d Columns::normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const {
+  const auto corners = base(column);
+  const std::size_t count = corners.size();
+  const auto at = [&](std::size_t i) { return stacks.of(corners[i % count])[layer]; };
+  if (count < kPolyhedron) return (at(k + 1) - at(k)).cross(at(k + count - 1) - at(k));
+  Vec3d sum(0.0);
+  for (std::size_t i = 1; i + 1 < count; ++i) sum += (at(i) - at(0)).cross(at(i + 1) - at(0));
+  return sum;
+}
+
+bool Columns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
+  const auto corners = base(column);
+  const auto leans = [&](const Vec3d& n, const Vec3d& way) {
+    const double dot = side * n.dot(way);
+    return dot > 0 && dot * dot > kLeastLean * kLeastLean * n.lengthSqr() * way.lengthSqr();
+  };
+  const bool one_normal = corners.size() != 4;
+  for (std::size_t layer = 0; layer <= stacks.layers; ++layer) {
+    Vec3d n = normal(column, 0, stacks, layer);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const auto stack = stacks.of(corners[k]);
+      if (stack.front() == stack.back()) continue;
+      if (k > 0 && !one_normal) n = normal(column, k, stacks, layer);
+      if (layer > 0 && !leans(n, stack[layer] - stack[layer - 1])) return false;
+      if (layer < stacks.layers && !leans(n, stack[layer + 1] - stack[layer])) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/body.h"
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset {
+
+/// Where the vertices of a body stand in each layer: from the wall outward, one vertex after the other.
+struct Stacks {
+  std::size_t layers = 0;
+  std::vector<Vec3d> places;  ///< World coordinates; layers + 1 of each vertex.
+
+  std::span<Vec3d> of(std::uint32_t vertex) { return std::span(places).subspan(vertex * (layers + 1), layers + 1); }
+  std::span<const Vec3d> of(std::uint32_t vertex) const {
+    return std::span(places).subspan(vertex * (layers + 1), layers + 1);
+  }
+  /// Whether all of a vertex's layers are at one place.
+  bool is_flat(std::uint32_t vertex) const { return of(vertex).front() == of(vertex).back(); }
+};
+
+/// The columns of cells that stand on the faces of a body's front, on its welded vertices.
+///
+/// A column's base runs as its face's triangles do in the surface, seen from where they face. Faces that the surface
+/// leaves out, as repeated ones, and those without area carry none.
+class Columns {
+ public:
+  /// `mesh` is the one that the body's surface was built from.
+  Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
+
+  std::size_t size() const { return face_.size(); }
+  std::span<const std::uint32_t> base(std::size_t column) const {
+    return std::span(corners_).subspan(begin_[column], begin_[column + 1] - begin_[column]);
+  }
+  /// The input's face under a column, and whether that runs the other way.
+  std::uint32_t face(std::size_t column) const { return face_[column]; }
+  bool is_turned(std::size_t column) const { return turned_[column]; }
+  /// The columns that a vertex is a corner of.
+  std::span<const std::uint32_t> around(std::uint32_t vertex) const {
+    return std::span(incident_).subspan(incident_begin_[vertex], incident_begin_[vertex + 1] - incident_begin_[vertex]);
+  }
+
+  /// The normal of a column's base in one layer as its corner k sees it: of the two sides there, for five corners or
+  /// more of the whole. Not normalised.
+  Vec3d normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const;
+
+  /// Whether every cell of a column has a positive Jacobian at every corner that is not flat: there, the way up, to
+  /// `side` (1 or -1) of the base, makes less than a right angle with the normals of both its faces.
+  bool is_valid(std::size_t column, const Stacks& stacks, int side) const;
+
+ private:
+  void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle);
+
+  std::vector<std::uint32_t> corners_, begin_{0}, face_;
+  std::vector<std::uint8_t> turned_;
+  std::vector<std::uint32_t> incident_, incident_begin_;
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/columns.h"
+#include "vdb_offset/faults.h"
+#include "vdb_offset/progress.h"
+#include "vdb_offset/propagate.h"
+
+namespace vdb_offset {
+
+/// What growing layers found and did.
+struct LayerStatistics {
+  std::size_t wrong_columns = 0;     ///< Columns of cells of which one was not valid before anything was thinned.
+  std::size_t straightened = 0;      ///< Vertices whose layers stand on a straight line for that.
+  std::size_t rounds = 0;            ///< Rounds in which layers were thinned or let out again.
+  std::size_t thinned_vertices = 0;  ///< Of the surface, that keep less than all of their heights.
+  std::size_t flat_vertices = 0;     ///< That keep none, although asked to.
+};
+
+/// Layers over a body's vertices.
+struct LayerStack {
+  Stacks stacks;
+  std::vector<double> share;           ///< Of its heights that each vertex keeps, 0 .. 1.
+  std::vector<double> first_achieved;  ///< Exact distance of the first layer's vertices, world units.
+  LayerStatistics statistics;
+};
+
+/// Stacks layers between a body's vertices and where these ended up, of which `paths` tells; what is still wrong
+/// with the outermost surface, `faults` does. `heights` are those of the body's vertices, one set for each layer.
+///
+/// The layers of a vertex lie on a curve that leaves the surface in the vertex's own direction, as nearly at right
+/// angles as validity allows, and bends towards its end; there, where the exact distance is what was asked for. Layers
+/// are thinned by one share for all layers of a vertex until every cell is valid (Columns) and nothing is wrong with
+/// the outermost surface; so are neighbours, so that no thickness differs by more than half the length of the edge
+/// between them. Then they are let out again as far as all stays so. `paths` receives what became of the outermost
+/// surface. The result does not depend on the number of threads.
+LayerStack stack_layers(const Body& body, const Columns& columns, std::span<const Vec3d> source,
+                        std::span<const Distances> heights, FaultFinder& faults, Paths& paths,
+                        const ProgressCallback& progress = {});
+
+}  // namespace vdb_offset
