@@ -16,18 +16,25 @@
 namespace vdb_offset {
 namespace {
 
-// For a signal handler, which may not do more than read it.
-std::atomic<const char*> temporary_path = nullptr;
+struct Remover;
+// For a signal handler, which may not do more than read it: the innermost one, as writing a file may end in writing
+// another one.
+std::atomic<const Remover*> last_remover = nullptr;
 
 /// Removes the temporary file unless it was renamed away.
 struct Remover {
   std::string path;
-  explicit Remover(std::string temporary) : path(std::move(temporary)) { temporary_path = path.c_str(); }
+  const Remover* const outer;
+  explicit Remover(std::string temporary) : path(std::move(temporary)), outer(last_remover) { last_remover = this; }
   Remover(const Remover&) = delete;
   Remover& operator=(const Remover&) = delete;
   ~Remover() {
-    temporary_path = nullptr;
+    last_remover = outer;
     if (!path.empty()) ::unlink(path.c_str());
+  }
+  void release() {
+    last_remover = outer;
+    path.clear();
   }
 };
 
@@ -83,8 +90,7 @@ void replace_file(const std::string& path, const std::function<void(const std::s
   if (std::filesystem::exists(status)) std::filesystem::permissions(temporary.path, status.permissions(), ignored);
   if (std::rename(temporary.path.c_str(), target.c_str()) != 0)
     throw WriteError(path + ": cannot be replaced: " + reason());
-  temporary_path = nullptr;
-  temporary.path.clear();
+  temporary.release();
 }
 
 void write_file(const std::string& path, const std::function<void(const Sink&)>& produce,
@@ -109,7 +115,7 @@ void write_file(const std::string& path, std::string_view bytes, const std::func
 }
 
 void remove_temporary_file() noexcept {
-  if (const char* path = temporary_path.load()) ::unlink(path);
+  for (const Remover* remover = last_remover; remover; remover = remover->outer) ::unlink(remover->path.c_str());
 }
 
 }  // namespace vdb_offset

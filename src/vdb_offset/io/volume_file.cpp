@@ -1,0 +1,114 @@
+#include "vdb_offset/io/volume_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/scanner.h"
+#include "vdb_offset/io/volume_formats.h"
+
+namespace vdb_offset::io {
+namespace {
+
+std::string_view ending(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string_view::npos ? std::string_view() : path.substr(dot + 1);
+}
+
+void require(bool fits, const std::string& path, const char* what) {
+  if (!fits) throw InvalidInput(path + ": expected " + what);
+}
+
+void require_fields(const std::string& path, const std::vector<VolumeField>& fields, std::size_t count,
+                    const char* things) {
+  for (const VolumeField& field : fields)
+    if (!field.values.empty() && field.values.size() != count)
+      throw InvalidInput(fmt::format("{}: field {}: expected {} values, one for each of the {}, got {}", path,
+                                     field.name, count, things, field.values.size()));
+}
+
+void require_consistent(const std::string& path, const VolumeMesh& mesh) {
+  require(mesh.cell_begin.size() == mesh.cell_count() + 1 && mesh.cell_begin.back() == mesh.corners.size(), path,
+          "cells whose corners end where the next one's begin");
+  for (const VolumePatch& patch : mesh.patches)
+    require(patch.cell.size() == patch.face_count() && patch.face_begin.back() == patch.corners.size(), path,
+            "a cell behind each face of a patch");
+  require_fields(path, mesh.point_fields, mesh.points.size(), "points");
+  require_fields(path, mesh.cell_fields, mesh.cell_count(), "cells");
+}
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+std::string as_word(const std::string& name) {
+  std::string word = name;
+  for (char& c : word)
+    if (!is_letter(c) && !(c >= '0' && c <= '9') && c != '-' && c != '+' && c != '.') c = '_';
+  return word.empty() || !is_letter(word.front()) ? "_" + word : word;
+}
+
+}  // namespace
+
+std::optional<VolumeFormat> volume_format_of(std::string_view path) {
+  if (is_word(ending(path), "vtu")) return VolumeFormat::Vtu;
+  if (is_word(ending(path), "msh")) return VolumeFormat::Msh;
+  if (is_word(ending(path), "cgns")) return VolumeFormat::Cgns;
+  if (is_word(ending(path), "su2")) return VolumeFormat::Su2;
+  while (path.ends_with('/')) path.remove_suffix(1);
+  if (path.substr(path.rfind('/') + 1) == "polyMesh") return VolumeFormat::Foam;
+  return std::nullopt;
+}
+
+bool has_polyhedra(const VolumeMesh& mesh) {
+  return std::find(mesh.cell_types.begin(), mesh.cell_types.end(), CellType::Polyhedron) != mesh.cell_types.end();
+}
+
+void require_standard_cells(const std::string& path, const VolumeMesh& mesh, const char* ending) {
+  if (has_polyhedra(mesh))
+    throw InvalidInput(
+        fmt::format("{}: expected cells of up to eight corners, got polyhedra: .{} has none (write .vtu, "
+                    ".cgns or polyMesh)",
+                    path, ending));
+  for (const VolumePatch& patch : mesh.patches)
+    for (std::size_t f = 0; f < patch.face_count(); ++f)
+      if (patch.face(f).size() != 3 && patch.face(f).size() != 4)
+        throw InvalidInput(fmt::format("{}: patch {}: expected triangles and quadrilaterals, got a face of {} corners",
+                                       path, patch.name, patch.face(f).size()));
+}
+
+std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest) {
+  std::vector<std::string> words;
+  std::unordered_set<std::string> known;
+  for (const VolumePatch& patch : mesh.patches) {
+    const std::string start = as_word(patch.name);
+    std::string word = start.substr(0, longest);
+    for (int n = 2; !known.insert(word).second; ++n) {
+      const std::string number = fmt::format("_{}", n);
+      word = start.substr(0, longest - number.size()) + number;
+    }
+    words.push_back(word);
+  }
+  return words;
+}
+
+void write_volume(const std::string& path, const VolumeMesh& mesh) {
+  const auto format = volume_format_of(path);
+  if (!format)
+    throw InvalidInput(path + ": expected a name that ends in .vtu, .msh, .cgns or .su2, or a folder named polyMesh");
+  require_consistent(path, mesh);
+  switch (*format) {
+    case VolumeFormat::Vtu:
+      return write_vtu(path, mesh);
+    case VolumeFormat::Msh:
+      return write_msh(path, mesh);
+    case VolumeFormat::Cgns:
+      return write_cgns(path, mesh);
+    case VolumeFormat::Su2:
+      return write_su2(path, mesh);
+    case VolumeFormat::Foam:
+      return write_foam(path, mesh);
+  }
+}
+
+}  // namespace vdb_offset::io
