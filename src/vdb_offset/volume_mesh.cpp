@@ -1,0 +1,10 @@
+#include "vdb_offset/volume_mesh.h"
+
+namespace vdb_offset {
+
+const char* name(CellType type) {
+  constexpr const char* kNames[kCellTypeCount] = {"tetrahedra", "pyramids", "prisms", "hexahedra", "polyhedra"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+}  // namespace vdb_offset
