@@ -543,6 +543,11 @@ void add_sides(const Numbering& points, const Columns& columns, std::size_t laye
 
 }  // namespace
 
+const char* name(FaceRole role) {
+  constexpr const char* kNames[kFaceRoleCount] = {"bare", "full", "transition", "flat", "degenerate", "repeated"};
+  return kNames[static_cast<std::size_t>(role)];
+}
+
 VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld, const WallNames& names,
                       LayerCellFacts* facts_out) {
   require_layers_of(mesh, layers, names);

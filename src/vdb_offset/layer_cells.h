@@ -19,6 +19,7 @@ enum class FaceRole : std::uint8_t {
   Repeated,    ///< Left out: over the corners of an earlier one, either way round.
 };
 inline constexpr std::size_t kFaceRoleCount = 6;
+const char* name(FaceRole role);
 
 /// What making cells found.
 struct LayerCellFacts {
