@@ -22,15 +22,18 @@ bool follows(std::span<const std::uint32_t> polygon, std::uint32_t a, std::uint3
 
 Columns::Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
   const Surface& surface = body.surface;
+  constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
   std::vector<std::uint8_t> seen(mesh.face_count(), 0);
   corners_.reserve(mesh.corners.size());
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    if (!body.is_front(t) || seen[surface.face[t]]) continue;
+    const std::uint32_t face = surface.face[t];
+    if (!body.is_front(t) || seen[face] == kCarries) continue;
     const auto& [a, b, c] = surface.triangles[t];
-    if (!((source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0)) continue;
-    seen[surface.face[t]] = 1;
-    add(mesh, surface, t);
+    seen[face] = (source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0 ? kCarries : kWithoutArea;
+    if (seen[face] == kCarries) add(mesh, surface, t);
   }
+  for (std::uint32_t f = 0; f < seen.size(); ++f)
+    if (seen[f] == kWithoutArea) without_area_.push_back(f);
   incident_begin_.assign(source.size() + 2, 0);
   for (const auto v : corners_) ++incident_begin_[v + 2];
   std::partial_sum(incident_begin_.begin(), incident_begin_.end(), incident_begin_.begin());
@@ -40,10 +43,9 @@ Columns::Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> sour
 }
 
 void Columns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle) {
-  const std::uint32_t face = surface.face[triangle];
   const auto& [a, b, c] = surface.triangles[triangle];
   const std::size_t first = corners_.size();
-  for (const auto v : mesh.face(face)) {
+  for (const auto v : mesh.face(surface.face[triangle])) {
     const std::uint32_t w = surface.welded[v];
     if (corners_.size() == first || corners_.back() != w) corners_.push_back(w);
   }
@@ -53,8 +55,6 @@ void Columns::add(PolygonView mesh, const Surface& surface, std::uint32_t triang
   const bool turned = follows(polygon, b, a) || follows(polygon, c, b) || follows(polygon, a, c);
   if (turned) std::reverse(corners_.begin() + static_cast<std::ptrdiff_t>(first), corners_.end());
   begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
-  face_.push_back(face);
-  turned_.push_back(turned);
 }
 
 Vec3d Columns::normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const {

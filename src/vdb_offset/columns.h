@@ -31,13 +31,12 @@ class Columns {
   /// `mesh` is the one that the body's surface was built from.
   Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
 
-  std::size_t size() const { return face_.size(); }
+  std::size_t size() const { return begin_.size() - 1; }
   std::span<const std::uint32_t> base(std::size_t column) const {
     return std::span(corners_).subspan(begin_[column], begin_[column + 1] - begin_[column]);
   }
-  /// The input's face under a column, and whether that runs the other way.
-  std::uint32_t face(std::size_t column) const { return face_[column]; }
-  bool is_turned(std::size_t column) const { return turned_[column]; }
+  /// The input's faces that would carry one if they had an area, in rising order.
+  std::span<const std::uint32_t> without_area() const { return without_area_; }
   /// The columns that a vertex is a corner of.
   std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     return std::span(incident_).subspan(incident_begin_[vertex], incident_begin_[vertex + 1] - incident_begin_[vertex]);
@@ -54,8 +53,7 @@ class Columns {
  private:
   void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle);
 
-  std::vector<std::uint32_t> corners_, begin_{0}, face_;
-  std::vector<std::uint8_t> turned_;
+  std::vector<std::uint32_t> corners_, begin_{0}, without_area_;
   std::vector<std::uint32_t> incident_, incident_begin_;
 };
 

@@ -9,13 +9,6 @@
 
 namespace vdb_offset {
 
-/// Whether cells stand on a face.
-enum class Carries : std::uint8_t {
-  None,
-  Cells,
-  Turned,  ///< They do; but the face points the other way than the surface around it, and its cells stand on its back.
-};
-
 /// Layers on a mesh: one surface for each height, of the mesh's vertices and faces.
 struct LayersResult {
   /// The wall, which is the mesh itself, and one surface for each height; one position for each vertex of the input.
@@ -25,9 +18,8 @@ struct LayersResult {
   std::vector<VertexState> states;     ///< Of the outermost surface's vertices.
   std::vector<double> achieved;        ///< Exact distance of the outermost surface's vertices, world units.
   std::vector<double> first_achieved;  ///< The same of the first layer's.
-  /// Of each face of the input: whether cells stand on it. Those that stay carry none, nor do faces without area, nor
-  /// copies of others.
-  std::vector<Carries> carries;
+  /// Of each face of the input: 1 if it is part of what is offset, and has an area. Empty: all are and have.
+  std::vector<std::uint8_t> carries;
   OffsetStatistics statistics;
   LayerStatistics layer_statistics;
 

@@ -317,9 +317,9 @@ class Pipeline {
       for (std::size_t k = 1; k <= heights.size(); ++k) result.positions[k][v] = stack.stacks.of(w)[k];
     });
     for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
-    result.carries.assign(mesh_.face_count(), Carries::None);
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      result.carries[columns.face(c)] = columns.is_turned(c) ? Carries::Turned : Carries::Cells;
+    result.carries = options_.only;
+    if (result.carries.empty()) result.carries.assign(mesh_.face_count(), 1);
+    for (const auto f : columns.without_area()) result.carries[f] = 0;
     return result;
   }
 

@@ -96,6 +96,62 @@ Json shell_json(const ShellFacts& shell) {
           {"crossings", shell.crossings}};
 }
 
+Json spread_json(const Spread& spread) {
+  return {{"least", spread.least},
+          {"quantile_01", spread.quantile_01},
+          {"quantile_05", spread.quantile_05},
+          {"median", spread.median},
+          {"quantile_95", spread.quantile_95},
+          {"quantile_99", spread.quantile_99},
+          {"most", spread.most},
+          {"mean", spread.mean}};
+}
+
+Json figures_json(const LayerFigures& figures) {
+  Json faces = Json::object(), cells = Json::object();
+  for (std::size_t r = 0; r < kFaceRoleCount; ++r) faces[name(static_cast<FaceRole>(r))] = figures.faces_by_role[r];
+  for (std::size_t t = 0; t < kCellTypeCount; ++t) cells[name(static_cast<CellType>(t))] = figures.cells_by_type[t];
+  return {{"name", figures.name},
+          {"faces", faces},
+          {"cells", figures.cells},
+          {"cells_by_type", cells},
+          {"transition_cells", figures.transition_cells},
+          {"area", figures.area},
+          {"layers_reached", figures.layers_reached},
+          {"coverage", figures.coverage},
+          {"thickness_asked", spread_json(figures.asked)},
+          {"thickness_reached", spread_json(figures.reached)},
+          {"first_height",
+           {{"vertices", figures.full_vertices},
+            {"worst_error", figures.first_error},
+            {"error_quantile_99", figures.first_error_99}}},
+          {"scaled_jacobian", spread_json(figures.scaled_jacobian)},
+          {"inverted_cells", figures.inverted_cells},
+          {"aspect_ratio", spread_json(figures.aspect_ratio)},
+          {"wall_angle", spread_json(figures.wall_angle)}};
+}
+
+Json layers_json(const LayerReport& layers) {
+  Json report = figures_json(layers.all), patches = Json::array();
+  for (const LayerFigures& patch : layers.patches) patches.push_back(figures_json(patch));
+  report.erase("name");
+  report["count"] = layers.layers;
+  report["volume"] = layers.volume;
+  report["points"] = layers.points;
+  report["growing"] = {{"wrong_columns", layers.growing.wrong_columns},
+                       {"straightened", layers.growing.straightened},
+                       {"rounds", layers.growing.rounds},
+                       {"thinned_vertices", layers.growing.thinned_vertices},
+                       {"flat_vertices", layers.growing.flat_vertices}};
+  report["sides"] = {{"border", layers.border_sides},
+                     {"unpaired", layers.unpaired_sides},
+                     {"coincident", layers.coincident_sides},
+                     {"split_points", layers.split_points},
+                     {"turned_faces", layers.turned_faces}};
+  report["patches"] = patches;
+  return report;
+}
+
 Json grids_json(const OffsetStatistics& statistics) {
   return {{"active_voxels", statistics.active_voxels},
           {"leaf_nodes", statistics.leaf_nodes},
@@ -105,6 +161,38 @@ Json grids_json(const OffsetStatistics& statistics) {
             {"gradient", statistics.gradient_bytes}}},
           {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
           {"estimated_bytes", statistics.plan.bytes}};
+}
+
+/// `achieved` sums up what became of the vertices, of which `distance` was the farthest that was asked.
+std::string report_of(const OffsetStatistics& statistics, double distance, const AchievedSummary& achieved,
+                      const RunFacts& run) {
+  Json options = Json::object(), seconds = Json::object(), states = Json::object();
+  for (const auto& [key, value] : run.options) options[key] = value;
+  for (std::size_t s = 0; s < kStageCount; ++s) seconds[name(static_cast<Stage>(s))] = statistics.seconds[s];
+  seconds["total"] = run.total_seconds;
+  for (std::size_t s = 0; s < kVertexStateCount; ++s)
+    states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
+  Json report = {{"version", version()},
+                 {"input", run.input},
+                 {"output", run.output},
+                 {"options", options},
+                 {"distance", distance},
+                 {"distance_as_given", run.distance_text},
+                 {"voxel_size", statistics.plan.voxel_size},
+                 {"voxel_size_reason", statistics.plan.reason},
+                 {"threads", statistics.threads},
+                 {"mesh", facts_json(statistics.facts)},
+                 {"grid", grids_json(statistics)},
+                 {"seconds", seconds},
+                 {"peak_memory_bytes", peak_memory()},
+                 {"vertices_by_state", states},
+                 {"vertices_straight", statistics.straight_vertices},
+                 {"limit", limit_json(statistics.limit)},
+                 {"achieved", achieved_json(achieved)},
+                 {"face_interior_error", interior_json(statistics.interior)}};
+  if (run.shell) report["shell"] = shell_json(*run.shell);
+  if (run.layers) report["layers"] = layers_json(*run.layers);
+  return report.dump(2) + "\n";
 }
 
 }  // namespace
@@ -150,33 +238,13 @@ AchievedSummary summarise(std::span<const VertexState> states, std::span<const d
 }
 
 std::string report_json(const OffsetResult& result, const RunFacts& run) {
-  const OffsetStatistics& statistics = result.statistics;
-  Json options = Json::object(), seconds = Json::object(), states = Json::object();
-  for (const auto& [key, value] : run.options) options[key] = value;
-  for (std::size_t s = 0; s < kStageCount; ++s) seconds[name(static_cast<Stage>(s))] = statistics.seconds[s];
-  seconds["total"] = run.total_seconds;
-  for (std::size_t s = 0; s < kVertexStateCount; ++s)
-    states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
-  Json report = {{"version", version()},
-                 {"input", run.input},
-                 {"output", run.output},
-                 {"options", options},
-                 {"distance", result.distances.farthest()},
-                 {"distance_as_given", run.distance_text},
-                 {"voxel_size", statistics.plan.voxel_size},
-                 {"voxel_size_reason", statistics.plan.reason},
-                 {"threads", statistics.threads},
-                 {"mesh", facts_json(statistics.facts)},
-                 {"grid", grids_json(statistics)},
-                 {"seconds", seconds},
-                 {"peak_memory_bytes", peak_memory()},
-                 {"vertices_by_state", states},
-                 {"vertices_straight", statistics.straight_vertices},
-                 {"limit", limit_json(statistics.limit)},
-                 {"achieved", achieved_json(summarise(result))},
-                 {"face_interior_error", interior_json(statistics.interior)}};
-  if (run.shell) report["shell"] = shell_json(*run.shell);
-  return report.dump(2) + "\n";
+  return report_of(result.statistics, result.distances.farthest(), summarise(result), run);
+}
+
+std::string report_json(const LayersResult& result, const RunFacts& run) {
+  if (result.heights.empty()) return report_of(result.statistics, 0, {}, run);
+  const Distances& thickness = result.heights.back();
+  return report_of(result.statistics, thickness.farthest(), summarise(result.states, result.achieved, thickness), run);
 }
 
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "vdb_offset/check.h"
+#include "vdb_offset/layer_report.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shell.h"
 
@@ -30,11 +31,14 @@ struct RunFacts {
   std::string distance_text;  ///< As given.
   double total_seconds = 0;
   std::optional<ShellFacts> shell;                           ///< Of what was written, if it is one.
+  std::optional<LayerReport> layers;                         ///< The same, of cells in layers.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };
 
 /// The report of a run as JSON text; the keys are documented in the README.
 std::string report_json(const OffsetResult& result, const RunFacts& run);
+/// The same for layers: what is said of vertices is that of the outermost surface.
+std::string report_json(const LayersResult& result, const RunFacts& run);
 
 /// What a check found, as JSON text; the same keys where they mean the same.
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/labels.h"
 #include "vdb_offset/io/scanner.h"
 
 namespace vdb_offset::io {
@@ -18,22 +19,6 @@ struct Labels {
   std::set<std::string, std::less<>> groups, materials;  // that any face is under
   std::vector<std::uint8_t> chosen;                      // of each face: by one of the selectors
 };
-
-/// What is left of a line, without blanks at its end.
-std::string rest_of_line(Scanner& scanner) {
-  std::string rest;
-  while (!scanner.at_line_end()) {
-    if (!rest.empty()) rest += ' ';
-    rest += scanner.token();
-  }
-  return rest;
-}
-
-std::vector<std::string> words_of_line(Scanner& scanner) {
-  std::vector<std::string> words;
-  while (!scanner.at_line_end()) words.emplace_back(scanner.token());
-  return words;
-}
 
 class Chooser {
  public:
@@ -74,34 +59,10 @@ class Chooser {
   bool chosen_ = false, counted_ = false;
 };
 
-Labels label_obj(const MeshFile& mesh, std::span<const Selector> selectors) {
-  Chooser chooser(selectors, mesh.polygons.face_count());
-  Scanner scanner(mesh.path, mesh.text(), byte_order_mark(mesh.text()), true, '#');
-  for (; !scanner.at_end(); scanner.next_line()) {
-    const std::string_view keyword = scanner.token();
-    if (keyword == "f") chooser.add_face();
-    else if (keyword == "g") chooser.set_groups(words_of_line(scanner));
-    else if (keyword == "o") chooser.set_object(rest_of_line(scanner));
-    else if (keyword == "usemtl") chooser.set_material(rest_of_line(scanner));
-  }
-  return chooser.take();
-}
-
-Labels label_ascii_stl(const MeshFile& mesh, std::span<const Selector> selectors) {
-  Chooser chooser(selectors, mesh.polygons.face_count());
-  Scanner scanner(mesh.path, mesh.text());
-  for (; !scanner.at_text_end(); scanner.next_line()) {
-    const std::string_view keyword = scanner.token();
-    if (is_word(keyword, "solid")) chooser.set_groups({rest_of_line(scanner)});
-    else if (is_word(keyword, "facet")) chooser.add_face();
-  }
-  return chooser.take();
-}
-
 Labels label(const MeshFile& mesh, std::span<const Selector> selectors) {
-  if (mesh.format == Format::Obj) return label_obj(mesh, selectors);
-  if (mesh.format == Format::Stl && mesh.encoding == Encoding::Ascii) return label_ascii_stl(mesh, selectors);
-  return {{}, {}, std::vector<std::uint8_t>(mesh.polygons.face_count(), 0)};
+  Chooser chooser(selectors, mesh.polygons.face_count());
+  visit_labels(mesh, chooser);
+  return chooser.take();
 }
 
 void require_known(const MeshFile& mesh, const Labels& labels, const Selector& selector) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/volume_mesh.h"
+
+namespace vdb_offset {
+
+/// The least triple product of unit edge vectors over a cell's corners, as VTK and Verdict define it (Stimpson et al.,
+/// The Verdict Geometric Quality Library, 2007): 1 for a cube, a regular tetrahedron (factor sqrt 2), a prism over a
+/// regular triangle (2 / sqrt 3) and a pyramid of edges of one length; for hexahedra that of the principal axes counts,
+/// too. At most 1; below 0 for a cell that is inside out somewhere, and 0 where an edge has no length. Pyramids are the
+/// worst of the four tetrahedra over their base's corners; other than Verdict's, theirs keeps its sign below 0.
+/// Polyhedra: over corners of three edges; not those where their first face is straight or turns inwards, which a right
+/// prism over a concave face has as well.
+double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell);
+
+/// Longest edge by shortest; infinite if that has no length. For a cell in a layer, its width by its height.
+double aspect_ratio(const VolumeMesh& mesh, std::size_t cell);
+
+/// World units^3. Faces that are not flat are taken as the fan around their corner of the lowest index, so that the
+/// cells on both sides agree, and the volumes of all cells sum up to what the boundary encloses.
+double cell_volume(const VolumeMesh& mesh, std::size_t cell);
+
+/// Twice the volume's third below a face, seen from `origin`: the sum over a closed boundary is six times the volume.
+double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin);
+
+/// Of all cells, in parallel. scaled_jacobian() and aspect_ratio() as fields of that name.
+VolumeField scaled_jacobian_field(const VolumeMesh& mesh);
+VolumeField aspect_ratio_field(const VolumeMesh& mesh);
+
+/// Sum over all cells; the same for any number of threads.
+double total_volume(const VolumeMesh& mesh);
+
+/// Angle in degrees, 0 .. 90, between the normal of a wall's face and the mean of the edges that rise from its corners
+/// to the first layer: 0 is best. 90 if either has no direction. \pre `first` has a position for each of `wall`.
+double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first, std::span<const std::uint32_t> face);
+
+}  // namespace vdb_offset
