@@ -20,7 +20,7 @@ bool follows(std::span<const std::uint32_t> polygon, std::uint32_t a, std::uint3
 
 }  // namespace
 
-Columns::Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
+CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
   const Surface& surface = body.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
   std::vector<std::uint8_t> seen(mesh.face_count(), 0);
@@ -42,7 +42,7 @@ Columns::Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> sour
     for (const auto v : base(column)) incident_[incident_begin_[v + 1]++] = column;
 }
 
-void Columns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle) {
+void CellColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle) {
   const auto& [a, b, c] = surface.triangles[triangle];
   const std::size_t first = corners_.size();
   for (const auto v : mesh.face(surface.face[triangle])) {
@@ -57,7 +57,7 @@ void Columns::add(PolygonView mesh, const Surface& surface, std::uint32_t triang
   begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
 }
 
-Vec3d Columns::normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const {
+Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const {
   const auto corners = base(column);
   const std::size_t count = corners.size();
   const auto at = [&](std::size_t i) { return stacks.of(corners[i % count])[layer]; };
@@ -67,7 +67,7 @@ Vec3d Columns::normal(std::size_t column, std::size_t k, const Stacks& stacks, s
   return sum;
 }
 
-bool Columns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
+bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
   const auto corners = base(column);
   const auto leans = [&](const Vec3d& n, const Vec3d& way) {
     const double dot = side * n.dot(way);

@@ -26,10 +26,10 @@ struct Stacks {
 ///
 /// A column's base runs as its face's triangles do in the surface, seen from where they face. Faces that the surface
 /// leaves out, as repeated ones, and those without area carry none.
-class Columns {
+class CellColumns {
  public:
   /// `mesh` is the one that the body's surface was built from.
-  Columns(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
+  CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
 
   std::size_t size() const { return begin_.size() - 1; }
   std::span<const std::uint32_t> base(std::size_t column) const {

@@ -30,8 +30,8 @@ struct Rail {
 
 class Stacker {
  public:
-  Stacker(const Body& body, const Columns& columns, std::span<const Vec3d> source, std::span<const Distances> heights,
-          FaultFinder& faults, Paths& paths)
+  Stacker(const Body& body, const CellColumns& columns, std::span<const Vec3d> source,
+          std::span<const Distances> heights, FaultFinder& faults, Paths& paths)
       : body_(body),
         front_(body.front.surface()),
         columns_(columns),
@@ -77,10 +77,8 @@ class Stacker {
   double share_at_end(std::uint32_t v) {
     if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
     const Vec3d& whole = paths_.displacement[v];
-    if (!sees_all_faces(v, start_of_rail(v))) {
-      if (!sees_all_faces(v, whole)) return 0;
-      straight_[v] = 1;
-    }
+    straight_[v] = body_.is_bound(v) || !sees_all_faces(v, start_of_rail(v));
+    if (straight_[v] && !sees_all_faces(v, whole)) return 0;
     if (paths_.state[v] == VertexState::Reached) return 1;
     const double share = std::min(1.0, paths_.achieved[v] / asked(v));
     return share < kLeastShare ? 0 : share;
@@ -105,7 +103,7 @@ class Stacker {
 
   Rail rail_of(std::uint32_t v) const {
     const Vec3d& whole = paths_.displacement[v];
-    if (straight_[v] || body_.is_bound(v)) return {whole, Vec3d(0.0)};
+    if (straight_[v]) return {whole, Vec3d(0.0)};
     return {whole, start_of_rail(v) - whole};
   }
 
@@ -145,51 +143,88 @@ class Stacker {
         4);
   }
 
-  /// In haste first, by walks from triangle to triangle; then those with care that are nearer to the surface than that
-  /// found them to be.
+  /// In haste, by walks from triangle to triangle, and found out whether that was right. Walks end where the distance
+  /// is least all around, so that those for vertices with which it was not start again where it is least of all.
   void put_block(std::span<const std::uint32_t> vertices) {
-    std::vector<Vec3d> points;
-    std::vector<std::uint32_t> hints;
+    constexpr int kHasty = 3;
+    const std::size_t layers = heights_.size();
+    std::vector<std::uint32_t> pending, wrong, hints;
     for (const auto v : vertices) {
-      std::uint32_t hint = body_.hint(v);
-      climb(v, [&](const Vec3d& x) { return std::sqrt(front_.walk_to_closest(x, hint).squared_distance); });
-      for (std::size_t layer = 1; layer <= heights_.size(); ++layer) {
-        points.push_back(stack_.stacks.of(v)[layer] - front_.origin);
-        hints.push_back(hint);
-      }
+      std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
+      if (!(stack_.share[v] > 0)) continue;
+      pending.push_back(v);
+      hints.insert(hints.end(), layers, nearest_face(v));
     }
-    std::vector<Closest> closest(points.size());
-    body_.front.answer_together(points, hints, closest);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      check_heights(vertices[i], std::span(closest).subspan(i * heights_.size(), heights_.size()));
+    std::vector<Vec3d> points;
+    std::vector<Closest> closest;
+    for (int i = 0; i < kHasty && !pending.empty(); ++i) {
+      points.clear();
+      for (std::size_t j = 0; j < pending.size(); ++j) {
+        std::uint32_t* const hint = hints.data() + j * layers;
+        climb(pending[j], [&](std::size_t k, const Vec3d& x) {
+          if (i == 0 && k > 0 && hint[k] == hint[0]) hint[k] = hint[k - 1];
+          return std::sqrt(front_.walk_to_closest(x, hint[k]).squared_distance);
+        });
+        for (const Vec3d& place : stack_.stacks.of(pending[j]).subspan(1)) points.push_back(place - front_.origin);
+      }
+      closest.resize(points.size());
+      body_.front.answer_together(points, hints, closest);
+      wrong.clear();
+      std::size_t kept = 0;
+      for (std::size_t j = 0; j < pending.size(); ++j) {
+        const auto answers = std::span(closest).subspan(j * layers, layers);
+        if (has_heights(pending[j], answers)) continue;
+        wrong.push_back(pending[j]);
+        for (const Closest& answer : answers) hints[kept++] = answer.triangle;
+      }
+      hints.resize(kept);
+      pending.swap(wrong);
+    }
+    for (const auto v : pending) put_with_care(v);
   }
 
-  void check_heights(std::uint32_t v, std::span<const Closest> closest) {
-    if (!(stack_.share[v] > 0)) return;
+  /// The triangle around a vertex that is closest to where its rail leads at first.
+  std::uint32_t nearest_face(std::uint32_t v) const {
+    const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
+    const Rail rail = rail_of(v);
+    const Vec3d way = (rail.whole + rail.bend) * static_cast<double>(side_);
+    std::uint32_t nearest = kNone;
+    double least = 0;
+    for (const auto t : front_.triangles_around(on_front)) {
+      const double rise = front_.triangle_normals[t].dot(way);
+      if (nearest != kNone && rise >= least) continue;
+      nearest = t;
+      least = rise;
+    }
+    return nearest;
+  }
+
+  /// Whether a vertex's layers are at their heights.
+  bool has_heights(std::uint32_t v, std::span<const Closest> closest) {
     stack_.first_achieved[v] = closest.front().distance;
-    bool right = true;
     for (std::size_t k = 0; k < closest.size(); ++k) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
-      right = right && std::abs(closest[k].distance - height) <= kReachedTolerance * height;
+      if (!(std::abs(closest[k].distance - height) <= kReachedTolerance * height)) return false;
     }
-    if (right) return;
-    std::uint32_t hint = closest.back().triangle;
-    climb(v, [&](const Vec3d& x) {
-      const Closest found = body_.front(x, hint);
-      hint = found.triangle;
-      if (x == stack_.stacks.of(v)[1] - front_.origin) stack_.first_achieved[v] = found.distance;
-      return found.distance;
-    });
-    stack_.first_achieved[v] = body_.front(stack_.stacks.of(v)[1] - front_.origin, hint).distance;
+    return true;
   }
 
-  /// Goes along a vertex's rail from height to height. `phi` is the distance of a point in the front's frame.
+  void put_with_care(std::uint32_t v) {
+    std::uint32_t hint = body_.hint(v);
+    const auto phi = [&](const Vec3d& x) {
+      const Closest found = body_.front(x, hint);
+      hint = found.triangle;
+      return found.distance;
+    };
+    climb(v, [&](std::size_t, const Vec3d& x) { return phi(x); });
+    stack_.first_achieved[v] = phi(stack_.stacks.of(v)[1] - front_.origin);
+  }
+
+  /// Goes along a vertex's rail from height to height. phi(layer, x) is the distance of a point in the front's frame.
   template <class Phi>
   void climb(std::uint32_t v, Phi&& phi) {
     const auto stack = stack_.stacks.of(v);
-    std::fill(stack.begin(), stack.end(), source_[v]);
     const double share = stack_.share[v];
-    if (!(share > 0)) return;
     const Rail rail = rail_of(v);
     const Vec3d origin = source_[v] - front_.origin;
     double eta = 0, here = 0;
@@ -198,7 +233,7 @@ class Stacker {
       const double target = share * std::abs(heights_[k][v]);
       const bool at_end = k + 1 == heights_.size() && share == most_[v];
       if (at_end) eta = 1;
-      else if (target > here) eta = solve(eta, here, end, target, [&](double s) { return phi(origin + rail(s)); });
+      else if (target > here) eta = solve(eta, here, end, target, [&](double s) { return phi(k, origin + rail(s)); });
       stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(eta), target));
       here = std::max(here, target);
     }
@@ -357,7 +392,7 @@ class Stacker {
 
   const Body& body_;
   const Surface& front_;
-  const Columns& columns_;
+  const CellColumns& columns_;
   std::span<const Vec3d> source_;
   std::span<const Distances> heights_;
   int side_;
@@ -372,7 +407,7 @@ class Stacker {
 
 }  // namespace
 
-LayerStack stack_layers(const Body& body, const Columns& columns, std::span<const Vec3d> source,
+LayerStack stack_layers(const Body& body, const CellColumns& columns, std::span<const Vec3d> source,
                         std::span<const Distances> heights, FaultFinder& faults, Paths& paths,
                         const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;

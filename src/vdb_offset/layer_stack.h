@@ -13,7 +13,7 @@ namespace vdb_offset {
 
 /// What growing layers found and did.
 struct LayerStatistics {
-  std::size_t wrong_columns = 0;     ///< Columns of cells of which one was not valid before anything was thinned.
+  std::size_t wrong_columns = 0;     ///< CellColumns of cells of which one was not valid before anything was thinned.
   std::size_t straightened = 0;      ///< Vertices whose layers stand on a straight line for that.
   std::size_t rounds = 0;            ///< Rounds in which layers were thinned or let out again.
   std::size_t thinned_vertices = 0;  ///< Of the surface, that keep less than all of their heights.
@@ -33,11 +33,11 @@ struct LayerStack {
 ///
 /// The layers of a vertex lie on a curve that leaves the surface in the vertex's own direction, as nearly at right
 /// angles as validity allows, and bends towards its end; there, where the exact distance is what was asked for. Layers
-/// are thinned by one share for all layers of a vertex until every cell is valid (Columns) and nothing is wrong with
-/// the outermost surface; so are neighbours, so that no thickness differs by more than half the length of the edge
+/// are thinned by one share for all layers of a vertex until every cell is valid (CellColumns) and nothing is wrong
+/// with the outermost surface; so are neighbours, so that no thickness differs by more than half the length of the edge
 /// between them. Then they are let out again as far as all stays so. `paths` receives what became of the outermost
 /// surface. The result does not depend on the number of threads.
-LayerStack stack_layers(const Body& body, const Columns& columns, std::span<const Vec3d> source,
+LayerStack stack_layers(const Body& body, const CellColumns& columns, std::span<const Vec3d> source,
                         std::span<const Distances> heights, FaultFinder& faults, Paths& paths,
                         const ProgressCallback& progress = {});
 

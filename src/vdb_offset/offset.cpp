@@ -214,7 +214,7 @@ class Pipeline {
       const StageTimer timer(statistics, Stage::Limit);
       statistics.limit = untangle(faults, body, source, distances_.front(), paths.front(), options_.progress);
     }
-    std::optional<Columns> columns;
+    std::optional<CellColumns> columns;
     LayerStack stack;
     {
       const StageTimer timer(statistics, Stage::Layers);
@@ -294,7 +294,7 @@ class Pipeline {
   }
 
   /// Layers as those of the input's vertices and faces.
-  LayersResult hand_over(OffsetStatistics statistics, const Columns& columns, const Paths& paths, LayerStack stack,
+  LayersResult hand_over(OffsetStatistics statistics, const CellColumns& columns, const Paths& paths, LayerStack stack,
                          std::span<const Distances> heights) const {
     const Surface& surface = work_.surface();
     const std::size_t count = mesh_.positions.size();

@@ -11,6 +11,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/memory.h"
 #include "vdb_offset/report.h"
 
@@ -40,6 +41,7 @@ Examples:
   vdb_offset car.obj out.obj --distance 5 --only group=roof    one part; the rest stays
   vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
   vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
+  vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
 
@@ -67,6 +69,10 @@ std::size_t parse_size(const std::string& text) {
 /// What CLI11 fills in before it is checked.
 struct Raw {
   std::vector<std::string> distances, only;
+  std::optional<std::size_t> layers;
+  std::optional<double> growth;
+  std::string first_height, total_thickness, heights;
+  bool structured = false;
   std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
   std::optional<std::string> solver, collision, border, format;
   std::string normals = "recompute";
@@ -110,6 +116,19 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
                "Write the source and its offset as one closed solid, joined by a rim where the surface is open");
   app.add_option("--inner", raw.inner, "With --shell: the inner skin lies this far inward, not on the source")
       ->type_name("E");
+  app.add_option(
+         "--layers", raw.layers,
+         "Grow N layers of cells: with --first-height or --total-thickness, and --growth; OUTPUT is .vtu, .msh, "
+         ".cgns, .su2, a folder called polyMesh, or a mesh for each layer")
+      ->type_name("N");
+  app.add_option("--first-height", raw.first_height, "Height of the first layer, as --distance")->type_name("A");
+  app.add_option("--total-thickness", raw.total_thickness, "Height of all layers together, as --distance")
+      ->type_name("T");
+  app.add_option("--growth", raw.growth, "Each layer's height by that of the one below [1.2]")->type_name("R");
+  app.add_option("--heights", raw.heights, "A file of heights above the wall, one a line, each as --distance")
+      ->type_name("FILE");
+  app.add_flag("--structured", raw.structured,
+               "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz");
   app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")
       ->type_name("H");
   app.add_option("--voxels-per-distance", raw.voxels_per_distance, "The same as D / N")->type_name("N");
@@ -187,7 +206,12 @@ void check_names(const Arguments& args) {
               "--format");
   require(args.states.empty() || io::is_states_file(args.states),
           args.states + ": expected a file of states that ends in .csv or .ply");
-  require(format_of(args.output, args).has_value(),
+  const bool volume =
+      io::volume_format_of(args.output).has_value() || io::structured_format_of(args.output).has_value();
+  require(!volume || args.layers, args.output + ": expected a mesh, as this is for --layers");
+  require(!args.layers || args.layers->structured == io::structured_format_of(args.output).has_value(),
+          args.output + ": expected .vts or .xyz with --structured, and nothing else");
+  require(volume || format_of(args.output, args).has_value(),
           args.output +
               ": expected an output that ends in .obj, .ply, .stl or .off (or these and .gz or .zst), or "
               "--format");
@@ -230,6 +254,38 @@ void check_distances(const Raw& raw, Arguments& args) {
           fmt::format("--inner: expected a distance above 0, got '{}'", raw.inner));
 }
 
+void check_layers(const Raw& raw, Arguments& args) {
+  const bool asked = raw.layers || !raw.heights.empty();
+  for (const auto& [name, given] : {std::pair{"--first-height", !raw.first_height.empty()},
+                                    {"--total-thickness", !raw.total_thickness.empty()},
+                                    {"--growth", raw.growth.has_value()},
+                                    {"--structured", raw.structured}})
+    require(asked || !given, fmt::format("{}: expected it with --layers", name));
+  if (!asked) return;
+  constexpr std::size_t kMostLayers = 1000;
+  LayersRequest& layers = args.layers.emplace();
+  layers.count = raw.layers.value_or(0);
+  layers.heights = raw.heights;
+  layers.structured = raw.structured;
+  require(!raw.layers || (layers.count > 0 && layers.count <= kMostLayers),
+          fmt::format("--layers: expected 1 to {}, got {}", kMostLayers, layers.count));
+  require(raw.heights.empty() + raw.first_height.empty() + raw.total_thickness.empty() == 2,
+          "--layers: expected one of --first-height, --total-thickness and --heights");
+  require(raw.heights.empty() || !raw.growth, "--growth: expected it with --first-height or --total-thickness");
+  layers.growth = raw.growth.value_or(layers.growth);
+  require(layers.growth > 0 && layers.growth <= 10,
+          fmt::format("--growth: expected a number above 0, up to 10, got {}", layers.growth));
+  if (!raw.first_height.empty()) layers.first = parse_request("--first-height", raw.first_height);
+  if (!raw.total_thickness.empty()) layers.total = parse_request("--total-thickness", raw.total_thickness);
+  for (const auto& [name, given] : {std::pair{"--distance", !raw.distances.empty()},
+                                    {"--distance-from", !args.distance_from.empty()},
+                                    {"--shell", args.shell},
+                                    {"--collision", raw.collision.has_value()},
+                                    {"--save-vdb", !args.vdb.empty()}})
+    require(!given, fmt::format("{}: expected it without --layers", name));
+  require(args.output != "-", "OUTPUT: expected a file for layers, got '-'");
+}
+
 void check_surroundings(const Raw& raw, Arguments& args) {
   args.only_texts = raw.only;
   for (const std::string& text : raw.only) {
@@ -257,10 +313,11 @@ void check_surroundings(const Raw& raw, Arguments& args) {
 }
 
 void check(const Raw& raw, Arguments& args) {
+  check_layers(raw, args);
   check_file_options(raw, args);
   check_names(args);
   check_apart(args);
-  check_distances(raw, args);
+  if (!args.layers) check_distances(raw, args);
   check_surroundings(raw, args);
   require(!(raw.voxel_size && raw.voxels_per_distance), "--voxel-size: expected it or --voxels-per-distance, got both");
   for (const auto& [name, value] :

@@ -18,6 +18,16 @@ struct DistanceRequest {
   scene::Distance distance;
 };
 
+/// Layers of cells that are asked for: their count and growth with the first height or the thickness of all, or a file
+/// of heights.
+struct LayersRequest {
+  std::size_t count = 0;
+  double growth = 1.2;                          ///< Each layer's height by that of the one below.
+  std::optional<DistanceRequest> first, total;  ///< One of them, unless there is a file.
+  std::string heights;                          ///< Of all layers, from the wall on.
+  bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
+};
+
 /// What the command line asks for.
 struct Arguments {
   std::string input, output;
@@ -25,6 +35,7 @@ struct Arguments {
   std::string distance_from;               ///< A file of numbers, or ply:NAME.
   std::optional<DistanceRequest> inner;    ///< Of the inner skin of a shell, above 0.
   bool shell = false;
+  std::optional<LayersRequest> layers;
   std::vector<io::Selector> only;
   std::vector<std::string> only_texts, obstacles;
   scene::Distance clearance;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/vertex_numbers.h"
 
@@ -26,7 +28,7 @@ void settle_scene(Source& source, Arguments& args) {
   scene.set(args.options);
   if (given.voxel_size || given.voxels_per_distance) args.options.grid = given;
   // What a scene expects holds for its own distance.
-  if (!args.distances.empty() || !args.distance_from.empty()) {
+  if (args.layers || !args.distances.empty() || !args.distance_from.empty()) {
     scene.expect = {};
     return;
   }
@@ -60,12 +62,55 @@ Distances evaluate(const Source& source, const Arguments& args, const scene::Dis
   return scene::distances_of(distance, source.view(), args.options.weld, args.options.orient, texture_of);
 }
 
-/// The same to the other side.
-Distances inward(const Distances& distances, std::size_t count) {
-  if (distances.uniform()) return -distances[0];
-  std::vector<double> each(count);
-  for (std::size_t v = 0; v < count; ++v) each[v] = -distances[v];
+/// So many times the distances of so many vertices.
+Distances scaled(const Distances& distances, double factor) {
+  if (distances.uniform()) return factor * distances[0];
+  std::vector<double> each(distances.count());
+  for (std::size_t v = 0; v < each.size(); ++v) each[v] = factor * distances[v];
   return Distances(std::move(each));
+}
+
+void settle_all_but_distances(Source& source, Arguments& args) {
+  if (source.scene) settle_scene(source, args);
+  if (args.solver) args.options.solver = *args.solver;
+  if (args.collision) args.options.collision = *args.collision;
+  settle_surroundings(source, args);
+}
+
+/// Heights of layers that grow from one to the next.
+std::vector<Distances> geometric_heights(const Source& source, const Arguments& args) {
+  const LayersRequest& layers = *args.layers;
+  std::vector<double> factors;  // of the first layer's height
+  double sum = 0, step = 1;
+  for (std::size_t k = 0; k < layers.count; ++k, step *= layers.growth) factors.push_back(sum += step);
+  const Distances given = evaluate(source, args, (layers.first ? layers.first : layers.total)->distance);
+  std::vector<Distances> heights;
+  for (const double factor : factors) heights.push_back(scaled(given, layers.first ? factor : factor / sum));
+  return heights;
+}
+
+/// One height a line; empty lines and what is behind a # do not count.
+std::vector<Distances> read_heights(const Source& source, const Arguments& args) {
+  const std::string& path = args.layers->heights;
+  std::ifstream file(path);
+  if (!file) throw ReadError(path + ": cannot be read");
+  std::vector<Distances> heights;
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number) {
+    line.erase(std::min(line.find('#'), line.size()));
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    line = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+    try {
+      heights.push_back(evaluate(source, args, scene::parse_distance_or_expression(line)));
+    } catch (const Error& error) {
+      throw InvalidInput(fmt::format("{}: line {}: {}", path, number, error.what()));
+    }
+  }
+  if (heights.empty()) throw InvalidInput(path + ": expected a height on each line, got none");
+  if (args.layers->count > 0 && heights.size() != args.layers->count)
+    throw InvalidInput(fmt::format("{}: expected {} heights, got {}", path, args.layers->count, heights.size()));
+  return heights;
 }
 
 }  // namespace
@@ -81,18 +126,20 @@ Source read_source(const Arguments& args) {
 }
 
 std::vector<Distances> settle_options(Source& source, Arguments& args) {
-  if (source.scene) settle_scene(source, args);
-  if (args.solver) args.options.solver = *args.solver;
-  if (args.collision) args.options.collision = *args.collision;
-  settle_surroundings(source, args);
+  settle_all_but_distances(source, args);
   std::vector<Distances> distances;
   if (!args.distance_from.empty()) distances.push_back(read_distances(source, args.distance_from));
   for (const DistanceRequest& request : args.distances) distances.push_back(evaluate(source, args, request.distance));
   if (args.inner) {
-    distances.push_back(inward(evaluate(source, args, args.inner->distance), source.view().positions.size()));
+    distances.push_back(scaled(evaluate(source, args, args.inner->distance), -1));
     if (distances.back().outward() > 0) throw InvalidInput("--inner: expected distances of 0 or more at all vertices");
   }
   return distances;
+}
+
+std::vector<Distances> settle_layers(Source& source, Arguments& args) {
+  settle_all_but_distances(source, args);
+  return args.layers->heights.empty() ? geometric_heights(source, args) : read_heights(source, args);
 }
 
 }  // namespace vdb_offset::tool

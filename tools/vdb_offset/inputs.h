@@ -23,5 +23,8 @@ Source read_source(const Arguments& args);
 /// Takes from a scene what the command line leaves open, and settles all options that depend on the mesh. They refer to
 /// the source. Returns the distances: one set for each output, then that of the inner skin if there is one.
 std::vector<Distances> settle_options(Source& source, Arguments& args);
+/// The same for layers: their heights above the wall, from there on. \throw ReadError, InvalidInput for a file of
+/// heights, with its line.
+std::vector<Distances> settle_layers(Source& source, Arguments& args);
 
 }  // namespace vdb_offset::tool

@@ -10,6 +10,7 @@
 #include "args.h"
 #include "check_command.h"
 #include "inputs.h"
+#include "layers_command.h"
 #include "outputs.h"
 #include "summary.h"
 #include "terminal.h"
@@ -57,9 +58,10 @@ int run(Arguments args) {
     bar.show(stage, share);
     return interrupted() == 0;
   };
-  if (!args.dry_run) require_places(args, destinations(args));
+  if (!args.dry_run && !args.layers) require_places(args, destinations(args));
   bar.show(Stage::Read, 0);
   Source source = read_source(args);
+  if (args.layers) return run_layers(args, source, start, bar) || !args.strict ? kDone : kProcessing;
   const std::vector<Distances> distances = settle_options(source, args);
   const std::vector<Destination> places = destinations(args);
   const double read_seconds = seconds_since(start);

@@ -33,7 +33,7 @@ std::string as_name(std::string distance) {
   return distance;
 }
 
-std::string name_of(std::string name, std::size_t number, std::size_t of, const std::string& distance) {
+std::string numbered(std::string name, std::size_t number, std::size_t of, const std::string& distance) {
   if (name.empty() || name == "-") return name;
   bool marked = false;
   for (const auto& [mark, value] :
@@ -55,7 +55,15 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
   const char* const border = options.border == Border::Slide   ? "slide"
                              : options.border == Border::Fixed ? "fixed"
                                                                : "free";
+  const auto text_of = [](const std::optional<DistanceRequest>& request) { return request ? request->text : ""; };
+  const LayersRequest layers = args.layers.value_or(LayersRequest{});
   return {{"distance", to.distance},
+          {"layers", fmt::format("{}", layers.count)},
+          {"first-height", text_of(layers.first)},
+          {"total-thickness", text_of(layers.total)},
+          {"growth", fmt::format("{}", layers.growth)},
+          {"heights", layers.heights},
+          {"structured", layers.structured ? "true" : "false"},
           {"only", fmt::format("{}", fmt::join(args.only_texts, " "))},
           {"border", border},
           {"obstacle", fmt::format("{}", fmt::join(args.obstacles, " "))},
@@ -75,14 +83,19 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
           {"strict", args.strict ? "true" : "false"}};
 }
 
-void write_report(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                  Clock::time_point start) {
+RunFacts facts_of(const Arguments& args, const Destination& to, Clock::time_point start) {
   RunFacts facts;
   facts.input = args.input;
-  facts.output = outcome.to.mesh;
-  facts.distance_text = outcome.to.distance;
+  facts.output = to.mesh;
+  facts.distance_text = to.distance;
   facts.total_seconds = seconds_since(start);
-  facts.options = options_in_force(args, outcome.to);
+  facts.options = options_in_force(args, to);
+  return facts;
+}
+
+void write_report(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+                  Clock::time_point start) {
+  RunFacts facts = facts_of(args, outcome.to, start);
   facts.shell = shell;
   write_file(outcome.to.report, report_json(outcome.result, facts));
 }
@@ -107,16 +120,6 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   return {};
 }
 
-void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written) {
-  if (args.quiet) return;
-  if (!written.lost.empty()) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", path, written.lost);
-  if (written.disagreeing_normals > 0)
-    fmt::print(stderr,
-               "vdb_offset: {}: {} normals (vn) are shared by vertices that ask for different ones now; they got "
-               "the mean (--normals keep leaves all as they were)\n",
-               path, written.disagreeing_normals);
-}
-
 }  // namespace
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -127,7 +130,7 @@ std::vector<Destination> destinations(const Arguments& args) {
   if (texts.empty()) texts.push_back(args.distance_from);
   std::vector<Destination> all;
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    const auto named = [&](const std::string& name) { return name_of(name, i + 1, texts.size(), texts[i]); };
+    const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
     all.push_back({named(args.output), named(args.report), named(args.states), texts[i]});
   }
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -135,6 +138,27 @@ std::vector<Destination> destinations(const Arguments& args) {
       if (all[i].mesh == all[j].mesh)
         throw UsageError(fmt::format("OUTPUT: expected names that differ, got {} twice (use {{i}})", all[i].mesh));
   return all;
+}
+
+void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written) {
+  if (args.quiet) return;
+  if (!written.lost.empty()) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", path, written.lost);
+  if (written.disagreeing_normals > 0)
+    fmt::print(stderr,
+               "vdb_offset: {}: {} normals (vn) are shared by vertices that ask for different ones now; they got "
+               "the mean (--normals keep leaves all as they were)\n",
+               path, written.disagreeing_normals);
+}
+
+std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of) {
+  return numbered(output, number, of, fmt::format("{}", number));
+}
+
+void write_layers_report(const Arguments& args, const LayersResult& result, const LayerReport& report,
+                         Clock::time_point start) {
+  RunFacts facts = facts_of(args, {args.output, args.report, args.states, {}}, start);
+  facts.layers = report;
+  write_file(args.report, report_json(result, facts));
 }
 
 std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,

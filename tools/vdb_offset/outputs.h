@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "inputs.h"
+#include "vdb_offset/layer_report.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shell.h"
 
@@ -29,6 +30,16 @@ struct Outcome {
   OffsetResult& result;
   const OffsetResult* inner = nullptr;  ///< The inner skin of a shell, if that was asked for.
 };
+
+/// The name of one of several layers' meshes: as destinations() would have it.
+std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of);
+
+/// Tells on standard error what a mesh could not be given.
+void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written);
+
+/// The report of a run with --layers, to where the command line says.
+void write_layers_report(const Arguments& args, const LayersResult& result, const LayerReport& report,
+                         Clock::time_point start);
 
 /// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
 /// held before. Returns the facts of a shell, if it is one.

@@ -52,6 +52,23 @@ void print_plan(std::FILE* out, const OffsetStatistics& statistics, const Distan
              statistics.threads == 1 ? "" : "s");
 }
 
+/// All that is known of the mesh and the grid, and the seconds of each stage.
+void print_details(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances) {
+  print_facts(out, statistics);
+  print_plan(out, statistics, distances);
+  for (std::size_t s = 0; s < kStageCount; ++s)
+    fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), statistics.seconds[s]);
+}
+
+/// What of the mesh leaves a result in doubt.
+void print_doubts(std::FILE* out, const OffsetStatistics& statistics, Orient orient) {
+  print_orientation(out, statistics.facts, orient);
+  const LimitStatistics& limit = statistics.limit;
+  if (limit.source_crossings > 0)
+    fmt::print(out, "the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
+               limit.source_crossings, limit.crossings_near_source);
+}
+
 void print_states(std::FILE* out, const OffsetResult& result) {
   const auto in = [&](VertexState state) {
     return result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
@@ -85,12 +102,7 @@ void print_summary(const Arguments& args, const Outcome& outcome, const std::opt
   std::FILE* const out = args.output == "-" ? stderr : stdout;  // standard output may be taken by the mesh
   const OffsetResult& result = outcome.result;
   const AchievedSummary achieved = summarise(result);
-  if (args.verbose) {
-    print_facts(out, result.statistics);
-    print_plan(out, result.statistics, result.distances);
-    for (std::size_t s = 0; s < kStageCount; ++s)
-      fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), result.statistics.seconds[s]);
-  }
+  if (args.verbose) print_details(out, result.statistics, result.distances);
   const std::string asked = result.distances.uniform()
                                 ? fmt::format("{:.6g}", result.distances[0])
                                 : fmt::format("{:.6g} to {:.6g}", achieved.asked_least, achieved.asked_most);
@@ -102,11 +114,15 @@ void print_summary(const Arguments& args, const Outcome& outcome, const std::opt
   if (result.statistics.disagreeing_distances > 0)
     fmt::print(out, "{} vertices stand with one of which another distance was asked; they go the mean\n",
                result.statistics.disagreeing_distances);
-  print_orientation(out, result.statistics.facts, args.options.orient);
-  const LimitStatistics& limit = result.statistics.limit;
-  if (limit.source_crossings > 0)
-    fmt::print(out, "the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
-               limit.source_crossings, limit.crossings_near_source);
+  print_doubts(out, result.statistics, args.options.orient);
+}
+
+void print_layers_summary(const Arguments& args, const LayersResult& result, const LayerReport& report,
+                          double total_seconds) {
+  if (args.verbose) print_details(stdout, result.statistics, result.heights.back());
+  fmt::print("{}: {}", args.output, summary(report));
+  fmt::print("{:.2f} s\n", total_seconds);
+  print_doubts(stdout, result.statistics, args.options.orient);
 }
 
 }  // namespace vdb_offset::tool

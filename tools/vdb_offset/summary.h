@@ -16,4 +16,8 @@ void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, co
 void print_summary(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
                    double total_seconds);
 
+/// The same of layers.
+void print_layers_summary(const Arguments& args, const LayersResult& result, const LayerReport& report,
+                          double total_seconds);
+
 }  // namespace vdb_offset::tool

@@ -1,0 +1,279 @@
+#include "vdb_offset/layers.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "oracles.h"
+#include "vdb_offset/cell_quality.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/layer_block.h"
+#include "vdb_offset/layer_report.h"
+#include "vdb_offset/scene/shapes.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+/// Heights of layers that grow from one to the next.
+std::vector<Distances> growing(double first, double growth, std::size_t count) {
+  std::vector<Distances> heights;
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) heights.emplace_back(sum += first * std::pow(growth, k));
+  return heights;
+}
+
+struct Grown {
+  LayersResult layers;
+  VolumeMesh volume;
+  LayerReport report;
+};
+
+Grown grow(const Polygons& mesh, std::span<const Distances> heights, const OffsetOptions& options = {}) {
+  Grown grown{grow_layers(mesh.view(), heights, options), {}, {}};
+  LayerCellFacts facts;
+  grown.volume = make_cells(mesh.view(), grown.layers, options.weld, {}, &facts);
+  grown.report = report_layers(mesh.view(), grown.layers, {}, grown.volume, facts);
+  return grown;
+}
+
+/// Every vertex that keeps all of its heights is at each of them, by brute force.
+void check_heights(const Polygons& mesh, const LayersResult& layers, std::size_t stride) {
+  double worst = 0;
+  std::size_t seen = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); v += stride) {
+    if (layers.states[v] == VertexState::Unused) continue;
+    for (std::size_t k = 0; k < layers.count(); ++k) {
+      const double height = layers.share[v] * std::abs(layers.heights[k][v]);
+      if (height == 0) continue;
+      const double distance = test::brute_force_distance(mesh.view(), layers.positions[k + 1][v]);
+      worst = std::max(worst, std::abs(distance - height) / height);
+      ++seen;
+    }
+  }
+  CHECK(seen > 0);
+  CHECK(worst < 1e-6);
+}
+
+double positive_cells(const VolumeMesh& volume) {
+  std::size_t positive = 0;
+  for (std::size_t c = 0; c < volume.cell_count(); ++c)
+    positive += scaled_jacobian(volume, c) > 0 && cell_volume(volume, c) > 0;
+  return static_cast<double>(positive) / static_cast<double>(volume.cell_count());
+}
+
+/// Vertices of one edge differ in thickness by no more than half of its length.
+void check_evenness(const Polygons& mesh, const LayersResult& layers) {
+  double worst = 0;
+  const auto thickness = [&](std::uint32_t v) { return layers.share[v] * std::abs(layers.heights.back()[v]); };
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
+      const double length = (mesh.positions[a] - mesh.positions[b]).length();
+      worst = std::max(worst, std::abs(thickness(a) - thickness(b)) / length);
+    }
+  }
+  CHECK(worst < 0.5 + 0.02);  // what is below a hundredth of the thickness becomes none
+}
+
+}  // namespace
+
+TEST_CASE("layers: on a plane, heights and volumes are exact", "[layers]") {
+  const Polygons mesh = scene::patch(1, 0, 10);
+  const Grown grown = grow(mesh, growing(0.001, 1.2, 10));
+  CHECK(grown.report.all.coverage == Approx(1));
+  for (std::size_t k = 0; k < 10; ++k)
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3d up = grown.layers.positions[k + 1][v] - mesh.positions[v];
+      CHECK((up - Vec3d(0, 0, grown.layers.heights[k][v])).length() < 1e-9);
+    }
+  const double thickness = grown.layers.heights.back()[0];
+  CHECK(grown.report.volume == Approx(thickness).epsilon(1e-9));
+  for (std::size_t c = 0; c < grown.volume.cell_count(); ++c) {
+    const std::size_t layer = c / mesh.face_count();
+    const double height = 0.001 * std::pow(1.2, layer);
+    CHECK(cell_volume(grown.volume, c) == Approx(height / static_cast<double>(mesh.face_count())).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("layers: on a sphere and in a tube, heights are exact and cells fill what is between", "[layers][oracle]") {
+  const auto [mesh, heights] =
+      GENERATE(table<Polygons, std::vector<Distances>>({{scene::icosphere(0.5, 4), growing(0.002, 1.2, 8)},
+                                                        {scene::icosphere(0.5, 3), growing(-0.002, 1.3, 6)},
+                                                        {scene::torus(1, 0.4, 48, 24), growing(0.004, 1.2, 8)}}));
+  const Grown grown = grow(mesh, heights);
+  CHECK(grown.report.all.coverage == Approx(1));
+  CHECK(positive_cells(grown.volume) == 1);
+  check_heights(mesh, grown.layers, 23);
+  // Between the facets of wall and outermost surface.
+  const auto enclosed = [&](const std::vector<Vec3d>& positions) {
+    double sum = 0;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) sum += six_volumes_below(positions, mesh.view().face(f), {}) / 6;
+    return sum;
+  };
+  const double between = enclosed(grown.layers.positions.back()) - enclosed(mesh.positions);
+  CHECK(grown.report.volume == Approx(std::abs(between)).epsilon(1e-9));
+}
+
+TEST_CASE("layers: the outermost surface of a cylinder's side has its radius", "[layers]") {
+  // Open at both ends: the flat sides of a prism of 64 sides, offset outwards.
+  Polygons mesh = scene::cylinder(0.5, 1, 64, 8, 2);
+  Polygons tube;
+  tube.positions = mesh.positions;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    const bool side = std::all_of(face.begin(), face.end(), [&](std::uint32_t v) {
+      return std::hypot(mesh.positions[v][0], mesh.positions[v][1]) > 0.499;
+    });
+    if (!side) continue;
+    tube.corners.insert(tube.corners.end(), face.begin(), face.end());
+    tube.close_face();
+  }
+  const Grown grown = grow(tube, growing(0.005, 1.2, 5));
+  CHECK(grown.report.all.coverage == Approx(1));
+  const double thickness = grown.layers.heights.back()[0], angle = 2 * std::numbers::pi / 64;
+  const double r = 0.5, outer = r + thickness;  // an edge of a convex prism goes straight out
+  CHECK(grown.report.volume == Approx(64 * std::sin(angle) / 2 * (outer * outer - r * r)).epsilon(1e-6));
+  for (const auto v : tube.corners)
+    CHECK(std::hypot(grown.layers.positions.back()[v][0], grown.layers.positions.back()[v][1]) == Approx(outer).epsilon(1e-6));
+}
+
+TEST_CASE("layers: scenes with corners, creases and narrow places have valid cells", "[layers]") {
+  struct Case {
+    const char* name;
+    Polygons mesh;
+    double total, least_coverage;
+  };
+  const std::vector<Case> cases = {
+      {"diffuser", scene::diffuser(0.4, 0.8, 2, 24), 0.012, 0.97},
+      {"box, outward", scene::box({1, 1, 1}, 12, true), 0.05, 1},
+      {"box, inward", scene::box({1, 1, 1}, 12, true), -0.05, 0.97},
+      {"quads, inward", scene::box({1, 1, 1}, 12, false), -0.05, 0.97},
+      {"room corner", scene::room_corner(1, 16), 0.05, 0.97},
+      {"wedge", scene::wedge(40, 1, 1, 16), 0.03, 0.97},
+      {"wing", scene::naca_wing("0012", 1, 0.5, 60, 12), 0.01, 0.97},
+      {"gear", scene::gear(12, 0.8, 1, 0.3, 0.3, 4), 0.01, 0.97},
+      {"plates", scene::plates(1, 0.1, 0.1, 24), 0.08, 0.3},
+      {"walls", scene::hollow_box(1, 0.05, 12), -0.04, 0},
+      {"bumps", scene::bumpy_sphere(1, 0.3, 4, 7, 4), 0.1, 0.8}};
+  for (const Case& c : cases) {
+    INFO(c.name);
+    const double first = c.total * 0.2 / (std::pow(1.2, 8) - 1);
+    const Grown grown = grow(c.mesh, growing(first, 1.2, 8));
+    CHECK(positive_cells(grown.volume) == 1);
+    CHECK(grown.report.all.inverted_cells == 0);
+    CHECK(grown.report.all.coverage >= c.least_coverage);
+    CHECK(grown.layers.statistics.limit.left.total() == 0);
+    check_heights(c.mesh, grown.layers, 37);
+    check_evenness(c.mesh, grown.layers);
+  }
+}
+
+TEST_CASE("layers: those of two plates stop before each other", "[layers]") {
+  const Polygons mesh = scene::plates(1, 0.1, 0.1, 24);
+  const Grown grown = grow(mesh, growing(0.005, 1.2, 8));  // 0.082 in all, in a gap of 0.1
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const double wall = mesh.positions[v][2], outer = grown.layers.positions.back()[v][2];
+    if (std::abs(wall) < 0.051) CHECK(wall * outer > 0);
+  }
+  CHECK(grown.layers.layer_statistics.thinned_vertices > 0);
+}
+
+TEST_CASE("layers: a vertex that no way up suits keeps none, and cells close around it", "[layers]") {
+  // Two tetrahedra that meet in a point, like an hour-glass: its middle sees no side of all faces.
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, 0, -1}, {-1, 1, -1}, {-1, -1, -1}};
+  for (const auto& face : {std::initializer_list<std::uint32_t>{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}})
+    mesh.add_face(face);
+  for (const auto& face : {std::initializer_list<std::uint32_t>{0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}})
+    mesh.add_face(face);
+  const Grown grown = grow(mesh, growing(0.01, 1.2, 4));
+  CHECK(grown.layers.share[0] == 0);
+  CHECK(grown.layers.layer_statistics.flat_vertices >= 1);
+  CHECK(grown.report.all.transition_cells > 0);
+  CHECK(positive_cells(grown.volume) == 1);
+}
+
+TEST_CASE("layers: on a part of a box whose edge slides, the sides stay flat", "[layers]") {
+  const Polygons mesh = scene::box({1, 1, 1}, 10, true);
+  OffsetOptions options;
+  options.only.resize(mesh.face_count());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    options.only[f] = std::all_of(face.begin(), face.end(), [&](std::uint32_t v) { return mesh.positions[v][2] > 0.499; });
+  }
+  options.border = GENERATE(Border::Slide, Border::Free, Border::Fixed);
+  const std::vector<Distances> heights = growing(0.004, 1.2, 5);
+  const Grown grown = grow(mesh, heights, options);
+  CHECK(positive_cells(grown.volume) == 1);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3d& wall = mesh.positions[v];
+    const Vec3d& outer = grown.layers.positions.back()[v];
+    if (wall[2] < 0.499) CHECK(outer == wall);
+    for (int k = 0; k < 2; ++k)
+      if (std::abs(wall[k]) == 0.5) CHECK(outer[k] == wall[k]);
+  }
+  if (options.border != Border::Fixed) CHECK(grown.report.all.coverage == Approx(1));
+  if (options.border != Border::Fixed) CHECK(grown.report.volume == Approx(heights.back()[0]).epsilon(1e-6));
+}
+
+TEST_CASE("layers: heights may differ from vertex to vertex", "[layers][oracle]") {
+  const Polygons mesh = scene::icosphere(0.5, 4);
+  std::vector<Distances> heights;
+  for (const double factor : {0.2, 0.5, 1.0}) {
+    std::vector<double> each;
+    for (const Vec3d& p : mesh.positions) each.push_back(factor * 0.03 * std::max(0.0, 0.5 + p[2]));
+    heights.emplace_back(std::move(each));
+  }
+  const Grown grown = grow(mesh, heights);
+  CHECK(positive_cells(grown.volume) == 1);
+  check_heights(mesh, grown.layers, 31);
+}
+
+TEST_CASE("layers: the same for any number of threads", "[layers]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.3, 4, 7, 4);
+  OffsetOptions one;
+  one.threads = 1;
+  const auto heights = growing(0.01, 1.2, 6);
+  const LayersResult a = grow_layers(mesh.view(), heights, one), b = grow_layers(mesh.view(), heights, {});
+  CHECK(a.positions == b.positions);
+  CHECK(a.share == b.share);
+}
+
+TEST_CASE("layers: heights that do not rise or are of both signs are refused", "[layers]") {
+  const Polygons mesh = scene::icosphere(0.5, 2);
+  const auto refused = [&](std::vector<Distances> heights, const std::string& why) {
+    CHECK_THROWS_WITH(grow_layers(mesh.view(), heights, {}), Catch::Contains(why));
+  };
+  refused({}, "expected a height, got none");
+  refused({0.1, 0.1}, "expected heights that rise");
+  refused({0.1, -0.2}, "expected heights that rise");
+  std::vector<double> both(mesh.positions.size(), 0.1);
+  both[3] = -0.1;
+  refused({Distances(both)}, "to one side");
+  refused({0.0}, "other than 0");
+}
+
+TEST_CASE("layers: a grid of quads gives a structured block", "[layers]") {
+  const bool closed = GENERATE(false, true);
+  const Polygons mesh = closed ? scene::torus(1, 0.4, 24, 12) : scene::patch(1, 0.05, 12);
+  const double sign = GENERATE(1, -1);
+  const LayersResult layers = grow_layers(mesh.view(), growing(sign * 0.005, 1.2, 4), {});
+  const StructuredBlock block = make_block(mesh.view(), layers, {});
+  CHECK(block.nk == 5);
+  CHECK(std::minmax(block.ni, block.nj) == (closed ? std::minmax(25u, 13u) : std::minmax(13u, 13u)));
+  const auto at = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+    return block.points[(k * block.nj + j) * block.ni + i];
+  };
+  std::size_t wrong = 0;
+  for (std::uint32_t k = 0; k + 1 < block.nk; ++k)
+    for (std::uint32_t j = 0; j + 1 < block.nj; ++j)
+      for (std::uint32_t i = 0; i + 1 < block.ni; ++i) {
+        const Vec3d p = at(i, j, k);
+        wrong += !((at(i + 1, j, k) - p).cross(at(i, j + 1, k) - p).dot(at(i, j, k + 1) - p) > 0);
+      }
+  CHECK(wrong == 0);
+  CHECK_THROWS_AS(make_block(scene::icosphere(1, 1).view(), layers, {}), InvalidInput);
+}

@@ -1,0 +1,103 @@
+#include "layers_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "summary.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/io/wall_names.h"
+#include "vdb_offset/layer_block.h"
+#include "vdb_offset/layer_report.h"
+#include "vdb_offset/report.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+bool is_volume(const std::string& path) {
+  return io::volume_format_of(path).has_value() || io::structured_format_of(path).has_value();
+}
+
+/// Cells are measured whatever is written.
+struct Grown {
+  LayersResult layers;
+  VolumeMesh volume;
+  LayerReport report;
+};
+
+Grown grow(const Arguments& args, const Source& source, std::span<const Distances> heights) {
+  const PolygonView mesh = source.view();
+  const WallNames names = source.file ? io::wall_names(*source.file) : WallNames{};
+  Grown grown;
+  grown.layers = grow_layers(mesh, heights, args.options);
+  LayerCellFacts facts;
+  grown.volume = make_cells(mesh, grown.layers, args.options.weld, names, &facts);
+  grown.report = report_layers(mesh, grown.layers, names, grown.volume, facts);
+  return grown;
+}
+
+void write_surfaces(const Arguments& args, const Source& source, const LayersResult& layers) {
+  for (std::size_t k = 0; k < layers.count(); ++k) {
+    const std::string path = name_of_layer(args.output, k + 1, layers.count());
+    io::WriteOptions options = args.write;
+    options.format = format_of(path, args);
+    if (source.file) {
+      tell_losses(args, path, io::write_mesh(path, *source.file, layers.positions[k + 1], options));
+      continue;
+    }
+    const PolygonView mesh = source.view();
+    io::write_mesh(path, PolygonView{layers.positions[k + 1], mesh.corners, mesh.face_begin}, options);
+  }
+}
+
+void write_cells(const Arguments& args, const Source& source, const Grown& grown) {
+  if (args.layers->structured)
+    io::write_structured(args.output, make_block(source.view(), grown.layers, args.options.weld));
+  else if (is_volume(args.output)) io::write_volume(args.output, grown.volume);
+  else write_surfaces(args, source, grown.layers);
+}
+
+void require_names(const Arguments& args, std::size_t layers) {
+  for (const std::string& path : {args.report, args.states})
+    if (!path.empty()) require_writable(path);
+  if (is_volume(args.output)) return;
+  if (name_of_layer(args.output, 1, layers) == name_of_layer(args.output, 2, layers) && layers > 1)
+    throw UsageError(fmt::format("OUTPUT: expected names that differ, got {} twice (use {{i}})", args.output));
+  for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(args.output, k, layers));
+}
+
+}  // namespace
+
+bool run_layers(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar) {
+  const std::vector<Distances> heights = settle_layers(source, args);
+  const double read_seconds = seconds_since(start);
+  if (args.dry_run) {
+    print_dry_run(args, plan_several(source.view(), std::span(heights).last(1), args.options), heights.back());
+    return true;
+  }
+  require_names(args, heights.size());
+  if (source.file && !is_volume(args.output))
+    args.options.precision = io::precision_of(name_of_layer(args.output, 1, heights.size()), *source.file, args.write);
+  Grown grown = grow(args, source, heights);
+  LayersResult& layers = grown.layers;
+  bar.show(Stage::Write, 0);
+  if (interrupted()) throw Cancelled();
+  layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
+  const PolygonView mesh = source.view();
+  if (!args.states.empty())
+    io::write_states(args.states, {layers.positions.back(), mesh.corners, mesh.face_begin},
+                     {layers.states, layers.achieved, layers.heights.back()});
+  const auto writing = Clock::now();
+  write_cells(args, source, grown);
+  layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!args.report.empty()) write_layers_report(args, grown.layers, grown.report, start);
+  bar.clear();
+  if (!args.quiet) print_layers_summary(args, grown.layers, grown.report, seconds_since(start));
+  return std::all_of(layers.states.begin(), layers.states.end(),
+                     [](VertexState state) { return state == VertexState::Reached || state == VertexState::Unused; });
+}
+
+}  // namespace vdb_offset::tool
