@@ -30,9 +30,11 @@ struct CellPoints {
   }
 };
 
+/// All corners have one sign, and the longest edges have the least product, below 0 as well.
 double tetrahedron_jacobian(const CellPoints& x, std::size_t a, std::size_t b, std::size_t c, std::size_t apex) {
   return std::numbers::sqrt2 * std::min({x.at_corner(a, b, c, apex), x.at_corner(b, c, a, apex),
-                                         x.at_corner(c, a, b, apex), x.at_corner(apex, b, a, c)});
+                                         x.at_corner(c, a, b, apex), x.at_corner(apex, b, a, c)},
+                                        [](double p, double q) { return std::abs(p) < std::abs(q); });
 }
 
 /// Each tetrahedron reaches 1 / sqrt 2 if all edges are of one length.
@@ -67,7 +69,7 @@ Vec3d twice_area(std::span<const Vec3d> points, std::span<const std::uint32_t> f
   return sum;
 }
 
-/// The corner of a face that an edge leads to from `corner`, and its neighbours there.
+/// The neighbours of a face's corner.
 struct Around {
   std::uint32_t previous, next;
 };

@@ -24,7 +24,8 @@ double aspect_ratio(const VolumeMesh& mesh, std::size_t cell);
 /// cells on both sides agree, and the volumes of all cells sum up to what the boundary encloses.
 double cell_volume(const VolumeMesh& mesh, std::size_t cell);
 
-/// Twice the volume's third below a face, seen from `origin`: the sum over a closed boundary is six times the volume.
+/// Six times the volume between a face and `origin`, signed: the sum over a closed boundary is six times what it
+/// encloses.
 double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin);
 
 /// Of all cells, in parallel. scaled_jacobian() and aspect_ratio() as fields of that name.
