@@ -696,6 +696,15 @@ TEST_CASE("volume file: what a format cannot hold, and what does not fit", "[vol
   mesh = mixed_cells();
   mesh.patches[2].cell.pop_back();
   refuses("mesh.vtu", mesh, "behind each face");
+  mesh = mixed_cells();
+  mesh.corners[12] = 17;
+  refuses("mesh.vtu", mesh, "cell 2: expected the corners of one of the prisms");
+  mesh = with_polyhedra();
+  ++mesh.corners[mesh.cell_begin[1]];
+  refuses("polyMesh", mesh, "cell 1: expected the corners of one of the polyhedra");
+  mesh = with_polyhedra();
+  mesh.corners[mesh.cell_begin[1] + 1] = 1000;
+  refuses("polyMesh", mesh, "cell 1");
   StructuredBlock block = structured_block();
   CHECK_THROWS_AS(io::write_structured(folder.file("block.obj"), block), InvalidInput);
   block.point_fields[0].values.pop_back();

@@ -3,16 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <span>
 #include <unordered_set>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/volume_formats.h"
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
 namespace {
 
-std::string_view ending(std::string_view path) {
+std::string_view ending_of(std::string_view path) {
   const std::size_t dot = path.rfind('.');
   return dot == std::string_view::npos ? std::string_view() : path.substr(dot + 1);
 }
@@ -29,12 +32,41 @@ void require_fields(const std::string& path, const std::vector<VolumeField>& fie
                                      field.name, count, things, field.values.size()));
 }
 
+bool are_points(const VolumeMesh& mesh, std::span<const std::uint32_t> corners) {
+  return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return v < mesh.points.size(); });
+}
+
+bool is_cell(const VolumeMesh& mesh, CellType type, std::span<const std::uint32_t> cell) {
+  constexpr std::size_t kCorners[] = {4, 5, 6, 8};
+  if (type != CellType::Polyhedron)
+    return cell.size() == kCorners[static_cast<std::size_t>(type)] && are_points(mesh, cell);
+  std::size_t at = 1, faces = 0;
+  for (; at < cell.size() && cell[at] < cell.size() - at; at += cell[at] + 1, ++faces)
+    if (cell[at] < 3 || !are_points(mesh, cell.subspan(at + 1, cell[at]))) return false;
+  return at == cell.size() && faces == cell[0];
+}
+
+void require_cells(const std::string& path, const VolumeMesh& mesh) {
+  constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  std::atomic<std::uint64_t> first_wrong = kNone;
+  for_each_index(mesh.cell_count(), [&](std::size_t c) {
+    if (!is_cell(mesh, mesh.cell_types[c], mesh.cell(c))) lower_to(first_wrong, c);
+  });
+  if (first_wrong != kNone)
+    throw InvalidInput(fmt::format("{}: cell {}: expected the corners of one of the {}, each a point of the mesh", path,
+                                   first_wrong.load(), name(mesh.cell_types[first_wrong])));
+}
+
 void require_consistent(const std::string& path, const VolumeMesh& mesh) {
-  require(mesh.cell_begin.size() == mesh.cell_count() + 1 && mesh.cell_begin.back() == mesh.corners.size(), path,
-          "cells whose corners end where the next one's begin");
-  for (const VolumePatch& patch : mesh.patches)
+  require(mesh.cell_begin.size() == mesh.cell_count() + 1 && mesh.cell_begin.back() == mesh.corners.size() &&
+              std::is_sorted(mesh.cell_begin.begin(), mesh.cell_begin.end()),
+          path, "cells whose corners end where the next one's begin");
+  require_cells(path, mesh);
+  for (const VolumePatch& patch : mesh.patches) {
     require(patch.cell.size() == patch.face_count() && patch.face_begin.back() == patch.corners.size(), path,
             "a cell behind each face of a patch");
+    require(are_points(mesh, patch.corners), path, "patches' corners that are points of the mesh");
+  }
   require_fields(path, mesh.point_fields, mesh.points.size(), "points");
   require_fields(path, mesh.cell_fields, mesh.cell_count(), "cells");
 }
@@ -51,10 +83,10 @@ std::string as_word(const std::string& name) {
 }  // namespace
 
 std::optional<VolumeFormat> volume_format_of(std::string_view path) {
-  if (is_word(ending(path), "vtu")) return VolumeFormat::Vtu;
-  if (is_word(ending(path), "msh")) return VolumeFormat::Msh;
-  if (is_word(ending(path), "cgns")) return VolumeFormat::Cgns;
-  if (is_word(ending(path), "su2")) return VolumeFormat::Su2;
+  if (is_word(ending_of(path), "vtu")) return VolumeFormat::Vtu;
+  if (is_word(ending_of(path), "msh")) return VolumeFormat::Msh;
+  if (is_word(ending_of(path), "cgns")) return VolumeFormat::Cgns;
+  if (is_word(ending_of(path), "su2")) return VolumeFormat::Su2;
   while (path.ends_with('/')) path.remove_suffix(1);
   if (path.substr(path.rfind('/') + 1) == "polyMesh") return VolumeFormat::Foam;
   return std::nullopt;
