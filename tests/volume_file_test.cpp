@@ -687,6 +687,7 @@ TEST_CASE("volume file: what a format cannot hold, and what does not fit", "[vol
   refuses("mesh.su2", with_polyhedra(), "polyhedra: .su2 has none");
   refuses("mesh.msh", with_polyhedra(), "polyhedra: .msh has none");
   refuses("mesh.obj", mixed_cells(), ".cgns");
+  refuses("mesh.vtu", {}, "at least one cell");
   VolumeMesh mesh = mixed_cells();
   mesh.cell_fields[0].values.pop_back();
   refuses("mesh.vtu", mesh, "field layer: expected 7 values");

@@ -24,13 +24,15 @@ void write_vts(const std::string& path, const StructuredBlock& block) {
 }
 
 void write_plot3d(const std::string& path, const StructuredBlock& block) {
-  std::vector<Section> coordinates;
-  for (int k = 0; k < 3; ++k)
-    coordinates.push_back({block.points.size(), [&block, k](std::string& text, std::size_t p) {
-                             append_number(text, block.points[p][k]);
-                             text += '\n';
-                           }});
-  write_pieces(path, in_sections(fmt::format("{} {} {}\n", block.ni, block.nj, block.nk), std::move(coordinates)), {});
+  const auto all_of = [&block](int k) {
+    return Section{block.points.size(), [&block, k](std::string& text, std::size_t p) {
+                     append_number(text, block.points[p][k]);
+                     text += '\n';
+                   }};
+  };
+  write_pieces(path,
+               in_sections(fmt::format("{} {} {}\n", block.ni, block.nj, block.nk), {all_of(0), all_of(1), all_of(2)}),
+               {});
 }
 
 void require_consistent(const std::string& path, const StructuredBlock& block) {

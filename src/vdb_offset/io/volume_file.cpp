@@ -58,6 +58,7 @@ void require_cells(const std::string& path, const VolumeMesh& mesh) {
 }
 
 void require_consistent(const std::string& path, const VolumeMesh& mesh) {
+  require(mesh.cell_count() > 0, path, "a mesh of at least one cell, got none");
   require(mesh.cell_begin.size() == mesh.cell_count() + 1 && mesh.cell_begin.back() == mesh.corners.size() &&
               std::is_sorted(mesh.cell_begin.begin(), mesh.cell_begin.end()),
           path, "cells whose corners end where the next one's begin");

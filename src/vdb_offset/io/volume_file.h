@@ -27,7 +27,7 @@ std::optional<VolumeFormat> volume_format_of(std::string_view path);
 ///   folder is made if it is not there, and its other files stay.
 /// Patches' names become words without blanks and quotes, .cgns: of 32 bytes. Fields without values are left out.
 /// \throw InvalidInput for an unknown ending, polyhedra where the format has none, a patch that is not the boundary
-/// (polyMesh, .cgns with polyhedra), or arrays that do not fit each other; WriteError.
+/// (polyMesh, .cgns with polyhedra), no cells, or arrays that do not fit each other; WriteError.
 void write_volume(const std::string& path, const VolumeMesh& mesh);
 
 enum class StructuredFormat : std::uint8_t { Vts, Plot3d };

@@ -27,7 +27,7 @@ constexpr std::size_t kMostInt32 = std::numeric_limits<std::int32_t>::max();
 
 vtkSmartPointer<vtkUnsignedCharArray> vtk_types(const VolumeMesh& mesh) {
   constexpr unsigned char kTypes[kCellTypeCount] = {VTK_TETRA, VTK_PYRAMID, VTK_WEDGE, VTK_HEXAHEDRON, VTK_POLYHEDRON};
-  const auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
   types->SetNumberOfValues(static_cast<vtkIdType>(mesh.cell_count()));
   for_each_index(mesh.cell_count(), [&](std::size_t c) {
     types->SetValue(static_cast<vtkIdType>(c), kTypes[static_cast<std::size_t>(mesh.cell_types[c])]);
@@ -37,7 +37,7 @@ vtkSmartPointer<vtkUnsignedCharArray> vtk_types(const VolumeMesh& mesh) {
 
 template <class Array, class Number>
 vtkSmartPointer<Array> vtk_copy(const std::vector<Number>& numbers) {
-  const auto array = vtkSmartPointer<Array>::New();
+  auto array = vtkSmartPointer<Array>::New();
   array->SetNumberOfValues(static_cast<vtkIdType>(numbers.size()));
   auto* const to = array->GetPointer(0);
   for_each_index(numbers.size(), [&](std::size_t i) { to[i] = static_cast<typename Array::ValueType>(numbers[i]); });
@@ -46,7 +46,7 @@ vtkSmartPointer<Array> vtk_copy(const std::vector<Number>& numbers) {
 
 /// The corners stay where they are as long as VTK's 32 bits, one of which is the sign, can count them.
 vtkSmartPointer<vtkCellArray> vtk_corners(const VolumeMesh& mesh) {
-  const auto cells = vtkSmartPointer<vtkCellArray>::New();
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
   if (mesh.points.size() <= kMostInt32 && mesh.corners.size() <= kMostInt32)
     cells->SetData(vtk_copy<vtkTypeInt32Array>(mesh.cell_begin).Get(),
                    vtk_view<vtkTypeInt32Array>(std::span(mesh.corners)).Get());

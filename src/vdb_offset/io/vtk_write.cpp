@@ -30,7 +30,7 @@ vtkSmartPointer<vtkPoints> vtk_points(std::span<const Vec3d> points) {
   const std::span numbers(points.empty() ? nullptr : points.front().asPointer(), 3 * points.size());
   const auto array = vtk_view<vtkDoubleArray>(std::span<const double>(numbers));
   array->SetNumberOfComponents(3);
-  const auto result = vtkSmartPointer<vtkPoints>::New();
+  auto result = vtkSmartPointer<vtkPoints>::New();
   result->SetData(array);
   return result;
 }

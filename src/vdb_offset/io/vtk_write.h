@@ -20,7 +20,7 @@ template <class Array, class Number>
 vtkSmartPointer<Array> vtk_view(std::span<const Number> numbers) {
   using Value = typename Array::ValueType;
   static_assert(sizeof(Number) == sizeof(Value));
-  const auto array = vtkSmartPointer<Array>::New();
+  auto array = vtkSmartPointer<Array>::New();
   auto* const memory = const_cast<Number*>(numbers.data());  // NOLINT: VTK knows no arrays of constants.
   array->SetArray(reinterpret_cast<Value*>(memory), static_cast<vtkIdType>(numbers.size()), 1);
   return array;
