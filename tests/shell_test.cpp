@@ -56,6 +56,14 @@ Shell offset_shell(const Polygons& mesh, double distance) {
                       : make_shell(mesh.view(), mesh.positions, result.positions, {});
 }
 
+/// As the command makes it: what moves keeps off the source.
+Shell solid_of(const Polygons& mesh, double distance) {
+  OffsetOptions options;
+  options.distance = distance;
+  options.off_source = true;
+  return make_shell(mesh.view(), offset(mesh.view(), options).positions, mesh.positions, {});
+}
+
 /// Judged by what reads meshes: every edge has two faces, which run through it in both directions and meet nowhere
 /// else.
 void check_solid(const Shell& shell) {
@@ -194,6 +202,40 @@ TEST_CASE("shell: what cannot be joined is counted", "[shell]") {
   CHECK(touching.facts.closed);
   CHECK(touching.facts.oriented);
   CHECK(touching.facts.volume == 2);
+}
+
+TEST_CASE("shell: where the source crosses itself skins keep their thickness, and what meets is counted apart",
+          "[shell]") {
+  Polygons boxes = scene::box(Vec3d(1), 6, true);
+  const auto count = static_cast<std::uint32_t>(boxes.positions.size());
+  const std::size_t faces = boxes.face_count();
+  for (std::size_t v = 0; v < count; ++v) boxes.positions.push_back(boxes.positions[v] + Vec3d(0.47, 0.41, 0.53));
+  for (std::size_t f = 0; f < faces; ++f) {
+    for (std::size_t k = 0; k < 3; ++k) boxes.corners.push_back(boxes.corners[3 * f + k] + count);
+    boxes.close_face();
+  }
+  const Shell shell = solid_of(boxes, 0.03);
+  const Surface source = build_surface(boxes.view(), {});
+  CHECK(shell.facts.source_crossings == CrossingFinder(source, source.vertices).all().size());
+  CHECK(shell.facts.source_crossings > 0);
+  CHECK(shell.facts.crossings_near_source > 0);
+  CHECK(shell.facts.crossings == 0);
+  CHECK(shell.facts.pinched_vertices == 0);
+  CHECK(shell.facts.non_manifold_edges == 0);
+}
+
+TEST_CASE("shell: of a folded vertex and those around it, only that one stays", "[shell]") {
+  // A cone over a U, as seen from its apex: whatever direction sees the insides of one prong is behind the other's.
+  Polygons cone;
+  cone.positions = {{0, 0, 0}};
+  for (const auto& [x, y] : {std::pair(-3, -2), {3, -2}, {3, 2}, {1, 2}, {1, -1}, {-1, -1}, {-1, 2}, {-3, 2}})
+    cone.positions.emplace_back(x, y, 2);
+  for (std::uint32_t k = 1; k <= 8; ++k) cone.add_face({0, k % 8 + 1, k});
+  const Shell shell = solid_of(cone, 0.1);
+  CHECK(shell.outer()[0] == cone.positions[0]);
+  CHECK(shell.facts.pinched_vertices == 1);
+  CHECK(shell.facts.crossings == 0);
+  CHECK(shell.facts.closed);
 }
 
 TEST_CASE("shell: faces without extent, nothing moved, and welding", "[shell]") {

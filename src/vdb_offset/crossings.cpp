@@ -183,10 +183,11 @@ std::vector<TrianglePair> CrossingFinder::of(std::span<const std::uint32_t> tria
   });
 }
 
-bool CrossingFinder::is_met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
-  bool met = false;
-  tree_.for_each_overlap(box_of(triangle, places), [&](std::size_t other) {
-    met = met || meet(Couple(surface_, places, triangle, positions_, static_cast<std::uint32_t>(other)));
+std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
+  std::vector<std::uint32_t> met;
+  tree_.for_each_overlap(box_of(triangle, places), [&](std::size_t child) {
+    const auto other = static_cast<std::uint32_t>(child);
+    if (meet(Couple(surface_, places, triangle, positions_, other))) met.push_back(other);
   });
   return met;
 }

@@ -29,9 +29,9 @@ class CrossingFinder {
   /// The pairs that one of these triangles is part of, or two; they are sorted, and so is the answer.
   std::vector<TrianglePair> of(std::span<const std::uint32_t> triangles) const;
 
-  /// Whether a triangle, with its corners at `places`, meets any of the surface's as they stand here, elsewhere than in
-  /// corners that are at one place.
-  bool is_met_by(std::uint32_t triangle, std::span<const Vec3d> places) const;
+  /// The surface's triangles, as they stand here, that one meets with its corners at `places`, elsewhere than in
+  /// corners that are at one place. In no particular order.
+  std::vector<std::uint32_t> met_by(std::uint32_t triangle, std::span<const Vec3d> places) const;
 
  private:
   FloatBox box_of(std::size_t triangle, std::span<const Vec3d> places) const;

@@ -40,27 +40,21 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       right_side_(source.size(), 1),
       fault_(surface_.triangles.size(), Fault::None),
       finder_(surface_, place_) {
-  if (body.off_source) source_finder_.emplace(surface_, source_);
+  if (body.off_source) {
+    source_finder_.emplace(surface_, source_);
+    find_folded();
+  }
   if (body.obstacles) clearance_.emplace(*body.obstacles);
-  source_crossings_ = source_crossings ? std::move(*source_crossings) : finder_.all();
-  mark_near_source();
+  source_crossings_.emplace(surface_, source_crossings ? std::move(*source_crossings) : finder_.all());
 }
 
-/// Vertices within two rings of a face that crosses another in the source.
-void FaultFinder::mark_near_source() {
-  near_source_.assign(source_.size(), 0);
-  for (const auto& [s, t] : source_crossings_)
-    for (const auto triangle : {s, t})
-      for (const auto v : surface_.triangles[triangle]) near_source_[v] = 1;
-  for (int ring = 0; ring < 2 && !source_crossings_.empty(); ++ring) {
-    const std::vector<std::uint8_t> inner = near_source_;
-    for (const auto& [a, b, c] : surface_.triangles)
-      if (inner[a] || inner[b] || inner[c]) near_source_[a] = near_source_[b] = near_source_[c] = 1;
-  }
-}
-bool FaultFinder::is_near_source(std::uint32_t triangle) const {
-  const auto& [a, b, c] = surface_.triangles[triangle];
-  return near_source_[a] || near_source_[b] || near_source_[c];
+void FaultFinder::find_folded() {
+  folded_.assign(source_.size(), 0);
+  for_each_index(source_.size(), [&](std::size_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    const std::uint32_t on_front = body_.front_vertex.empty() ? vertex : body_.front_vertex[vertex];
+    folded_[v] = on_front != kNone && is_folded(body_.front.surface(), on_front);
+  });
 }
 
 Indices FaultFinder::triangles_around(const Indices& vertices) const {
@@ -85,8 +79,9 @@ void FaultFinder::look_for_crossings(const Indices& touched) {
   // Pairs that have not moved meet as before.
   std::erase_if(crossings_, [&](const TrianglePair& pair) { return has_moved(pair.first) || has_moved(pair.second); });
   for (const TrianglePair& pair : first ? finder_.all() : finder_.of(touched)) {
-    if (std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair)) continue;
-    if (is_near_source(pair.first) || is_near_source(pair.second)) crossings_near_source_ += first;
+    if (std::binary_search(source_crossings().begin(), source_crossings().end(), pair)) continue;
+    if (source_crossings_->is_near(pair.first) || source_crossings_->is_near(pair.second))
+      crossings_near_source_ += first;
     else crossings_.push_back(pair);
   }
 }
@@ -163,10 +158,32 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
   const auto& corners = surface_.triangles[t];
   if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return place_[v] == source_[v]; }))
     return false;
-  if (source_finder_ && source_finder_->is_met_by(t, place_)) return true;
+  if (source_finder_ && meets_source(t)) return true;
   const Vec3d& origin = surface_.origin;
   return clearance_ && clearance_->is_crowded(
                            {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
+}
+
+/// Where the source crosses itself, what leaves one sheet has to go through the other.
+bool FaultFinder::meets_source(std::uint32_t t) const {
+  const Indices met = source_finder_->met_by(t, place_);
+  return std::any_of(met.begin(), met.end(),
+                     [&](std::uint32_t s) { return s == t || !source_crossings_->sheets_cross(s, t); });
+}
+
+Indices FaultFinder::caught() const {
+  Indices caught;
+  if (!source_finder_) return caught;
+  for (const auto t : faces_) {
+    const auto& corners = surface_.triangles[t];
+    const bool folded = folded_[corners[0]] || folded_[corners[1]] || folded_[corners[2]];
+    if (!folded || fault_[t] != Fault::Crowded) continue;
+    for (const auto s : source_finder_->met_by(t, place_))
+      for (const auto v : surface_.triangles[s])
+        if (folded_[v] && std::find(corners.begin(), corners.end(), v) != corners.end()) caught.push_back(v);
+  }
+  sort_unique(caught);
+  return caught;
 }
 
 /// At each corner and at the centre, as far as they are off the front; with none of them, against the source's normal.

@@ -11,6 +11,7 @@
 #include "vdb_offset/clearance.h"
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/near_crossings.h"
 #include "vdb_offset/precision.h"
 
 namespace vdb_offset {
@@ -35,9 +36,9 @@ void sort_unique(Indices& indices);
 /// A face is inverted if it faces against the direction away from the front at its centre and at each corner (there,
 /// its distance has folded over) or, being no part of the front, against its own source; collapsed if its area is below
 /// 1e-6 of the source's, crowded if it is too near to an obstacle
-/// or meets the source where it must not. Crossings are found with exact
-/// predicates. All is judged on coordinates as they will be written, and only around what has moved since the last
-/// look. The result does not depend on the number of threads.
+/// or meets the source where it must not: anywhere but where sheets of the source cross (see near_crossings.h).
+/// Crossings are found with exact predicates. All is judged on coordinates as they will be written, and only around
+/// what has moved since the last look. The result does not depend on the number of threads.
 class FaultFinder {
  public:
   /// `source` holds where the body's vertices stand in the input, world coordinates; they begin there. `distances` are
@@ -62,6 +63,8 @@ class FaultFinder {
   /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another.
   template <class Visit>
   void for_each_wrong_corner(Visit&& visit) const;
+  /// Folded vertices (see is_folded()) whose faces meet the source around them, which only ends where they stay on it.
+  Indices caught() const;
   /// All vertices that something is wrong with.
   Indices wrong_vertices() const;
 
@@ -70,15 +73,14 @@ class FaultFinder {
   bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }
   /// World coordinates, as they will be written.
   std::span<const Vec3d> places() const { return place_; }
-  const std::vector<TrianglePair>& source_crossings() const { return source_crossings_; }
+  const std::vector<TrianglePair>& source_crossings() const { return source_crossings_->pairs(); }
   /// New pairs within two rings of one of those, which has to slide, when everything was last looked at.
   std::size_t crossings_near_source() const { return crossings_near_source_; }
 
  private:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
-  void mark_near_source();
-  bool is_near_source(std::uint32_t triangle) const;
+  void find_folded();
   Indices triangles_around(const Indices& vertices) const;
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends);
   void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
@@ -89,6 +91,7 @@ class FaultFinder {
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
   Fault judge(std::uint32_t triangle) const;
   bool is_crowded(std::uint32_t triangle) const;
+  bool meets_source(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   void look_for_crossings(const Indices& touched);
 
@@ -100,12 +103,14 @@ class FaultFinder {
   Precision precision_;
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
-  std::vector<std::uint8_t> right_side_, near_source_;
-  std::vector<Fault> fault_;  // of each triangle
+  std::vector<std::uint8_t> right_side_;
+  std::vector<std::uint8_t> folded_;  // of each vertex; empty but where the source must not be met
+  std::vector<Fault> fault_;          // of each triangle
   Indices faces_, misplaced_;
-  std::vector<TrianglePair> crossings_, source_crossings_;
+  std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;
   CrossingFinder finder_;
+  std::optional<NearCrossings> source_crossings_;
   std::optional<CrossingFinder> source_finder_;  // where what has moved must not meet the source
   std::optional<ClearanceFinder> clearance_;
 };

@@ -212,11 +212,14 @@ class Limiter {
     Indices wrong = faults_.wrong_vertices();
     std::erase_if(wrong, [&](std::uint32_t v) { return share_[v] == 0; });
     if (wrong.empty()) return false;
+    const Indices held = faults_.caught();
     for (const auto v : wrong) {
       share_[v] *= kKept;
       if (share_[v] < kLastShare) share_[v] = 0;
       pulled_.push_back(v);
     }
+    // Those around a vertex that cannot leave the source at all need not follow it back there.
+    for (const auto v : held) share_[v] = 0;
     sort_unique(pulled_);
     look(wrong);
     ++statistics_.rounds;

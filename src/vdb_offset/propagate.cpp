@@ -510,6 +510,8 @@ const char* name(VertexState state) {
 
 Vec3d start_direction(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).direction; }
 
+bool is_folded(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).slope <= 0; }
+
 Vec3d round_way(const Vec3d& way, double target) {
   const double quantum = std::ldexp(1.0, std::ilogb(target) - 36);
   return {std::nearbyint(way[0] / quantum) * quantum, std::nearbyint(way[1] / quantum) * quantum,

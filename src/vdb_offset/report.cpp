@@ -93,6 +93,8 @@ Json shell_json(const ShellFacts& shell) {
           {"border_edges_left", shell.border_edges_left},
           {"non_manifold_edges", shell.non_manifold_edges},
           {"pinched_vertices", shell.pinched_vertices},
+          {"source_crossings", shell.source_crossings},
+          {"crossings_near_source", shell.crossings_near_source},
           {"crossings", shell.crossings}};
 }
 

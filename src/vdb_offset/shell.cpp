@@ -6,6 +6,7 @@
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/edge_sides.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/near_crossings.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/triangulate.h"
 
@@ -125,12 +126,37 @@ std::size_t count_pinched(PolygonView mesh, const Shell& shell) {
   return pinched;
 }
 
-std::size_t count_crossings(const Shell& shell, const Precision& precision) {
-  std::vector<Vec3d> rounded;
-  rounded.reserve(shell.polygons.positions.size());
-  for (const Vec3d& p : shell.polygons.positions) rounded.push_back(precision(p));
+/// For each vertex of the mesh: 1 within two rings of where it crosses itself.
+std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld) {
+  const Surface surface = build_surface(mesh, weld);
+  const NearCrossings crossings(surface, CrossingFinder(surface, surface.vertices).all());
+  std::vector<std::uint8_t> near(mesh.positions.size(), 0);
+  for (std::size_t v = 0; v < near.size(); ++v)
+    near[v] = surface.welded[v] != kNone && crossings.is_vertex_near(surface.welded[v]);
+  return near;
+}
+
+void count_crossings(PolygonView mesh, const WeldOptions& weld, const Precision& precision, Shell& shell) {
+  const std::size_t count = mesh.positions.size();
+  std::vector<Vec3d> rounded = shell.polygons.positions;
+  for (std::size_t v = 0; v < rounded.size(); ++v)
+    if (rounded[v] != mesh.positions[v % count]) rounded[v] = precision(rounded[v]);  // the others keep their bytes
   const Surface surface = build_surface({rounded, shell.polygons.corners, shell.polygons.face_begin}, {});
-  return CrossingFinder(surface, surface.vertices).all().size();
+  const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
+  if (pairs.empty()) return;
+  const std::vector<std::uint8_t> near = find_near_crossings(mesh, weld);
+  const auto has_moved = [&](std::uint32_t v) { return rounded[v] != mesh.positions[v % count]; };
+  const auto is_near = [&](std::uint32_t v) { return near[v % count] != 0; };
+  const auto any_corner = [&](const TrianglePair& pair, const auto& holds) {
+    for (const auto t : {pair.first, pair.second})
+      for (const auto v : surface.triangles[t])
+        if (holds(surface.representative[v])) return true;
+    return false;
+  };
+  for (const TrianglePair& pair : pairs)
+    ++(!any_corner(pair, has_moved) ? shell.facts.source_crossings
+       : any_corner(pair, is_near)  ? shell.facts.crossings_near_source
+                                    : shell.facts.crossings);
 }
 
 }  // namespace
@@ -148,7 +174,7 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
   add_rim(mesh, find_border(mesh, place_in_mesh), place, shell);
   count_edges(place, shell);
   shell.facts.pinched_vertices = count_pinched(mesh, shell);
-  shell.facts.crossings = count_crossings(shell, precision);
+  count_crossings(mesh, weld, precision, shell);
   shell.facts.volume = enclosed_volume(shell.polygons.view());
   return shell;
 }

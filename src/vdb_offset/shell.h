@@ -23,9 +23,12 @@ struct ShellFacts {
   std::size_t border_edges_left = 0;   ///< With one face.
   std::size_t non_manifold_edges = 0;  ///< With three faces or more.
   std::size_t pinched_vertices = 0;    ///< Of the mesh: inner and outer skin are at one place there, and touch.
-  std::size_t crossings = 0;           ///< Pairs of triangles that meet but for shared edges and corners.
-  bool closed = false;                 ///< Every edge has an even number of faces.
-  bool oriented = false;               ///< As many faces run through every edge one way as the other.
+  // Pairs of triangles that meet but for shared edges and corners.
+  std::size_t source_crossings = 0;       ///< Neither has moved: the mesh's own.
+  std::size_t crossings_near_source = 0;  ///< Others within two rings of where the mesh crosses itself.
+  std::size_t crossings = 0;              ///< All others.
+  bool closed = false;                    ///< Every edge has an even number of faces.
+  bool oriented = false;                  ///< As many faces run through every edge one way as the other.
   double volume = 0;  ///< World units^3, positive for faces that point outwards; of use if it is oriented.
 };
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "bytes.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/vertex_numbers.h"
@@ -36,14 +37,6 @@ void odd_seed(const std::string& name, const std::string& bytes) { write(name, b
 std::string with_crlf(const std::string& text) {
   std::string bytes;
   for (const char c : text) bytes += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  return bytes;
-}
-
-template <class T>
-std::string raw(T value, bool swap = false) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  if (swap) std::reverse(bytes.begin(), bytes.end());
   return bytes;
 }
 

@@ -86,6 +86,9 @@ void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shel
   if (shell.non_manifold_edges) fmt::print(out, ", {} non-manifold edges", shell.non_manifold_edges);
   if (shell.pinched_vertices) fmt::print(out, ", without thickness at {} vertices", shell.pinched_vertices);
   if (shell.crossings) fmt::print(out, ", {} pairs of triangles meet", shell.crossings);
+  if (shell.source_crossings + shell.crossings_near_source)
+    fmt::print(out, ", {} where the source crosses itself ({} of them its own)",
+               shell.source_crossings + shell.crossings_near_source, shell.source_crossings);
   fmt::print(out, "\n");
 }
 
