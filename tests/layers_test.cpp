@@ -110,7 +110,8 @@ TEST_CASE("layers: on a sphere and in a tube, heights are exact and cells fill w
   // Between the facets of wall and outermost surface.
   const auto enclosed = [&](const std::vector<Vec3d>& positions) {
     double sum = 0;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) sum += six_volumes_below(positions, mesh.view().face(f), {}) / 6;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      sum += six_volumes_below(positions, mesh.view().face(f), {}) / 6;
     return sum;
   };
   const double between = enclosed(grown.layers.positions.back()) - enclosed(mesh.positions);
@@ -137,7 +138,8 @@ TEST_CASE("layers: the outermost surface of a cylinder's side has its radius", "
   const double r = 0.5, outer = r + thickness;  // an edge of a convex prism goes straight out
   CHECK(grown.report.volume == Approx(64 * std::sin(angle) / 2 * (outer * outer - r * r)).epsilon(1e-6));
   for (const auto v : tube.corners)
-    CHECK(std::hypot(grown.layers.positions.back()[v][0], grown.layers.positions.back()[v][1]) == Approx(outer).epsilon(1e-6));
+    CHECK(std::hypot(grown.layers.positions.back()[v][0], grown.layers.positions.back()[v][1]) ==
+          Approx(outer).epsilon(1e-6));
 }
 
 TEST_CASE("layers: scenes with corners, creases and narrow places have valid cells", "[layers]") {
@@ -146,18 +148,17 @@ TEST_CASE("layers: scenes with corners, creases and narrow places have valid cel
     Polygons mesh;
     double total, least_coverage;
   };
-  const std::vector<Case> cases = {
-      {"diffuser", scene::diffuser(0.4, 0.8, 2, 24), 0.012, 0.97},
-      {"box, outward", scene::box({1, 1, 1}, 12, true), 0.05, 1},
-      {"box, inward", scene::box({1, 1, 1}, 12, true), -0.05, 0.97},
-      {"quads, inward", scene::box({1, 1, 1}, 12, false), -0.05, 0.97},
-      {"room corner", scene::room_corner(1, 16), 0.05, 0.97},
-      {"wedge", scene::wedge(40, 1, 1, 16), 0.03, 0.97},
-      {"wing", scene::naca_wing("0012", 1, 0.5, 60, 12), 0.01, 0.97},
-      {"gear", scene::gear(12, 0.8, 1, 0.3, 0.3, 4), 0.01, 0.97},
-      {"plates", scene::plates(1, 0.1, 0.1, 24), 0.08, 0.3},
-      {"walls", scene::hollow_box(1, 0.05, 12), -0.04, 0},
-      {"bumps", scene::bumpy_sphere(1, 0.3, 4, 7, 4), 0.1, 0.8}};
+  const std::vector<Case> cases = {{"diffuser", scene::diffuser(0.4, 0.8, 2, 24), 0.012, 0.97},
+                                   {"box, outward", scene::box({1, 1, 1}, 12, true), 0.05, 1},
+                                   {"box, inward", scene::box({1, 1, 1}, 12, true), -0.05, 0.97},
+                                   {"quads, inward", scene::box({1, 1, 1}, 12, false), -0.05, 0.97},
+                                   {"room corner", scene::room_corner(1, 16), 0.05, 0.97},
+                                   {"wedge", scene::wedge(40, 1, 1, 16), 0.03, 0.97},
+                                   {"wing", scene::naca_wing("0012", 1, 0.5, 60, 12), 0.01, 0.97},
+                                   {"gear", scene::gear(12, 0.8, 1, 0.3, 0.3, 4), 0.01, 0.97},
+                                   {"plates", scene::plates(1, 0.1, 0.1, 24), 0.08, 0.3},
+                                   {"walls", scene::hollow_box(1, 0.05, 12), -0.04, 0},
+                                   {"bumps", scene::bumpy_sphere(1, 0.3, 4, 7, 4), 0.1, 0.8}};
   for (const Case& c : cases) {
     INFO(c.name);
     const double first = c.total * 0.2 / (std::pow(1.2, 8) - 1);
@@ -202,7 +203,8 @@ TEST_CASE("layers: on a part of a box whose edge slides, the sides stay flat", "
   options.only.resize(mesh.face_count());
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.view().face(f);
-    options.only[f] = std::all_of(face.begin(), face.end(), [&](std::uint32_t v) { return mesh.positions[v][2] > 0.499; });
+    options.only[f] =
+        std::all_of(face.begin(), face.end(), [&](std::uint32_t v) { return mesh.positions[v][2] > 0.499; });
   }
   options.border = GENERATE(Border::Slide, Border::Free, Border::Fixed);
   const std::vector<Distances> heights = growing(0.004, 1.2, 5);

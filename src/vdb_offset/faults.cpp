@@ -158,17 +158,19 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
   const auto& corners = surface_.triangles[t];
   if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return place_[v] == source_[v]; }))
     return false;
-  if (source_finder_ && meets_source(t)) return true;
+  if (source_finder_ && body_.is_front(t) && meets_source(t)) return true;
   const Vec3d& origin = surface_.origin;
   return clearance_ && clearance_->is_crowded(
                            {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
 }
 
-/// Where the source crosses itself, what leaves one sheet has to go through the other.
+/// What stays is in nobody's way here: edges slide along it. Where the source crosses itself, what leaves one sheet has
+/// to go through the other.
 bool FaultFinder::meets_source(std::uint32_t t) const {
   const Indices met = source_finder_->met_by(t, place_);
-  return std::any_of(met.begin(), met.end(),
-                     [&](std::uint32_t s) { return s == t || !source_crossings_->sheets_cross(s, t); });
+  return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
+    return body_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));
+  });
 }
 
 Indices FaultFinder::caught() const {
