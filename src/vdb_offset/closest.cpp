@@ -61,6 +61,42 @@ ClosestQuery::Discs ClosestQuery::discs_of(std::size_t leaf) const {
   return discs;
 }
 
+/// Which of eight boxes are no farther from a point than the root of `limit`, as bits; and how far they all are,
+/// squared.
+unsigned ClosestQuery::near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared) {
+  unsigned near = 0;
+  for (int i = 0; i < kWidth; i += kLanes) {
+    Lanes sum{};
+    for (int k = 0; k < 3; ++k) {
+      const Lanes below = load_lanes(box.lower[k] + i) - local[k], above = local[k] - load_lanes(box.upper[k] + i);
+      const Lanes outside = max_lanes(max_lanes(below, above), Lanes{});
+      sum += outside * outside;
+    }
+    store_lanes(squared + i, sum);
+    near |= lane_bits(sum <= limit + Lanes{}) << i;
+  }
+  return near;
+}
+
+/// The triangles of a lowest box that may be nearer to a point, in the tree's units, than the root of `limit`, a bit
+/// for each. A triangle is no nearer than its disc: with height h over the plane and lateral distance l from the
+/// centre, h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
+unsigned ClosestQuery::near_discs(const Discs& discs, const float* local, float limit) {
+  unsigned near = 0;
+  for (int i = 0; i < kLeafSize; i += kLanes) {
+    Lanes squared{}, height{};
+    for (int k = 0; k < 3; ++k) {
+      const Lanes away = local[k] - load_lanes(discs.centre[k] + i);
+      squared += away * away;
+      height += away * load_lanes(discs.normal[k] + i);
+    }
+    const Lanes height2 = height * height, lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{})),
+                beyond = max_lanes(lateral - load_lanes(discs.radius + i), Lanes{});
+    near |= lane_bits((height2 + beyond * beyond) * 0.999999f <= limit + Lanes{}) << i;
+  }
+  return near;
+}
+
 /// One query's descent through the tree, nearest boxes first.
 class ClosestQuery::Search {
  public:
@@ -108,19 +144,8 @@ class ClosestQuery::Search {
   /// Puts the siblings that are near enough on the stack, the nearest last, so that it is taken first; lowest boxes are
   /// looked into at once, as by then the bound is tight and their order matters little.
   void open(std::uint32_t level, std::uint32_t node) {
-    const BoxTree::Siblings& box = query_.tree_.levels()[level][node];
     float squared[kWidth];
-    unsigned near = 0;
-    for (int i = 0; i < kWidth; i += kLanes) {
-      Lanes sum{};
-      for (int k = 0; k < 3; ++k) {
-        const Lanes below = load_lanes(box.lower[k] + i) - local_[k], above = local_[k] - load_lanes(box.upper[k] + i);
-        const Lanes outside = max_lanes(max_lanes(below, above), Lanes{});
-        sum += outside * outside;
-      }
-      store_lanes(squared + i, sum);
-      near |= lane_bits(sum <= limit_ + Lanes{}) << i;
-    }
+    unsigned near = near_siblings(query_.tree_.levels()[level][node], local_, limit_, squared);
     if (level == 0) {
       for (; near != 0; near &= near - 1) {
         const int child = std::countr_zero(near);
@@ -137,23 +162,8 @@ class ClosestQuery::Search {
     }
   }
 
-  /// A triangle is no nearer than its disc: with height h over the plane and lateral distance l from the centre,
-  /// h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
   void look_at_triangles(std::uint32_t leaf) {
-    const Discs& discs = query_.discs_[leaf];
-    unsigned near = 0;
-    for (int i = 0; i < kLeafSize; i += kLanes) {
-      Lanes squared{}, height{};
-      for (int k = 0; k < 3; ++k) {
-        const Lanes away = local_[k] - load_lanes(discs.centre[k] + i);
-        squared += away * away;
-        height += away * load_lanes(discs.normal[k] + i);
-      }
-      const Lanes height2 = height * height, lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{})),
-                  beyond = max_lanes(lateral - load_lanes(discs.radius + i), Lanes{});
-      near |= lane_bits((height2 + beyond * beyond) * 0.999999f <= limit_ + Lanes{}) << i;
-    }
-    for (; near != 0; near &= near - 1) {
+    for (unsigned near = near_discs(query_.discs_[leaf], local_, limit_); near != 0; near &= near - 1) {
       const std::uint32_t other = leaf * kLeafSize + static_cast<std::uint32_t>(std::countr_zero(near));
       const TrianglePoint candidate = surface_.closest_on(other, x_);
       if (candidate.squared_distance >= best_.squared_distance) continue;
@@ -232,6 +242,35 @@ class ClosestQuery::Group {
   std::array<std::uint32_t, kMost> triangle_;
   std::array<TrianglePoint, kMost> walked_;
 };
+
+void ClosestQuery::collect(const Vec3d& x, double radius, std::vector<std::uint32_t>& triangles) const {
+  triangles.clear();
+  float local[3];
+  for (int k = 0; k < 3; ++k) local[k] = static_cast<float>(x[k] * scale_);
+  const float rounding = slack_ + 4e-7f * std::max({std::abs(local[0]), std::abs(local[1]), std::abs(local[2])});
+  const float reach = (static_cast<float>(radius * scale_) + rounding) * 1.000001f;
+  const float float_limit = reach * reach;
+  const double limit = radius * radius * (1 + 1e-9);
+  const auto look = [&](std::size_t leaf) {
+    for (unsigned near = near_discs(discs_[leaf], local, float_limit); near != 0; near &= near - 1) {
+      const auto t = static_cast<std::uint32_t>(leaf * kLeafSize + static_cast<std::size_t>(std::countr_zero(near)));
+      if (surface_.closest_on(t, x).squared_distance <= limit) triangles.push_back(t);
+    }
+  };
+  std::array<std::pair<std::uint32_t, std::uint32_t>, kWidth * 12> stack;  // level and node
+  std::size_t depth = 0;
+  stack[depth++] = {static_cast<std::uint32_t>(tree_.levels().size() - 1), 0};
+  float squared[kWidth];
+  while (depth > 0) {
+    const auto [level, node] = stack[--depth];
+    for (unsigned near = near_siblings(tree_.levels()[level][node], local, float_limit, squared); near != 0;
+         near &= near - 1) {
+      const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
+      if (level == 0) look(child);
+      else stack[depth++] = {level - 1, child};
+    }
+  }
+}
 
 void ClosestQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                                    std::span<Closest> answers) const {

@@ -41,6 +41,9 @@ class ClosestQuery {
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
+  /// All triangles within `radius` of x, world units, in the order of the tree.
+  void collect(const Vec3d& x, double radius, std::vector<std::uint32_t>& triangles) const;
+
   const Surface& surface() const { return surface_; }
 
  private:
@@ -55,6 +58,8 @@ class ClosestQuery {
   class Group;
 
   Discs discs_of(std::size_t leaf) const;
+  static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);
+  static unsigned near_discs(const Discs& discs, const float* local, float limit);
 
   const Surface& surface_;
   std::vector<Discs> discs_;

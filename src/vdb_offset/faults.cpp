@@ -167,6 +167,13 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
 /// What stays is in nobody's way here: edges slide along it. Where the source crosses itself, what leaves one sheet has
 /// to go through the other.
 bool FaultFinder::meets_source(std::uint32_t t) const {
+  // The ball around a corner, as large as its distance, holds no surface; often it holds the whole face.
+  const auto& corners = surface_.triangles[t];
+  for (const auto v : corners) {
+    double farthest = 0;
+    for (const auto w : corners) farthest = std::max(farthest, (place_[w] - place_[v]).length());
+    if (distance_[v] * kFreeShare > farthest) return false;
+  }
   const Indices met = source_finder_->met_by(t, place_);
   return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
     return body_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));

@@ -1,8 +1,9 @@
 #include "vdb_offset/layer_stack.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "vdb_offset/parallel.h"
 
@@ -16,16 +17,28 @@ constexpr int kLetOuts = 12;
 // Thickness may change by so much of the length of an edge.
 constexpr double kThicknessSlope = 0.5;
 // Heights are solved far below the promised 1e-6.
-constexpr double kHeightTolerance = 1e-8;
+constexpr double kHeightTolerance = 1e-8, kNearlyThere = 3e-5;
 // What the way up must have at least of each face's normal at the wall.
 constexpr double kLeastSlope = 1e-2;
-// Vertices whose distances are asked for together.
-constexpr std::size_t kVertexBlock = 16;
+// Vertices that a thread takes at a time.
+constexpr std::size_t kVertexBlock = 64;
+// Where more triangles than this may be the closest ones, a tree finds them sooner; of so few, none need be left out.
+constexpr std::size_t kMostNear = 200, kFewNear = 6;
+// How much longer than the way straight to the vertex the way along the rail may be, and how much nearer to the surface
+// it pays to sift triangles again.
+constexpr double kSieveRoom = 1.01, kSieveStep = 0.7;
 
 /// The curve that a vertex's layers stand on: x(eta) = whole eta + bend eta (1 - eta)^2, from 0 at the surface to 1.
 struct Rail {
   Vec3d whole, bend;
   Vec3d operator()(double eta) const { return whole * eta + bend * (eta * (1 - eta) * (1 - eta)); }
+  Vec3d along(double eta) const { return whole + bend * ((1 - eta) * (1 - 3 * eta)); }
+};
+
+/// A point of a rail, and how far from it the closest triangle to any point below may be.
+struct Sieve {
+  Vec3d top;
+  double reach;
 };
 
 class Stacker {
@@ -133,80 +146,69 @@ class Stacker {
 
   /// Puts these vertices' layers where their shares want them.
   void put(const Indices& vertices) {
-    const std::size_t blocks = (vertices.size() + kVertexBlock - 1) / kVertexBlock;
-    for_each_index(
-        blocks,
-        [&](std::size_t block) {
-          const std::size_t first = block * kVertexBlock;
-          put_block(std::span(vertices).subspan(first, std::min(kVertexBlock, vertices.size() - first)));
-        },
-        4);
+    for_each_index((vertices.size() + kVertexBlock - 1) / kVertexBlock,
+                   [&](std::size_t block) {
+                     const std::size_t first = block * kVertexBlock;
+                     std::vector<std::uint32_t> near;
+                     for (std::size_t i = first; i < std::min(first + kVertexBlock, vertices.size()); ++i)
+                       put(vertices[i], near);
+                   },
+                   1);
   }
 
-  /// In haste, by walks from triangle to triangle, and found out whether that was right. Walks end where the distance
-  /// is least all around, so that those for vertices with which it was not start again where it is least of all.
-  void put_block(std::span<const std::uint32_t> vertices) {
-    constexpr int kHasty = 3;
-    const std::size_t layers = heights_.size();
-    std::vector<std::uint32_t> pending, wrong, hints;
-    for (const auto v : vertices) {
-      std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
-      if (!(stack_.share[v] > 0)) continue;
-      pending.push_back(v);
-      hints.insert(hints.end(), layers, nearest_face(v));
-    }
-    std::vector<Vec3d> points;
-    std::vector<Closest> closest;
-    for (int i = 0; i < kHasty && !pending.empty(); ++i) {
-      points.clear();
-      for (std::size_t j = 0; j < pending.size(); ++j) {
-        std::uint32_t* const hint = hints.data() + j * layers;
-        climb(pending[j], [&](std::size_t k, const Vec3d& x) {
-          if (i == 0 && k > 0 && hint[k] == hint[0]) hint[k] = hint[k - 1];
-          return std::sqrt(front_.walk_to_closest(x, hint[k]).squared_distance);
-        });
-        for (const Vec3d& place : stack_.stacks.of(pending[j]).subspan(1)) points.push_back(place - front_.origin);
-      }
-      closest.resize(points.size());
-      body_.front.answer_together(points, hints, closest);
-      wrong.clear();
-      std::size_t kept = 0;
-      for (std::size_t j = 0; j < pending.size(); ++j) {
-        const auto answers = std::span(closest).subspan(j * layers, layers);
-        if (has_heights(pending[j], answers)) continue;
-        wrong.push_back(pending[j]);
-        for (const Closest& answer : answers) hints[kept++] = answer.triangle;
-      }
-      hints.resize(kept);
-      pending.swap(wrong);
-    }
-    for (const auto v : pending) put_with_care(v);
+  void put(std::uint32_t v, std::vector<std::uint32_t>& near) {
+    std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
+    if (!(stack_.share[v] > 0)) return;
+    if (!put_among_few(v, near)) put_with_care(v);
   }
 
-  /// The triangle around a vertex that is closest to where its rail leads at first.
-  std::uint32_t nearest_face(std::uint32_t v) const {
-    const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
-    const Rail rail = rail_of(v);
-    const Vec3d way = (rail.whole + rail.bend) * static_cast<double>(side_);
-    std::uint32_t nearest = kNone;
-    double least = 0;
-    for (const auto t : front_.triangles_around(on_front)) {
-      const double rise = front_.triangle_normals[t].dot(way);
-      if (nearest != kNone && rise >= least) continue;
-      nearest = t;
-      least = rise;
+  /// The distance of a point, and the way there from the surface.
+  struct Phi {
+    double value;
+    Vec3d away;
+  };
+
+  /// The closest point among a few triangles.
+  TrianglePoint nearest_of(std::span<const std::uint32_t> triangles, const Vec3d& x) const {
+    TrianglePoint nearest = front_.closest_on(triangles.front(), x);
+    for (const auto t : triangles.subspan(1)) {
+      const TrianglePoint point = front_.closest_on(t, x);
+      if (point.squared_distance < nearest.squared_distance) nearest = point;
     }
     return nearest;
   }
 
-  /// Whether a vertex's layers are at their heights.
-  bool has_heights(std::uint32_t v, std::span<const Closest> closest) {
-    stack_.first_achieved[v] = closest.front().distance;
-    for (std::size_t k = 0; k < closest.size(); ++k) {
+  /// What may be the closest triangle to some point of the rail below x is no farther from x than that point's distance
+  /// and the way to it, so hardly farther than the vertex: few are, and fewer the nearer x is to the surface. They
+  /// are collected at the end of the rail and sifted on the way down. False if that was wrong of a layer, or does not
+  /// lead to its height.
+  bool put_among_few(std::uint32_t v, std::vector<std::uint32_t>& near) {
+    const auto stack = stack_.stacks.of(v);
+    const Vec3d origin = source_[v] - front_.origin;
+    Sieve sieve{source_[v] + paths_.displacement[v], 0};
+    const double reach = std::max(paths_.displacement[v].length(), paths_.achieved[v]) * kSieveRoom;
+    body_.front.collect(origin + paths_.displacement[v], reach, near);
+    if (near.empty() || near.size() > kMostNear) return false;
+    sieve.reach = reach;
+    const auto place = [&](std::size_t k, const std::optional<double>& known) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
-      if (!(std::abs(closest[k].distance - height) <= kReachedTolerance * height)) return false;
-    }
-    return true;
+      const double phi = known ? *known : std::sqrt(nearest_of(near, stack[k + 1] - front_.origin).squared_distance);
+      if (!(std::abs(phi - height) <= kReachedTolerance * height)) return false;
+      if ((stack[k + 1] - sieve.top).length() + phi > sieve.reach) return false;
+      if (k == 0) stack_.first_achieved[v] = phi;
+      const double below = (stack[k + 1] - source_[v]).length() * kSieveRoom;
+      if (below > kSieveStep * sieve.reach || near.size() <= kFewNear) return true;
+      std::erase_if(near, [&](std::uint32_t t) {
+        return front_.closest_on(t, stack[k + 1] - front_.origin).squared_distance > below * below;
+      });
+      sieve = {stack[k + 1], below};
+      return true;
+    };
+    const auto phi = [&](const Vec3d& x) {
+      const TrianglePoint nearest = nearest_of(near, x);
+      return Phi{std::sqrt(nearest.squared_distance), x - nearest.point};
+    };
+    return descend(v, phi, place);
   }
 
   void put_with_care(std::uint32_t v) {
@@ -214,57 +216,57 @@ class Stacker {
     const auto phi = [&](const Vec3d& x) {
       const Closest found = body_.front(x, hint);
       hint = found.triangle;
-      return found.distance;
+      return Phi{found.distance, x - found.point};
     };
-    climb(v, [&](std::size_t, const Vec3d& x) { return phi(x); });
-    stack_.first_achieved[v] = phi(stack_.stacks.of(v)[1] - front_.origin);
+    descend(v, phi, [](std::size_t, const std::optional<double>&) { return true; });
+    stack_.first_achieved[v] = phi(stack_.stacks.of(v)[1] - front_.origin).value;
   }
 
-  /// Goes along a vertex's rail from height to height. phi(layer, x) is the distance of a point in the front's frame.
-  template <class Phi>
-  void climb(std::uint32_t v, Phi&& phi) {
+  /// Goes down a vertex's rail from height to height, from the outermost. phi(x) is the distance of a point in the
+  /// front's frame; `placed` is told of each layer and, if it is known, its distance, and may end the descent: then
+  /// this is false.
+  template <class Field, class Placed>
+  bool descend(std::uint32_t v, Field&& phi, Placed&& placed) {
     const auto stack = stack_.stacks.of(v);
     const double share = stack_.share[v];
     const Rail rail = rail_of(v);
     const Vec3d origin = source_[v] - front_.origin;
-    double eta = 0, here = 0;
-    const double end = paths_.achieved[v];
-    for (std::size_t k = 0; k < heights_.size(); ++k) {
+    Solved solved{1, paths_.achieved[v]};
+    double above = paths_.achieved[v];
+    for (std::size_t k = heights_.size(); k-- > 0;) {
       const double target = share * std::abs(heights_[k][v]);
       const bool at_end = k + 1 == heights_.size() && share == most_[v];
-      if (at_end) eta = 1;
-      else if (target > here) eta = solve(eta, here, end, target, [&](double s) { return phi(k, origin + rail(s)); });
-      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(eta), target));
-      here = std::max(here, target);
+      if (!at_end) solved = solve(rail, origin, solved.eta, above, target, phi);
+      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(solved.eta), target));
+      if (!placed(k, solved.phi)) return false;
+      above = target;
     }
+    return true;
   }
 
-  /// Where on the rail, between `low` with distance `phi_low` and its end, the distance is `target`: false position
-  /// with Illinois' weights, which meets a linear distance at once.
-  template <class Phi>
-  static double solve(double low, double phi_low, double phi_end, double target, Phi&& phi) {
+  /// A place on the rail, and its distance if that has been found out.
+  struct Solved {
+    double eta;
+    std::optional<double> phi;
+  };
+
+  /// Where on the rail, between its start and `high` with distance `phi_high`, the distance is `target`: Newton's
+  /// method, kept between what is known to be below and above.
+  template <class Field>
+  static Solved solve(const Rail& rail, const Vec3d& origin, double high, double phi_high, double target, Field&& phi) {
     constexpr int kMost = 60;
-    double high = 1, f_low = phi_low - target, f_high = phi_end - target;
-    if (!(f_high > 0)) return 1;
-    // The distance near the surface is linear from there: the first guess follows that from `low` on.
-    double guess = low > 0 ? low * target / phi_low : target / phi_end;
-    if (!(guess > low && guess < high)) guess = (low * f_high - high * f_low) / (f_high - f_low);
+    double low = 0, guess = high * std::min(1.0, target / phi_high);
     for (int i = 0; i < kMost; ++i) {
-      const double f = phi(guess) - target;
-      if (std::abs(f) <= kHeightTolerance * target) return guess;
-      if (f < 0) {
-        low = guess;
-        f_low = f;
-        f_high *= i > 1 ? 0.5 : 1.0;
-      } else {
-        high = guess;
-        f_high = f;
-        f_low *= i > 1 ? 0.5 : 1.0;
-      }
-      const double next = (low * f_high - high * f_low) / (f_high - f_low);
-      guess = next > low && next < high ? next : (low + high) / 2;
+      const Phi here = phi(origin + rail(guess));
+      const double f = here.value - target, slope = here.away.dot(rail.along(guess)) / here.value;
+      if (std::abs(f) <= kHeightTolerance * target) return {guess, here.value};
+      (f < 0 ? low : high) = guess;
+      const double next = guess - f / slope;
+      // Newton's error shrinks to the square of what it was.
+      if (slope > 0 && next > low && next < high && std::abs(f) <= kNearlyThere * target) return {next, {}};
+      guess = slope > 0 && next > low && next < high ? next : (low + high) / 2;
     }
-    return guess;
+    return {guess, {}};
   }
 
   void check_all_columns() {

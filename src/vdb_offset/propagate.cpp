@@ -513,9 +513,10 @@ Vec3d start_direction(const Surface& surface, std::uint32_t vertex) { return sta
 bool is_folded(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).slope <= 0; }
 
 Vec3d round_way(const Vec3d& way, double target) {
-  const double quantum = std::ldexp(1.0, std::ilogb(target) - 36);
-  return {std::nearbyint(way[0] / quantum) * quantum, std::nearbyint(way[1] / quantum) * quantum,
-          std::nearbyint(way[2] / quantum) * quantum};
+  const int exponent = std::ilogb(target) - 36;
+  const double quantum = std::ldexp(1.0, exponent), per_quantum = std::ldexp(1.0, -exponent);
+  return {std::nearbyint(way[0] * per_quantum) * quantum, std::nearbyint(way[1] * per_quantum) * quantum,
+          std::nearbyint(way[2] * per_quantum) * quantum};
 }
 
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
