@@ -17,7 +17,7 @@ constexpr int kLetOuts = 12;
 // Thickness may change by so much of the length of an edge.
 constexpr double kThicknessSlope = 0.5;
 // Heights are solved far below the promised 1e-6.
-constexpr double kHeightTolerance = 1e-8, kNearlyThere = 3e-5;
+constexpr double kHeightTolerance = 1e-8, kNearlyThere = 2e-4;
 // What the way up must have at least of each face's normal at the wall.
 constexpr double kLeastSlope = 1e-2;
 // Vertices that a thread takes at a time.
@@ -66,7 +66,9 @@ class Stacker {
   LayerStack run(Progress& progress) {
     Indices all(source_.size());
     for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = v;
-    smooth(all);
+    Indices uneven = all;
+    if (heights_.back().uniform()) std::erase_if(uneven, [&](std::uint32_t v) { return stack_.share[v] == 1; });
+    smooth(std::move(uneven));
     put(all);
     Indices back = std::move(all);
     std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || (stack_.share[v] == most_[v] && most_[v] > 0); });
