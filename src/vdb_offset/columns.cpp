@@ -18,6 +18,16 @@ bool follows(std::span<const std::uint32_t> polygon, std::uint32_t a, std::uint3
   return false;
 }
 
+/// Whether the ways up to and from a layer lean towards a normal.
+bool rises(std::span<const Vec3d> stack, std::size_t layer, const Vec3d& n) {
+  const auto leans = [&](const Vec3d& way) {
+    const double dot = n.dot(way);
+    return dot > 0 && dot * dot > kLeastLean * kLeastLean * n.lengthSqr() * way.lengthSqr();
+  };
+  return (layer == 0 || leans(stack[layer] - stack[layer - 1])) &&
+         (layer + 1 == stack.size() || leans(stack[layer + 1] - stack[layer]));
+}
+
 }  // namespace
 
 CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
@@ -69,19 +79,18 @@ Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stack
 
 bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
   const auto corners = base(column);
-  const auto leans = [&](const Vec3d& n, const Vec3d& way) {
-    const double dot = side * n.dot(way);
-    return dot > 0 && dot * dot > kLeastLean * kLeastLean * n.lengthSqr() * way.lengthSqr();
-  };
-  const bool one_normal = corners.size() != 4;
+  const std::size_t count = corners.size();
+  const bool has_flat = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
   for (std::size_t layer = 0; layer <= stacks.layers; ++layer) {
     Vec3d n = normal(column, 0, stacks, layer);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const auto stack = stacks.of(corners[k]);
-      if (stack.front() == stack.back()) continue;
-      if (k > 0 && !one_normal) n = normal(column, k, stacks, layer);
-      if (layer > 0 && !leans(n, stack[layer] - stack[layer - 1])) return false;
-      if (layer < stacks.layers && !leans(n, stack[layer + 1] - stack[layer])) return false;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k > 0 && count == 4) n = normal(column, k, stacks, layer);
+      // A quad with flat corners becomes cells that see it as triangles, split in one way or the other.
+      const bool as_triangles = has_flat && count == 4;
+      for (const std::size_t i : {k, (k + 1) % count, (k + count - 1) % count}) {
+        if (i != k && !as_triangles) break;
+        if (!stacks.is_flat(corners[i]) && !rises(stacks.of(corners[i]), layer, n * side)) return false;
+      }
     }
   }
   return true;

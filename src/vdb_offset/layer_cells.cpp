@@ -88,13 +88,14 @@ bool clean_ring(std::span<const Index> face, std::span<const Index> place, std::
   return ring.size() > 2 && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
-/// On which side of a face its layers lie: above 0 if its normal points there.
+/// On which side of a face its first layer lies: above 0 if its normal points there. Farther out, a face may have
+/// turned its back to where it came from.
 double rises(const LayersResult& layers, std::span<const Index> ring) {
-  const std::vector<Vec3d>&wall = layers.positions.front(), &outer = layers.positions.back();
+  const std::vector<Vec3d>&wall = layers.positions[0], &first = layers.positions[1];
   Vec3d normal(0.0), rise(0.0);
   for (std::size_t k = 2; k < ring.size(); ++k)
     normal += (wall[ring[k - 1]] - wall[ring[0]]).cross(wall[ring[k]] - wall[ring[0]]);
-  for (const Index v : ring) rise += outer[v] - wall[v];
+  for (const Index v : ring) rise += first[v] - wall[v];
   return normal.dot(rise);
 }
 
