@@ -392,3 +392,62 @@ TEST_CASE("command: an interrupt ends it by that signal and leaves nothing", "[c
   CHECK(WTERMSIG(status) == SIGINT);
   CHECK(shell.count() == before);
 }
+
+TEST_CASE("command: layers go to volume files, or to a surface each", "[command][layers]") {
+  const Shell shell;
+  const std::string layers = " --layers 4 --first-height 0.01 --growth 1.5 ";
+  for (const char* name : {"out.vtu", "out.msh", "out.cgns", "out.su2", "case/polyMesh"}) {
+    INFO(name);
+    const Run run = shell("sphere.obj " + std::string(name) + layers + "--report report.json --strict");
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("4 layers: 5120 prisms"));
+    CHECK(shell.has(name));
+    const auto report = nlohmann::json::parse(shell.slurp(shell.file("report.json")));
+    CHECK(report["layers"]["cells"] == 5120);
+    CHECK(report["layers"]["coverage"].get<double>() == Approx(1));
+    CHECK(report["options"]["growth"] == "1.5");
+  }
+  CHECK(shell("sphere.obj s.obj" + layers + "-q").code == 0);
+  const auto source = io::read_mesh(shell.file("sphere.obj"));
+  const auto last = io::read_mesh(shell.file("s_004.obj"));
+  CHECK(last.polygons.corners == source.polygons.corners);
+  CHECK(last.polygons.positions[0].length() == Approx(1 + 0.01 * (1 + 1.5 + 2.25 + 3.375)));
+  CHECK(shell.has("s_001.obj"));
+  CHECK(!shell.has("s_005.obj"));
+}
+
+TEST_CASE("command: heights of layers from a file, and structured blocks", "[command][layers]") {
+  const Shell shell;
+  std::ofstream(shell.file("heights.txt")) << "# above the wall\n0.01\n\n0.5 % # of the diagonal\n0.04 + 0.01*z\n";
+  const Run run = shell("sphere.obj out.vtu --heights heights.txt");
+  CHECK(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("3 layers"));
+  std::ofstream(shell.file("wrong.txt")) << "0.01\n0.02\n0.03 + q\n";
+  check_failure(shell, "sphere.obj new.vtu --heights wrong.txt", 2, "line 3");
+  check_failure(shell, "sphere.obj new.vtu --heights wrong.txt --layers 2", 2, "line 3");
+  std::ofstream(shell.file("falling.txt")) << "0.02\n0.01\n";
+  check_failure(shell, "sphere.obj new.vtu --heights falling.txt", 2, "expected heights that rise");
+  io::write_mesh(shell.file("patch.obj"), scene::patch(1, 0.1, 8).view());
+  for (const char* name : {"block.vts", "block.xyz"}) {
+    CHECK(shell("patch.obj " + std::string(name) + " --layers 3 --total-thickness 2% --structured").code == 0);
+    CHECK(shell.has(name));
+  }
+  check_failure(shell, "sphere.obj new.vts --layers 3 --total-thickness 2% --structured", 2, "expected quads");
+}
+
+TEST_CASE("command: options of layers that do not go together", "[command][layers]") {
+  const Shell shell;
+  for (const auto& [arguments, message] :
+       {std::pair{"out.vtu --distance 1", "--layers"},
+        {"out.obj --distance 1 --growth 1.2", "--growth: expected it with --layers"},
+        {"out.vtu --layers 3", "expected one of --first-height"},
+        {"out.vtu --layers 3 --first-height 1 --total-thickness 2", "expected one of"},
+        {"out.vtu --layers 0 --first-height 1", "--layers: expected 1 to 1000"},
+        {"out.vtu --layers 2 --first-height 1 --growth 0", "--growth: expected"},
+        {"out.vtu --layers 2 --first-height 'x+' ", "--first-height"},
+        {"out.vtu --layers 2 --first-height 1 --shell", "--shell: expected it without"},
+        {"out.vtu --layers 2 --first-height 1 --distance 1", "--distance: expected"},
+        {"out.vts --layers 2 --first-height 1", "--structured"},
+        {"out.vtu --layers 2 --first-height 1 --structured", "--structured"}})
+    check_failure(shell, std::string("sphere.obj ") + arguments, 1, message);
+}

@@ -61,10 +61,11 @@ double least_cosine(const Surface& surface, std::uint32_t vertex, const Vec3d& n
   return least;
 }
 
-/// The angle-weighted normal; where faces turn away from it, a direction that more of them face (the most visible
-/// one, found by leaning towards the worst face in ever smaller steps); where faces cancel, the first face's normal.
+/// The angle-weighted normal, at a border along the border's plane; where faces turn away from it, a direction that
+/// more of them face (the most visible one, found by leaning towards the worst face in ever smaller steps); where faces
+/// cancel, the first face's normal.
 Start start_of(const Surface& surface, std::uint32_t vertex) {
-  Vec3d n = surface.vertex_normals[vertex];
+  Vec3d n = surface.along_border(vertex, surface.vertex_normals[vertex]);
   if (!(n.lengthSqr() > 1e-12)) {
     for (const auto t : surface.triangles_around(vertex))
       if (surface.triangle_normals[t].lengthSqr() > 0) return {surface.triangle_normals[t], 0};
@@ -77,7 +78,7 @@ Start start_of(const Surface& surface, std::uint32_t vertex) {
     std::uint32_t worst = kNone;
     least_cosine(surface, vertex, n, &worst);
     if (worst == kNone) break;
-    n += surface.triangle_normals[worst] * (1.0 / (i + 2));
+    n += surface.along_border(vertex, surface.triangle_normals[worst]) * (1.0 / (i + 2));
     if (!(n.lengthSqr() > 1e-12)) break;
     n.normalize();
     const double slope = least_cosine(surface, vertex, n);
@@ -133,6 +134,7 @@ class Traveller {
         side_(side),
         h_(field.voxel_size),
         sided_(surface_.facts.closed() && surface_.facts.oriented()),
+        vertex_(vertex),
         origin_(surface_.vertices[vertex]),
         hint_(surface_.triangles_around(vertex).front()),
         pace_(pace) {
@@ -284,12 +286,20 @@ class Traveller {
     return gradient.lengthSqr() > kLeastGradient * kLeastGradient ? gradient.unit() : fallback;
   }
 
+  /// Beyond a border phi is the distance to that, and its gradient leans out. What starts at a border stays in the
+  /// plane across it, so that the offset's border is the source's.
+  Vec3d course(const Vec3d& x, double phi, const Vec3d& fallback) {
+    const Vec3d v = velocity(x, phi, fallback);
+    if (surface_.conormals.empty()) return v;
+    const Vec3d along = surface_.along_border(vertex_, v);
+    return along.lengthSqr() > kLeastGradient * kLeastGradient ? along.unit() : normal_;
+  }
+
   Vec3d runge_kutta(const Sample& from, double step) {
     const Vec3d fallback = from.phi > 0 ? from.away / from.phi : normal_;
-    const Vec3d k1 = velocity(from.x, from.phi, fallback),
-                k2 = velocity(from.x + k1 * (step / 2), from.phi + step / 2, k1),
-                k3 = velocity(from.x + k2 * (step / 2), from.phi + step / 2, k2),
-                k4 = velocity(from.x + k3 * step, from.phi + step, k3);
+    const Vec3d k1 = course(from.x, from.phi, fallback), k2 = course(from.x + k1 * (step / 2), from.phi + step / 2, k1),
+                k3 = course(from.x + k2 * (step / 2), from.phi + step / 2, k2),
+                k4 = course(from.x + k3 * step, from.phi + step, k3);
     const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
     return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
   }
@@ -353,6 +363,7 @@ class Traveller {
   int side_;
   double target_ = 0, h_;
   bool sided_;
+  std::uint32_t vertex_;
   Vec3d origin_, normal_;  // of the vertex; the normal points to the side asked for
   double slope_;
   std::uint32_t hint_;

@@ -531,10 +531,38 @@ void place(Surface& surface, double voxel_size) {
   place_in_frame(surface, origin);
 }
 
+namespace {
+
+/// A border vertex has two edges on it; where it has more, several borders meet.
+void find_conormals(Surface& surface) {
+  surface.conormals.clear();
+  if (surface.facts.boundary_left == 0) return;
+  surface.conormals.assign(surface.vertices.size(), Vec3d(0.0));
+  std::vector<std::uint8_t> edges(surface.vertices.size(), 0);
+  for (std::uint32_t edge = 0; edge < surface.next_around_edge.size(); ++edge) {
+    if (surface.next_around_edge[edge] != edge) continue;
+    const std::uint32_t from = surface.from(edge), to = surface.to(edge);
+    const Vec3d over = (surface.vertices[to] - surface.vertices[from]).cross(surface.triangle_normals[edge / 3]);
+    for (const auto v : {from, to}) {
+      if (over.lengthSqr() > 0) surface.conormals[v] += over.unit();
+      edges[v] = static_cast<std::uint8_t>(std::min(edges[v] + 1, 3));
+    }
+  }
+  constexpr double kTurnsBack = 0.1;  // a border that does leads nowhere
+  for (std::size_t v = 0; v < edges.size(); ++v) {
+    Vec3d& c = surface.conormals[v];
+    const double length = c.length();
+    c = edges[v] == 2 && length > kTurnsBack ? c / length : Vec3d(0.0);
+  }
+}
+
+}  // namespace
+
 void place_in_frame(Surface& surface, const Vec3d& origin) {
   surface.origin = origin;
   for_each_index(surface.vertices.size(), [&](std::size_t v) { surface.vertices[v] -= surface.origin; });
   find_normals(surface);
+  find_conormals(surface);
 }
 
 std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld, Orient orient) {

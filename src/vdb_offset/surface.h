@@ -67,6 +67,9 @@ struct Surface {
   std::vector<std::uint32_t> next_around_edge;
   std::vector<Vec3d> triangle_normals;  ///< Unit length; zero for a needle (see is_needle).
   std::vector<Vec3d> vertex_normals;    ///< Sum of the incident triangles' normals times their angles there.
+  /// For a vertex on a border, the unit vector that leads from the surface over the border's edges there, in the plane
+  /// of their faces; zero for the others, and where borders meet. Empty if nothing has a border.
+  std::vector<Vec3d> conormals;
   /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
   std::vector<std::uint32_t> incident, incident_begin;
   std::vector<std::uint32_t> component;       ///< Of each surface vertex, 0 .. facts.components - 1.
@@ -87,6 +90,10 @@ struct Surface {
   /// as that leads nearer to x: a local minimum of the distance. `triangle` is where to start, and becomes where the
   /// walk ended.
   TrianglePoint walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const;
+  /// Takes from a vector at a vertex what leads over the border there, if it is on one.
+  Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
+    return conormals.empty() ? v : v - conormals[vertex] * conormals[vertex].dot(v);
+  }
   /// Not normalised; its dot product with x - closest point has the sign of the side that x lies on
   /// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005).
   Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;

@@ -190,6 +190,7 @@ class Patch {
     }
     for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
+    if (!front_.conormals.empty()) keep_borders();
     least_det_ = 1;
     folded_ = 0;
     for (Face& face : faces_) {
@@ -210,6 +211,19 @@ class Patch {
       folded_ += det <= 0;
     }
   }
+  /// Vertices of a border stay in the plane across it: they slide along the border alone.
+  void keep_borders() {
+    for (Point& p : points_) {
+      const std::uint32_t v = body_.front_vertex.empty() ? p.vertex : body_.front_vertex[p.vertex];
+      if (v == kNone) continue;
+      const Vec3d& c = front_.conormals[v];
+      const Vec3d n = front_.along_border(v, p.normal);
+      if (c.lengthSqr() == 0 || !(n.lengthSqr() > 1e-12)) continue;
+      p.normal = n.unit();
+      p.tangent = {p.normal.cross(c), Vec3d(0.0)};
+    }
+  }
+
   /// Each normal becomes the mean of its own and those across the faces around.
   void smooth_normals() {
     std::vector<Vec3d> sum(points_.size());
