@@ -190,7 +190,7 @@ class Patch {
     }
     for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
-    if (!front_.conormals.empty()) keep_borders();
+    if (options_.keep_borders && !front_.conormals.empty()) keep_borders();
     least_det_ = 1;
     folded_ = 0;
     for (Face& face : faces_) {

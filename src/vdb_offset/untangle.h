@@ -22,6 +22,7 @@ class Untangler {
   struct Options {
     int smoothing;       ///< How often normals are smoothed over the patch.
     double area_weight;  ///< lambda: of the faces' areas against their shapes.
+    bool keep_borders;   ///< Vertices at a border slide in the plane across it alone.
   };
 
   /// Keeps references to the body and the distances of its vertices.
