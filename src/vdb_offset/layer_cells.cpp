@@ -306,9 +306,13 @@ class Stack {
   Stack(const Numbering& points, std::span<const Index> ring, std::size_t layer)
       : points_(points), ring_(ring), n_(static_cast<Index>(ring.size())), layer_(layer), apex_(find_apex()) {}
 
-  Index below(Index k) const { return points_.at(ring_[k % n_], layer_); }
-  Index above(Index k) const { return points_.at(ring_[k % n_], layer_ + 1); }
-  bool flat(Index k) const { return points_.flat(ring_[k % n_]); }
+  Index corner(Index k) const {
+    while (k >= n_) k -= n_;
+    return ring_[k];
+  }
+  Index below(Index k) const { return points_.at(corner(k), layer_); }
+  Index above(Index k) const { return points_.at(corner(k), layer_ + 1); }
+  bool flat(Index k) const { return points_.flat(corner(k)); }
 
   /// Calls begin(CellType) for each cell, then add(corner) for each of its corners.
   template <class Begin, class Add>

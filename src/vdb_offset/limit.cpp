@@ -17,7 +17,7 @@ constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
 // Patches are tried in these ways, with so many rings around what is wrong. What frees one patch fails in the next;
 // borders leave their planes only for what else does not free.
-constexpr Untangler::Options kAttempts[] = {{4, 1, true}, {10, 0.1, true}, {30, 1, false}, {10, 0.01, false}};
+constexpr Untangler::Options kAttempts[] = {{1, 4, true}, {0.1, 10, true}, {1, 30, false}, {0.01, 10, false}};
 constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a

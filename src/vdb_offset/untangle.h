@@ -20,8 +20,8 @@ namespace vdb_offset {
 class Untangler {
  public:
   struct Options {
-    int smoothing;       ///< How often normals are smoothed over the patch.
     double area_weight;  ///< lambda: of the faces' areas against their shapes.
+    int smoothing;       ///< How often normals are smoothed over the patch.
     bool keep_borders;   ///< Vertices at a border slide in the plane across it alone.
   };
 

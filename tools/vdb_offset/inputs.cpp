@@ -81,10 +81,12 @@ void settle_all_but_distances(Source& source, Arguments& args) {
 std::vector<Distances> geometric_heights(const Source& source, const Arguments& args) {
   const LayersRequest& layers = *args.layers;
   std::vector<double> factors;  // of the first layer's height
+  factors.reserve(layers.count);
   double sum = 0, step = 1;
   for (std::size_t k = 0; k < layers.count; ++k, step *= layers.growth) factors.push_back(sum += step);
   const Distances given = evaluate(source, args, (layers.first ? layers.first : layers.total)->distance);
   std::vector<Distances> heights;
+  heights.reserve(factors.size());
   for (const double factor : factors) heights.push_back(scaled(given, layers.first ? factor : factor / sum));
   return heights;
 }
