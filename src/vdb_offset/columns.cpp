@@ -1,7 +1,10 @@
 #include "vdb_offset/columns.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
+
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
@@ -31,6 +34,7 @@ bool rises(std::span<const Vec3d> stack, std::size_t layer, const Vec3d& n) {
 }  // namespace
 
 CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
+  if (take_all(mesh, body, source)) return;
   const Surface& surface = body.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
   std::vector<std::uint8_t> seen(mesh.face_count(), 0);
@@ -50,6 +54,29 @@ CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec
   incident_.resize(corners_.size());
   for (std::uint32_t column = 0; column < size(); ++column)
     for (const auto v : base(column)) incident_[incident_begin_[v + 1]++] = column;
+}
+
+/// The usual case: the surface's triangles are the columns.
+bool CellColumns::take_all(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
+  const Surface& surface = body.surface;
+  if (!body.off_front.empty() || mesh.corners.size() != 3 * mesh.face_count()) return false;
+  std::atomic<bool> all = true;
+  corners_.resize(3 * surface.triangles.size());
+  begin_.resize(surface.triangles.size() + 1);
+  for_each_index(surface.triangles.size(), [&](std::size_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    if (!((source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0)) all = false;
+    std::copy_n(surface.triangles[t].begin(), 3, corners_.begin() + static_cast<std::ptrdiff_t>(3 * t));
+    begin_[t + 1] = static_cast<std::uint32_t>(3 * (t + 1));
+  });
+  if (!all) {
+    corners_.clear();
+    begin_.assign(1, 0);
+    return false;
+  }
+  incident_ = surface.incident;
+  incident_begin_ = surface.incident_begin;
+  return true;
 }
 
 void CellColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle) {
@@ -81,7 +108,7 @@ bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) c
   const auto corners = base(column);
   const std::size_t count = corners.size();
   const bool has_flat = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
-  for (std::size_t layer = 0; layer <= stacks.layers; ++layer) {
+  for (std::size_t layer = 0; layer <= stacks.layers(); ++layer) {
     Vec3d n = normal(column, 0, stacks, layer);
     for (std::size_t k = 0; k < count; ++k) {
       if (k > 0 && count == 4) n = normal(column, k, stacks, layer);

@@ -56,8 +56,7 @@ class Stacker {
         most_(source.size(), 0.0),
         straight_(source.size(), 0),
         wrong_column_(columns.size(), 0) {
-    stack_.stacks.layers = heights.size();
-    stack_.stacks.places.resize(source.size() * (heights.size() + 1));
+    stack_.stacks = Stacks(source.size(), heights.size());
     stack_.first_achieved.assign(source.size(), 0.0);
     for_each_index(source.size(), [&](std::size_t v) { most_[v] = share_at_end(static_cast<std::uint32_t>(v)); });
     stack_.share = most_;

@@ -307,7 +307,10 @@ class Pipeline {
     result.achieved = std::move(outermost.achieved);
     result.share.assign(count, 0.0);
     result.first_achieved.assign(count, 0.0);
-    result.positions.assign(heights.size() + 1, {mesh_.positions.begin(), mesh_.positions.end()});
+    result.positions.resize(heights.size() + 1);
+    for_each_index(
+        result.positions.size(),
+        [&](std::size_t k) { result.positions[k].assign(mesh_.positions.begin(), mesh_.positions.end()); }, 1);
     for_each_index(count, [&](std::size_t v) {
       const auto w = surface.welded[v];
       if (w == kNone) return;
