@@ -173,6 +173,27 @@ TEST_CASE("layers: scenes with corners, creases and narrow places have valid cel
   }
 }
 
+TEST_CASE("layers: a hexahedron that is inside out in its middle alone is not valid", "[layers]") {
+  Polygons mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.add_face({0, 1, 2, 3});
+  Surface surface = build_surface(mesh.view(), {});
+  place(surface, 0.5);
+  const ClosestQuery query(surface);
+  const Body body{query, surface, {}, {}, {}};
+  std::vector<Vec3d> source;
+  for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
+  const CellColumns columns(mesh.view(), body, source);
+  REQUIRE(columns.size() == 1);
+  const bool turned = GENERATE(false, true);  // by half a turn, as all corners still see the other base above them
+  Stacks stacks(4, 1);
+  for (std::uint32_t v = 0; v < 4; ++v) {
+    stacks.of(v)[0] = source[v];
+    stacks.of(v)[1] = Vec3d(0, 0, 1) + source[v] * (turned ? -1.0 : 1.0);
+  }
+  CHECK(columns.is_valid(0, stacks, 1) == !turned);
+}
+
 TEST_CASE("layers: those of two plates stop before each other", "[layers]") {
   const Polygons mesh = scene::plates(1, 0.1, 0.1, 24);
   const Grown grown = grow(mesh, growing(0.005, 1.2, 8));  // 0.082 in all, in a gap of 0.1

@@ -21,14 +21,32 @@ bool follows(std::span<const std::uint32_t> polygon, std::uint32_t a, std::uint3
   return false;
 }
 
+bool leans(const Vec3d& way, const Vec3d& n) {
+  const double dot = n.dot(way);
+  return dot > 0 && dot * dot > kLeastLean * kLeastLean * n.lengthSqr() * way.lengthSqr();
+}
+
 /// Whether the ways up to and from a layer lean towards a normal.
 bool rises(std::span<const Vec3d> stack, std::size_t layer, const Vec3d& n) {
-  const auto leans = [&](const Vec3d& way) {
-    const double dot = n.dot(way);
-    return dot > 0 && dot * dot > kLeastLean * kLeastLean * n.lengthSqr() * way.lengthSqr();
-  };
-  return (layer == 0 || leans(stack[layer] - stack[layer - 1])) &&
-         (layer + 1 == stack.size() || leans(stack[layer + 1] - stack[layer]));
+  return (layer == 0 || leans(stack[layer] - stack[layer - 1], n)) &&
+         (layer + 1 == stack.size() || leans(stack[layer + 1] - stack[layer], n));
+}
+
+/// Whether the principal axes of all hexahedra over a quad make a right-handed frame: a bent one may be inside out in
+/// its middle although it is not at any corner.
+bool has_upright_hexahedra(std::span<const std::uint32_t> corners, const Stacks& stacks, int side) {
+  for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {
+    Vec3d middle[4], up(0.0);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto stack = stacks.of(corners[k]);
+      middle[k] = stack[layer] + stack[layer + 1];
+      up += stack[layer + 1] - stack[layer];
+    }
+    const Vec3d n =
+        (middle[1] - middle[0] + middle[2] - middle[3]).cross(middle[3] - middle[0] + middle[2] - middle[1]);
+    if (!leans(up, n * side)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -108,6 +126,7 @@ bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) c
   const auto corners = base(column);
   const std::size_t count = corners.size();
   const bool has_flat = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
+  if (count == 4 && !has_flat && !has_upright_hexahedra(corners, stacks, side)) return false;
   for (std::size_t layer = 0; layer <= stacks.layers(); ++layer) {
     Vec3d n = normal(column, 0, stacks, layer);
     for (std::size_t k = 0; k < count; ++k) {

@@ -57,8 +57,9 @@ class CellColumns {
   Vec3d normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const;
 
   /// Whether every cell of a column has a positive Jacobian at every corner that is not flat: there, the way up, to
-  /// `side` (1 or -1) of the base, makes less than a right angle with the normals of both its faces. Quads with flat
-  /// corners are also seen as the triangles that they are split into.
+  /// `side` (1 or -1) of the base, makes less than a right angle with the normals of both its faces. Hexahedra
+  /// must not be inside out in their middle either, and quads with flat corners are also seen as the triangles that
+  /// they are split into.
   bool is_valid(std::size_t column, const Stacks& stacks, int side) const;
 
  private:
