@@ -7,33 +7,12 @@
 #include <atomic>
 #include <memory>
 
+#include "vdb_offset/cell_faces.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
-
-struct LocalFace {
-  std::uint8_t size;
-  std::uint8_t places[4];
-};
-struct CellFaces {
-  std::uint8_t count;
-  LocalFace faces[6];
-};
-// Seen from outside ccw.
-constexpr CellFaces kCellFaces[kCellTypeCount] = {
-    {4, {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {2, 0, 3}}}},
-    {5, {{4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}}},
-    {5, {{3, {0, 2, 1}}, {3, {3, 4, 5}}, {4, {0, 1, 4, 3}}, {4, {1, 2, 5, 4}}, {4, {2, 0, 3, 5}}}},
-    {6,
-     {{4, {0, 3, 2, 1}},
-      {4, {4, 5, 6, 7}},
-      {4, {0, 1, 5, 4}},
-      {4, {1, 2, 6, 5}},
-      {4, {2, 3, 7, 6}},
-      {4, {3, 0, 4, 7}}}},
-    {0, {}}};
 
 template <class Face>
 std::uint32_t lowest_corner(const Face& face, std::size_t size) {
@@ -47,7 +26,7 @@ template <class Visit>
 void for_each_face(const VolumeMesh& mesh, std::size_t c, Visit&& visit) {
   const auto corners = mesh.cell(c);
   if (mesh.cell_types[c] != CellType::Polyhedron) {
-    const CellFaces& faces = kCellFaces[static_cast<std::size_t>(mesh.cell_types[c])];
+    const LocalFaces& faces = kCellFaces[static_cast<std::size_t>(mesh.cell_types[c])];
     for (std::uint32_t local = 0; local < faces.count; ++local)
       visit(local, CellFace{corners.data(), faces.faces[local].places, faces.faces[local].size});
     return;
