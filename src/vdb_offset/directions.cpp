@@ -83,44 +83,51 @@ DirectionField make_directions(DistanceField& field, bool open_surface) {
 DirectionSampler::DirectionSampler(const DirectionField& field)
     : field_(field), gradient_(field.gradient->getConstAccessor()), phi_(field.phi->getConstAccessor()) {}
 
-bool DirectionSampler::operator()(const Vec3d& x, int side, double distance, Vec3d& gradient) const {
+void DirectionSampler::look_up(const openvdb::Coord& lowest) {
+  nodes_.lowest = lowest;
+  // Two times in three all eight nodes lie in one leaf node.
+  const bool together = (lowest[0] & 7) != 7 && (lowest[1] & 7) != 7 && (lowest[2] & 7) != 7;
+  const GradientLeaf* leaf = together ? gradient_.probeConstLeaf(lowest) : nullptr;
+  const openvdb::Index first = GradientLeaf::coordToOffset(lowest);
+  for (openvdb::Index node = 0; node < 8; ++node) {
+    const openvdb::Index i = node >> 2, j = node >> 1 & 1, k = node & 1, n = first + (i << 6 | j << 3 | k);
+    const auto at = lowest.offsetBy(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k));
+    openvdb::Vec3s g(0.0f);
+    if (!together) nodes_.active[node] = gradient_.probeValue(at, g);
+    else if ((nodes_.active[node] = leaf && leaf->isValueOn(n))) g = leaf->getValue(n);
+    nodes_.gradient[node] = Gradient{g[0], g[1], g[2], 0};
+    if (field_.open_surface && nodes_.active[node]) nodes_.phi[node] = phi_.getValue(at);
+  }
+}
+
+double DirectionSampler::turn(std::size_t node, const Vec3d& index, int side, double distance) const {
+  const double phi = nodes_.phi[node];
+  const auto at = nodes_.lowest.offsetBy(node >> 2 & 1, node >> 1 & 1, node & 1);
+  // The surface lies between x and the node only if their distances to it fit between them.
+  const double apart = (at.asVec3d() - index).length() * field_.voxel_size;
+  return std::signbit(phi) != (side < 0) && std::abs(phi) + distance > 1.001 * apart ? -1 : 1;
+}
+
+bool DirectionSampler::operator()(const Vec3d& x, int side, double distance, Vec3d& gradient) {
   const double per_unit = 1 / field_.voxel_size;
   const Vec3d index(x[0] * per_unit, x[1] * per_unit, x[2] * per_unit);
-  const openvdb::Coord base = openvdb::Coord::floor(index);
+  const openvdb::Coord lowest = openvdb::Coord::floor(index);
+  if (lowest != nodes_.lowest) look_up(lowest);
   double share[3][2];  // of the lower and the upper node along each axis
   for (int k = 0; k < 3; ++k) {
-    share[k][1] = index[k] - base[k];
+    share[k][1] = index[k] - lowest[k];
     share[k][0] = 1 - share[k][1];
   }
-  // Two times in three all eight nodes lie in one leaf node.
-  const GradientLeaf* leaf = gradient_.probeConstLeaf(base);
-  const bool together = (base[0] & 7) != 7 && (base[1] & 7) != 7 && (base[2] & 7) != 7;
-  if (together && !leaf) return false;
-  const openvdb::Index first = GradientLeaf::coordToOffset(base);
-  double total = 0, sum[3] = {0, 0, 0};
-  for (int corner = 0; corner < 8; ++corner) {
-    const int i = corner >> 2, j = corner >> 1 & 1, k = corner & 1;
-    const openvdb::Coord node = base.offsetBy(i, j, k);
-    openvdb::Vec3s g;
-    if (together) {
-      const openvdb::Index n = first + static_cast<openvdb::Index>(i << 6 | j << 3 | k);
-      if (!leaf->isValueOn(n)) continue;
-      g = leaf->getValue(n);
-    } else if (!gradient_.probeValue(node, g)) {
-      continue;
-    }
-    double weight = share[0][i] * share[1][j] * share[2][k];
-    total += weight;
-    if (field_.open_surface) {
-      const double phi = phi_.getValue(node);
-      // The surface lies between x and the node only if their distances to it fit between them.
-      const double apart = (node.asVec3d() - index).length() * field_.voxel_size;
-      if (std::signbit(phi) != (side < 0) && std::abs(phi) + distance > 1.001 * apart) weight = -weight;
-    }
-    for (int axis = 0; axis < 3; ++axis) sum[axis] += static_cast<double>(g[axis]) * weight;
+  double total = 0;
+  Gradient sum{};
+  for (std::size_t node = 0; node < 8; ++node) {
+    const double weight = share[0][node >> 2] * share[1][node >> 1 & 1] * share[2][node & 1];
+    total += nodes_.active[node] ? weight : 0;
+    const double turned = field_.open_surface && nodes_.active[node] ? weight * turn(node, index, side, distance) : weight;
+    sum += nodes_.gradient[node] * turned;
   }
   if (!(total > 0)) return false;
-  gradient = Vec3d(sum[0], sum[1], sum[2]) / total;
+  gradient = Vec3d(sum[0] / total, sum[1] / total, sum[2] / total);
   return true;
 }
 

@@ -27,6 +27,8 @@ constexpr int kMaxSteps = 400;
 constexpr double kLeastStep = 0.1;
 // A path on which the distance grows by less than this share of a step gets nowhere.
 constexpr double kSlowest = 0.01;
+// Who has come so near to a stop in haste, as a share of its distance, goes on from there.
+constexpr double kOnTheWay = 0.5;
 // Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.
 constexpr int kRidgeSteps = 14;
 // Below this length the interpolated gradient is the rest of opposite ones and says nothing.
@@ -125,7 +127,7 @@ class Traveller {
   enum class Pace { Careful, Hasty };
 
   /// `side` is 1 on the way outward, -1 inward.
-  Traveller(const ClosestQuery& query, const DirectionField& field, const DirectionSampler& sampler, int side,
+  Traveller(const ClosestQuery& query, const DirectionField& field, DirectionSampler& sampler, int side,
             std::uint32_t vertex, Pace pace, const Obstacles* obstacles = nullptr)
       : query_(query),
         obstacles_(obstacles),
@@ -172,14 +174,38 @@ class Traveller {
   template <class Tell>
   void march(std::span<const Stop> stops, Tell&& tell) {
     target_ = stops.front().distance;
-    const double last = stops.back().distance;
     const auto first = leave_surface();
     if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
       for (const Stop& stop : stops) tell(stop, Arrival{origin_});
       return;
     }
+    march_on(*first, stops, tell);
+  }
+
+  /// The same from a place on the way, where `triangle` is closest.
+  template <class Tell>
+  void march_from(const Vec3d& place, std::uint32_t triangle, std::span<const Stop> stops, Tell&& tell) {
+    target_ = stops.front().distance;
+    hint_ = triangle;
+    march_on(measure(place), stops, tell);
+  }
+
+ private:
+  struct Sample {
+    Vec3d x;
+    double phi;
+    Vec3d away;  // from the closest point to x, not normalised
+  };
+  /// The largest distance on a path, and the steps before and after it.
+  struct Peak {
+    Sample before, at, after;
+  };
+
+  template <class Tell>
+  void march_on(const Sample& first, std::span<const Stop> stops, Tell&& tell) {
+    const double last = stops.back().distance;
     std::size_t passed = 0;
-    Sample before{origin_, 0, normal_}, here = *first;
+    Sample before{origin_, 0, normal_}, here = first;
     Peak peak{before, here, here};
     double since_peak = 0;
     for (int i = 0;; ++i) {
@@ -211,17 +237,6 @@ class Traveller {
     const Vec3d end = climb(peak);
     for (const Stop& stop : stops.subspan(passed)) tell(stop, Arrival{end, outside_});
   }
-
- private:
-  struct Sample {
-    Vec3d x;
-    double phi;
-    Vec3d away;  // from the closest point to x, not normalised
-  };
-  /// The largest distance on a path, and the steps before and after it.
-  struct Peak {
-    Sample before, at, after;
-  };
 
   /// An obstacle ends the way at `end`; some stops may lie before that.
   template <class Tell>
@@ -358,7 +373,7 @@ class Traveller {
 
   const ClosestQuery& query_;
   const Obstacles* obstacles_;
-  const DirectionSampler& sampler_;
+  DirectionSampler& sampler_;
   const Surface& surface_;
   int side_;
   double target_ = 0, h_;
@@ -381,7 +396,7 @@ std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const Direction
   std::vector<std::atomic<std::uint8_t>> straight(surface.facts.components);
   for (auto& flag : straight) flag = 1;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.vertices.size(), 256), [&](const auto& range) {
-    const DirectionSampler sampler(directions);
+    DirectionSampler sampler(directions);
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
       auto& flag = straight[surface.component[v]];
       if (!flag.load(std::memory_order_relaxed) || distances[v] == 0) continue;
@@ -422,25 +437,27 @@ class Marches {
   /// Vertices are moved in blocks of so many.
   static constexpr std::size_t kBlock = 128;
 
-  /// Moves the vertices of a block: all in haste, then those carefully that did not arrive by that.
+  /// Moves the vertices of a block: all in haste, then those that did not arrive by that carefully, first from where
+  /// haste has brought them, which is a place on the way if the surface is only a little nearer than believed.
   void operator()(std::size_t block) const {
-    const DirectionSampler sampler(directions_);
+    DirectionSampler sampler(directions_);
     const std::size_t first = block * kBlock, last = std::min(first + kBlock, surface_.vertices.size());
     std::vector<Stop> stops;
     std::vector<End> ends;
-    for (const auto pace : {Traveller::Pace::Hasty, Traveller::Pace::Careful}) {
+    for (const auto attempt : {Attempt::InHaste, Attempt::FromThere, Attempt::Anew}) {
       ends.clear();
       for (std::size_t v = first; v < last; ++v)
         for (const int side : {1, -1}) {
           stops.clear();
-          for (std::size_t set = 0; set < distances_.size(); ++set) add_stop(set, v, side, pace, stops, ends);
-          if (!stops.empty()) march(sampler, v, side, pace, stops, ends);
+          for (std::size_t set = 0; set < distances_.size(); ++set) add_stop(set, v, side, attempt, stops, ends);
+          if (!stops.empty()) march(sampler, v, side, attempt, stops, ends);
         }
       judge(ends);
     }
   }
 
  private:
+  enum class Attempt { InHaste, FromThere, Anew };
   /// Where a vertex ended up on its way to a stop.
   struct End {
     std::uint32_t vertex;
@@ -451,13 +468,13 @@ class Marches {
   bool is_straight(std::size_t set, std::size_t v) const { return straight_[set][surface_.component[v]]; }
 
   /// Where vertex v has to march to for one set, if it goes to this side at all and has not arrived.
-  void add_stop(std::size_t set, std::size_t v, int side, Traveller::Pace pace, std::vector<Stop>& stops,
+  void add_stop(std::size_t set, std::size_t v, int side, Attempt attempt, std::vector<Stop>& stops,
                 std::vector<End>& ends) const {
-    const bool careful = pace == Traveller::Pace::Careful;
+    const bool again = attempt != Attempt::InHaste;
     const double distance = distances_[set][v];
     const Stop stop{std::abs(distance), set};
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
-    if (distance * side <= 0 || (careful && (is_straight(set, v) || paths_[set].state[v] == VertexState::Reached)))
+    if (distance * side <= 0 || (again && (is_straight(set, v) || paths_[set].state[v] == VertexState::Reached)))
       return;
     if (is_straight(set, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {straight_end(set, v)}});
     else stops.push_back(stop);
@@ -468,14 +485,17 @@ class Marches {
     return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
   }
 
-  void march(const DirectionSampler& sampler, std::size_t v, int side, Traveller::Pace pace, std::vector<Stop>& stops,
+  void march(DirectionSampler& sampler, std::size_t v, int side, Attempt attempt, std::vector<Stop>& stops,
              std::vector<End>& ends) const {
     std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
     const auto vertex = static_cast<std::uint32_t>(v);
+    const auto tell = [&](const Stop& stop, const Traveller::Arrival& end) { ends.push_back({vertex, stop, end}); };
+    const auto pace = attempt == Attempt::InHaste ? Traveller::Pace::Hasty : Traveller::Pace::Careful;
     Traveller traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
-    traveller.march(stops, [&](const Stop& stop, const Traveller::Arrival& end) {
-      ends.push_back({vertex, stop, end});
-    });
+    const Paths& nearest = paths_[stops.front().set];
+    if (attempt != Attempt::FromThere) traveller.march(stops, tell);
+    else if (nearest.achieved[v] > kOnTheWay * stops.front().distance)
+      traveller.march_from(surface_.vertices[v] + nearest.displacement[v], nearest.closest[v], stops, tell);
   }
 
   /// Tells how far the ends are from the surface, and what that makes of their vertices.
