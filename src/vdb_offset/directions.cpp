@@ -123,7 +123,8 @@ bool DirectionSampler::operator()(const Vec3d& x, int side, double distance, Vec
   for (std::size_t node = 0; node < 8; ++node) {
     const double weight = share[0][node >> 2] * share[1][node >> 1 & 1] * share[2][node & 1];
     total += nodes_.active[node] ? weight : 0;
-    const double turned = field_.open_surface && nodes_.active[node] ? weight * turn(node, index, side, distance) : weight;
+    const double turned =
+        field_.open_surface && nodes_.active[node] ? weight * turn(node, index, side, distance) : weight;
     sum += nodes_.gradient[node] * turned;
   }
   if (!(total > 0)) return false;

@@ -17,18 +17,24 @@ namespace {
 constexpr double kStopTolerance = 1e-9;
 // How much longer than the faces around a vertex alone ask for a straight path may be.
 constexpr double kStraightTolerance = 1e-3;
+// What remains of a straight way, in distances, when it has been followed back to the vertex.
+constexpr double kNothingLeft = 1e-9;
 // Below this the faces around a vertex turn away from its normal so far that a straight path says little.
 constexpr double kLeastStraightSlope = 0.2;
-constexpr double kStepVoxels = 0.5;
+constexpr double kStepVoxels = 0.75;
 // A path may run this far, in distances, without getting anywhere before it counts as stopped.
 constexpr double kPatience = 0.5;
 constexpr int kMaxSteps = 400;
+// Steps in haste, in distances from the surface: they may cross something, which the end shows.
+constexpr double kHastyShare = 3;
 // Shortest step, in voxels or distances, unless the surface is nearer.
 constexpr double kLeastStep = 0.1;
 // A path on which the distance grows by less than this share of a step gets nowhere.
 constexpr double kSlowest = 0.01;
 // Who has come so near to a stop in haste, as a share of its distance, goes on from there.
 constexpr double kOnTheWay = 0.5;
+// How much the distance must rise there along the way, per length.
+constexpr double kStillRising = 0.5;
 // Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.
 constexpr int kRidgeSteps = 14;
 // Below this length the interpolated gradient is the rest of opposite ones and says nothing.
@@ -159,7 +165,9 @@ class Traveller {
     double t = target_, before = 0, phi_before = 0;
     for (int i = 0; i < 8; ++i) {
       const double phi = measure(origin_ + normal_ * t).phi;
-      if (arrived(phi)) return nothing_in_the_way(t) ? std::optional(origin_ + normal_ * t) : std::nullopt;
+      if (arrived(phi))
+        return is_way_free(normal_, slope_, t - target_, kNothingLeft * target_) ? std::optional(origin_ + normal_ * t)
+                                                                                 : std::nullopt;
       if (phi < slope_ * t * (1 - kStraightTolerance) || phi <= phi_before) return std::nullopt;
       const double next = t + (target_ - phi) * (t - before) / (phi - phi_before);
       if (!(next > before) || next > longest) return std::nullopt;
@@ -182,12 +190,23 @@ class Traveller {
     march_on(*first, stops, tell);
   }
 
-  /// The same from a place on the way, where `triangle` is closest.
+  /// The same from a place on the way, if the distance still rises there, so that no ridge has been passed, and there
+  /// is nothing between that and the vertex; else tells of no stop.
+  /// `triangle` is one near the place.
   template <class Tell>
   void march_from(const Vec3d& place, std::uint32_t triangle, std::span<const Stop> stops, Tell&& tell) {
     target_ = stops.front().distance;
     hint_ = triangle;
-    march_on(measure(place), stops, tell);
+    const Sample first = measure(place);
+    const double length = (place - origin_).length();
+    if (!(length > 0)) return;
+    const Vec3d way = (place - origin_) / length;
+    const double slope = least_cosine(surface_, vertex_, way * side_);
+    if (!(first.away.dot(way) > kStillRising * first.phi) || slope < kLeastStraightSlope ||
+        !is_way_free(way, slope, length - first.phi, first_step()))
+      return;
+    hint_ = triangle;
+    march_on(first, stops, tell);
   }
 
  private:
@@ -215,8 +234,8 @@ class Traveller {
       }
       if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
       // Not far beyond the last stop, which the last step is cut at; not much less than a voxel, for a slow climb.
-      const double step = std::min(
-          {kFreeShare * here.phi, kStepVoxels * h_, std::max(last - here.phi, kLeastStep * std::min(h_, last))});
+      const double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi, kStepVoxels * h_,
+                                    std::max(last - here.phi, kLeastStep * std::min(h_, last))});
       Sample next = measure(runge_kutta(here, step));
       bool in_the_way = false;
       if (obstacles_) {
@@ -258,23 +277,24 @@ class Traveller {
     feature_ = nearest.feature;
     return {x, std::sqrt(nearest.squared_distance), x - nearest.point};
   }
+  double first_step() const { return 0.1 * std::min(target_, h_); }
   bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
 
-  /// Covers the line back to the vertex with balls that hold no surface. A line of length d needs none: it lies in
-  /// the ball around its end.
-  bool nothing_in_the_way(double t) {
-    constexpr double kNothingLeft = 1e-9;
-    for (t -= target_; t > kNothingLeft * target_;) {
-      const double phi = measure(origin_ + normal_ * t).phi;
-      if (phi < kFreeShare * slope_ * t) return false;
-      t -= phi * (1 - 1e-12);
+  /// Covers the line from `from` along `way` back to `to` with balls that hold no surface, where phi is what the faces
+  /// around the vertex, `slope` of whose normals it has, give it. A line of length d that ends at phi = d needs none:
+  /// it lies in the ball around its end.
+  bool is_way_free(const Vec3d& way, double slope, double from, double to) {
+    while (from > to) {
+      const double phi = measure(origin_ + way * from).phi;
+      if (phi < kFreeShare * slope * from) return false;
+      from -= phi * (1 - 1e-12);
     }
     return true;
   }
 
   /// The first point off the surface, on the side asked for.
   std::optional<Sample> leave_surface() {
-    for (double step = 0.1 * std::min(target_, h_); step > 1e-7 * target_; step *= 0.25) {
+    for (double step = first_step(); step > 1e-7 * target_; step *= 0.25) {
       const Sample sample = measure(origin_ + normal_ * step);
       const bool free = sample.phi > kFreeShare * std::max(slope_, 0.02) * step;
       const bool right = !sided_ || side_ * surface_.pseudonormal(hint_, feature_).dot(sample.away) > 0;

@@ -71,7 +71,7 @@ struct Raw {
   std::vector<std::string> distances, only;
   std::optional<std::size_t> layers;
   std::optional<double> growth;
-  std::string first_height, total_thickness, heights;
+  std::string distance_from, first_height, total_thickness, heights;
   bool structured = false;
   std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
   std::optional<std::string> solver, collision, border, format;
@@ -92,9 +92,9 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
       ->type_name("D")
       ->expected(1)
       ->take_all();
-  app.add_option("--distance-from", args.distance_from,
+  app.add_option("--distance-from", raw.distance_from,
                  "Each vertex's distance, world units: a file of numbers (text or .npy), or 'ply:NAME', a vertex "
-                 "property of INPUT")
+                 "property of INPUT; elsewhere '@FILE' and 'ply:NAME' say the same")
       ->type_name("FILE");
   app.add_option("--only", raw.only,
                  "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME' or "
@@ -230,27 +230,33 @@ void check_file_options(const Raw& raw, Arguments& args) {
           fmt::format("--precision: expected 1 to 17 digits, got {}", args.write.digits));
 }
 
-DistanceRequest parse_request(const std::string& option, const std::string& text) {
+DistanceRequest parse_request(const std::string& option, const std::string& text, const Arguments& args) {
   try {
-    return {text, scene::parse_distance_or_expression(text)};
+    DistanceRequest request = tool::parse_request(text);
+    require(!request.from.starts_with("ply:") || !scene::is_scene(args.input),
+            option + ": expected a file, as a scene has no properties");
+    return request;
   } catch (const InvalidOption& error) {
     throw UsageError(option + ": " + error.what());
   }
 }
 
 void check_distances(const Raw& raw, Arguments& args) {
-  for (const std::string& text : raw.distances) args.distances.push_back(parse_request("--distance", text));
-  require(args.distances.empty() || args.distance_from.empty(), "--distance-from: expected it or --distance, got both");
-  require(!args.distances.empty() || !args.distance_from.empty() || scene::is_scene(args.input),
+  for (const std::string& text : raw.distances) args.distances.push_back(parse_request("--distance", text, args));
+  require(raw.distances.empty() || raw.distance_from.empty(), "--distance-from: expected it or --distance, got both");
+  if (!raw.distance_from.empty()) {
+    const bool property = raw.distance_from.starts_with("ply:");
+    args.distances.push_back(
+        parse_request("--distance-from", property ? raw.distance_from : "@" + raw.distance_from, args));
+  }
+  require(!args.distances.empty() || scene::is_scene(args.input),
           "--distance: expected a distance (a scene alone brings its own)");
-  require(!args.distance_from.starts_with("ply:") || !scene::is_scene(args.input),
-          "--distance-from: expected a file, as a scene has no properties");
   require(args.distances.size() < 2 || args.output != "-", "OUTPUT: expected a file for each distance, got '-'");
   require(raw.inner.empty() || args.shell, "--inner: expected it with --shell");
   if (raw.inner.empty()) return;
-  args.inner = parse_request("--inner", raw.inner);
+  args.inner = parse_request("--inner", raw.inner, args);
   const auto& inner = args.inner->distance;
-  require(inner.expression || inner.value > 0,
+  require(inner.expression || !args.inner->from.empty() || inner.value > 0,
           fmt::format("--inner: expected a distance above 0, got '{}'", raw.inner));
 }
 
@@ -275,10 +281,10 @@ void check_layers(const Raw& raw, Arguments& args) {
   layers.growth = raw.growth.value_or(layers.growth);
   require(layers.growth > 0 && layers.growth <= 10,
           fmt::format("--growth: expected a number above 0, up to 10, got {}", layers.growth));
-  if (!raw.first_height.empty()) layers.first = parse_request("--first-height", raw.first_height);
-  if (!raw.total_thickness.empty()) layers.total = parse_request("--total-thickness", raw.total_thickness);
+  if (!raw.first_height.empty()) layers.first = parse_request("--first-height", raw.first_height, args);
+  if (!raw.total_thickness.empty()) layers.total = parse_request("--total-thickness", raw.total_thickness, args);
   for (const auto& [name, given] : {std::pair{"--distance", !raw.distances.empty()},
-                                    {"--distance-from", !args.distance_from.empty()},
+                                    {"--distance-from", !raw.distance_from.empty()},
                                     {"--shell", args.shell},
                                     {"--collision", raw.collision.has_value()},
                                     {"--save-vdb", !args.vdb.empty()}})
@@ -348,6 +354,15 @@ void check(const Raw& raw, Arguments& args) {
 std::optional<io::Format> format_of(const std::string& path, const Arguments& args) {
   const auto format = io::format_of(path);
   return format ? format : args.format;
+}
+
+DistanceRequest parse_request(const std::string& text) {
+  if (text.starts_with("ply:")) return {text, {}, text};
+  if (text.starts_with('@')) {
+    if (text.size() == 1) throw InvalidOption("expected a file's name behind the '@'");
+    return {text.substr(1), {}, text.substr(1)};
+  }
+  return {text, scene::parse_distance_or_expression(text), {}};
 }
 
 WeldOptions parse_weld(const std::string& text) {

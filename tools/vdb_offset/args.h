@@ -16,6 +16,7 @@ namespace vdb_offset::tool {
 struct DistanceRequest {
   std::string text;
   scene::Distance distance;
+  std::string from;  ///< Then each vertex's own: a file of numbers, or ply:NAME, a property of the input.
 };
 
 /// Layers of cells that are asked for: their count and growth with the first height or the thickness of all, or a file
@@ -31,8 +32,7 @@ struct LayersRequest {
 /// What the command line asks for.
 struct Arguments {
   std::string input, output;
-  std::vector<DistanceRequest> distances;  ///< Empty for a scene that brings its own, and with `distance_from`.
-  std::string distance_from;               ///< A file of numbers, or ply:NAME.
+  std::vector<DistanceRequest> distances;  ///< Empty for a scene that brings its own.
   std::optional<DistanceRequest> inner;    ///< Of the inner skin of a shell, above 0.
   bool shell = false;
   std::optional<LayersRequest> layers;
@@ -57,6 +57,9 @@ std::optional<io::Format> format_of(const std::string& path, const Arguments& ar
 struct UsageError : Error {
   using Error::Error;
 };
+
+/// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
+DistanceRequest parse_request(const std::string& text);
 
 /// 'exact', 'none' or a tolerance. \throw UsageError
 WeldOptions parse_weld(const std::string& text);

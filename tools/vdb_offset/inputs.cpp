@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "vdb_offset/error.h"
@@ -28,13 +29,13 @@ void settle_scene(Source& source, Arguments& args) {
   scene.set(args.options);
   if (given.voxel_size || given.voxels_per_distance) args.options.grid = given;
   // What a scene expects holds for its own distance.
-  if (args.layers || !args.distances.empty() || !args.distance_from.empty()) {
+  if (args.layers || !args.distances.empty()) {
     scene.expect = {};
     return;
   }
   const scene::Distance& own = scene.distance;
   args.distances.push_back(
-      {own.expression ? own.expression->text() : fmt::format("{}{}", own.value, own.percent ? "%" : ""), own});
+      {own.expression ? own.expression->text() : fmt::format("{}{}", own.value, own.percent ? "%" : ""), own, {}});
 }
 
 void settle_surroundings(const Source& source, Arguments& args) {
@@ -53,13 +54,14 @@ Distances read_distances(const Source& source, const std::string& from) {
   return Distances(io::read_vertex_numbers(from, source.view().positions.size()));
 }
 
-Distances evaluate(const Source& source, const Arguments& args, const scene::Distance& distance) {
+Distances evaluate(const Source& source, const Arguments& args, const DistanceRequest& request) {
+  if (!request.from.empty()) return read_distances(source, request.from);
   const auto texture_of = [&] {
     if (!source.file)
       throw InvalidInput(args.input + ": expected texture coordinates (u, v), which a scene has none of");
     return io::vertex_texture(*source.file);
   };
-  return scene::distances_of(distance, source.view(), args.options.weld, args.options.orient, texture_of);
+  return scene::distances_of(request.distance, source.view(), args.options.weld, args.options.orient, texture_of);
 }
 
 /// So many times the distances of so many vertices.
@@ -84,14 +86,14 @@ std::vector<Distances> geometric_heights(const Source& source, const Arguments& 
   factors.reserve(layers.count);
   double sum = 0, step = 1;
   for (std::size_t k = 0; k < layers.count; ++k, step *= layers.growth) factors.push_back(sum += step);
-  const Distances given = evaluate(source, args, (layers.first ? layers.first : layers.total)->distance);
+  const Distances given = evaluate(source, args, layers.first ? *layers.first : *layers.total);
   std::vector<Distances> heights;
   heights.reserve(factors.size());
   for (const double factor : factors) heights.push_back(scaled(given, layers.first ? factor : factor / sum));
   return heights;
 }
 
-/// One height a line; empty lines and what is behind a # do not count.
+/// One height a line; empty lines and what is behind a # do not count. Other files are looked for beside this one.
 std::vector<Distances> read_heights(const Source& source, const Arguments& args) {
   const std::string& path = args.layers->heights;
   std::ifstream file(path);
@@ -104,7 +106,9 @@ std::vector<Distances> read_heights(const Source& source, const Arguments& args)
     if (first == std::string::npos) continue;
     line = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
     try {
-      heights.push_back(evaluate(source, args, scene::parse_distance_or_expression(line)));
+      DistanceRequest request = parse_request(line);
+      if (line.starts_with('@')) request.from = (std::filesystem::path(path).parent_path() / request.from).string();
+      heights.push_back(evaluate(source, args, request));
     } catch (const Error& error) {
       throw InvalidInput(fmt::format("{}: line {}: {}", path, number, error.what()));
     }
@@ -130,10 +134,9 @@ Source read_source(const Arguments& args) {
 std::vector<Distances> settle_options(Source& source, Arguments& args) {
   settle_all_but_distances(source, args);
   std::vector<Distances> distances;
-  if (!args.distance_from.empty()) distances.push_back(read_distances(source, args.distance_from));
-  for (const DistanceRequest& request : args.distances) distances.push_back(evaluate(source, args, request.distance));
+  for (const DistanceRequest& request : args.distances) distances.push_back(evaluate(source, args, request));
   if (args.inner) {
-    distances.push_back(scaled(evaluate(source, args, args.inner->distance), -1));
+    distances.push_back(scaled(evaluate(source, args, *args.inner), -1));
     if (distances.back().outward() > 0) throw InvalidInput("--inner: expected distances of 0 or more at all vertices");
   }
   return distances;

@@ -127,7 +127,6 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 std::vector<Destination> destinations(const Arguments& args) {
   std::vector<std::string> texts;
   for (const DistanceRequest& request : args.distances) texts.push_back(request.text);
-  if (texts.empty()) texts.push_back(args.distance_from);
   std::vector<Destination> all;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
