@@ -45,21 +45,67 @@ double pyramid_jacobian(const CellPoints& x) {
   return least < 1 ? least : 2 - least;
 }
 
-/// Corners of a prism over any polygon: k below, n + k above.
-double ring_corners_jacobian(const CellPoints& x, std::size_t n) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t next = (k + 1) % n, previous = (k + n - 1) % n;
-    least = std::min({least, x.at_corner(k, next, previous, n + k), x.at_corner(n + k, n + previous, n + next, k)});
+/// Scaled Jacobian and aspect ratio.
+struct Quality {
+  double jacobian, aspect;
+};
+
+/// The lengths of a cell's edges that have been looked at, squared.
+struct EdgeLengths {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+
+  void add(double squared) {
+    least = std::min(least, squared);
+    most = std::max(most, squared);
   }
-  return least;
+  double ratio() const { return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity(); }
+};
+
+/// Plain components: openvdb's vector operators copy their operands, which costs more than the arithmetic here.
+struct Direction {
+  double x, y, z;
+};
+/// From one point to another, of length 1 or 0.
+Direction direction(const Vec3d& from, const Vec3d& to, EdgeLengths& lengths) {
+  const double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2];
+  const double squared = x * x + y * y + z * z, scale = squared > 0 ? 1 / std::sqrt(squared) : 0;
+  lengths.add(squared);
+  return {x * scale, y * scale, z * scale};
+}
+double triple(const Direction& a, const Direction& b, const Direction& c) {
+  return (a.y * b.z - a.z * b.y) * c.x + (a.z * b.x - a.x * b.z) * c.y + (a.x * b.y - a.y * b.x) * c.z;
 }
 
-double hexahedron_jacobian(const CellPoints& x) {
+/// Of a prism over a polygon of N corners: k below, N + k above. Each edge serves two corners.
+template <std::size_t N>
+Quality ring_quality(const CellPoints& x) {
+  EdgeLengths lengths;
+  Direction below[N], above[N], up[N];
+  for (std::size_t k = 0; k < N; ++k) {
+    const std::size_t next = (k + 1) % N;
+    below[k] = direction(x[k], x[next], lengths);
+    above[k] = direction(x[N + k], x[N + next], lengths);
+    up[k] = direction(x[k], x[N + k], lengths);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < N; ++k) {
+    const std::size_t previous = (k + N - 1) % N;
+    least = std::min({least, triple(below[previous], below[k], up[k]), triple(above[previous], above[k], up[k])});
+  }
+  return {least, lengths.ratio()};
+}
+
+Quality prism_quality(const CellPoints& x) {
+  const Quality quality = ring_quality<3>(x);
+  return {2 / std::numbers::sqrt3 * quality.jacobian, quality.aspect};
+}
+
+Quality hexahedron_quality(const CellPoints& x) {
   const Vec3d u = (x[1] - x[0]) + (x[2] - x[3]) + (x[5] - x[4]) + (x[6] - x[7]);
   const Vec3d v = (x[3] - x[0]) + (x[2] - x[1]) + (x[7] - x[4]) + (x[6] - x[5]);
   const Vec3d w = (x[4] - x[0]) + (x[5] - x[1]) + (x[6] - x[2]) + (x[7] - x[3]);
-  return std::min(unit_triple(u, v, w), ring_corners_jacobian(x, 4));
+  const Quality quality = ring_quality<4>(x);
+  return {std::min(unit_triple(u, v, w), quality.jacobian), quality.aspect};
 }
 
 Vec3d twice_area(std::span<const Vec3d> points, std::span<const std::uint32_t> face) {
@@ -100,21 +146,6 @@ double polyhedron_jacobian(const VolumeMesh& mesh, std::span<const std::uint32_t
   return std::isfinite(least) ? least : 0;
 }
 
-template <class Visit>
-void for_each_edge_length(const VolumeMesh& mesh, std::size_t cell, Visit&& visit) {
-  for_each_cell_face(mesh.cell_types[cell], mesh.cell(cell), [&](std::span<const std::uint32_t> face) {
-    for (std::size_t k = 0; k < face.size(); ++k)
-      visit((mesh.points[face[k]] - mesh.points[face[(k + 1) % face.size()]]).lengthSqr());
-  });
-}
-
-template <class Measure>
-VolumeField measured(const VolumeMesh& mesh, const char* name, Measure&& measure) {
-  VolumeField field{name, std::vector<float>(mesh.cell_count())};
-  for_each_index(mesh.cell_count(), [&](std::size_t c) { field.values[c] = static_cast<float>(measure(mesh, c)); });
-  return field;
-}
-
 }  // namespace
 
 double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell) {
@@ -125,9 +156,9 @@ double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell) {
     case CellType::Pyramid:
       return pyramid_jacobian(x);
     case CellType::Prism:
-      return 2 / std::numbers::sqrt3 * ring_corners_jacobian(x, 3);
+      return prism_quality(x).jacobian;
     case CellType::Hexahedron:
-      return hexahedron_jacobian(x);
+      return hexahedron_quality(x).jacobian;
     case CellType::Polyhedron:
       break;
   }
@@ -135,12 +166,12 @@ double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell) {
 }
 
 double aspect_ratio(const VolumeMesh& mesh, std::size_t cell) {
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for_each_edge_length(mesh, cell, [&](double length_squared) {
-    least = std::min(least, length_squared);
-    most = std::max(most, length_squared);
+  EdgeLengths lengths;
+  for_each_cell_face(mesh.cell_types[cell], mesh.cell(cell), [&](std::span<const std::uint32_t> face) {
+    for (std::size_t k = 0; k < face.size(); ++k)
+      lengths.add((mesh.points[face[k]] - mesh.points[face[(k + 1) % face.size()]]).lengthSqr());
   });
-  return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity();
+  return lengths.ratio();
 }
 
 double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin) {
@@ -163,22 +194,37 @@ double cell_volume(const VolumeMesh& mesh, std::size_t cell) {
   return sum / 6;
 }
 
-VolumeField scaled_jacobian_field(const VolumeMesh& mesh) { return measured(mesh, "scaled_jacobian", scaled_jacobian); }
-VolumeField aspect_ratio_field(const VolumeMesh& mesh) { return measured(mesh, "aspect_ratio", aspect_ratio); }
+std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
+  std::array<VolumeField, 2> fields{VolumeField{"scaled_jacobian", std::vector<float>(mesh.cell_count())},
+                                    VolumeField{"aspect_ratio", std::vector<float>(mesh.cell_count())}};
+  for_each_index(mesh.cell_count(), [&](std::size_t c) {
+    const CellType type = mesh.cell_types[c];
+    const CellPoints x{mesh, mesh.cell(c)};
+    const Quality quality = type == CellType::Prism        ? prism_quality(x)
+                            : type == CellType::Hexahedron ? hexahedron_quality(x)
+                                                           : Quality{scaled_jacobian(mesh, c), aspect_ratio(mesh, c)};
+    fields[0].values[c] = static_cast<float>(quality.jacobian);
+    fields[1].values[c] = static_cast<float>(quality.aspect);
+  });
+  return fields;
+}
 
-double total_volume(const VolumeMesh& mesh) {
-  constexpr std::size_t kBlock = 4096;  // of cells that are summed in order
-  std::vector<double> sums((mesh.cell_count() + kBlock - 1) / kBlock, 0);
-  for_each_index(
-      sums.size(),
-      [&](std::size_t b) {
-        const std::size_t end = std::min(mesh.cell_count(), (b + 1) * kBlock);
-        for (std::size_t c = b * kBlock; c < end; ++c) sums[b] += cell_volume(mesh, c);
-      },
-      1);
+double enclosed_volume(const VolumeMesh& mesh) {
+  constexpr std::size_t kBlock = 4096;  // of faces that are summed in order
   double sum = 0;
-  for (const double part : sums) sum += part;
-  return sum;
+  for (const VolumePatch& patch : mesh.patches) {
+    std::vector<double> sums((patch.face_count() + kBlock - 1) / kBlock, 0);
+    for_each_index(
+        sums.size(),
+        [&](std::size_t b) {
+          const std::size_t end = std::min(patch.face_count(), (b + 1) * kBlock);
+          for (std::size_t f = b * kBlock; f < end; ++f)
+            sums[b] += six_volumes_below(mesh.points, patch.face(f), mesh.points[0]);
+        },
+        1);
+    for (const double part : sums) sum += part;
+  }
+  return sum / 6;
 }
 
 double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first, std::span<const std::uint32_t> face) {

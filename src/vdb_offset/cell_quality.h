@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,12 +29,11 @@ double cell_volume(const VolumeMesh& mesh, std::size_t cell);
 /// encloses.
 double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin);
 
-/// Of all cells, in parallel. scaled_jacobian() and aspect_ratio() as fields of that name.
-VolumeField scaled_jacobian_field(const VolumeMesh& mesh);
-VolumeField aspect_ratio_field(const VolumeMesh& mesh);
+/// Both of all cells, as fields of these names: each edge of a prism or hexahedron is looked at once.
+std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh);
 
-/// Sum over all cells; the same for any number of threads.
-double total_volume(const VolumeMesh& mesh);
+/// What the boundary encloses, which is the sum of all cells' volumes; the same for any number of threads.
+double enclosed_volume(const VolumeMesh& mesh);
 
 /// Angle in degrees, 0 .. 90, between the normal of a wall's face and the mean of the edges that rise from its corners
 /// to the first layer: 0 is best. 90 if either has no direction. \pre `first` has a position for each of `wall`.

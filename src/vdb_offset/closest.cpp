@@ -79,9 +79,9 @@ unsigned ClosestQuery::near_siblings(const BoxTree::Siblings& box, const float* 
 }
 
 /// The triangles of a lowest box that may be nearer to a point, in the tree's units, than the root of `limit`, a bit
-/// for each. A triangle is no nearer than its disc: with height h over the plane and lateral distance l from the
-/// centre, h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
-unsigned ClosestQuery::near_discs(const Discs& discs, const float* local, float limit) {
+/// for each; and how near they may be, squared. A triangle is no nearer than its disc: with height h over the plane and
+/// lateral distance l from the centre, h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
+unsigned ClosestQuery::near_discs(const Discs& discs, const float* local, float limit, float* least_squared) {
   unsigned near = 0;
   for (int i = 0; i < kLeafSize; i += kLanes) {
     Lanes squared{}, height{};
@@ -92,7 +92,9 @@ unsigned ClosestQuery::near_discs(const Discs& discs, const float* local, float 
     }
     const Lanes height2 = height * height, lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{})),
                 beyond = max_lanes(lateral - load_lanes(discs.radius + i), Lanes{});
-    near |= lane_bits((height2 + beyond * beyond) * 0.999999f <= limit + Lanes{}) << i;
+    const Lanes least = (height2 + beyond * beyond) * 0.999999f;
+    store_lanes(least_squared + i, least);
+    near |= lane_bits(least <= limit + Lanes{}) << i;
   }
   return near;
 }
@@ -163,8 +165,11 @@ class ClosestQuery::Search {
   }
 
   void look_at_triangles(std::uint32_t leaf) {
-    for (unsigned near = near_discs(query_.discs_[leaf], local_, limit_); near != 0; near &= near - 1) {
-      const std::uint32_t other = leaf * kLeafSize + static_cast<std::uint32_t>(std::countr_zero(near));
+    float squared[kLeafSize];
+    for (unsigned near = near_discs(query_.discs_[leaf], local_, limit_, squared); near != 0; near &= near - 1) {
+      const int at = std::countr_zero(near);
+      if (squared[at] > limit_) continue;
+      const std::uint32_t other = leaf * kLeafSize + static_cast<std::uint32_t>(at);
       const TrianglePoint candidate = surface_.closest_on(other, x_);
       if (candidate.squared_distance >= best_.squared_distance) continue;
       best_ = candidate;
@@ -243,27 +248,28 @@ class ClosestQuery::Group {
   std::array<TrianglePoint, kMost> walked_;
 };
 
-void ClosestQuery::collect(const Vec3d& x, double radius, std::vector<std::uint32_t>& triangles) const {
-  triangles.clear();
+void ClosestQuery::collect(const Vec3d& x, double radius, std::vector<Candidate>& near_triangles) const {
+  near_triangles.clear();
   float local[3];
   for (int k = 0; k < 3; ++k) local[k] = static_cast<float>(x[k] * scale_);
   const float rounding = slack_ + 4e-7f * std::max({std::abs(local[0]), std::abs(local[1]), std::abs(local[2])});
   const float reach = (static_cast<float>(radius * scale_) + rounding) * 1.000001f;
-  const float float_limit = reach * reach;
-  const double limit = radius * radius * (1 + 1e-9);
+  const float limit = reach * reach;
+  float squared[kWidth];
   const auto look = [&](std::size_t leaf) {
-    for (unsigned near = near_discs(discs_[leaf], local, float_limit); near != 0; near &= near - 1) {
-      const auto t = static_cast<std::uint32_t>(leaf * kLeafSize + static_cast<std::size_t>(std::countr_zero(near)));
-      if (surface_.closest_on(t, x).squared_distance <= limit) triangles.push_back(t);
+    float least[kLeafSize];
+    for (unsigned near = near_discs(discs_[leaf], local, limit, least); near != 0; near &= near - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(near));
+      near_triangles.push_back({static_cast<std::uint32_t>(leaf * kLeafSize + at),
+                                static_cast<double>(std::sqrt(least[at]) * 0.999999f - rounding) / scale_});
     }
   };
   std::array<std::pair<std::uint32_t, std::uint32_t>, kWidth * 12> stack;  // level and node
   std::size_t depth = 0;
   stack[depth++] = {static_cast<std::uint32_t>(tree_.levels().size() - 1), 0};
-  float squared[kWidth];
   while (depth > 0) {
     const auto [level, node] = stack[--depth];
-    for (unsigned near = near_siblings(tree_.levels()[level][node], local, float_limit, squared); near != 0;
+    for (unsigned near = near_siblings(tree_.levels()[level][node], local, limit, squared); near != 0;
          near &= near - 1) {
       const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
       if (level == 0) look(child);

@@ -41,8 +41,13 @@ class ClosestQuery {
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
-  /// All triangles within `radius` of x, world units, in the order of the tree.
-  void collect(const Vec3d& x, double radius, std::vector<std::uint32_t>& triangles) const;
+  /// A triangle, and a distance that it is no nearer than, world units.
+  struct Candidate {
+    std::uint32_t triangle;
+    double least;
+  };
+  /// All triangles within `radius` of x, world units, and some that are hardly farther, in the order of the tree.
+  void collect(const Vec3d& x, double radius, std::vector<Candidate>& near) const;
 
   const Surface& surface() const { return surface_; }
 
@@ -59,7 +64,7 @@ class ClosestQuery {
 
   Discs discs_of(std::size_t leaf) const;
   static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);
-  static unsigned near_discs(const Discs& discs, const float* local, float limit);
+  static unsigned near_discs(const Discs& discs, const float* local, float limit, float* squared);
 
   const Surface& surface_;
   std::vector<Discs> discs_;

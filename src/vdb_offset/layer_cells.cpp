@@ -575,8 +575,7 @@ VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOp
     add_outer(points, columns, layers.count(), volume);
     add_sides(points, columns, layers.count(), volume);
   }
-  volume.cell_fields.push_back(scaled_jacobian_field(volume));
-  volume.cell_fields.push_back(aspect_ratio_field(volume));
+  for (VolumeField& field : quality_fields(volume)) volume.cell_fields.push_back(std::move(field));
   if (facts_out != nullptr) *facts_out = std::move(facts);
   return volume;
 }

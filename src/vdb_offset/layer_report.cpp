@@ -1,9 +1,13 @@
 #include "vdb_offset/layer_report.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "vdb_offset/cell_quality.h"
@@ -32,18 +36,112 @@ FacesByPatch sort_faces(std::size_t count, const WallNames& names) {
   return sorted;
 }
 
-/// Quantiles of plain numbers.
+constexpr double kShares[] = {0, 0.01, 0.05, 0.5, 0.95, 0.99, 1};
+
+/// Quantiles of so many numbers, value(i) each, none of which is NaN. Their bits, as a number that grows with them, are
+/// looked at in two halves: how many numbers there are for each upper half says in which of them a quantile lies.
+template <class Value>
+class Quantiles {
+ public:
+  Quantiles(std::size_t count, Value value) : count_(count), value_(value), slot_(kHalf, kNoSlot) {}
+
+  Spread spread() {
+    if (count_ == 0) return {};
+    const Counts upper = counted(1, [](std::uint32_t bits, auto&& add) { add(0, bits >> 16); });
+    for (const double share : kShares) add_slot(upper, share);
+    const Counts lower = counted(slots_, [&](std::uint32_t bits, auto&& add) {
+      if (slot_[bits >> 16] != kNoSlot) add(slot_[bits >> 16], bits & 0xffff);
+    });
+    double found[std::size(kShares)];
+    for (std::size_t i = 0; i < std::size(kShares); ++i) found[i] = find(upper, lower, kShares[i]);
+    return {found[0], found[1], found[2], found[3], found[4], found[5], found[6], sum_ / static_cast<double>(count_)};
+  }
+
+ private:
+  static constexpr std::size_t kHalf = std::size_t{1} << 16, kBlock = std::size_t{1} << 20;
+  static constexpr std::uint8_t kNoSlot = 255;
+  using Counts = std::vector<std::size_t>;
+
+  static std::uint32_t ordered(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return bits >> 31 ? ~bits : bits | 0x80000000U;
+  }
+  static float number(std::uint32_t ordered) {
+    return std::bit_cast<float>(ordered >> 31 ? ordered & 0x7fffffffU : ~ordered);
+  }
+
+  /// How often look() adds each half of each slot, over all numbers.
+  template <class Look>
+  Counts counted(std::size_t slots, Look&& look) {
+    const std::size_t blocks = (count_ + kBlock - 1) / kBlock;
+    tbb::enumerable_thread_specific<Counts> parts([&] { return Counts(slots * kHalf, 0); });
+    std::vector<double> sums(blocks, 0);
+    for_each_index(
+        blocks,
+        [&](std::size_t b) {
+          Counts& part = parts.local();
+          for (std::size_t i = b * kBlock; i < std::min(count_, (b + 1) * kBlock); ++i) {
+            const float value = value_(i);
+            sums[b] += value;
+            look(ordered(value), [&](std::size_t slot, std::uint32_t key) { ++part[slot * kHalf + key]; });
+          }
+        },
+        1);
+    sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
+    Counts all(slots * kHalf, 0);
+    for (const Counts& part : parts)
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] += part[i];
+    return all;
+  }
+
+  std::size_t rank(double share) const {
+    return std::min(count_ - 1, static_cast<std::size_t>(share * static_cast<double>(count_)));
+  }
+  /// The first half by whose end more than `rank` numbers have been counted; `rank` is then that among its own.
+  static std::uint32_t half_at(std::span<const std::size_t> counts, std::size_t& rank) {
+    std::uint32_t found = 0;
+    for (; rank >= counts[found]; ++found) rank -= counts[found];
+    return found;
+  }
+  void add_slot(const Counts& upper, double share) {
+    std::size_t at = rank(share);
+    std::uint8_t& slot = slot_[half_at(upper, at)];
+    if (slot == kNoSlot) slot = static_cast<std::uint8_t>(slots_++);
+  }
+  double find(const Counts& upper, const Counts& lower, double share) const {
+    std::size_t at = rank(share);
+    const std::uint32_t high = half_at(upper, at);
+    const std::uint32_t low = half_at(std::span(lower).subspan(slot_[high] * kHalf, kHalf), at);
+    return number(high << 16 | low);
+  }
+
+  std::size_t count_;
+  Value value_;
+  double sum_ = 0;
+  std::vector<std::uint8_t> slot_;  // of each upper half that a quantile lies in
+  std::size_t slots_ = 0;
+};
+
+/// The same of few numbers.
 Spread spread(std::vector<float> values) {
   if (values.empty()) return {};
-  const auto quantile = [&](double share) -> double {
-    const auto at = static_cast<std::ptrdiff_t>(
-        std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size()))));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
+  std::sort(values.begin(), values.end());
+  const auto quantile = [&](std::size_t i) -> double {
+    return values[std::min(values.size() - 1,
+                           static_cast<std::size_t>(kShares[i] * static_cast<double>(values.size())))];
   };
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  return {quantile(0),    quantile(0.01), quantile(0.05), quantile(0.5),
-          quantile(0.95), quantile(0.99), quantile(1),    mean};
+  return {quantile(0), quantile(1), quantile(2), quantile(3), quantile(4), quantile(5), quantile(6), mean};
+}
+
+/// Quantiles of so many numbers, value(i) each.
+template <class Value>
+Spread spread_of(std::size_t count, Value value) {
+  constexpr std::size_t kFew = 100000;
+  if (count > kFew) return Quantiles<Value>(count, value).spread();
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
+  return spread(std::move(values));
 }
 
 struct Weighted {
@@ -106,11 +204,15 @@ class Source {
     add_thickness(faces, figures);
     add_first_heights(faces, figures);
     add_cells(faces, figures);
-    std::vector<float> angles;
+    std::vector<std::uint32_t> with_cells;
     for (const auto f : faces)
-      if (facts_.cells[f] > 0)
-        angles.push_back(static_cast<float>(wall_angle(layers_.positions[0], layers_.positions[1], mesh_.face(f))));
-    figures.wall_angle = spread(std::move(angles));
+      if (facts_.cells[f] > 0) with_cells.push_back(f);
+    std::vector<float> angles(with_cells.size());
+    for_each_index(angles.size(), [&](std::size_t i) {
+      const auto face = mesh_.face(with_cells[i]);
+      angles[i] = static_cast<float>(wall_angle(layers_.positions[0], layers_.positions[1], face));
+    });
+    figures.wall_angle = spread_of(angles.size(), [&](std::size_t i) { return angles[i]; });
     return figures;
   }
 
@@ -160,26 +262,33 @@ class Source {
       const double height = std::abs(layers_.heights.front()[v]);
       if (height > 0) errors.push_back(static_cast<float>(std::abs(layers_.first_achieved[v] - height) / height));
     }
-    const Spread error = spread(std::move(errors));
+    const Spread error = spread_of(errors.size(), [&](std::size_t i) { return errors[i]; });
     figures.first_error = error.most;
     figures.first_error_99 = error.quantile_99;
   }
 
   void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    std::vector<float> jacobians, aspects;
-    for (std::size_t layer = 0; layer < layers_.count(); ++layer)
-      for (const auto f : faces)
-        for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c) {
-          const std::size_t cell = layer * first_cell_.back() + c;
-          ++figures.cells_by_type[static_cast<std::size_t>(volume_.cell_types[cell])];
-          figures.transition_cells += facts_.role[f] == FaceRole::Transition;
-          figures.inverted_cells += !(jacobian_[cell] > 0);
-          jacobians.push_back(jacobian_[cell]);
-          aspects.push_back(aspect_[cell]);
-        }
-    figures.cells = jacobians.size();
-    figures.scaled_jacobian = spread(std::move(jacobians));
-    figures.aspect_ratio = spread(std::move(aspects));
+    std::vector<std::uint32_t> in_layer;  // these faces' cells
+    for (const auto f : faces) {
+      for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c) {
+        in_layer.push_back(static_cast<std::uint32_t>(c));
+        figures.cells_by_type[static_cast<std::size_t>(volume_.cell_types[c])] += layers_.count();
+      }
+      if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += layers_.count() * facts_.cells[f];
+    }
+    figures.cells = in_layer.size() * layers_.count();
+    const auto number = [&](std::size_t i) {
+      return i / in_layer.size() * first_cell_.back() + in_layer[i % in_layer.size()];
+    };
+    figures.inverted_cells = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, figures.cells, 65536), std::size_t{0},
+        [&](const auto& range, std::size_t sum) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) sum += !(jacobian_[number(i)] > 0);
+          return sum;
+        },
+        std::plus<>());
+    figures.scaled_jacobian = spread_of(figures.cells, [&](std::size_t i) { return jacobian_[number(i)]; });
+    figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return aspect_[number(i)]; });
   }
 
   PolygonView mesh_;
@@ -224,7 +333,7 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
     for_each_index(
         patches.size(), [&](std::size_t p) { report.patches[p] = source.figures(patches[p], faces.of(p)); }, 1);
   }
-  report.volume = total_volume(volume);
+  report.volume = enclosed_volume(volume);
   report.points = volume.points.size();
   report.growing = layers.layer_statistics;
   report.turned_faces = facts.turned_faces;

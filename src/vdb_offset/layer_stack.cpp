@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "vdb_offset/parallel.h"
 
@@ -17,28 +16,21 @@ constexpr int kLetOuts = 12;
 // Thickness may change by so much of the length of an edge.
 constexpr double kThicknessSlope = 0.5;
 // Heights are solved far below the promised 1e-6.
-constexpr double kHeightTolerance = 1e-8, kNearlyThere = 2e-4;
+constexpr double kHeightTolerance = 1e-7, kNearlyThere = 2e-4;
 // What the way up must have at least of each face's normal at the wall.
 constexpr double kLeastSlope = 1e-2;
 // Vertices that a thread takes at a time.
 constexpr std::size_t kVertexBlock = 64;
-// Where more triangles than this may be the closest ones, a tree finds them sooner; of so few, none need be left out.
-constexpr std::size_t kMostNear = 200, kFewNear = 6;
-// How much longer than the way straight to the vertex the way along the rail may be, and how much nearer to the surface
-// it pays to sift triangles again.
-constexpr double kSieveRoom = 1.01, kSieveStep = 0.7;
+// Where more triangles than this may be the closest ones, a tree finds them sooner.
+constexpr std::size_t kMostNear = 200;
+// How much longer than the way straight to the vertex the way along the rail may be.
+constexpr double kReachRoom = 1.01;
 
 /// The curve that a vertex's layers stand on: x(eta) = whole eta + bend eta (1 - eta)^2, from 0 at the surface to 1.
 struct Rail {
   Vec3d whole, bend;
   Vec3d operator()(double eta) const { return whole * eta + bend * (eta * (1 - eta) * (1 - eta)); }
   Vec3d along(double eta) const { return whole + bend * ((1 - eta) * (1 - 3 * eta)); }
-};
-
-/// A point of a rail, and how far from it the closest triangle to any point below may be.
-struct Sieve {
-  Vec3d top;
-  double reach;
 };
 
 class Stacker {
@@ -76,12 +68,30 @@ class Stacker {
     stack_.statistics.wrong_columns = wrong_columns_.size();
     straighten();
     while (thin()) progress.advance(1);
-    for (int i = 0; i < kLetOuts && let_out(); ++i) progress.advance(1);
+    let_all_out(progress);
     finish();
     return std::move(stack_);
   }
 
  private:
+  /// Triangles near a rail: what they are no nearer than, and their planes, seen from the rail's end.
+  struct Near {
+    struct Plane {
+      Vec3d normal;
+      double height;
+    };
+    std::vector<ClosestQuery::Candidate> triangles;
+    std::vector<Plane> planes;
+
+    void find_planes(const Surface& front, const Vec3d& end) {
+      planes.clear();
+      for (const auto& near : triangles) {
+        const Vec3d& n = front.triangle_normals[near.triangle];
+        planes.push_back({n, n.dot(front.vertices[front.triangles[near.triangle][0]] - end)});
+      }
+    }
+  };
+
   double asked(std::uint32_t v) const { return std::abs(heights_.back()[v]); }
   bool moves(std::uint32_t v) const { return body_.on_front(v) && heights_.back()[v] != 0; }
   const Vec3d& outermost(std::uint32_t v) const { return stack_.stacks.of(v).back(); }
@@ -150,14 +160,14 @@ class Stacker {
     for_each_index((vertices.size() + kVertexBlock - 1) / kVertexBlock,
                    [&](std::size_t block) {
                      const std::size_t first = block * kVertexBlock;
-                     std::vector<std::uint32_t> near;
+                     Near near;
                      for (std::size_t i = first; i < std::min(first + kVertexBlock, vertices.size()); ++i)
                        put(vertices[i], near);
                    },
                    1);
   }
 
-  void put(std::uint32_t v, std::vector<std::uint32_t>& near) {
+  void put(std::uint32_t v, Near& near) {
     std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
     if (!(stack_.share[v] > 0)) return;
     if (!put_among_few(v, near)) put_with_care(v);
@@ -169,105 +179,146 @@ class Stacker {
     Vec3d away;
   };
 
-  /// The closest point among a few triangles.
-  TrianglePoint nearest_of(std::span<const std::uint32_t> triangles, const Vec3d& x) const {
-    TrianglePoint nearest = front_.closest_on(triangles.front(), x);
-    for (const auto t : triangles.subspan(1)) {
-      const TrianglePoint point = front_.closest_on(t, x);
-      if (point.squared_distance < nearest.squared_distance) nearest = point;
+  /// Distances along a vertex's rail, of points in the front's frame. The closest triangle to one point is likely to be
+  /// that of the next: find() looks for it, at() believes it and is never too small.
+  class CareField {
+   public:
+    CareField(const ClosestQuery& front, std::uint32_t hint) : front_(front), triangle_(hint) {}
+
+    Phi at(const Vec3d& x) const { return phi(front_.surface().closest_on(triangle_, x), x); }
+    Phi find(const Vec3d& x) {
+      const Closest found = front_(x, triangle_);
+      triangle_ = found.triangle;
+      return {found.distance, x - found.point};
     }
-    return nearest;
+
+   private:
+    const ClosestQuery& front_;
+    std::uint32_t triangle_;
+  };
+  /// The same where the closest triangle is one of a few. Who goes a length from one place to another comes nearer to
+  /// any of them by no more than that, so that few have to be looked at again: on the way down to the surface, what was
+  /// farther than the closest mostly stays so. Nor is a triangle nearer than its plane.
+  class FewField {
+   public:
+    FewField(const Surface& front, const Vec3d& end, Near& near) : front_(front), near_(near), end_(end), place_(end) {
+      const auto less = [](const auto& a, const auto& b) { return a.least < b.least; };
+      triangle_ = std::min_element(near.triangles.begin(), near.triangles.end(), less)->triangle;
+    }
+
+    Phi at(const Vec3d& x) const { return phi(front_.closest_on(triangle_, x), x); }
+    Phi find(const Vec3d& x) {
+      gone_ += (x - place_).length();
+      place_ = x;
+      const std::uint32_t believed = triangle_;
+      Phi nearest = at(x);
+      const Vec3d from_end = x - end_;
+      for (std::size_t i = 0; i < near_.triangles.size(); ++i) {
+        auto& [triangle, least] = near_.triangles[i];
+        if (triangle == believed) {
+          least = nearest.value + gone_;
+          continue;
+        }
+        const auto& [normal, height] = near_.planes[i];
+        const double enough = nearest.value * (1 - kRounding);
+        if (least - gone_ >= enough || std::abs(normal.dot(from_end) - height) >= enough) continue;
+        const Phi other = phi(front_.closest_on(triangle, x), x);
+        least = other.value + gone_;
+        if (!(other.value < nearest.value)) continue;
+        nearest = other;
+        triangle_ = triangle;
+      }
+      return nearest;
+    }
+
+   private:
+    static constexpr double kRounding = 1e-9;
+    const Surface& front_;
+    Near& near_;  // what triangles are no nearer than here has the way gone since added
+    Vec3d end_, place_;
+    double gone_ = 0;
+    std::uint32_t triangle_;
+  };
+  static Phi phi(const TrianglePoint& nearest, const Vec3d& x) {
+    return {std::sqrt(nearest.squared_distance), x - nearest.point};
   }
 
-  /// What may be the closest triangle to some point of the rail below x is no farther from x than that point's distance
-  /// and the way to it, so hardly farther than the vertex: few are, and fewer the nearer x is to the surface. They
-  /// are collected at the end of the rail and sifted on the way down. False if that was wrong of a layer, or does not
-  /// lead to its height.
-  bool put_among_few(std::uint32_t v, std::vector<std::uint32_t>& near) {
+  /// What may be the closest triangle to some point of the rail is no farther from its end than that point's distance
+  /// and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers. False if
+  /// that was wrong of a layer, or does not lead to its height.
+  bool put_among_few(std::uint32_t v, Near& near) {
     const auto stack = stack_.stacks.of(v);
-    const Vec3d origin = source_[v] - front_.origin;
-    Sieve sieve{source_[v] + paths_.displacement[v], 0};
-    const double reach = std::max(paths_.displacement[v].length(), paths_.achieved[v]) * kSieveRoom;
-    body_.front.collect(origin + paths_.displacement[v], reach, near);
-    if (near.empty() || near.size() > kMostNear) return false;
-    sieve.reach = reach;
-    const auto place = [&](std::size_t k, const std::optional<double>& known) {
+    const Vec3d& whole = paths_.displacement[v];
+    const Vec3d end = source_[v] - front_.origin + whole;
+    const double reach = std::max(whole.length(), paths_.achieved[v]) * kReachRoom;
+    body_.front.collect(end, reach, near.triangles);
+    if (near.triangles.empty() || near.triangles.size() > kMostNear) return false;
+    near.find_planes(front_, end);
+    return descend(v, FewField(front_, end, near), [&](std::size_t k, double phi) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
-      const double phi = known ? *known : std::sqrt(nearest_of(near, stack[k + 1] - front_.origin).squared_distance);
-      if (!(std::abs(phi - height) <= kReachedTolerance * height)) return false;
-      if ((stack[k + 1] - sieve.top).length() + phi > sieve.reach) return false;
-      if (k == 0) stack_.first_achieved[v] = phi;
-      const double below = (stack[k + 1] - source_[v]).length() * kSieveRoom;
-      if (below > kSieveStep * sieve.reach || near.size() <= kFewNear) return true;
-      std::erase_if(near, [&](std::uint32_t t) {
-        return front_.closest_on(t, stack[k + 1] - front_.origin).squared_distance > below * below;
-      });
-      sieve = {stack[k + 1], below};
-      return true;
-    };
-    const auto phi = [&](const Vec3d& x) {
-      const TrianglePoint nearest = nearest_of(near, x);
-      return Phi{std::sqrt(nearest.squared_distance), x - nearest.point};
-    };
-    return descend(v, phi, place);
+      return std::abs(phi - height) <= kReachedTolerance * height &&
+             (stack[k + 1] - source_[v] - whole).length() + phi <= reach;
+    });
   }
 
   void put_with_care(std::uint32_t v) {
-    std::uint32_t hint = body_.hint(v);
-    const auto phi = [&](const Vec3d& x) {
-      const Closest found = body_.front(x, hint);
-      hint = found.triangle;
-      return Phi{found.distance, x - found.point};
-    };
-    descend(v, phi, [](std::size_t, const std::optional<double>&) { return true; });
-    stack_.first_achieved[v] = phi(stack_.stacks.of(v)[1] - front_.origin).value;
+    descend(v, CareField(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
   }
 
-  /// Goes down a vertex's rail from height to height, from the outermost. phi(x) is the distance of a point in the
-  /// front's frame; `placed` is told of each layer and, if it is known, its distance, and may end the descent: then
-  /// this is false.
+  /// Goes down a vertex's rail from height to height, from the outermost. `placed` is told of each layer and its
+  /// distance, and may end the descent: then this is false.
   template <class Field, class Placed>
-  bool descend(std::uint32_t v, Field&& phi, Placed&& placed) {
+  bool descend(std::uint32_t v, Field&& field, Placed&& placed) {
     const auto stack = stack_.stacks.of(v);
     const double share = stack_.share[v];
     const Rail rail = rail_of(v);
     const Vec3d origin = source_[v] - front_.origin;
-    Solved solved{1, paths_.achieved[v]};
-    double above = paths_.achieved[v];
+    Place above{1, field.find(origin + rail.whole)};
     for (std::size_t k = heights_.size(); k-- > 0;) {
       const double target = share * std::abs(heights_[k][v]);
       const bool at_end = k + 1 == heights_.size() && share == most_[v];
-      if (!at_end) solved = solve(rail, origin, solved.eta, above, target, phi);
-      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(solved.eta), target));
-      if (!placed(k, solved.phi)) return false;
-      above = target;
+      if (!at_end) above = solve(rail, origin, above, target, field);
+      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(above.eta), target));
+      if (!placed(k, above.phi.value)) return false;
+      stack_.first_achieved[v] = above.phi.value;
     }
     return true;
   }
 
-  /// A place on the rail, and its distance if that has been found out.
-  struct Solved {
+  /// A place on a rail, and its distance.
+  struct Place {
     double eta;
-    std::optional<double> phi;
+    Phi phi;
   };
 
-  /// Where on the rail, between its start and `high` with distance `phi_high`, the distance is `target`: Newton's
-  /// method, kept between what is known to be below and above.
+  /// Where on the rail, between its start and the place `above`, the distance is `target`: Newton's method on the
+  /// distance of one triangle, kept between what is known to be below and above; where that does not lead on, or has
+  /// led there, on the closest one's.
   template <class Field>
-  static Solved solve(const Rail& rail, const Vec3d& origin, double high, double phi_high, double target, Field&& phi) {
+  static Place solve(const Rail& rail, const Vec3d& origin, const Place& above, double target, Field&& field) {
     constexpr int kMost = 60;
-    double low = 0, guess = high * std::min(1.0, target / phi_high);
+    double low = 0, high = above.eta, believed_high = high;
+    Place here = above;
     for (int i = 0; i < kMost; ++i) {
-      const Phi here = phi(origin + rail(guess));
-      const double f = here.value - target, slope = here.away.dot(rail.along(guess)) / here.value;
-      if (std::abs(f) <= kHeightTolerance * target) return {guess, here.value};
-      (f < 0 ? low : high) = guess;
-      const double next = guess - f / slope;
+      const double slope = here.phi.away.dot(rail.along(here.eta)) / here.phi.value;
+      const double next = here.eta - (here.phi.value - target) / slope;
+      const bool leads_on = slope > 0 && next > low && next < believed_high;
       // Newton's error shrinks to the square of what it was.
-      if (slope > 0 && next > low && next < high && std::abs(f) <= kNearlyThere * target) return {next, {}};
-      guess = slope > 0 && next > low && next < high ? next : (low + high) / 2;
+      const bool leads_there = leads_on && i > 0 && std::abs(here.phi.value - target) <= kNearlyThere * target;
+      here.eta = leads_on ? next : (low + high) / 2;
+      const Vec3d x = origin + rail(here.eta);
+      if (leads_on && !leads_there) {
+        here.phi = field.at(x);
+        if (here.phi.value < target) low = here.eta;
+        else believed_high = here.eta;
+        continue;
+      }
+      here.phi = field.find(x);
+      if (std::abs(here.phi.value - target) <= kHeightTolerance * target) break;
+      (here.phi.value < target ? low : high) = here.eta;
+      believed_high = high;
     }
-    return {guess, {}};
+    return here;
   }
 
   void check_all_columns() {
@@ -345,17 +396,26 @@ class Stacker {
     return true;
   }
 
-  /// Lets all that is thinned out by one step, as far as thickness stays even, and takes those back that something is
-  /// then wrong with. False if none could be let out.
-  bool let_out() {
-    Indices out;
+  /// Lets all that is thinned out again, step by step.
+  void let_all_out(Progress& progress) {
+    Indices thinned;
     for (std::uint32_t v = 0; v < source_.size(); ++v)
-      if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) out.push_back(v);
-    const std::vector<double> before = stack_.share;
+      if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) thinned.push_back(v);
+    std::vector<double> before = stack_.share;
+    for (int i = 0; i < kLetOuts && let_out(thinned, before); ++i) {
+      for (const auto v : thinned) before[v] = stack_.share[v];
+      progress.advance(1);
+    }
+  }
+
+  /// Lets these vertices out by one step, as far as thickness stays even, and takes those back to their share `before`
+  /// that something is then wrong with. False if none could be let out.
+  bool let_out(const Indices& thinned, const std::vector<double>& before) {
+    Indices out = thinned;
+    std::erase_if(out, [&](std::uint32_t v) { return !(before[v] < most_[v]); });
     for (const auto v : out) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
     smooth_around(out);
     std::erase_if(out, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
-    bool any = false;
     for (Indices moved = out; !moved.empty();) {
       move(moved);
       moved = wrong_vertices();
@@ -365,8 +425,7 @@ class Stacker {
       moved.insert(moved.end(), lowered.begin(), lowered.end());
       sort_unique(moved);
     }
-    for (const auto v : out) any = any || stack_.share[v] > before[v];
-    return any;
+    return std::any_of(out.begin(), out.end(), [&](std::uint32_t v) { return stack_.share[v] > before[v]; });
   }
 
   /// As smooth(), where vertices have been let out that their neighbours may hold back.

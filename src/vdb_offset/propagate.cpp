@@ -566,8 +566,10 @@ bool is_folded(const Surface& surface, std::uint32_t vertex) { return start_of(s
 Vec3d round_way(const Vec3d& way, double target) {
   const int exponent = std::ilogb(target) - 36;
   const double quantum = std::ldexp(1.0, exponent), per_quantum = std::ldexp(1.0, -exponent);
-  return {std::nearbyint(way[0] * per_quantum) * quantum, std::nearbyint(way[1] * per_quantum) * quantum,
-          std::nearbyint(way[2] * per_quantum) * quantum};
+  // To the nearest whole number: what is larger has no fraction left to lose.
+  const auto whole = [](double x) { return std::abs(x) < 0x1p51 ? (x + 0x1.8p52) - 0x1.8p52 : x; };
+  return {whole(way[0] * per_quantum) * quantum, whole(way[1] * per_quantum) * quantum,
+          whole(way[2] * per_quantum) * quantum};
 }
 
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
