@@ -435,6 +435,31 @@ TEST_CASE("command: heights of layers from a file, and structured blocks", "[com
   check_failure(shell, "sphere.obj new.vts --layers 3 --total-thickness 2% --structured", 2, "expected quads");
 }
 
+TEST_CASE("command: heights of layers for each vertex from a file", "[command][layers]") {
+  const Shell shell;
+  const auto source = io::read_mesh(shell.file("sphere.obj"));
+  std::filesystem::create_directory(shell.file("given"));
+  std::ofstream numbers(shell.file("given/numbers.txt"));
+  for (const Vec3d& p : source.polygons.positions) numbers << (p[2] > 0 ? 0.04 : 0.02) << '\n';
+  numbers.close();
+  std::ofstream(shell.file("given/heights.txt")) << "0.01\n@numbers.txt\n";  // beside the file that names it
+  const auto check_radii = [&](const std::string& arguments, const char* last) {
+    INFO(arguments);
+    CHECK(shell("sphere.obj s.obj " + arguments + " -q").code == 0);
+    const auto outermost = io::read_mesh(shell.file(last)).polygons.positions;
+    for (std::size_t v = 0; v < outermost.size(); v += 7)
+      if (const double z = source.polygons.positions[v][2]; std::abs(z) > 0.2)
+        CHECK(outermost[v].length() == Approx(z > 0 ? 1.04 : 1.02).epsilon(2e-4));
+  };
+  check_radii("--heights given/heights.txt", "s_002.obj");
+  check_radii("--layers 3 --total-thickness @given/numbers.txt", "s_003.obj");
+  check_radii("-d @given/numbers.txt", "s.obj");
+  check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height ply:thickness", 2, "sphere.obj");
+  check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height @missing.txt", 2, "missing.txt");
+  check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height @", 1, "--first-height");
+  check_failure(shell, "sphere.obj new.vtu --layers 1000 --total-thickness 1% --max-memory 60M", 3, "MiB");
+}
+
 TEST_CASE("command: options of layers that do not go together", "[command][layers]") {
   const Shell shell;
   for (const auto& [arguments, message] :

@@ -208,6 +208,9 @@ TEST_CASE("layer cells: a plane of triangles, by numbers", "[layer_cells]") {
   CHECK(field(volume.cell_fields, "face").values[33] == 1);
   CHECK(field(volume.point_fields, "layer").values[25] == 1);
   CHECK(field(volume.point_fields, "height").values[50] == 1.25F);
+  CHECK(field(volume.point_fields, "achieved").values[0] == 0);
+  CHECK(field(volume.point_fields, "achieved").values[25] == 0.5F);
+  CHECK(field(volume.point_fields, "achieved").values[50] == 1.25F);
 }
 
 TEST_CASE("layer cells: seams of a cube are one, and mitred cells fill what is between", "[layer_cells]") {

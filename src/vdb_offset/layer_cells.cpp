@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -56,6 +57,8 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers, const WallN
     require("positions in each layer", mesh.positions.size(), positions.size());
   require("shares", mesh.positions.size(), layers.share.size());
   require("states", mesh.positions.size(), layers.states.size());
+  require("distances achieved", mesh.positions.size(), layers.achieved.size());
+  require("distances of the first layer", mesh.positions.size(), layers.first_achieved.size());
   for (const Distances& heights : layers.heights)
     if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
   if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
@@ -451,10 +454,17 @@ void require_countable(const Numbering& points, const Columns& columns, std::siz
                        " and " + std::to_string(all_cells) + " (ask for fewer layers)");
 }
 
+/// The distance of a layer's vertex: as measured at the lowest and the outermost, what its share asks for between.
+double achieved(const LayersResult& layers, std::size_t layer, Index v) {
+  if (layer == 0) return 0;
+  if (layer == layers.count()) return layers.achieved[v];
+  return layer == 1 ? layers.first_achieved[v] : layers.share[v] * std::abs(layers.heights[layer - 1][v]);
+}
+
 void place_points(const LayersResult& layers, const Numbering& points, VolumeMesh& volume) {
   const std::size_t count = points.wall() + std::size_t{points.risen} * layers.count();
   volume.points.resize(count);
-  volume.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"state", {}}};
+  volume.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"achieved", {}}, {"state", {}}};
   for (VolumeField& field : volume.point_fields) field.values.resize(count);
   for (std::size_t layer = 0; layer <= layers.count(); ++layer)
     for_each_index(points.wall(), [&](std::size_t p) {
@@ -462,7 +472,7 @@ void place_points(const LayersResult& layers, const Numbering& points, VolumeMes
       const Index at = points.at(static_cast<Index>(p), layer), v = points.vertex[p];
       volume.points[at] = layers.positions[layer][v];
       const double height = layer > 0 ? layers.heights[layer - 1][v] : 0;
-      const double values[] = {static_cast<double>(layer), layers.share[v], height,
+      const double values[] = {static_cast<double>(layer), layers.share[v], height, achieved(layers, layer, v),
                                static_cast<double>(layers.states[v])};
       for (std::size_t i = 0; i < std::size(values); ++i)
         volume.point_fields[i].values[at] = static_cast<float>(values[i]);

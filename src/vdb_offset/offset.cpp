@@ -176,6 +176,14 @@ Reach farthest_of(std::span<const Distances> distances) {
   return farthest;
 }
 
+GridPlan plan(const Workpiece& work, PolygonView mesh, const Reach& farthest, const OffsetOptions& options, int threads,
+              std::size_t layers) {
+  std::size_t beside = layers_bytes(mesh, layers);
+  for (const auto* surface : {&work.whole, &work.rest, &work.obstacles})
+    if (*surface) beside += surface_bytes(**surface);
+  return plan_grid(work.front, farthest, options.grid, options.max_memory, threads, beside);
+}
+
 bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthest.outside > 0; }
 
 /// The pipeline: surface, front, field, directions, paths, and what of them is valid.
@@ -186,7 +194,7 @@ class Pipeline {
 
   std::vector<OffsetResult> run(std::span<const Distances> wanted) {
     const Reach farthest = farthest_of(wanted);
-    prepare(farthest);
+    prepare(farthest, 0);
     // The body is complete by now, obstacles and all.
     for (const Distances& distances : wanted) distances_.push_back(on_body(distances));
     std::vector<Paths> paths(wanted.size());
@@ -201,7 +209,7 @@ class Pipeline {
 
   /// Layers up to the last of the heights, which is the one that the march goes to.
   LayersResult grow(std::span<const Distances> heights) {
-    prepare(farthest_of(heights.last(1)));
+    prepare(farthest_of(heights.last(1)), heights.size());
     std::vector<Distances> on_vertices;
     for (const Distances& each : heights) on_vertices.push_back(on_body(each));
     distances_.push_back(on_vertices.back());
@@ -226,14 +234,14 @@ class Pipeline {
   }
 
  private:
-  void prepare(const Reach& farthest) {
+  void prepare(const Reach& farthest, std::size_t layers) {
     {
       const StageTimer timer(shared_, Stage::Rasterise);
       work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
     }
     shared_.facts = work_.surface().facts;
     shared_.threads = threads_;
-    if (goes_anywhere(farthest)) make_field(farthest);
+    if (goes_anywhere(farthest)) make_field(farthest, layers);
   }
 
   Distances on_body(const Distances& of_input) {
@@ -241,11 +249,11 @@ class Pipeline {
     return distances_on(work_, options_.border, of_input, shared_.disagreeing_distances);
   }
 
-  void make_field(const Reach& farthest) {
+  void make_field(const Reach& farthest, std::size_t layers) {
     Front front;
     {
       const StageTimer timer(shared_, Stage::Rasterise);
-      shared_.plan = plan_grid(work_.front, farthest, options_.grid, options_.max_memory, threads_);
+      shared_.plan = plan(work_, mesh_, farthest, options_, threads_, layers);
       place(work_, shared_.plan.voxel_size);
       front = rasterise(work_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
     }
@@ -407,14 +415,14 @@ OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options) {
   return plan_several(mesh, {&options.distance, 1}, options);
 }
 
-OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options) {
+OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options,
+                              std::size_t layers) {
   OffsetStatistics statistics;
   statistics.threads = thread_count(options);
   const Workpiece work = build_workpiece(mesh, {options.only, options.obstacles, options.weld, options.orient});
   statistics.facts = work.surface().facts;
   const Reach farthest = farthest_of(distances);
-  if (goes_anywhere(farthest))
-    statistics.plan = plan_grid(work.front, farthest, options.grid, options.max_memory, statistics.threads);
+  if (goes_anywhere(farthest)) statistics.plan = plan(work, mesh, farthest, options, statistics.threads, layers);
   return statistics;
 }
 

@@ -91,7 +91,8 @@ double used_diagonal(PolygonView mesh);
 
 /// What offset() would do, without doing it: the mesh's facts and the plan of the grid.
 OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options);
-/// The same for offset_several().
-OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options);
+/// The same for offset_several(), or for grow_layers() to the only distance, with so many layers.
+OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options,
+                              std::size_t layers = 0);
 
 }  // namespace vdb_offset

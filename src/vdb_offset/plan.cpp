@@ -23,6 +23,8 @@ constexpr double kMaxVoxelsAcross = 8388608;
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
 constexpr std::size_t kTriangleBytes = 240, kVertexBytes = 330;
+// Of a layer: places of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
+constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
 // The process itself: code, libraries, allocator.
 constexpr double kProcessBytes = 48 << 20;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles; only for the estimate that is shown.
@@ -97,7 +99,7 @@ double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf)
 
 double longer(const Reach& farthest) { return std::max(farthest.inside, farthest.outside); }
 
-GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int threads) {
+GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int threads, std::size_t beside) {
   GridPlan plan;
   plan.voxel_size = h;
   plan.band = kBandVoxels * h;
@@ -105,7 +107,8 @@ GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int t
   const double leaves = count_leaf_nodes(surface, plan.reach, 8 * h);
   const double vertices = static_cast<double>(surface.facts.vertices),
                triangles = static_cast<double>(surface.triangles.size());
-  const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes;
+  const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes +
+                       static_cast<double>(beside);
   if (bytes > 0x1p62) {  // only to be refused; the casts below must not overflow
     plan.bytes = plan.leaf_nodes = plan.voxels = std::size_t{1} << 62;
     return plan;
@@ -126,15 +129,17 @@ bool fits(const GridPlan& plan, const MeshFacts& facts, std::size_t max_memory) 
 constexpr double kCoarser = 1.25;  // one step when looking for a size that fits
 
 /// The finest size, in steps from `h`, that fits; 0 if even a grid of a few voxels does not.
-double coarsen_until_it_fits(const Surface& surface, const Reach& farthest, double h, std::size_t max_memory) {
+double coarsen_until_it_fits(const Surface& surface, const Reach& farthest, double h, std::size_t max_memory,
+                             std::size_t beside) {
   const double coarsest = 4 * (surface.facts.diagonal + longer(farthest));
   for (; h < coarsest; h *= kCoarser)
-    if (fits(estimate(surface, farthest, h, 1), surface.facts, max_memory)) return h;
+    if (fits(estimate(surface, farthest, h, 1, beside), surface.facts, max_memory)) return h;
   return 0;
 }
 
-void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest, std::size_t max_memory) {
-  const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory);
+void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest, std::size_t max_memory,
+            std::size_t beside) {
+  const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory, beside);
   const auto mib = [](std::size_t bytes) { return static_cast<double>(bytes) / 1048576.0; };
   throw OutOfBudget(fmt::format(
       "plan: expected a grid that fits into {:.0f} MiB and {:.0f} voxels across, got about {:.0f} MiB in {} leaf nodes "
@@ -163,7 +168,7 @@ Choice choose(const MeshFacts& facts, double d) {
 }  // namespace
 
 GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
-                   int threads) {
+                   int threads, std::size_t beside) {
   const MeshFacts& facts = surface.facts;
   const double distance = longer(farthest);
   if (!std::isfinite(distance) || distance == 0)
@@ -191,13 +196,27 @@ GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOpti
               fmt::format("distance / {:.6g}, as given", *options.voxels_per_distance)};
   } else {
     choice = choose(facts, distance);
-    const double fitting = coarsen_until_it_fits(surface, farthest, choice.voxel_size, max_memory);
+    const double fitting = coarsen_until_it_fits(surface, farthest, choice.voxel_size, max_memory, beside);
     if (fitting > choice.voxel_size) choice = {fitting, "the finest that the memory allows"};
   }
-  GridPlan plan = estimate(surface, farthest, choice.voxel_size, threads);
+  GridPlan plan = estimate(surface, farthest, choice.voxel_size, threads, beside);
   plan.reason = choice.reason;
-  if (!fits(plan, facts, max_memory)) refuse(plan, surface, farthest, max_memory);
+  if (!fits(plan, facts, max_memory)) refuse(plan, surface, farthest, max_memory, beside);
   return plan;
+}
+
+std::size_t surface_bytes(const Surface& surface) {
+  return kTriangleBytes * surface.triangles.size() + kVertexBytes * surface.facts.vertices;
+}
+
+std::size_t layers_bytes(PolygonView mesh, std::size_t layers) {
+  std::size_t cells = mesh.face_count() * kLayerFaceBytes;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::size_t corners = mesh.face(f).size();
+    // A polyhedron's faces list their corners: a base, a top and a quad for each side.
+    cells += 4 * (corners > 4 ? 3 + 7 * corners : 2 * corners);
+  }
+  return layers * (cells + mesh.positions.size() * kLayerVertexBytes);
 }
 
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,

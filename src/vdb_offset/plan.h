@@ -31,11 +31,18 @@ struct GridPlan {
 /// distance itself (the farthest, where they differ), no finer than half the median edge or diagonal / 1024, no coarser
 /// than diagonal / 64 or distance / 16, whichever is larger, and coarser still where `max_memory` (bytes; 0 for no
 /// limit) asks for it. A size that the caller gives is taken as it is. `farthest` is how far vertices go on each side,
-/// world units; not 0 on both. \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
+/// world units; not 0 on both. `beside` are the bytes that the run needs beside this surface and its field.
+/// \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
 GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
-                   int threads);
+                   int threads, std::size_t beside = 0);
 /// The same for one distance, negative inward.
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
                    int threads);
+
+/// Bytes that a surface takes with all that is made from it.
+std::size_t surface_bytes(const Surface& surface);
+
+/// Bytes of so many layers of cells on a mesh.
+std::size_t layers_bytes(PolygonView mesh, std::size_t layers);
 
 }  // namespace vdb_offset

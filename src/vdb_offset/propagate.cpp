@@ -32,7 +32,7 @@ constexpr double kLeastStep = 0.1;
 // A path on which the distance grows by less than this share of a step gets nowhere.
 constexpr double kSlowest = 0.01;
 // Who has come so near to a stop in haste, as a share of its distance, goes on from there.
-constexpr double kOnTheWay = 0.5;
+constexpr double kOnTheWay = 0.7;
 // How much the distance must rise there along the way, per length.
 constexpr double kStillRising = 0.5;
 // Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.

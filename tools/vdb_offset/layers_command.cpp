@@ -75,7 +75,8 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   const std::vector<Distances> heights = settle_layers(source, args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
-    print_dry_run(args, plan_several(source.view(), std::span(heights).last(1), args.options), heights.back());
+    print_dry_run(args, plan_several(source.view(), std::span(heights).last(1), args.options, heights.size()),
+                  heights.back());
     return true;
   }
   require_names(args, heights.size());
