@@ -142,6 +142,34 @@ TEST_CASE("layers: the outermost surface of a cylinder's side has its radius", "
           Approx(outer).epsilon(1e-6));
 }
 
+TEST_CASE("layers: quads with straight or reflex corners carry prisms, others hexahedra", "[layers]") {
+  Polygons mesh;
+  const auto add = [&](const std::vector<Vec3d>& points, const std::vector<std::vector<std::uint32_t>>& faces) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), points.begin(), points.end());
+    for (const auto& face : faces) {
+      for (const auto v : face) mesh.corners.push_back(first + v);
+      mesh.close_face();
+    }
+  };
+  // A dart and the kite that makes a square of it, by each first corner of the dart; then a straight corner.
+  for (std::uint32_t k = 0; k < 4; ++k)
+    add({{3. * k, 0, 0}, {3. * k + 1, 0, 0}, {3. * k + 0.3, 0.3, 0}, {3. * k, 1, 0}, {3. * k + 1, 1, 0}},
+        {{k, (k + 1) % 4, (k + 2) % 4, (k + 3) % 4}, {1, 4, 3, 2}});
+  add({{0, -3, 0}, {0.5, -3, 0}, {1, -3, 0}, {0.5, -2, 0}, {0, -4, 0}, {0.5, -4, 0}, {1, -4, 0}},
+      {{0, 1, 2, 3}, {4, 5, 1, 0}, {5, 6, 2, 1}});
+  for (const double sign : {1.0, -1.0}) {
+    const Grown grown = grow(mesh, growing(sign * 0.01, 1.2, 3));
+    CHECK(grown.layers.layer_statistics.flat_vertices == 0);
+    CHECK(grown.report.all.coverage == Approx(1));
+    CHECK(grown.report.all.cells_by_type[static_cast<std::size_t>(CellType::Prism)] == 3 * 2 * 5);
+    CHECK(grown.report.all.cells_by_type[static_cast<std::size_t>(CellType::Hexahedron)] == 3 * (4 + 2));
+    CHECK(positive_cells(grown.volume) == 1);
+    CHECK(grown.volume.patches[0].face_count() == 2 * 5 + 6);
+    CHECK(grown.report.volume == Approx((4 + 0.5 + 1) * 0.01 * (1 + 1.2 + 1.44)).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("layers: scenes with corners, creases and narrow places have valid cells", "[layers]") {
   struct Case {
     const char* name;

@@ -1,8 +1,10 @@
 #include "vdb_offset/columns.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <numeric>
+#include <optional>
 
 #include "vdb_offset/parallel.h"
 
@@ -49,6 +51,30 @@ bool has_upright_hexahedra(std::span<const std::uint32_t> corners, const Stacks&
   return true;
 }
 
+/// Twice the area of triangle abc, as n sees it.
+double area_along(const Vec3d& n, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return (b - a).cross(c - a).dot(n);
+}
+
+/// The corner, 0 or 1, that a quad is to be split at into two triangles, as one of its corners is straight or turns
+/// inwards, where no hexahedron can be valid. None for other quads, and for those that neither diagonal splits well.
+std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
+  constexpr double kStraight = 0.02;  // sine of the angle by which a corner that goes on ahead has to turn
+  const Vec3d n = (x[2] - x[0]).cross(x[3] - x[1]);
+  bool convex = true;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3d in = x[k] - x[(k + 3) % 4], out = x[(k + 1) % 4] - x[k];
+    const double turn = in.cross(out).dot(n), ahead = in.dot(out) > 0 ? kStraight : 0;
+    convex = convex && turn > ahead * in.length() * out.length() * n.length();
+  }
+  if (convex) return std::nullopt;
+  double smaller[2];
+  for (std::size_t a = 0; a < 2; ++a)
+    smaller[a] = std::min(area_along(n, x[a], x[a + 1], x[a + 2]), area_along(n, x[a + 2], x[(a + 3) % 4], x[a]));
+  const std::size_t best = smaller[1] > smaller[0] ? 1 : 0;
+  return smaller[best] > 0 ? std::optional(best) : std::nullopt;
+}
+
 }  // namespace
 
 CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
@@ -62,7 +88,7 @@ CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec
     if (!body.is_front(t) || seen[face] == kCarries) continue;
     const auto& [a, b, c] = surface.triangles[t];
     seen[face] = (source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0 ? kCarries : kWithoutArea;
-    if (seen[face] == kCarries) add(mesh, surface, t);
+    if (seen[face] == kCarries) add(mesh, surface, t, source);
   }
   for (std::uint32_t f = 0; f < seen.size(); ++f)
     if (seen[f] == kWithoutArea) without_area_.push_back(f);
@@ -97,19 +123,29 @@ bool CellColumns::take_all(PolygonView mesh, const Body& body, std::span<const V
   return true;
 }
 
-void CellColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle) {
+void CellColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source) {
   const auto& [a, b, c] = surface.triangles[triangle];
-  const std::size_t first = corners_.size();
+  std::vector<std::uint32_t> polygon;
   for (const auto v : mesh.face(surface.face[triangle])) {
     const std::uint32_t w = surface.welded[v];
-    if (corners_.size() == first || corners_.back() != w) corners_.push_back(w);
+    if (polygon.empty() || polygon.back() != w) polygon.push_back(w);
   }
-  while (corners_.size() > first + 1 && corners_.back() == corners_[first]) corners_.pop_back();
-  const std::span<const std::uint32_t> polygon = std::span(corners_).subspan(first);
+  while (polygon.size() > 1 && polygon.back() == polygon.front()) polygon.pop_back();
   // One of the sides at least is the polygon's own.
   const bool turned = follows(polygon, b, a) || follows(polygon, c, b) || follows(polygon, a, c);
-  if (turned) std::reverse(corners_.begin() + static_cast<std::ptrdiff_t>(first), corners_.end());
-  begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
+  const auto take = [&](std::vector<std::uint32_t> base) {
+    if (turned) std::reverse(base.begin(), base.end());
+    corners_.insert(corners_.end(), base.begin(), base.end());
+    begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
+  };
+  std::optional<std::size_t> split;
+  if (polygon.size() == 4)
+    split = corner_to_split_at({source[polygon[0]], source[polygon[1]], source[polygon[2]], source[polygon[3]]});
+  if (!split) return take(std::move(polygon));
+  const auto corner = [&](std::size_t k) { return polygon[(*split + k) % 4]; };
+  take({corner(0), corner(1), corner(2)});
+  take({corner(2), corner(3), corner(0)});
+  split_quads_.push_back({surface.face[triangle], static_cast<std::uint32_t>(*split)});
 }
 
 Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const {

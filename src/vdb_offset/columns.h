@@ -35,7 +35,8 @@ class Stacks {
 /// The columns of cells that stand on the faces of a body's front, on its welded vertices.
 ///
 /// A column's base runs as its face's triangles do in the surface, seen from where they face. Faces that the surface
-/// leaves out, as repeated ones, and those without area carry none.
+/// leaves out, as repeated ones, and those without area carry none. A quad with a corner that is straight or turns
+/// inwards carries two columns of prisms.
 class CellColumns {
  public:
   /// `mesh` is the one that the body's surface was built from.
@@ -47,6 +48,11 @@ class CellColumns {
   }
   /// The input's faces that would carry one if they had an area, in rising order.
   std::span<const std::uint32_t> without_area() const { return without_area_; }
+  /// A quad on which two columns stand, on the triangles on both sides of its diagonal from corner `from`, 0 or 1.
+  struct SplitQuad {
+    std::uint32_t face, from;
+  };
+  std::span<const SplitQuad> split_quads() const { return split_quads_; }
   /// The columns that a vertex is a corner of.
   std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     return std::span(incident_).subspan(incident_begin_[vertex], incident_begin_[vertex + 1] - incident_begin_[vertex]);
@@ -64,10 +70,11 @@ class CellColumns {
 
  private:
   bool take_all(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
-  void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle);
+  void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source);
 
   std::vector<std::uint32_t> corners_, begin_{0}, without_area_;
   std::vector<std::uint32_t> incident_, incident_begin_;
+  std::vector<SplitQuad> split_quads_;
 };
 
 }  // namespace vdb_offset

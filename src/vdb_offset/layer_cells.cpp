@@ -117,9 +117,23 @@ Columns find_polygons(PolygonView mesh, const LayersResult& layers, std::span<co
       continue;
     }
     facts.role[f] = FaceRole::Full;
-    columns.corners.insert(columns.corners.end(), ring.begin(), ring.end());
-    columns.begin.push_back(static_cast<Index>(columns.corners.size()));
-    columns.face.push_back(static_cast<Index>(f));
+    const bool split = !layers.carries.empty() && layers.carries[f] > 1 && ring.size() == 4;
+    const auto add = [&](std::initializer_list<std::size_t> places) {
+      for (const std::size_t k : places) columns.corners.push_back(ring[k % 4]);
+    };
+    const auto close = [&] {
+      columns.begin.push_back(static_cast<Index>(columns.corners.size()));
+      columns.face.push_back(static_cast<Index>(f));
+    };
+    if (split) {
+      const std::size_t from = layers.carries[f] - 2u;
+      add({from, from + 1, from + 2});
+      close();
+      add({from + 2, from + 3, from});
+    } else {
+      columns.corners.insert(columns.corners.end(), ring.begin(), ring.end());
+    }
+    close();
   }
   return columns;
 }
@@ -129,26 +143,31 @@ void keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
                   LayerCellFacts& facts) {
   const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
   const std::vector<std::uint8_t> repeated = find_repeated_faces(columns.corners, columns.begin);
+  const std::vector<Index> face = columns.face;
   std::size_t kept = 0;
-  Index end = 0;
-  for (std::size_t c = 0, begin = 0; c < columns.count(); ++c) {
+  Index end = 0, last_face = kNone;
+  for (std::size_t c = 0, begin = 0; c < face.size(); ++c) {
     const auto ring = std::span(columns.corners).subspan(begin, columns.begin[c + 1] - begin);
     begin = columns.begin[c + 1];
     const auto flats =
         static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index v) { return flat[v] != 0; }));
-    FaceRole& role = facts.role[columns.face[c]];
-    role = repeated[c] != 0       ? FaceRole::Repeated
-           : flats == ring.size() ? FaceRole::Flat
-           : flats > 0            ? FaceRole::Transition
-                                  : FaceRole::Full;
+    const FaceRole role = repeated[c] != 0       ? FaceRole::Repeated
+                          : flats == ring.size() ? FaceRole::Flat
+                          : flats > 0            ? FaceRole::Transition
+                                                 : FaceRole::Full;
+    // The second of a split quad's columns: where they differ, layers end in it.
+    const bool second = face[c] == last_face;
+    last_face = face[c];
+    FaceRole& of_face = facts.role[face[c]];
+    of_face = second && of_face != role ? FaceRole::Transition : role;
     if (role == FaceRole::Repeated || role == FaceRole::Flat) continue;
     const double side = rises(layers, ring);
     const bool turned = side != 0 && (side < 0) != inward;
-    facts.turned_faces += turned;
+    facts.turned_faces += turned && !second;
     if (turned != inward) std::reverse(ring.begin() + 1, ring.end());
     std::copy(ring.begin(), ring.end(), columns.corners.begin() + end);
     end += static_cast<Index>(ring.size());
-    columns.face[kept++] = columns.face[c];
+    columns.face[kept++] = face[c];
     columns.begin[kept] = end;
   }
   columns.face.resize(kept);
@@ -440,8 +459,9 @@ void count_cells(const Numbering& points, Columns& columns, LayerCellFacts& fact
   for_each_index(columns.count(), [&](std::size_t c) {
     Stack(points, columns.ring(c), 0)
         .visit_cells([&](CellType) { ++columns.cells[c + 1]; }, [&](Index) { ++columns.size[c + 1]; });
-    facts.cells[columns.face[c]] = static_cast<std::uint8_t>(columns.cells[c + 1]);
   });
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    facts.cells[columns.face[c]] = static_cast<std::uint8_t>(facts.cells[columns.face[c]] + columns.cells[c + 1]);
   std::partial_sum(columns.cells.begin(), columns.cells.end(), columns.cells.begin());
   std::partial_sum(columns.size.begin(), columns.size.end(), columns.size.begin());
 }

@@ -18,7 +18,8 @@ struct LayersResult {
   std::vector<VertexState> states;     ///< Of the outermost surface's vertices.
   std::vector<double> achieved;        ///< Exact distance of the outermost surface's vertices, world units.
   std::vector<double> first_achieved;  ///< The same of the first layer's.
-  /// Of each face of the input: 1 if it is part of what is offset, and has an area. Empty: all are and have.
+  /// Of each face of the input: 0 if it is no part of what is offset, or has no area; 1 if it carries layers; 2 or 3 if
+  /// it is a quad that does so as two triangles, on both sides of its diagonal from corner 0 or 1. Empty: all carry.
   std::vector<std::uint8_t> carries;
   OffsetStatistics statistics;
   LayerStatistics layer_statistics;

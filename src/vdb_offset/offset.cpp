@@ -328,9 +328,10 @@ class Pipeline {
       for (std::size_t k = 1; k <= heights.size(); ++k) result.positions[k][v] = stack.stacks.of(w)[k];
     });
     for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
-    result.carries = options_.only;
-    if (result.carries.empty()) result.carries.assign(mesh_.face_count(), 1);
+    result.carries.assign(mesh_.face_count(), 1);
+    for (std::size_t f = 0; f < options_.only.size(); ++f) result.carries[f] = options_.only[f] != 0;
     for (const auto f : columns.without_area()) result.carries[f] = 0;
+    for (const auto& [f, from] : columns.split_quads()) result.carries[f] = static_cast<std::uint8_t>(2 + from);
     return result;
   }
 
