@@ -271,6 +271,50 @@ TEST_CASE("layers: on a part of a box whose edge slides, the sides stay flat", "
   if (options.border != Border::Fixed) CHECK(grown.report.volume == Approx(heights.back()[0]).epsilon(1e-6));
 }
 
+TEST_CASE("layers: where the edge of a part slides on a bent surface, all layers end on that", "[layers][oracle]") {
+  // A bowl, part of a sphere, with a flat lid, from which layers grow down into it. Rings from the lid's middle on.
+  constexpr std::uint32_t kAround = 64, kLid = 8, kSide = 24;
+  Polygons bowl, lid;
+  OffsetOptions options;
+  const auto add = [&](std::uint32_t ring, std::initializer_list<std::uint32_t> face) {
+    bowl.add_face(face);
+    if (ring < kLid) lid.add_face(face);
+    options.only.push_back(ring < kLid);
+  };
+  const double top = 0.3, lid_radius = std::sqrt(1 - top * top);
+  bowl.positions.emplace_back(0, 0, top);
+  for (std::uint32_t ring = 0; ring < kLid + kSide; ++ring) {
+    const double z = ring < kLid ? top : top - (ring + 1 - kLid) * 1.2 / kSide;
+    const double radius = ring < kLid ? lid_radius * (ring + 1) / kLid : std::sqrt(1 - z * z);
+    for (std::uint32_t k = 0; k < kAround; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kAround;
+      bowl.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+      const std::uint32_t next = (k + 1) % kAround, base = 1 + ring * kAround, below = base - kAround;
+      if (ring == 0) add(ring, {0, base + k, base + next});
+      else add(ring, {below + k, base + k, base + next, below + next});
+    }
+  }
+  bowl.positions.emplace_back(0, 0, -1);
+  const std::uint32_t bottom = (kLid + kSide) * kAround + 1, last = bottom - kAround;
+  for (std::uint32_t k = 0; k < kAround; ++k) add(kLid, {last + k, bottom, last + (k + 1) % kAround});
+
+  const Grown grown = grow(bowl, growing(-0.015, 1.2, 6), options);  // over three rings of the side
+  CHECK(positive_cells(grown.volume) == 1);
+  CHECK(grown.report.all.coverage == Approx(1));
+  lid.positions = bowl.positions;
+  check_heights(lid, grown.layers, 7);
+  double off_side = 0, off_chord = 0;
+  for (std::size_t v = 1 + (kLid - 1) * kAround; v < 1 + kLid * kAround; ++v)
+    for (std::size_t k = 1; k <= grown.layers.count(); ++k) {
+      const Vec3d &x = grown.layers.positions[k][v], &wall = bowl.positions[v];
+      const Vec3d chord = grown.layers.positions.back()[v] - wall;
+      off_side = std::max(off_side, test::brute_force_distance(bowl.view(), x));
+      off_chord = std::max(off_chord, chord.cross(x - wall).length() / chord.length());
+    }
+  CHECK(off_side < 1e-9);
+  CHECK(off_chord > 1e-3);
+}
+
 TEST_CASE("layers: heights may differ from vertex to vertex", "[layers][oracle]") {
   const Polygons mesh = scene::icosphere(0.5, 4);
   std::vector<Distances> heights;

@@ -25,9 +25,13 @@ struct Body {
   std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave the path it went.
   const Obstacles* obstacles = nullptr;         ///< Those to keep away from, if there are any.
   bool off_source = false;                      ///< What has moved must not meet the source either, as in a shell.
+  /// Faces of the mesh, if what is off the front stays as a whole while layers rise from it: border vertices then go
+  /// along those faces instead of taking them along. 0: they are taken along.
+  std::size_t resting_faces = 0;
 
   bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
   bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
+  bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
   /// A triangle of the front to start a search from.
   std::uint32_t hint(std::uint32_t vertex) const {

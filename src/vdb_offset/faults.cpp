@@ -79,7 +79,9 @@ void FaultFinder::look_for_crossings(const Indices& touched) {
   // Pairs that have not moved meet as before.
   std::erase_if(crossings_, [&](const TrianglePair& pair) { return has_moved(pair.first) || has_moved(pair.second); });
   for (const TrianglePair& pair : first ? finder_.all() : finder_.of(touched)) {
-    if (std::binary_search(source_crossings().begin(), source_crossings().end(), pair)) continue;
+    if (goes_along(pair.first, pair.second) || goes_along(pair.second, pair.first) ||
+        std::binary_search(source_crossings().begin(), source_crossings().end(), pair))
+      continue;
     if (source_crossings_->is_near(pair.first) || source_crossings_->is_near(pair.second))
       crossings_near_source_ += first;
     else crossings_.push_back(pair);
@@ -142,8 +144,20 @@ Vec3d FaultFinder::twice_area(std::uint32_t t, std::span<const Vec3d> at) const 
   return (at[b] - at[a]).cross(at[c] - at[a]);
 }
 
+bool FaultFinder::has_bound(std::uint32_t t) const {
+  const auto& corners = surface_.triangles[t];
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return body_.is_bound(v); });
+}
+
+/// Whether a face that rests is met by one that has to: whose edge goes along such faces; or is not where it seems to
+/// be, as the edge that it shares has gone.
+bool FaultFinder::goes_along(std::uint32_t resting, std::uint32_t other) const {
+  return body_.rests(resting) && (has_bound(resting) || has_bound(other));
+}
+
 FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
   constexpr double kCollapsed = 1e-6;
+  if (body_.rests(t)) return Fault::None;
   const Vec3d before = twice_area(t, source_), now = twice_area(t, place_);
   if (!(before.lengthSqr() > 0)) return Fault::None;
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
@@ -164,8 +178,8 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
                            {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
 }
 
-/// What stays is in nobody's way here: edges slide along it. Where the source crosses itself, what leaves one sheet has
-/// to go through the other.
+/// What stays is in nobody's way here, as edges slide along it; but where it rests, that at the border is, too, in the
+/// way of what has no such edge. Where the source crosses itself, what leaves one sheet has to go through the other.
 bool FaultFinder::meets_source(std::uint32_t t) const {
   // The ball around a corner, as large as its distance, holds no surface; often it holds the whole face.
   const auto& corners = surface_.triangles[t];
@@ -176,6 +190,7 @@ bool FaultFinder::meets_source(std::uint32_t t) const {
   }
   const Indices met = source_finder_->met_by(t, place_);
   return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
+    if (body_.rests(s) && has_bound(s)) return !has_bound(t);
     return body_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));
   });
 }

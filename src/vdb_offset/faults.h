@@ -90,6 +90,8 @@ class FaultFinder {
   bool is_misplaced(std::uint32_t vertex) const;
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
   Fault judge(std::uint32_t triangle) const;
+  bool has_bound(std::uint32_t triangle) const;
+  bool goes_along(std::uint32_t resting, std::uint32_t other) const;
   bool is_crowded(std::uint32_t triangle) const;
   bool meets_source(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;

@@ -35,10 +35,11 @@ struct Rail {
 
 class Stacker {
  public:
-  Stacker(const Body& body, const CellColumns& columns, std::span<const Vec3d> source,
+  Stacker(const Body& body, const BorderSlides* slides, const CellColumns& columns, std::span<const Vec3d> source,
           std::span<const Distances> heights, FaultFinder& faults, Paths& paths)
       : body_(body),
         front_(body.front.surface()),
+        slides_(slides),
         columns_(columns),
         source_(source),
         heights_(heights),
@@ -170,7 +171,23 @@ class Stacker {
   void put(std::uint32_t v, Near& near) {
     std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
     if (!(stack_.share[v] > 0)) return;
+    if (slides_ && body_.is_bound(v) && put_along_border(v)) return;
     if (!put_among_few(v, near)) put_with_care(v);
+  }
+
+  /// False if a vertex gets to one of its heights not by sliding there.
+  bool put_along_border(std::uint32_t v) {
+    const auto stack = stack_.stacks.of(v);
+    for (std::size_t k = heights_.size(); k-- > 0;) {
+      const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
+      const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
+      const Vec3d way =
+          at_end ? paths_.displacement[v] : round_way((*slides_)(v, height) - body_.surface.vertices[v], target);
+      stack[k + 1] = source_[v] + way;
+      stack_.first_achieved[v] = body_.front(stack[k + 1] - front_.origin, body_.hint(v)).distance;
+      if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
+    }
+    return true;
   }
 
   /// The distance of a point, and the way there from the surface.
@@ -454,6 +471,7 @@ class Stacker {
 
   const Body& body_;
   const Surface& front_;
+  const BorderSlides* slides_;
   const CellColumns& columns_;
   std::span<const Vec3d> source_;
   std::span<const Distances> heights_;
@@ -469,12 +487,12 @@ class Stacker {
 
 }  // namespace
 
-LayerStack stack_layers(const Body& body, const CellColumns& columns, std::span<const Vec3d> source,
-                        std::span<const Distances> heights, FaultFinder& faults, Paths& paths,
-                        const ProgressCallback& callback) {
+LayerStack stack_layers(const Body& body, const BorderSlides* slides, const CellColumns& columns,
+                        std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
+                        Paths& paths, const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
-  return Stacker(body, columns, source, heights, faults, paths).run(progress);
+  return Stacker(body, slides, columns, source, heights, faults, paths).run(progress);
 }
 
 }  // namespace vdb_offset

@@ -215,7 +215,7 @@ class Pipeline {
     distances_.push_back(on_vertices.back());
     std::vector<Paths> paths = march();
     OffsetStatistics statistics = shared_;
-    const Body body = work_.body(*query_, keep_away(), true);
+    const Body body = work_.body(*query_, keep_away(), true, slides_ ? mesh_.face_count() : 0);
     const std::vector<Vec3d> source = work_.source(mesh_);
     FaultFinder faults(body, source, distances_.front(), options_.precision);
     {
@@ -227,7 +227,8 @@ class Pipeline {
     {
       const StageTimer timer(statistics, Stage::Layers);
       columns.emplace(mesh_, body, source);
-      stack = stack_layers(body, *columns, source, on_vertices, faults, paths.front(), options_.progress);
+      stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, faults, paths.front(),
+                           options_.progress);
     }
     statistics.limit.left = faults.count();
     return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
@@ -273,8 +274,9 @@ class Pipeline {
     std::vector<Distances> on_front;
     for (const Distances& distances : distances_) on_front.push_back(distances_on_front(work_, distances));
     std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress);
+    if (options_.border == Border::Slide && work_.rest) slides_.emplace(work_, *query_);
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      if (options_.border == Border::Slide) slide_borders(work_, *query_, on_front[i], paths[i]);
+      if (slides_) slide_borders(work_, *slides_, *query_, on_front[i], paths[i]);
       paths[i] = paths_of_body(work_, std::move(paths[i]));
     }
     return paths;
@@ -356,6 +358,7 @@ class Pipeline {
   DistanceField field_;
   std::optional<ClosestQuery> query_, obstacles_;
   std::optional<Obstacles> keep_away_;
+  std::optional<BorderSlides> slides_;
   std::optional<std::vector<TrianglePair>> source_crossings_;
 };
 

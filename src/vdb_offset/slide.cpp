@@ -145,9 +145,15 @@ class BorderVertex {
 
 }  // namespace
 
-void slide_borders(Workpiece& work, const ClosestQuery& front, const Distances& distances, Paths& paths) {
-  if (!work.rest) return;
-  const ClosestQuery rest(*work.rest);
+BorderSlides::BorderSlides(const Workpiece& work, const ClosestQuery& front)
+    : work_(work), front_(front), rest_(*work.rest) {}
+
+Vec3d BorderSlides::operator()(std::uint32_t vertex, double distance) const {
+  return BorderVertex(work_, front_, rest_, vertex, distance).slide();
+}
+
+void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
+                   Paths& paths) {
   std::vector<std::uint32_t> border;
   for (std::uint32_t v = 0; v < work.at_border.size(); ++v)
     if (work.at_border[v] && distances[work.front_vertex[v]] != 0) border.push_back(v);
@@ -155,8 +161,7 @@ void slide_borders(Workpiece& work, const ClosestQuery& front, const Distances& 
   const auto move = [&](std::size_t i) {
     const std::uint32_t v = border[i], f = work.front_vertex[v];
     const double target = std::abs(distances[f]);
-    const Vec3d end = BorderVertex(work, front, rest, v, distances[f]).slide();
-    paths.displacement[f] = round_way(end - work.whole->vertices[v], target);
+    paths.displacement[f] = round_way(slides(v, distances[f]) - work.whole->vertices[v], target);
     const Vec3d place = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
     const Closest closest = front(place - front.surface().origin, front.surface().triangles_around(f).front());
     paths.achieved[f] = closest.distance;

@@ -6,14 +6,30 @@
 
 namespace vdb_offset {
 
-/// Gives the border vertices of a part new paths, along what stays of the mesh, to their distances from the part.
+/// Border vertices of a part on their ways along what stays of the mesh.
 ///
 /// A vertex slides over the faces that stay around it, away from the part; where those turn away from the side that the
 /// part goes to by more than 30 degrees, as the sides of a box do from its lid, along their extension instead. Where
 /// they meet in one crease at the vertex it follows that, and where in more, it stays. On the faces it follows the
 /// surface's bends (steps along the tangent and back to the closest point); along an extension it goes straight.
-/// Such vertices are bound to their paths from then on. Their distances and paths are those of the front's vertices.
-/// The result does not depend on the number of threads.
-void slide_borders(Workpiece& work, const ClosestQuery& front, const Distances& distances, Paths& paths);
+class BorderSlides {
+ public:
+  /// Keeps references to both. \pre something of the mesh stays.
+  BorderSlides(const Workpiece& work, const ClosestQuery& front);
+
+  /// Where a vertex of the whole mesh, on the border, is at this distance from the part, negative inward; or as near to
+  /// that as it gets. In the front's frame.
+  Vec3d operator()(std::uint32_t vertex, double distance) const;
+
+ private:
+  const Workpiece& work_;
+  const ClosestQuery& front_;
+  ClosestQuery rest_;
+};
+
+/// Gives the border vertices new paths, to their distances. They are bound to these from then on. Distances and paths
+/// are those of the front's vertices. The result does not depend on the number of threads.
+void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
+                   Paths& paths);
 
 }  // namespace vdb_offset

@@ -37,8 +37,9 @@ struct Workpiece {
   std::vector<std::uint8_t> at_border;  ///< Of each vertex of the whole: 1 if both the front and the rest have it.
 
   const Surface& surface() const { return whole ? *whole : front; }
-  Body body(const ClosestQuery& query, const Obstacles* keep_away, bool off_source) const {
-    return {query, surface(), front_vertex, off_front, bound, keep_away, off_source};
+  Body body(const ClosestQuery& query, const Obstacles* keep_away, bool off_source,
+            std::size_t resting_faces = 0) const {
+    return {query, surface(), front_vertex, off_front, bound, keep_away, off_source, resting_faces};
   }
   /// Where the vertices of surface() stand in the input, to the last bit.
   std::vector<Vec3d> source(PolygonView mesh) const;
