@@ -7,6 +7,7 @@
 
 #include "oracles.h"
 #include "vdb_offset/cell_quality.h"
+#include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/layer_block.h"
 #include "vdb_offset/layer_report.h"
@@ -61,6 +62,22 @@ double positive_cells(const VolumeMesh& volume) {
   for (std::size_t c = 0; c < volume.cell_count(); ++c)
     positive += scaled_jacobian(volume, c) > 0 && cell_volume(volume, c) > 0;
   return static_cast<double>(positive) / static_cast<double>(volume.cell_count());
+}
+
+/// Pairs of the boundary's triangles that meet elsewhere than in corners and edges they share, by exact predicates.
+/// With none, and positive Jacobians inside, no two cells have a point in common that is not on their faces.
+std::size_t boundary_crossings(const VolumeMesh& volume) {
+  Polygons boundary;
+  boundary.positions = volume.points;
+  for (const VolumePatch& patch : volume.patches)
+    for (std::size_t f = 0; f < patch.face_count(); ++f) {
+      boundary.corners.insert(boundary.corners.end(), patch.face(f).begin(), patch.face(f).end());
+      boundary.close_face();
+    }
+  const Surface surface = build_surface(boundary.view(), {}, Orient::Keep);
+  std::vector<Vec3d> places;
+  for (const auto v : surface.representative) places.push_back(volume.points[v]);
+  return CrossingFinder(surface, places).all().size();
 }
 
 /// Vertices of one edge differ in thickness by no more than half of its length.
@@ -196,6 +213,7 @@ TEST_CASE("layers: scenes with corners, creases and narrow places have valid cel
     CHECK(grown.report.all.inverted_cells == 0);
     CHECK(grown.report.all.coverage >= c.least_coverage);
     CHECK(grown.layers.statistics.limit.left.total() == 0);
+    CHECK(boundary_crossings(grown.volume) == 0);
     check_heights(c.mesh, grown.layers, 37);
     check_evenness(c.mesh, grown.layers);
   }
