@@ -333,6 +333,36 @@ TEST_CASE("layers: where the edge of a part slides on a bent surface, all layers
   CHECK(off_chord > 1e-3);
 }
 
+TEST_CASE("layers: what rests at the edge of a part is in the way of what rises under it", "[layers]") {
+  // A floor, and from one edge of it a wall that leans over it.
+  constexpr std::uint32_t kLong = 80, kWide = 32;
+  constexpr double kSteepness = 0.3;
+  Polygons mesh;
+  for (std::uint32_t i = 0; i <= kLong; ++i)
+    for (std::uint32_t j = 0; j <= kWide; ++j) mesh.positions.emplace_back(i / 80.0, j / 32.0, 0);
+  for (std::uint32_t j = 0; j <= kWide; ++j) mesh.positions.emplace_back(0.5, j / 32.0, 0.5 * kSteepness);
+  const std::uint32_t row = kWide + 1, wall = (kLong + 1) * row;
+  OffsetOptions options;
+  for (std::uint32_t i = 0; i < kLong; ++i)
+    for (std::uint32_t j = 0; j < kWide; ++j) {
+      mesh.add_face({i * row + j, (i + 1) * row + j, (i + 1) * row + j + 1, i * row + j + 1});
+      options.only.push_back(1);
+    }
+  for (std::uint32_t j = 0; j < kWide; ++j) {
+    mesh.add_face({j + 1, wall + j + 1, wall + j, j});
+    options.only.push_back(0);
+  }
+  const Grown grown = grow(mesh, growing(0.02, 1.2, 4), options);
+  CHECK(positive_cells(grown.volume) == 1);
+  std::size_t high = 0;
+  for (std::uint32_t v = 0; v < wall; ++v) {
+    const Vec3d& x = grown.layers.positions.back()[v];
+    if (x[0] < 0.5) CHECK(x[2] <= kSteepness * x[0] + 1e-9);
+    high += x[2] > 0.1;
+  }
+  CHECK(high > 40 * row);
+}
+
 TEST_CASE("layers: heights may differ from vertex to vertex", "[layers][oracle]") {
   const Polygons mesh = scene::icosphere(0.5, 4);
   std::vector<Distances> heights;

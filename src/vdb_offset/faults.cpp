@@ -181,9 +181,10 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
 /// What stays is in nobody's way here, as edges slide along it; but where it rests, that at the border is, too, in the
 /// way of what has no such edge. Where the source crosses itself, what leaves one sheet has to go through the other.
 bool FaultFinder::meets_source(std::uint32_t t) const {
-  // The ball around a corner, as large as its distance, holds no surface; often it holds the whole face.
+  // The ball around a corner, as large as its distance, holds nothing of the front; often it holds the whole face.
   const auto& corners = surface_.triangles[t];
   for (const auto v : corners) {
+    if (body_.resting_faces > 0) break;
     double farthest = 0;
     for (const auto w : corners) farthest = std::max(farthest, (place_[w] - place_[v]).length());
     if (distance_[v] * kFreeShare > farthest) return false;
