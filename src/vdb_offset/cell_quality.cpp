@@ -8,6 +8,7 @@
 
 #include "vdb_offset/cell_faces.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/point_triangle.h"
 
 namespace vdb_offset {
 namespace {
@@ -61,26 +62,22 @@ struct EdgeLengths {
   double ratio() const { return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity(); }
 };
 
-/// Plain components: openvdb's vector operators copy their operands, which costs more than the arithmetic here.
-struct Direction {
-  double x, y, z;
-};
+using detail::Components;
+
 /// From one point to another, of length 1 or 0.
-Direction direction(const Vec3d& from, const Vec3d& to, EdgeLengths& lengths) {
-  const double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2];
-  const double squared = x * x + y * y + z * z, scale = squared > 0 ? 1 / std::sqrt(squared) : 0;
+Components direction(const Vec3d& from, const Vec3d& to, EdgeLengths& lengths) {
+  const Components way = Components::of(to) - Components::of(from);
+  const double squared = way.dot(way), scale = squared > 0 ? 1 / std::sqrt(squared) : 0;
   lengths.add(squared);
-  return {x * scale, y * scale, z * scale};
+  return {way.x * scale, way.y * scale, way.z * scale};
 }
-double triple(const Direction& a, const Direction& b, const Direction& c) {
-  return (a.y * b.z - a.z * b.y) * c.x + (a.z * b.x - a.x * b.z) * c.y + (a.x * b.y - a.y * b.x) * c.z;
-}
+double triple(const Components& a, const Components& b, const Components& c) { return a.cross(b).dot(c); }
 
 /// Of a prism over a polygon of N corners: k below, N + k above. Each edge serves two corners.
 template <std::size_t N>
 Quality ring_quality(const CellPoints& x) {
   EdgeLengths lengths;
-  Direction below[N], above[N], up[N];
+  Components below[N], above[N], up[N];
   for (std::size_t k = 0; k < N; ++k) {
     const std::size_t next = (k + 1) % N;
     below[k] = direction(x[k], x[next], lengths);
