@@ -40,7 +40,8 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     const scene::Scene scene = scene::read_scene(entry.path().string());
     REQUIRE(scene.mesh_path.empty());
     OffsetOptions options;
-    options.distance = scene::distances_of(scene.distance, scene.shape.view(), {}, Orient::Keep, {});
+    options.distance =
+        scene::distances_of(scene.distance, scene.shape.view(), [&] { return vertex_normals(scene.shape.view()); }, {});
     scene.set(options);
     CHECK(scene::unmet(scene.expect, scene.shape.view(), offset(scene.shape.view(), options)) ==
           std::vector<std::string>{});

@@ -35,6 +35,9 @@ class ClosestQuery {
   /// and the surface. `hint` is any triangle, best one that was close to a point nearby.
   Closest operator()(const Vec3d& x, std::uint32_t hint) const;
 
+  /// Of the triangles around a first one alone: see Surface::walk_to_closest.
+  TrianglePoint near(const Vec3d& x, std::uint32_t& triangle) const { return surface_.walk_to_closest(x, triangle); }
+
   /// The same for points that are near each other, as those of neighbouring vertices are, with a hint each: in a third
   /// of the time, as what is far from all of them is left out once for all. The answers depend only on the points
   /// together, the hints and the surface. \pre as many hints and answers as points

@@ -25,6 +25,7 @@ struct FieldGrids {
   openvdb::FloatGrid::Ptr phi;
   openvdb::Int32Grid::Ptr closest;
   double voxel_size = 0;
+  bool slab = false;  ///< One leaf node thick in z: phi is taken to be the same above and below, as by a ribbon it is.
 };
 
 /// The narrow band that the surface was rasterised into: every voxel within `band` of it is active and exact.

@@ -50,6 +50,8 @@ class LeafGraph {
   explicit LeafGraph(FieldGrids& grids);
 
   std::size_t size() const { return leaves_.size(); }
+  /// Faces that a field spreads across: those of a slab look along x and y, the first four.
+  int open_faces() const { return grids_.slab ? 4 : kFaces; }
   const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
 
   /// The neighbour across a face; made if there is none, without active voxels and with buffers yet to be allocated

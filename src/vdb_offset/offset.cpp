@@ -1,10 +1,8 @@
 #include "vdb_offset/offset.h"
 
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -14,6 +12,7 @@
 #include "vdb_offset/layers.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/rasterise.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/slide.h"
 
 namespace vdb_offset {
@@ -21,29 +20,6 @@ namespace {
 
 // Triangles that the error between vertices is measured on.
 constexpr std::size_t kInteriorTriangles = 10000;
-
-/// Adds the time that it lives to one stage's seconds.
-class StageTimer {
- public:
-  StageTimer(OffsetStatistics& statistics, Stage stage)
-      : seconds_(statistics.seconds[static_cast<std::size_t>(stage)]), start_(Clock::now()) {}
-  ~StageTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double& seconds_;
-  Clock::time_point start_;
-};
-
-int thread_count(const OffsetOptions& options) {
-  if (options.threads < 0)
-    throw InvalidInput("offset: expected 0 threads or more, got " + std::to_string(options.threads));
-  // More than the machine has would only be asked for in vain.
-  const int most = tbb::info::default_concurrency();
-  return options.threads > 0 ? std::min(options.threads, most) : most;
-}
 
 void require_one_each(PolygonView mesh, const Distances& distances) {
   if (!distances.uniform() && distances.count() != mesh.positions.size())
@@ -158,14 +134,6 @@ void move_vertices(PolygonView mesh, const Surface& surface, const Paths& paths,
     result.achieved[v] = paths.achieved[w];
   }
   result.statistics.straight_vertices = paths.straight;
-}
-
-void describe_field(const DistanceField& field, const DirectionField& directions, OffsetStatistics& statistics) {
-  statistics.active_voxels = field.phi->activeVoxelCount();
-  statistics.leaf_nodes = field.phi->tree().leafCount();
-  statistics.phi_bytes = field.phi->memUsage();
-  statistics.closest_bytes = field.closest->memUsage();
-  statistics.gradient_bytes = directions.gradient->memUsage();
 }
 
 /// How far any vertex goes on each side, for any of the distances.
@@ -369,25 +337,23 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   for (const Distances& each : distances) require_one_each(mesh, each);
   require_clearance(options);
-  const int threads = thread_count(options);
+  const int threads = thread_count(options.threads);
   std::vector<OffsetResult> results;
   // An arena of its own keeps the number of threads a matter of this call alone.
   tbb::task_arena arena(threads);
   arena.execute([&] { results = Pipeline(mesh, options, threads).run(distances); });
-  for (OffsetResult& result : results)
-    for (const VertexState state : result.states)
-      ++result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
+  for (OffsetResult& result : results) count_states(result.states, result.statistics);
   return results;
 }
 
 LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options) {
   require_heights(mesh, heights);
   require_clearance(options);
-  const int threads = thread_count(options);
+  const int threads = thread_count(options.threads);
   LayersResult result;
   tbb::task_arena arena(threads);
   arena.execute([&] { result = Pipeline(mesh, options, threads).grow(heights); });
-  for (const VertexState state : result.states) ++result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
+  count_states(result.states, result.statistics);
   return result;
 }
 
@@ -422,7 +388,7 @@ OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options) {
 OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options,
                               std::size_t layers) {
   OffsetStatistics statistics;
-  statistics.threads = thread_count(options);
+  statistics.threads = thread_count(options.threads);
   const Workpiece work = build_workpiece(mesh, {options.only, options.obstacles, options.weld, options.orient});
   statistics.facts = work.surface().facts;
   const Reach farthest = farthest_of(distances);

@@ -148,35 +148,25 @@ void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest,
       fitting > 0 ? fmt::format("voxel size {:.6g} would fit", fitting) : "the mesh itself does not fit"));
 }
 
-struct Choice {
-  double voxel_size;
-  std::string reason;
-};
-
-Choice choose(const MeshFacts& facts, double d) {
-  const double edge_floor = facts.median_edge / 2, diagonal_floor = facts.diagonal / 1024;
-  const double floor = std::max(edge_floor, diagonal_floor), ceiling = std::max(facts.diagonal / 64, d / 16);
+VoxelSize choose(double median_edge, double diagonal, double d) {
+  const double edge_floor = median_edge / 2, diagonal_floor = diagonal / 1024;
+  const double floor = std::max(edge_floor, diagonal_floor), ceiling = std::max(diagonal / 64, d / 16);
   if (d < floor && floor <= ceiling)
     return {floor, edge_floor >= diagonal_floor ? "half the median edge, as the distance is smaller"
                                                 : "diagonal / 1024, as the distance is smaller"};
   if (d > ceiling || floor > ceiling)
-    return {ceiling, facts.diagonal / 64 >= d / 16 ? "diagonal / 64, the coarsest useful size"
-                                                   : "distance / 16, the coarsest useful size"};
+    return {ceiling, diagonal / 64 >= d / 16 ? "diagonal / 64, the coarsest useful size"
+                                             : "distance / 16, the coarsest useful size"};
   return {d, "the distance: the smoothing length of the directions"};
 }
 
-}  // namespace
-
-GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
-                   int threads, std::size_t beside) {
-  const MeshFacts& facts = surface.facts;
-  const double distance = longer(farthest);
+void require_lengths(double diagonal, double distance, const GridOptions& options) {
   if (!std::isfinite(distance) || distance == 0)
     throw InvalidInput(fmt::format("plan: expected a finite distance other than 0, got {}", distance));
-  if (!(facts.diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point");
+  if (!(diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point");
   // phi is stored in single precision.
-  for (const double length : {facts.diagonal, distance, options.voxel_size.value_or(facts.diagonal),
-                              distance / options.voxels_per_distance.value_or(1)})
+  for (const double length :
+       {diagonal, distance, options.voxel_size.value_or(diagonal), distance / options.voxels_per_distance.value_or(1)})
     if (!(length > 1e-30 && length < 1e30))
       throw InvalidInput(
           fmt::format("plan: expected a diagonal, a distance and a voxel size from 1e-30 to 1e30, got "
@@ -187,19 +177,28 @@ GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOpti
   for (const auto& given : {options.voxel_size, options.voxels_per_distance})
     if (given && (!std::isfinite(*given) || *given <= 0))
       throw InvalidInput(fmt::format("plan: expected a positive voxel size or voxels per distance, got {}", *given));
+}
 
-  Choice choice;
-  if (options.voxel_size) {
-    choice = {*options.voxel_size, "as given"};
-  } else if (options.voxels_per_distance) {
-    choice = {distance / *options.voxels_per_distance,
-              fmt::format("distance / {:.6g}, as given", *options.voxels_per_distance)};
-  } else {
-    choice = choose(facts, distance);
-    const double fitting = coarsen_until_it_fits(surface, farthest, choice.voxel_size, max_memory, beside);
-    if (fitting > choice.voxel_size) choice = {fitting, "the finest that the memory allows"};
+}  // namespace
+
+VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options) {
+  require_lengths(diagonal, distance, options);
+  if (options.voxel_size) return {*options.voxel_size, "as given"};
+  if (options.voxels_per_distance)
+    return {distance / *options.voxels_per_distance,
+            fmt::format("distance / {:.6g}, as given", *options.voxels_per_distance)};
+  return choose(median_edge, diagonal, distance);
+}
+
+GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
+                   int threads, std::size_t beside) {
+  const MeshFacts& facts = surface.facts;
+  VoxelSize choice = choose_voxel_size(facts.median_edge, facts.diagonal, longer(farthest), options);
+  if (!options.voxel_size && !options.voxels_per_distance) {
+    const double fitting = coarsen_until_it_fits(surface, farthest, choice.size, max_memory, beside);
+    if (fitting > choice.size) choice = {fitting, "the finest that the memory allows"};
   }
-  GridPlan plan = estimate(surface, farthest, choice.voxel_size, threads, beside);
+  GridPlan plan = estimate(surface, farthest, choice.size, threads, beside);
   plan.reason = choice.reason;
   if (!fits(plan, facts, max_memory)) refuse(plan, surface, farthest, max_memory, beside);
   return plan;

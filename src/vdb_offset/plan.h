@@ -39,6 +39,14 @@ GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOpti
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
                    int threads);
 
+/// A voxel size, world units, and why.
+struct VoxelSize {
+  double size;
+  std::string reason;
+};
+/// The same choice, memory aside, for what has this median edge and this diagonal. \throw InvalidInput as plan_grid()
+VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options);
+
 /// Bytes that a surface takes with all that is made from it.
 std::size_t surface_bytes(const Surface& surface);
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "vdb_offset/parallel.h"
 
@@ -56,7 +57,10 @@ struct Start {
   double slope;
 };
 
-double least_cosine(const Surface& surface, std::uint32_t vertex, const Vec3d& n, std::uint32_t* worst = nullptr) {
+// What follows is written for a Surface and its ClosestQuery, and for a Polyline and its CurveQuery, alike.
+
+template <class Shape>
+double least_cosine(const Shape& surface, std::uint32_t vertex, const Vec3d& n, std::uint32_t* worst = nullptr) {
   double least = 1;
   for (const auto t : surface.triangles_around(vertex)) {
     const Vec3d& normal = surface.triangle_normals[t];
@@ -72,7 +76,8 @@ double least_cosine(const Surface& surface, std::uint32_t vertex, const Vec3d& n
 /// The angle-weighted normal, at a border along the border's plane; where faces turn away from it, a direction that
 /// more of them face (the most visible one, found by leaning towards the worst face in ever smaller steps); where faces
 /// cancel, the first face's normal.
-Start start_of(const Surface& surface, std::uint32_t vertex) {
+template <class Shape>
+Start start_of(const Shape& surface, std::uint32_t vertex) {
   Vec3d n = surface.along_border(vertex, surface.vertex_normals[vertex]);
   if (!(n.lengthSqr() > 1e-12)) {
     for (const auto t : surface.triangles_around(vertex))
@@ -124,17 +129,27 @@ Vec3d stop_at_obstacle(const Obstacles& obstacles, const Vec3d& from, const Vec3
   return gone < length ? from + (to - from) * (gone / length) : to;
 }
 
+/// A vertex in haste asks what is near of the triangles around the last answer alone. That is right but where another
+/// part of the surface comes near, which shows in the exact distance where it ends up: having met such a part it is
+/// nearer to that than it believes.
+enum class Pace { Careful, Hasty };
+
+/// Where a vertex ended up on its way.
+struct Arrival {
+  Vec3d position;
+  bool outside_field = false;
+};
+
+template <class Query>
+using ShapeOf = std::remove_cvref_t<decltype(std::declval<const Query&>().surface())>;
+
 /// One vertex on its way.
+template <class Query>
 class Traveller {
  public:
-  /// One that is in haste asks what is near of the triangles around the last answer alone. That is right but where
-  /// another part of the surface comes near, which shows in the exact distance where it ends up: having met such a part
-  /// it is nearer to that than it believes.
-  enum class Pace { Careful, Hasty };
-
   /// `side` is 1 on the way outward, -1 inward.
-  Traveller(const ClosestQuery& query, const DirectionField& field, DirectionSampler& sampler, int side,
-            std::uint32_t vertex, Pace pace, const Obstacles* obstacles = nullptr)
+  Traveller(const Query& query, const DirectionField& field, DirectionSampler& sampler, int side, std::uint32_t vertex,
+            Pace pace, const Obstacles* obstacles = nullptr)
       : query_(query),
         obstacles_(obstacles),
         sampler_(sampler),
@@ -150,11 +165,6 @@ class Traveller {
     normal_ = start.direction * side_;
     slope_ = start.slope;
   }
-
-  struct Arrival {
-    Vec3d position;
-    bool outside_field = false;
-  };
 
   /// The point at distance `target` on the line along the normal, if nothing but the faces around the vertex decides
   /// phi on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
@@ -273,7 +283,7 @@ class Traveller {
       feature_ = closest.feature;
       return {x, closest.distance, x - closest.point};
     }
-    const TrianglePoint nearest = surface_.walk_to_closest(x, hint_);
+    const TrianglePoint nearest = query_.near(x, hint_);
     feature_ = nearest.feature;
     return {x, std::sqrt(nearest.squared_distance), x - nearest.point};
   }
@@ -391,10 +401,10 @@ class Traveller {
     return best.x;
   }
 
-  const ClosestQuery& query_;
+  const Query& query_;
   const Obstacles* obstacles_;
   DirectionSampler& sampler_;
-  const Surface& surface_;
+  const ShapeOf<Query>& surface_;
   int side_;
   double target_ = 0, h_;
   bool sided_;
@@ -409,9 +419,10 @@ class Traveller {
 
 /// Tries the straight paths of all vertices; a component of which one vertex has none has none at all.
 /// Returns, by component, whether all of its vertices have arrived that way.
-std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const DirectionField& directions,
-                                      const Distances& distances, std::vector<Vec3d>& arrival) {
-  const Surface& surface = query.surface();
+template <class Query>
+std::vector<std::uint8_t> go_straight(const Query& query, const DirectionField& directions, const Distances& distances,
+                                      std::vector<Vec3d>& arrival) {
+  const ShapeOf<Query>& surface = query.surface();
   // A flag only ever falls; who sees it late does work that is not used.
   std::vector<std::atomic<std::uint8_t>> straight(surface.facts.components);
   for (auto& flag : straight) flag = 1;
@@ -421,9 +432,8 @@ std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const Direction
       auto& flag = straight[surface.component[v]];
       if (!flag.load(std::memory_order_relaxed) || distances[v] == 0) continue;
       const int side = distances[v] < 0 ? -1 : 1;
-      const auto end =
-          Traveller(query, directions, sampler, side, static_cast<std::uint32_t>(v), Traveller::Pace::Careful)
-              .go_straight(std::abs(distances[v]));
+      const auto end = Traveller<Query>(query, directions, sampler, side, static_cast<std::uint32_t>(v), Pace::Careful)
+                           .go_straight(std::abs(distances[v]));
       if (end) arrival[v] = *end;
       else flag.store(0, std::memory_order_relaxed);
     }
@@ -432,9 +442,10 @@ std::vector<std::uint8_t> go_straight(const ClosestQuery& query, const Direction
 }
 
 /// The marches of a run: all vertices, for all sets of distances.
+template <class Query>
 class Marches {
  public:
-  Marches(const ClosestQuery& query, const DirectionField& directions, std::span<const Distances> distances,
+  Marches(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
           const Obstacles* obstacles, std::vector<Paths>& paths)
       : query_(query),
         surface_(query.surface()),
@@ -482,7 +493,7 @@ class Marches {
   struct End {
     std::uint32_t vertex;
     Stop stop;
-    Traveller::Arrival arrival;
+    Arrival arrival;
   };
 
   bool is_straight(std::size_t set, std::size_t v) const { return straight_[set][surface_.component[v]]; }
@@ -509,9 +520,9 @@ class Marches {
              std::vector<End>& ends) const {
     std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
     const auto vertex = static_cast<std::uint32_t>(v);
-    const auto tell = [&](const Stop& stop, const Traveller::Arrival& end) { ends.push_back({vertex, stop, end}); };
-    const auto pace = attempt == Attempt::InHaste ? Traveller::Pace::Hasty : Traveller::Pace::Careful;
-    Traveller traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
+    const auto tell = [&](const Stop& stop, const Arrival& end) { ends.push_back({vertex, stop, end}); };
+    const auto pace = attempt == Attempt::InHaste ? Pace::Hasty : Pace::Careful;
+    Traveller<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
     const Paths& nearest = paths_[stops.front().set];
     if (attempt != Attempt::FromThere) traveller.march(stops, tell);
     else if (nearest.achieved[v] > kOnTheWay * stops.front().distance)
@@ -542,8 +553,8 @@ class Marches {
     }
   }
 
-  const ClosestQuery& query_;
-  const Surface& surface_;
+  const Query& query_;
+  const ShapeOf<Query>& surface_;
   const DirectionField& directions_;
   std::span<const Distances> distances_;
   const Obstacles* obstacles_;
@@ -551,6 +562,23 @@ class Marches {
   std::vector<std::vector<Vec3d>> arrival_;          // of each set, on straight paths
   std::vector<std::vector<std::uint8_t>> straight_;  // of each set, by component
 };
+
+template <class Query>
+std::vector<Paths> march_all(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
+                             const Obstacles* obstacles, const ProgressCallback& callback) {
+  const std::size_t count = query.surface().vertices.size();
+  Progress progress(callback, Stage::Propagate, count);
+  std::vector<Paths> paths(distances.size());
+  using All = Marches<Query>;
+  const All marches(query, directions, distances, obstacles, paths);
+  for_each_index((count + All::kBlock - 1) / All::kBlock,
+                 [&](std::size_t block) {
+                   marches(block);
+                   progress.advance(std::min(All::kBlock, count - block * All::kBlock));
+                 },
+                 1);
+  return paths;
+}
 
 }  // namespace
 
@@ -574,18 +602,13 @@ Vec3d round_way(const Vec3d& way, double target) {
 
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles,
-                             const ProgressCallback& callback) {
-  const std::size_t count = query.surface().vertices.size();
-  Progress progress(callback, Stage::Propagate, count);
-  std::vector<Paths> paths(distances.size());
-  const Marches marches(query, directions, distances, obstacles, paths);
-  for_each_index((count + Marches::kBlock - 1) / Marches::kBlock,
-                 [&](std::size_t block) {
-                   marches(block);
-                   progress.advance(std::min(Marches::kBlock, count - block * Marches::kBlock));
-                 },
-                 1);
-  return paths;
+                             const ProgressCallback& progress) {
+  return march_all(query, directions, distances, obstacles, progress);
+}
+
+std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
+                             std::span<const Distances> distances, const ProgressCallback& progress) {
+  return march_all(query, directions, distances, nullptr, progress);
 }
 
 }  // namespace vdb_offset

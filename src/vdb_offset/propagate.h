@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/body.h"
+#include "vdb_offset/curve_query.h"
 #include "vdb_offset/directions.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/progress.h"
@@ -60,5 +61,9 @@ Vec3d round_way(const Vec3d& way, double target);
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
                              const ProgressCallback& progress = {});
+
+/// The same for the vertices of plane curves, in directions from the field of their ribbon (see ribbon.h).
+std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
+                             std::span<const Distances> distances, const ProgressCallback& progress = {});
 
 }  // namespace vdb_offset

@@ -74,6 +74,7 @@ class LeafFinder {
       lower[k] = static_cast<int>(std::floor((box.lower[k] - options_.band) / leaf));
       upper[k] = static_cast<int>(std::floor((box.upper[k] + options_.band) / leaf));
     }
+    if (options_.slab) lower[2] = upper[2] = 0;
     descend(triangle, lower, upper, entries);
   }
 
@@ -222,6 +223,7 @@ Front rasterise(const Surface& surface, const RasteriseOptions& options, const P
   Front front;
   static_cast<FieldGrids&>(front) = make_field_grids(options.voxel_size, options.band, surface.origin);
   front.band = options.band;
+  front.slab = options.slab;
   const std::size_t leaves = bins.leaf_begin.size() - 1;
   std::vector<std::unique_ptr<PhiLeaf>> phi(leaves);
   std::vector<std::unique_ptr<ClosestLeaf>> closest(leaves);

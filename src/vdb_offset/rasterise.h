@@ -9,6 +9,7 @@ namespace vdb_offset {
 struct RasteriseOptions {
   double voxel_size;  ///< World units, > 0.
   double band;        ///< World units, > voxel_size, so that no grid edge crosses the surface unseen.
+  bool slab = false;  ///< Only leaf nodes with 0 <= z < 8 voxels, for a ribbon that stands in them (see ribbon.h).
 };
 
 /// Makes every voxel within `band` of the surface active and gives it its exact distance (float) and closest

@@ -19,7 +19,7 @@
 namespace vdb_offset {
 namespace {
 
-void check(PolygonView polygons) {
+void check(PolygonView polygons, std::uint32_t least_corners = 3) {
   if (polygons.face_count() == 0) throw InvalidInput("mesh: expected at least one face, got none");
   // The guard leaves room for the two triangles fewer than corners that each face gives.
   if (polygons.corners.size() >= (std::size_t{1} << 31) / 3)
@@ -28,8 +28,10 @@ void check(PolygonView polygons) {
   if (polygons.face_begin.front() != 0 || polygons.face_begin.back() != polygons.corners.size())
     throw InvalidInput("mesh: expected face_begin to run from 0 to the number of corners");
   for (std::size_t f = 0; f < polygons.face_count(); ++f)
-    if (polygons.face_begin[f] > polygons.face_begin[f + 1] || polygons.face_begin[f + 1] - polygons.face_begin[f] < 3)
-      throw InvalidInput("mesh: expected at least 3 corners in face " + std::to_string(f));
+    if (polygons.face_begin[f] > polygons.face_begin[f + 1] ||
+        polygons.face_begin[f + 1] - polygons.face_begin[f] < least_corners)
+      throw InvalidInput("mesh: expected at least " + std::to_string(least_corners) + " corners in face " +
+                         std::to_string(f));
   for (const auto v : polygons.corners)
     if (v >= polygons.positions.size())
       throw InvalidInput("mesh: expected vertex indices below " + std::to_string(polygons.positions.size()) + ", got " +
@@ -515,7 +517,7 @@ Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient o
 }
 
 std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& options) {
-  check(polygons);
+  check(polygons, 1);
   Surface surface;
   weld(polygons, options, surface);
   std::vector<std::uint32_t> first(polygons.positions.size(), kNone);

@@ -104,7 +104,8 @@ struct Surface {
 /// finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
-/// For each vertex the first that stands where it does; kNone for one that is in no face. \throw as build_surface().
+/// For each vertex the first that stands where it does; kNone for one that is in no face. Faces may have any number of
+/// corners. \throw as build_surface().
 std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& weld);
 
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding

@@ -73,7 +73,7 @@ class LeafRounds {
     return round;
   }
   void tell_neighbours(std::int32_t leaf, const News& found) {
-    for (int face = 0; face < kFaces; ++face) {
+    for (int face = 0; face < graph_.open_faces(); ++face) {
       if (found[static_cast<std::size_t>(face)] == kNoNews) continue;
       const auto neighbour = graph_.touch_neighbour(leaf, face);
       news_.resize(graph_.size(), kNoNews);

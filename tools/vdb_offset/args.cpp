@@ -9,6 +9,7 @@
 #include <map>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/states_file.h"
 #include "vdb_offset/io/volume_file.h"
@@ -199,13 +200,25 @@ void check_apart(const Arguments& args) {
   }
 }
 
+/// Curves stay curves, and know nothing of faces.
+void check_curves(const Raw& raw, const Arguments& args) {
+  require(io::curve_format_of(args.output).has_value(),
+          args.output + ": expected an output that ends in .dat, .txt, .xy or .obj, as the input holds curves");
+  for (const auto& [name, given] : {std::pair{"--only", !raw.only.empty()},
+                                    {"--border", raw.border.has_value()},
+                                    {"--obstacle", !args.obstacles.empty()},
+                                    {"--shell", args.shell},
+                                    {"--layers", args.layers.has_value()},
+                                    {"--weld", raw.weld != "exact"},
+                                    {"--orient", raw.orient != "keep"}})
+    require(!given, fmt::format("{}: expected a mesh, as this is not for curves", name));
+}
+
 void check_names(const Arguments& args) {
   require(scene::is_scene(args.input) || format_of(args.input, args),
           args.input +
               ": expected an input that ends in .obj, .ply, .stl, .off (or these and .gz or .zst) or .json, or "
               "--format");
-  require(args.states.empty() || io::is_states_file(args.states),
-          args.states + ": expected a file of states that ends in .csv or .ply");
   const bool volume =
       io::volume_format_of(args.output).has_value() || io::structured_format_of(args.output).has_value();
   require(!volume || args.layers, args.output + ": expected a mesh, as this is for --layers");
@@ -217,7 +230,18 @@ void check_names(const Arguments& args) {
               "--format");
 }
 
+/// A file that cannot be opened is for the reader to tell of.
+bool holds_curves(const std::string& path) {
+  try {
+    return io::holds_curves(path);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 void check_file_options(const Raw& raw, Arguments& args) {
+  require(args.states.empty() || io::is_states_file(args.states),
+          args.states + ": expected a file of states that ends in .csv or .ply");
   if (raw.format) {
     args.format = io::format_of("." + *raw.format);
     require(args.format && raw.format->find('.') == std::string::npos,
@@ -321,7 +345,9 @@ void check_surroundings(const Raw& raw, Arguments& args) {
 void check(const Raw& raw, Arguments& args) {
   check_layers(raw, args);
   check_file_options(raw, args);
-  check_names(args);
+  args.curves = holds_curves(args.input);
+  if (args.curves) check_curves(raw, args);
+  else check_names(args);
   check_apart(args);
   if (!args.layers) check_distances(raw, args);
   check_surroundings(raw, args);

@@ -58,10 +58,14 @@ Distances evaluate(const Source& source, const Arguments& args, const DistanceRe
   if (!request.from.empty()) return read_distances(source, request.from);
   const auto texture_of = [&] {
     if (!source.file)
-      throw InvalidInput(args.input + ": expected texture coordinates (u, v), which a scene has none of");
+      throw InvalidInput(args.input + ": expected texture coordinates (u, v), which a scene and curves have none of");
     return io::vertex_texture(*source.file);
   };
-  return scene::distances_of(request.distance, source.view(), args.options.weld, args.options.orient, texture_of);
+  const auto normals_of = [&] {
+    return source.curves ? curve_normals(source.view())
+                         : vertex_normals(source.view(), args.options.weld, args.options.orient);
+  };
+  return scene::distances_of(request.distance, source.view(), normals_of, texture_of);
 }
 
 /// So many times the distances of so many vertices.
@@ -123,6 +127,10 @@ std::vector<Distances> read_heights(const Source& source, const Arguments& args)
 
 Source read_source(const Arguments& args) {
   Source source;
+  if (args.curves) {
+    source.curves = io::read_curves(args.input);
+    return source;
+  }
   if (scene::is_scene(args.input)) source.scene = scene::read_scene(args.input);
   if (!source.scene) source.file = io::read_mesh(args.input, format_of(args.input, args));
   else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);

@@ -4,18 +4,22 @@
 #include <vector>
 
 #include "args.h"
+#include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene/scene.h"
 
 namespace vdb_offset::tool {
 
-/// A mesh to offset, from a file or made by a scene, and what is in its way.
+/// A mesh to offset, from a file or made by a scene, and what is in its way; or curves.
 struct Source {
   std::optional<scene::Scene> scene;
   std::optional<io::MeshFile> file;
+  std::optional<io::CurveFile> curves;
   Polygons obstacles;
 
-  PolygonView view() const { return file ? file->polygons.view() : scene->shape.view(); }
+  PolygonView view() const {
+    return file ? file->polygons.view() : curves ? curves->file.polygons.view() : scene->shape.view();
+  }
 };
 
 Source read_source(const Arguments& args);

@@ -14,6 +14,7 @@
 #include "outputs.h"
 #include "summary.h"
 #include "terminal.h"
+#include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/report.h"
@@ -66,7 +67,10 @@ int run(Arguments args) {
   const std::vector<Destination> places = destinations(args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
-    print_dry_run(args, plan_several(source.view(), distances, args.options), distances.front());
+    print_dry_run(args,
+                  source.curves ? plan_curves(source.view(), distances, args.options)
+                                : plan_several(source.view(), distances, args.options),
+                  distances.front());
     return kDone;
   }
   args.options.keep_field = !args.vdb.empty();
@@ -76,7 +80,9 @@ int run(Arguments args) {
   io::WriteOptions writing = args.write;
   writing.format = format_of(args.output, args);
   if (source.file) args.options.precision = io::precision_of(args.output, *source.file, writing);
-  std::vector<OffsetResult> results = offset_several(source.view(), distances, args.options);
+  if (source.curves) args.options.precision = io::precision_of_curves(writing);
+  std::vector<OffsetResult> results = source.curves ? offset_curves(source.view(), distances, args.options)
+                                                    : offset_several(source.view(), distances, args.options);
   bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
   const OffsetResult* const inner = args.inner ? &results.back() : nullptr;

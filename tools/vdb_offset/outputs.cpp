@@ -114,6 +114,10 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   const std::string& path = outcome.to.mesh;
   if (shell)
     return source.file ? io::write_shell(path, *source.file, *shell, options) : io::write_shell(path, *shell, options);
+  if (source.curves) {
+    io::write_curves(path, *source.curves, outcome.result.positions, options);
+    return {};
+  }
   if (source.file) return io::write_mesh(path, *source.file, outcome.result.positions, options);
   const PolygonView made = source.view();
   io::write_mesh(path, PolygonView{outcome.result.positions, made.corners, made.face_begin}, options);

@@ -69,7 +69,8 @@ class Patcher {
         const NumberTriple place = places[i];
         if (first_of(place) >= end) return;
         const std::optional<Vec3d> value = value_of(i);
-        for (int k = 0; value && k < 3; ++k)
+        const int numbers = place.at[2] == place.at[1] ? 2 : 3;  // points of plane curves have two
+        for (int k = 0; value && k < numbers; ++k)
           if (place.at[k] >= begin && place.at[k] < end) visit(place.at[k], (*value)[k], of_normals);
       }
     };

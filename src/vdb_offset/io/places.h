@@ -7,7 +7,8 @@
 
 namespace vdb_offset::io {
 
-/// Where the three numbers of a point or a normal stand in a file's bytes.
+/// Where the three numbers of a point or a normal stand in a file's bytes. Of two numbers the third stands where the
+/// second does.
 struct NumberTriple {
   std::uint64_t at[3];
 };

@@ -265,13 +265,14 @@ Distance parse_distance_or_expression(const std::string& text) {
   }
 }
 
-Distances distances_of(const Distance& distance, PolygonView mesh, const WeldOptions& weld, Orient orient,
+Distances distances_of(const Distance& distance, PolygonView mesh,
+                       const std::function<std::vector<Vec3d>()>& normals_of,
                        const std::function<std::vector<Vec2d>()>& texture_of) {
   if (!distance.expression) return distance.in_world_units(distance.percent ? used_diagonal(mesh) : 0);
   const DistanceExpression& expression = *distance.expression;
   std::vector<Vec3d> normals;
   std::vector<Vec2d> texture;
-  if (expression.uses_normals()) normals = vertex_normals(mesh, weld, orient);
+  if (expression.uses_normals()) normals = normals_of();
   if (expression.uses_texture()) texture = texture_of();
   return Distances(expression({mesh.positions, normals, texture, expression.is_percent() ? used_diagonal(mesh) : 0}));
 }

@@ -24,9 +24,11 @@ Distance parse_distance(const std::string& text);
 /// The same, or an expression. \throw InvalidExpression
 Distance parse_distance_or_expression(const std::string& text);
 
-/// The distances of a mesh's vertices. `texture_of` is called only by an expression that uses texture coordinates.
+/// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
+/// expression that uses normals or texture coordinates.
 /// \throw InvalidInput, see DistanceExpression
-Distances distances_of(const Distance& distance, PolygonView mesh, const WeldOptions& weld, Orient orient,
+Distances distances_of(const Distance& distance, PolygonView mesh,
+                       const std::function<std::vector<Vec3d>()>& normals_of,
                        const std::function<std::vector<Vec2d>()>& texture_of);
 
 /// Where every reached vertex should be, in closed form.

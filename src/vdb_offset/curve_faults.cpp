@@ -1,0 +1,160 @@
+#include "vdb_offset/curve_faults.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_offset/parallel.h"
+#include "vdb_offset/propagate.h"
+
+namespace vdb_offset {
+namespace {
+
+constexpr double kCollapsedLength = 1e-6;
+// What is nearer to the source, as a share of the distance, says nothing about sides.
+constexpr double kOnSource = 1e-9;
+// Segments along the curve that a crossing of the source may slide over.
+constexpr int kSlides = 2;
+
+template <class Wrong>
+void judge_again(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
+  std::erase_if(wrong, [&](std::uint32_t i) { return std::binary_search(some.begin(), some.end(), i); });
+  const auto before = static_cast<std::ptrdiff_t>(wrong.size());
+  for (const auto i : some)
+    if (is_wrong(i)) wrong.push_back(i);
+  std::inplace_merge(wrong.begin(), wrong.begin() + before, wrong.end());
+}
+
+}  // namespace
+
+CurveFaults::CurveFaults(const PlaneCurves& curves)
+    : curves_(curves),
+      place_(curves.source.begin(), curves.source.end()),
+      away_(curves.source.size(), Vec2d(0.0)),
+      distance_(curves.source.size(), 0.0),
+      misplaced_at_(curves.source.size(), 0),
+      fault_(curves.line().segments.size(), Fault::None),
+      finder_(curves.line().segments, place_) {
+  source_crossings_ = finder_.all();
+  mark_source_crossings();
+}
+
+void CurveFaults::mark_source_crossings() {
+  const auto ring = [&](std::uint32_t segment) {
+    Indices some{segment};
+    for (int i = 0; i < kSlides; ++i) {
+      Indices points;
+      for (const auto s : some)
+        points.insert(points.end(), curves_.line().segments[s].begin(), curves_.line().segments[s].end());
+      sort_unique(points);
+      some = segments_around(points);
+    }
+    return some;
+  };
+  for (const auto& [s, t] : source_crossings_) {
+    const Indices of_s = ring(s), of_t = ring(t);
+    for (const auto a : of_s)
+      for (const auto b : of_t)
+        if (a != b) near_.push_back(std::minmax(a, b));
+  }
+  std::sort(near_.begin(), near_.end());
+  near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+}
+
+Indices CurveFaults::segments_around(const Indices& points) const {
+  Indices segments;
+  for (const auto p : points) segments.insert(segments.end(), around(p).begin(), around(p).end());
+  sort_unique(segments);
+  return segments;
+}
+
+void CurveFaults::measure(std::uint32_t point) {
+  const Polyline& line = curves_.line();
+  const Vec3d x = curves_.in_frame(place_[point]);
+  const Closest closest = curves_.front(x, around(point).front());
+  const double target = std::abs(curves_.distances[point]);
+  distance_[point] = closest.distance;
+  away_[point] = {x[0] - closest.point[0], x[1] - closest.point[1]};
+  const bool sided = line.facts.closed() && closest.distance > kOnSource * target;
+  const double towards = line.pseudonormal(closest.triangle, closest.feature).dot(x - closest.point);
+  const Vec2d& p = place_[point];
+  const double rounding = curves_.precision.epsilon() * std::max(std::abs(p[0]), std::abs(p[1]));
+  misplaced_at_[point] =
+      closest.distance > target * (1 + kReachedTolerance) + rounding || (sided && towards * curves_.side(point) < 0);
+}
+
+CurveFaults::Fault CurveFaults::judge(std::uint32_t segment) const {
+  const auto [a, b] = curves_.line().segments[segment];
+  const Vec2d way = place_[b] - place_[a], before = curves_.source[b] - curves_.source[a];
+  if (place_[a] == curves_.source[a] && place_[b] == curves_.source[b]) return Fault::None;
+  if (!(way.length() > kCollapsedLength * before.length())) return Fault::Collapsed;
+  const double least = kOnSource * std::max(std::abs(curves_.distances[a]), std::abs(curves_.distances[b]));
+  const int side = curves_.distances[a] != 0 ? curves_.side(a) : curves_.side(b);
+  // Beside the flank of a deep corner the middle or an end alone may see that flank.
+  const auto is_against = [&](const Vec2d& away) {
+    return !(away.length() > least) || side * (way[1] * away[0] - way[0] * away[1]) <= 0;
+  };
+  if (!is_against(away_[a]) || !is_against(away_[b])) return Fault::None;
+  const Vec3d middle = curves_.in_frame((place_[a] + place_[b]) * 0.5);
+  const Vec3d away = middle - curves_.front(middle, around(a).front()).point;
+  return is_against({away[0], away[1]}) ? Fault::Inverted : Fault::None;
+}
+
+bool CurveFaults::is_new(const SegmentPair& pair) const {
+  return !std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair);
+}
+
+void CurveFaults::move(const Indices& points, std::span<const Vec2d> place) {
+  constexpr std::size_t kGrain = 64;
+  for_each_index(
+      points.size(),
+      [&](std::size_t i) {
+        const auto p = points[i];
+        place_[p] = {curves_.precision(place[i][0]), curves_.precision(place[i][1])};
+        measure(p);
+      },
+      kGrain);
+  const Indices segments = segments_around(points);
+  for_each_index(
+      segments.size(), [&](std::size_t i) { fault_[segments[i]] = judge(segments[i]); }, kGrain);
+  judge_again(misplaced_, points, [&](std::uint32_t p) { return misplaced_at_[p] != 0; });
+  judge_again(segments_, segments, [&](std::uint32_t s) { return fault_[s] != Fault::None; });
+  finder_.update(segments);
+  const auto touched = [&](std::uint32_t s) { return std::binary_search(segments.begin(), segments.end(), s); };
+  for (auto* pairs : {&crossings_, &slid_})
+    std::erase_if(*pairs, [&](const SegmentPair& pair) { return touched(pair.first) || touched(pair.second); });
+  for (const SegmentPair& pair : finder_.of(segments)) {
+    if (!is_new(pair)) continue;
+    (std::binary_search(near_.begin(), near_.end(), pair) ? slid_ : crossings_).push_back(pair);
+  }
+}
+
+FaultCounts CurveFaults::count() const {
+  FaultCounts counts;
+  for (const auto s : segments_) ++(fault_[s] == Fault::Inverted ? counts.inverted : counts.collapsed);
+  counts.crossings = crossings_.size();
+  return counts;
+}
+
+Indices CurveFaults::wrong_points() const {
+  Indices wrong = misplaced_;
+  const auto add = [&](std::uint32_t s) {
+    wrong.insert(wrong.end(), curves_.line().segments[s].begin(), curves_.line().segments[s].end());
+  };
+  for (const auto s : segments_) add(s);
+  for (const auto& [s, t] : crossings_) add(s), add(t);
+  sort_unique(wrong);
+  return wrong;
+}
+
+bool CurveFaults::any_around(const Indices& points) const {
+  const Indices segments = segments_around(points);
+  const auto touched = [&](std::uint32_t s) { return std::binary_search(segments.begin(), segments.end(), s); };
+  for (const auto p : points)
+    if (misplaced_at_[p]) return true;
+  for (const auto s : segments)
+    if (fault_[s] != Fault::None) return true;
+  return std::any_of(crossings_.begin(), crossings_.end(),
+                     [&](const SegmentPair& pair) { return touched(pair.first) || touched(pair.second); });
+}
+
+}  // namespace vdb_offset

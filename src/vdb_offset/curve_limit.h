@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+
+#include "vdb_offset/curve_faults.h"
+#include "vdb_offset/limit.h"
+#include "vdb_offset/propagate.h"
+
+namespace vdb_offset {
+
+/// Makes an offset of curves valid: no inverted segment, no collapsed one, no two that meet anew (see CurveFaults).
+///
+/// Where a corner of the source has cut off a piece of its offset, the points of that piece have all arrived at the
+/// corner of the offset, or stopped on the way: they are spread over the front around that first, along with more and
+/// more of their neighbours, each to a place of its own at its exact distance, in the order of the curve and no farther
+/// than eight distances from where it came from. Where there is no room for that the points that are wrong are pulled
+/// back straight towards where they came from, by a little in each round, until nothing is wrong; then each of those is
+/// let out again, in turn, as far as nothing goes wrong. A curve pulled back altogether is the source, so that it ends.
+/// Pulled points are `Limited`, with the distance that they keep.
+///
+/// `paths` are those of the ribbon's vertices; ways stay in the plane. The result does not depend on the number of
+/// threads.
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths);
+
+}  // namespace vdb_offset

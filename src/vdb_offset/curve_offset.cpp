@@ -1,0 +1,251 @@
+#include "vdb_offset/curve_offset.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "vdb_offset/curve_limit.h"
+#include "vdb_offset/directions.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/rasterise.h"
+#include "vdb_offset/run.h"
+
+namespace vdb_offset {
+namespace {
+
+/// The ribbon fills the voxel centres of one leaf node's height.
+constexpr double kRibbonVoxels = kLeafWidth - 1;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The pipeline of curves: joined, stood up as a ribbon, then what surfaces go through.
+class CurvePipeline {
+ public:
+  CurvePipeline(CurvesView curves, const OffsetOptions& options, int threads)
+      : curves_(curves), options_(options), frame_(plane_of(curves)) {
+    shared_.threads = threads;
+    points_.reserve(curves.positions.size());
+    for (const Vec3d& p : curves.positions) points_.push_back(frame_.to_plane(p));
+    chains_ = join_curves(curves, points_);
+    if (chains_.segments.empty()) throw InvalidInput("curves: expected a segment, got single points alone");
+  }
+
+  /// Facts and plan, of which all that follows makes use. False if nobody goes anywhere.
+  bool prepare(std::span<const Distances> wanted) {
+    Reach farthest{0, 0};
+    for (const Distances& d : wanted)
+      farthest = {std::max(farthest.inside, d.inward()), std::max(farthest.outside, d.outward())};
+    tell_facts();
+    const bool goes = farthest.inside > 0 || farthest.outside > 0;
+    if (goes) stand_up(farthest);
+    return goes;
+  }
+  const OffsetStatistics& statistics() const { return shared_; }
+
+  std::vector<OffsetResult> run(std::span<const Distances> wanted) {
+    std::vector<OffsetResult> results;
+    if (!prepare(wanted)) {
+      for (const Distances& d : wanted) results.push_back(unmoved(d));
+      return results;
+    }
+    make_field();
+    draw_line();
+    for (const Distances& d : wanted) distances_.push_back(on_line(d));
+    std::vector<Paths> paths = march();
+    for (std::size_t i = 0; i < wanted.size(); ++i) results.push_back(finish(wanted[i], distances_[i], paths[i]));
+    if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
+    return results;
+  }
+
+ private:
+  /// Puts the curves into a ribbon as high as the voxel size asks for.
+  void stand_up(const Reach& farthest) {
+    const StageTimer timer(shared_, Stage::Rasterise);
+    const MeshFacts& facts = shared_.facts;
+    const VoxelSize chosen = choose_voxel_size(facts.median_edge, facts.diagonal,
+                                               std::max(farthest.inside, farthest.outside), options_.grid);
+    ribbon_ = build_surface(make_ribbon(chains_.segments, points_, kRibbonVoxels * chosen.size).view(), {});
+    // The rims only stand for what goes on for ever.
+    ribbon_.facts.boundary_left = 2 * chains_.ends;
+    GridOptions grid;
+    grid.voxel_size = chosen.size;
+    shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads);
+    shared_.plan.reason = chosen.reason;
+  }
+
+  std::vector<double> lengths() const {
+    std::vector<double> lengths;
+    for (const auto& [a, b] : chains_.segments) lengths.push_back((points_[b] - points_[a]).length());
+    return lengths;
+  }
+
+  void tell_facts() {
+    MeshFacts& facts = shared_.facts;
+    facts.vertices = points_.size();
+    facts.unused_vertices = static_cast<std::size_t>(std::count(chains_.place.begin(), chains_.place.end(), kNone));
+    for (std::uint32_t p = 0; p < points_.size(); ++p) facts.welded_vertices += chains_.place[p] == p;
+    facts.faces_by_corners[2] = chains_.segments.size();
+    facts.components = chains_.chains;
+    facts.closed_components = chains_.closed;
+    facts.boundary_edges = facts.boundary_left = chains_.ends;
+    facts.non_manifold_edges = facts.non_manifold_left = chains_.branchings;
+    facts.median_edge = median(lengths());
+    facts.lower = facts.upper = curves_.positions[curves_.corners.front()];
+    for (const auto p : curves_.corners) {
+      facts.lower = openvdb::math::minComponent(facts.lower, curves_.positions[p]);
+      facts.upper = openvdb::math::maxComponent(facts.upper, curves_.positions[p]);
+    }
+    facts.diagonal = (facts.upper - facts.lower).length();
+  }
+
+  /// The curves in the ribbon's frame, half way up.
+  void draw_line() {
+    vertex_.assign(points_.size(), kNone);
+    std::vector<Vec3d> vertices;
+    const double middle = kRibbonVoxels / 2 * shared_.plan.voxel_size - ribbon_.origin[2];
+    std::vector<Segment> segments = chains_.segments;
+    for (Segment& segment : segments)
+      for (auto& p : segment) {
+        if (vertex_[p] == kNone) {
+          vertex_[p] = static_cast<std::uint32_t>(source_.size());
+          source_.push_back(points_[p]);
+          vertices.emplace_back(points_[p][0] - ribbon_.origin[0], points_[p][1] - ribbon_.origin[1], middle);
+        }
+        p = vertex_[p];
+      }
+    for (std::uint32_t p = 0; p < points_.size(); ++p)
+      if (chains_.place[p] != kNone) vertex_[p] = vertex_[chains_.place[p]];
+    line_ = make_polyline(std::move(vertices), std::move(segments), chains_);
+    line_.origin = ribbon_.origin;
+    query_.emplace(line_);
+  }
+
+  /// The distances of the line's vertices: points at one place go as one, by the mean.
+  Distances on_line(const Distances& of_points) {
+    shared_.disagreeing_distances = 0;
+    if (of_points.uniform()) return of_points;
+    std::vector<double> sum(source_.size(), 0.0);
+    std::vector<std::uint32_t> copies(sum.size(), 0), apart(sum.size(), 0);
+    for (std::uint32_t p = 0; p < points_.size(); ++p) {
+      if (vertex_[p] == kNone) continue;
+      sum[vertex_[p]] += of_points[p];
+      ++copies[vertex_[p]];
+      apart[vertex_[p]] += of_points[p] != of_points[chains_.place[p]];
+    }
+    for (std::uint32_t p = 0; p < points_.size(); ++p) {
+      if (vertex_[p] == kNone || chains_.place[p] != p) continue;
+      const auto v = vertex_[p];
+      shared_.disagreeing_distances += apart[v];
+      sum[v] = apart[v] ? sum[v] / copies[v] : of_points[p];
+    }
+    return Distances(std::move(sum));
+  }
+
+  void make_field() {
+    Front front;
+    {
+      const StageTimer timer(shared_, Stage::Rasterise);
+      place(ribbon_, shared_.plan.voxel_size);
+      front = rasterise(ribbon_, {shared_.plan.voxel_size, shared_.plan.band, true}, options_.progress);
+    }
+    const StageTimer timer(shared_, Stage::Sweep);
+    field_ = sweep(std::move(front), ribbon_, {options_.solver, shared_.plan.reach}, options_.progress);
+  }
+
+  std::vector<Paths> march() {
+    const StageTimer timer(shared_, Stage::Propagate);
+    const DirectionField directions = make_directions(field_, !ribbon_.facts.closed() || !ribbon_.facts.oriented());
+    describe_field(field_, directions, shared_);
+    return propagate(*query_, directions, distances_, options_.progress);
+  }
+
+  OffsetResult finish(const Distances& wanted, const Distances& distances, Paths& paths) {
+    OffsetResult result;
+    result.statistics = shared_;
+    if (options_.collision == Collision::Limit) {
+      const StageTimer timer(result.statistics, Stage::Limit);
+      result.statistics.limit = limit_curves({*query_, source_, distances, options_.precision}, paths);
+    }
+    hand_over(distances, paths, result);
+    if (wanted.uniform()) result.distances = wanted;
+    return result;
+  }
+
+  void hand_over(const Distances& distances, const Paths& paths, OffsetResult& result) const {
+    const std::size_t count = points_.size();
+    result.positions.assign(curves_.positions.begin(), curves_.positions.end());
+    result.states.assign(count, VertexState::Unused);
+    result.achieved.assign(count, 0.0);
+    std::vector<double> asked(count, 0.0);
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const auto v = vertex_[p];
+      if (v == kNone) continue;
+      const Vec3d& way = paths.displacement[v];
+      if (way[0] != 0 || way[1] != 0) result.positions[p] += frame_.to_space({way[0], way[1]});
+      result.states[p] = paths.state[v];
+      result.achieved[p] = paths.achieved[v];
+      asked[p] = distances[v];
+    }
+    result.distances = Distances(std::move(asked));
+    count_states(result.states, result.statistics);
+  }
+
+  /// A distance of 0 needs no field.
+  OffsetResult unmoved(const Distances& distances) const {
+    OffsetResult result;
+    result.statistics = shared_;
+    result.positions.assign(curves_.positions.begin(), curves_.positions.end());
+    result.achieved.assign(points_.size(), 0.0);
+    for (const auto place : chains_.place)
+      result.states.push_back(place == kNone ? VertexState::Unused : VertexState::Reached);
+    result.distances = distances;
+    count_states(result.states, result.statistics);
+    return result;
+  }
+
+  CurvesView curves_;
+  const OffsetOptions& options_;
+  PlaneFrame frame_;
+  OffsetStatistics shared_;  // by all results
+  std::vector<Vec2d> points_;
+  CurveChains chains_;
+  Surface ribbon_;
+  Polyline line_;
+  std::vector<std::uint32_t> vertex_;  // of each point: the line's; kNone if it is on no curve
+  std::vector<Vec2d> source_;          // of each of those, in the plane
+  std::vector<Distances> distances_;   // of the same, one set for each result
+  DistanceField field_;
+  std::optional<CurveQuery> query_;
+};
+
+}  // namespace
+
+OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options) {
+  CurvePipeline pipeline(curves, options, thread_count(options.threads));
+  pipeline.prepare(distances);
+  return pipeline.statistics();
+}
+
+std::vector<OffsetResult> offset_curves(CurvesView curves, std::span<const Distances> distances,
+                                        const OffsetOptions& options) {
+  if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
+  for (const Distances& each : distances)
+    if (!each.uniform() && each.count() != curves.positions.size())
+      throw InvalidInput("offset: expected a distance for each of " + std::to_string(curves.positions.size()) +
+                         " points, got " + std::to_string(each.count()));
+  const int threads = thread_count(options.threads);
+  std::vector<OffsetResult> results;
+  // An arena of its own keeps the number of threads a matter of this call alone.
+  tbb::task_arena arena(threads);
+  arena.execute([&] { results = CurvePipeline(curves, options, threads).run(distances); });
+  return results;
+}
+
+}  // namespace vdb_offset

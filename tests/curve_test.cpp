@@ -1,0 +1,342 @@
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "bytes.h"
+#include "folder.h"
+#include "vdb_offset/curve_offset.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/curve_file.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Points that are joined in their order, back to the first if closed.
+Curves curve_through(const std::vector<Vec3d>& points, bool closed) {
+  Curves curves;
+  curves.positions = points;
+  for (std::uint32_t p = 0; p < points.size(); ++p) curves.corners.push_back(p);
+  if (closed) curves.corners.push_back(0);
+  curves.close_face();
+  return curves;
+}
+
+/// radius(angle) all the way round, counterclockwise.
+template <class Radius>
+Curves star(int count, Radius&& radius) {
+  std::vector<Vec3d> points;
+  for (int i = 0; i < count; ++i) {
+    const double a = kTurn * i / count, r = radius(a);
+    points.emplace_back(r * std::cos(a), r * std::sin(a), 0);
+  }
+  return curve_through(points, true);
+}
+
+/// `teeth` slits of width `gap`, whose walls have a point every `step`.
+Curves comb(int teeth, double gap, double step) {
+  std::vector<Vec3d> points;
+  const auto to = [&](const Vec3d& end) {
+    const Vec3d from = points.back();
+    const int count = std::max(1, static_cast<int>((end - from).length() / step));
+    for (int i = 1; i <= count; ++i) points.push_back(from + (end - from) * (static_cast<double>(i) / count));
+  };
+  points.emplace_back(0, 0, 0);
+  for (int t = 0; t < teeth; ++t) {
+    to({t + 1 - gap, 0, 0});
+    to({t + 1 - gap, 1, 0});
+    to({t + 1.0, 1, 0});
+    to({t + 1.0, 0, 0});
+  }
+  to({teeth + 0.5, 0, 0});
+  to({teeth + 0.5, 2, 0});
+  to({0, 2, 0});
+  to({0, 0.1, 0});
+  return curve_through(points, true);
+}
+
+OffsetResult offset_of(const Curves& curves, double distance) {
+  const Distances distances(distance);
+  return offset_curves(curves.view(), {&distances, 1}, {}).front();
+}
+
+/// The sign of the area that three points span, without rounding.
+int turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const mpq_class ax(a[0]), ay(a[1]);
+  return sgn(
+      mpq_class((mpq_class(b[0]) - ax) * (mpq_class(c[1]) - ay) - (mpq_class(b[1]) - ay) * (mpq_class(c[0]) - ax)));
+}
+
+struct Edge {
+  Vec3d a, b;
+  bool misses(const Edge& other) const {
+    for (int k = 0; k < 2; ++k)
+      if (std::max(a[k], b[k]) < std::min(other.a[k], other.b[k]) ||
+          std::max(other.a[k], other.b[k]) < std::min(a[k], b[k]))
+        return true;
+    return false;
+  }
+  bool meets(const Edge& other) const {
+    if (misses(other)) return false;
+    return turn(a, b, other.a) * turn(a, b, other.b) <= 0 && turn(other.a, other.b, a) * turn(other.a, other.b, b) <= 0;
+  }
+};
+
+/// All pairs of segments, not neighbours along a curve, that meet with the points at `positions`: by brute force.
+std::set<std::pair<std::size_t, std::size_t>> meeting(const Curves& curves, const std::vector<Vec3d>& positions) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
+  for (std::size_t c = 0; c < curves.face_count(); ++c)
+    for (std::size_t i = 1; i < curves.view().face(c).size(); ++i)
+      ends.emplace_back(curves.view().face(c)[i - 1], curves.view().face(c)[i]);
+  const auto same = [&](std::uint32_t p, std::uint32_t q) { return curves.positions[p] == curves.positions[q]; };
+  std::set<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t s = 0; s < ends.size(); ++s)
+    for (std::size_t t = s + 1; t < ends.size(); ++t) {
+      const auto [a, b] = ends[s];
+      const auto [c, d] = ends[t];
+      if (same(a, c) || same(a, d) || same(b, c) || same(b, d)) continue;
+      if (Edge{positions[a], positions[b]}.meets({positions[c], positions[d]})) pairs.emplace(s, t);
+    }
+  return pairs;
+}
+
+std::size_t new_crossings(const Curves& curves, const std::vector<Vec3d>& positions) {
+  const auto before = meeting(curves, curves.positions), after = meeting(curves, positions);
+  return static_cast<std::size_t>(
+      std::count_if(after.begin(), after.end(), [&](const auto& pair) { return !before.contains(pair); }));
+}
+
+/// Distance to the nearest segment, by brute force.
+double distance_to(const Curves& curves, const Vec3d& x) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < curves.face_count(); ++c) {
+    const auto curve = curves.view().face(c);
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      const Vec3d &a = curves.positions[curve[i > 0 ? i - 1 : 0]], &b = curves.positions[curve[i]];
+      const double length2 = (b - a).lengthSqr();
+      const double t = length2 > 0 ? std::clamp((x - a).dot(b - a) / length2, 0.0, 1.0) : 0;
+      least = std::min(least, (x - a - (b - a) * t).length());
+    }
+  }
+  return least;
+}
+
+/// States tell the truth, nobody is too far out, and nothing crosses that did not before.
+void require_honest(const Curves& curves, const OffsetResult& result) {
+  CHECK(new_crossings(curves, result.positions) == result.statistics.limit.crossings_near_source);
+  CHECK(result.statistics.limit.left.total() == 0);
+  for (std::size_t p = 0; p < curves.positions.size(); ++p) {
+    if (result.states[p] == VertexState::Unused) continue;
+    const double target = std::abs(result.distances[p]), achieved = distance_to(curves, result.positions[p]);
+    const double rounding = 1e-12 * result.statistics.facts.diagonal;
+    CHECK(achieved == Approx(result.achieved[p]).margin(rounding));
+    CHECK(achieved <= target * (1 + 1e-6) + rounding);
+    if (result.states[p] == VertexState::Reached) CHECK(achieved >= target * (1 - 1e-6) - rounding);
+  }
+}
+
+std::size_t reached(const OffsetResult& result) {
+  return result.statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)];
+}
+
+}  // namespace
+
+TEST_CASE("curves: the circle of 40 points goes where the exact offset of its polygon has corners", "[curves]") {
+  const Curves circle = star(40, [](double) { return 0.5; });
+  for (const double d : {-0.1, 0.1}) {
+    const OffsetResult result = offset_of(circle, d);
+    CHECK(reached(result) == 40);
+    // Inward the corners lie on both neighbours' parallels; outward they are as far from the corner itself.
+    const double radius = d < 0 ? 0.5 - 0.1 / std::cos(std::numbers::pi / 40) : 0.6;
+    for (std::size_t p = 0; p < 40; ++p)
+      CHECK((result.positions[p] - circle.positions[p].unit() * radius).length() < 1e-9);
+  }
+}
+
+TEST_CASE("curves: outward is away from what is enclosed, whichever way curves run", "[curves]") {
+  // A square with a square hole, a smaller square in that; each a second time with the points the other way round.
+  for (const bool turned : {false, true}) {
+    Curves curves;
+    for (const double side : {3.0, 2.0, 1.0}) {
+      const auto first = static_cast<std::uint32_t>(curves.positions.size());
+      for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+        curves.positions.emplace_back(side * x, (turned ? -side : side) * y, 0);
+      curves.corners.insert(curves.corners.end(), {first, first + 1, first + 2, first + 3, first});
+      curves.close_face();
+    }
+    const OffsetResult result = offset_of(curves, -0.25);
+    CHECK(reached(result) == 12);
+    for (std::size_t p = 0; p < 12; ++p) {
+      // Inward, the outer one and the one in the hole shrink, and the hole grows.
+      const double side = p < 4 ? 2.75 : p < 8 ? 2 + 0.25 / std::sqrt(2.0) : 0.75;
+      for (int k = 0; k < 2; ++k) CHECK(std::abs(result.positions[p][k]) == Approx(side).epsilon(1e-7));
+    }
+  }
+}
+
+TEST_CASE("curves: an open curve has its right side outward, and keeps square ends", "[curves]") {
+  const Curves line = curve_through({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}}, false);
+  const OffsetResult right = offset_of(line, 0.1), left = offset_of(line, -0.1);
+  CHECK((right.positions[0] - Vec3d(0, -0.1, 0)).length() < 1e-9);
+  CHECK((right.positions[3] - Vec3d(2.1, 1, 0)).length() < 1e-9);
+  CHECK((left.positions[0] - Vec3d(0, 0.1, 0)).length() < 1e-9);
+  CHECK((left.positions[2] - Vec3d(1.9, 0.1, 0)).length() < 1e-6);
+  CHECK(reached(right) + reached(left) == 8);
+}
+
+TEST_CASE("curves: pieces that run to and fro are joined to one", "[curves]") {
+  const Curves whole = star(24, [](double a) { return 1 + 0.2 * std::sin(3 * a); });
+  Curves pieces;
+  pieces.positions = whole.positions;
+  for (std::uint32_t p = 0; p < 24; ++p) {
+    const std::uint32_t q = (p + 1) % 24;
+    if (p % 3 == 0) pieces.add_face({q, p});
+    else pieces.add_face({p, q});
+  }
+  const OffsetResult of_whole = offset_of(whole, 0.1), of_pieces = offset_of(pieces, 0.1);
+  CHECK(of_pieces.statistics.facts.closed_components == 1);
+  CHECK(of_pieces.positions == of_whole.positions);
+}
+
+TEST_CASE("curves: the plane may lie anywhere", "[curves]") {
+  const Curves flat = star(60, [](double a) { return 1 + 0.3 * std::cos(5 * a); });
+  const OffsetResult expected = offset_of(flat, 0.1);
+  const Vec3d u = Vec3d(1, 2, 2) / 3.0, v = Vec3d(2, 1, -2) / 3.0, origin(10, 20, 30);
+  for (const auto& [e, f, tolerance] :
+       {std::tuple{Vec3d(0, 1, 0), Vec3d(0, 0, 1), 0.0}, {Vec3d(0, 0, 1), Vec3d(1, 0, 0), 0.0}, {u, v, 1e-4}}) {
+    Curves turned = flat;
+    const Vec3d at = tolerance > 0 ? origin : Vec3d(0.0);
+    for (Vec3d& p : turned.positions) p = at + e * p[0] + f * p[1];
+    const OffsetResult result = offset_of(turned, 0.1);
+    CHECK(reached(result) == reached(expected));
+    for (std::size_t p = 0; p < 60; ++p) {
+      const Vec3d& x = expected.positions[p];
+      CHECK((result.positions[p] - (at + e * x[0] + f * x[1])).length() <= tolerance);
+      CHECK(std::abs((result.positions[p] - at).dot(e.cross(f))) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("curves: what is not in one plane is refused, by its point", "[curves]") {
+  Curves bent = star(8, [](double) { return 1.0; });
+  bent.positions[5][2] = 0.1;
+  CHECK_THROWS_WITH(offset_of(bent, 0.1), Catch::Contains("one plane"));
+  Curves wrong = star(8, [](double) { return 1.0; });
+  wrong.corners[2] = 8;
+  CHECK_THROWS_WITH(offset_of(wrong, 0.1), Catch::Contains("below 8, got 8"));
+}
+
+TEST_CASE("curves: nothing crosses that did not before, in slits, stars and curves that cross themselves", "[curves]") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(0.6, 1.4);
+  const Curves shapes[] = {
+      comb(4, 0.2, 0.05), comb(3, 0.02, 0.3), star(200, [](double a) { return 1 + 0.5 * std::sin(9 * a); }),
+      star(300, [&](double) { return any(random); }), star(90, [](double a) { return std::cos(2 * a + 0.1); })};
+  for (const Curves& shape : shapes)
+    for (const double d : {0.01, -0.01, 0.08, -0.08, 0.3}) require_honest(shape, offset_of(shape, d));
+}
+
+TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are spread over the rest", "[curves]") {
+  // Each trough of this star is narrower than the offset, and all points still find a place on it.
+  const Curves star_of_twelve = star(1200, [](double a) { return 1 + 0.4 * std::sin(12 * a); });
+  const OffsetResult result = offset_of(star_of_twelve, 0.1);
+  CHECK(result.statistics.limit.before.inverted > 0);
+  CHECK(result.statistics.limit.before.crossings > 0);
+  CHECK(reached(result) == 1200);
+  require_honest(star_of_twelve, result);
+}
+
+TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {
+  const Curves circle = star(120, [](double) { return 1.0; });
+  std::vector<double> each;
+  for (int p = 0; p < 120; ++p) each.push_back(p < 20 ? 0 : 0.05 + 0.04 * std::sin(kTurn * p / 120));
+  OffsetOptions options;
+  const Distances distances{std::vector<double>(each)};
+  const OffsetResult result = offset_curves(circle.view(), {&distances, 1}, options).front();
+  require_honest(circle, result);
+  for (std::size_t p = 0; p < 20; ++p) CHECK(result.positions[p] == circle.positions[p]);
+  CHECK(reached(result) == 120);
+}
+
+TEST_CASE("curves: the same bytes for any number of threads", "[curves]") {
+  const Curves shape = star(3000, [](double a) { return 1 + 0.3 * std::sin(11 * a) + 0.02 * std::sin(190 * a); });
+  const Distances distances(0.06);
+  OffsetOptions options;
+  options.threads = 1;
+  const OffsetResult one = offset_curves(shape.view(), {&distances, 1}, options).front();
+  options.threads = 0;
+  const OffsetResult all = offset_curves(shape.view(), {&distances, 1}, options).front();
+  CHECK(one.positions == all.positions);
+  CHECK(one.states == all.states);
+}
+
+TEST_CASE("curve files: text keeps its bytes but for the numbers", "[curves][io]") {
+  const std::string text = "My foil\r\n# first, closed\n 1.0 0.0 \n0,5 1\n";
+  CHECK_THROWS_WITH(io::parse_curves("a.dat", io::CurveFormat::Text, text),
+                    Catch::Contains("a.dat, line 4: expected a coordinate, got '0,5'"));
+  const Folder folder;
+  const std::string good = "My foil\r\n# first, closed\n 1.0 0.0 \n0.5\t1 # tip\n-.5 .0e0\n\n\n# second\n3 3\n4 4\n";
+  const io::CurveFile read = io::read_curves(folder.write("a.dat", good));
+  REQUIRE(read.file.polygons.face_count() == 2);
+  CHECK(read.file.polygons.corners == std::vector<std::uint32_t>{0, 1, 2, 0, 3, 4});
+  std::vector<Vec3d> moved = read.file.polygons.positions;
+  io::write_curves(folder.file("same.dat"), read, moved);
+  CHECK(slurp(folder.file("same.dat")) == good);
+  moved[1] = Vec3d(0.25, -2, 0);
+  io::write_curves(folder.file("b.dat"), read, moved);
+  CHECK(slurp(folder.file("b.dat")) ==
+        "My foil\r\n# first, closed\n 1.0 0.0 \n0.25\t-2 # tip\n-.5 .0e0\n\n\n# second\n3 3\n4 4\n");
+  io::write_curves(folder.file("b.obj"), read, moved);
+  CHECK(slurp(folder.file("b.obj")) == "v 1 0 0\nv 0.25 -2 0\nv -0.5 0 0\nv 3 3 0\nv 4 4 0\nl 1 2 3 1\nl 4 5\n");
+  io::write_curves(folder.file("c.txt"), io::read_curves(folder.file("b.obj")), moved);
+  CHECK(slurp(folder.file("c.txt")) == "1 0\n0.25 -2\n-0.5 0\n1 0\n\n3 3\n4 4\n");
+}
+
+TEST_CASE("curve files: airfoils in Lednicer's order are one curve from end to end", "[curves][io]") {
+  const std::string text = "Foil\n 3. 3.\n\n0 0\n0.5 0.1\n1 0.01\n\n0 0\n0.5 -0.1\n1 -0.01\n";
+  const io::CurveFile read = io::parse_curves("foil.dat", io::CurveFormat::Text, text);
+  CHECK(read.file.polygons.positions.size() == 6);
+  CHECK(read.file.polygons.corners == std::vector<std::uint32_t>{2, 1, 0, 3, 4, 5});
+  CHECK(io::patched_bytes(read.file, read.file.polygons.positions) == text);
+}
+
+TEST_CASE("curve files: mistakes are told by their line", "[curves][io]") {
+  const auto fails = [](io::CurveFormat format, const std::string& text, const std::string& message) {
+    CHECK_THROWS_WITH(io::parse_curves("f", format, text), Catch::Contains(message));
+  };
+  using enum io::CurveFormat;
+  fails(Text, "", "byte 0");
+  fails(Text, "only a title\n", "at least one line 'x y'");
+  fails(Text, "1 2\n1 2 3\n", "f, line 2: expected 2 coordinates");
+  fails(Text, "1 2\n1\n", "f, line 2: expected a coordinate, got the end of the line");
+  fails(Text, "1 2\nnan 2\n", "finite");
+  fails(Obj, "v 0 0 0\nl 1\n", "f, line 2: expected at least 2 points");
+  fails(Obj, "v 0 0 0\nl 1 2\n", "f, line 2: expected a vertex index up to 1");
+  fails(Obj, "v 0 0 0\nl 1 -2\n", "f, line 2: expected a vertex index within the 1 read so far");
+}
+
+/// Run by the acceptance tests where there is a folder of real curves.
+TEST_CASE("curve files: real curves at four distances", "[.curve_files]") {
+  const char* const folder = std::getenv("VDB_OFFSET_CURVES");
+  REQUIRE(folder);
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    ++files;
+    const io::CurveFile read = io::read_curves(entry.path().string());
+    const Curves& curves = read.file.polygons;
+    const double diagonal = used_diagonal(curves.view());
+    for (const double percent : {0.5, -0.5, 2.0, -2.0}) {
+      CAPTURE(entry.path().filename().string(), percent);
+      require_honest(curves, offset_of(curves, percent / 100 * diagonal));
+    }
+  }
+  CHECK(files >= 9);
+}
