@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "vdb_offset/box_tree.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/winding.h"
 
 namespace vdb_offset {
 namespace {
@@ -120,14 +120,14 @@ void locate(const Surface& surface, const std::vector<std::uint32_t>& component_
 }
 
 /// Tells which closed components another one lies inside of: those around which the winding number of its points is
-/// not zero, counted along rays. Rays start in the middle of faces and run in a direction that edges and faces of real
-/// parts do not lie in; two of three decide.
+/// not zero, counted along rays that start in the middle of faces; two of three decide.
 class Nesting {
  public:
   Nesting(const Surface& surface, const std::vector<std::uint32_t>& component_of, const std::vector<Solid>& solids)
-      : surface_(surface), component_of_(component_of), solids_(solids) {
-    tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(t); });
-  }
+      : surface_(surface),
+        component_of_(component_of),
+        solids_(solids),
+        rays_(surface, [&](std::size_t t) { return solids[component_of[t]].closed; }) {}
 
   std::vector<std::uint32_t> solids_around(std::uint32_t inner) const {
     std::vector<std::uint32_t> found, around;
@@ -139,28 +139,6 @@ class Nesting {
   }
 
  private:
-  /// All rays run along z here.
-  static Vec3d leaned(const Vec3d& x) {
-    return {x[0] - 0.3819660112501051 * x[2], x[1] - 0.2360679774997897 * x[2], x[2]};
-  }
-
-  static float below(double x) { return std::nextafter(static_cast<float>(x), -FloatBox::kInfinity); }
-  static float above(double x) { return std::nextafter(static_cast<float>(x), FloatBox::kInfinity); }
-
-  /// Empty for what is no part of a solid.
-  FloatBox box_of(std::size_t t) const {
-    FloatBox box;
-    if (!solids_[component_of_[t]].closed) return box;
-    for (const auto v : surface_.triangles[t]) {
-      const Vec3d p = leaned(surface_.vertices[v]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.lower[k] = std::min(box.lower[k], below(p[static_cast<int>(k)]));
-        box.upper[k] = std::max(box.upper[k], above(p[static_cast<int>(k)]));
-      }
-    }
-    return box;
-  }
-
   /// What is strictly inside of a closed surface is so in all coordinates.
   bool may_hold(std::uint32_t outer, std::uint32_t inner) const {
     const Solid &a = solids_[outer], &b = solids_[inner];
@@ -172,14 +150,11 @@ class Nesting {
   /// Adds the solids that a sample of `inner` lies inside of.
   void cast_ray(std::uint32_t inner, std::uint32_t sample, std::vector<std::uint32_t>& found) const {
     const auto& [a, b, c] = surface_.triangles[sample];
-    const Vec3d start = leaned((surface_.vertices[a] + surface_.vertices[b] + surface_.vertices[c]) / 3.0);
-    FloatBox ray{{below(start[0]), below(start[1]), below(start[2])},
-                 {above(start[0]), above(start[1]), FloatBox::kInfinity}};
     std::vector<std::pair<std::uint32_t, int>> passes;
-    tree_.for_each_overlap(ray, [&](std::size_t t) {
-      if (!may_hold(component_of_[t], inner)) return;
-      if (const int turn = pass(t, start); turn != 0) passes.emplace_back(component_of_[t], turn);
-    });
+    rays_.cast((surface_.vertices[a] + surface_.vertices[b] + surface_.vertices[c]) / 3.0,
+               [&](std::size_t t, int turn) {
+                 if (may_hold(component_of_[t], inner)) passes.emplace_back(component_of_[t], turn);
+               });
     std::sort(passes.begin(), passes.end());
     for (std::size_t i = 0; i < passes.size();) {
       const std::uint32_t outer = passes[i].first;
@@ -189,32 +164,10 @@ class Nesting {
     }
   }
 
-  /// 1 or -1 if the ray from `start` passes through a triangle, by its orientation; else 0. Both triangles at an edge
-  /// see the ray on the same side of it, to the last bit, so that it slips between none.
-  int pass(std::size_t t, const Vec3d& start) const {
-    const auto& corner = surface_.triangles[t];
-    Vec3d p[3];
-    for (std::size_t k = 0; k < 3; ++k) p[k] = leaned(surface_.vertices[corner[k]]) - start;
-    int left = 0;
-    double weight[3], total = 0, height = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-      const bool ordered = corner[i] < corner[j];
-      const Vec3d &from = ordered ? p[i] : p[j], &to = ordered ? p[j] : p[i];
-      const double side = from[0] * to[1] - to[0] * from[1];
-      left += (side >= 0) == ordered;
-      weight[k] = ordered ? side : -side;
-      total += weight[k];
-      height += weight[k] * p[k][2];
-    }
-    if ((left != 0 && left != 3) || total == 0 || !(height / total > 0)) return 0;
-    return left == 3 ? 1 : -1;
-  }
-
   const Surface& surface_;
   const std::vector<std::uint32_t>& component_of_;
   const std::vector<Solid>& solids_;
-  BoxTree tree_;
+  RayTree rays_;
 };
 
 /// By component: whether it faces the wrong way as a whole, from what each lies inside of.
