@@ -160,7 +160,9 @@ VoxelSize choose(double median_edge, double diagonal, double d) {
   return {d, "the distance: the smoothing length of the directions"};
 }
 
-void require_lengths(double diagonal, double distance, const GridOptions& options) {
+}  // namespace
+
+void require_plannable(double diagonal, double distance, const GridOptions& options) {
   if (!std::isfinite(distance) || distance == 0)
     throw InvalidInput(fmt::format("plan: expected a finite distance other than 0, got {}", distance));
   if (!(diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point");
@@ -179,10 +181,8 @@ void require_lengths(double diagonal, double distance, const GridOptions& option
       throw InvalidInput(fmt::format("plan: expected a positive voxel size or voxels per distance, got {}", *given));
 }
 
-}  // namespace
-
 VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options) {
-  require_lengths(diagonal, distance, options);
+  require_plannable(diagonal, distance, options);
   if (options.voxel_size) return {*options.voxel_size, "as given"};
   if (options.voxels_per_distance)
     return {distance / *options.voxels_per_distance,

@@ -39,6 +39,9 @@ GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOpti
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
                    int threads);
 
+/// \throw InvalidInput for a diagonal, a distance (world units, > 0) or a grid that no field can be made for.
+void require_plannable(double diagonal, double distance, const GridOptions& options);
+
 /// A voxel size, world units, and why.
 struct VoxelSize {
   double size;

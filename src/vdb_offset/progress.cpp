@@ -7,7 +7,8 @@
 namespace vdb_offset {
 
 const char* name(Stage stage) {
-  constexpr const char* kNames[kStageCount] = {"read", "rasterise", "sweep", "propagate", "limit", "layers", "write"};
+  constexpr const char* kNames[kStageCount] = {"read",    "rasterise", "sweep",  "propagate",
+                                               "capture", "limit",     "layers", "write"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

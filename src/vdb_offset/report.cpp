@@ -165,11 +165,43 @@ Json grids_json(const OffsetStatistics& statistics) {
           {"estimated_bytes", statistics.plan.bytes}};
 }
 
+Json options_json(const RunFacts& run) {
+  Json options = Json::object();
+  for (const auto& [key, value] : run.options) options[key] = value;
+  return options;
+}
+
+Json surface_json(const CaptureStatistics& found) {
+  const MendStatistics& mending = found.mending;
+  const auto faults = [](const MeshFaults& counts) {
+    return Json{{"crossings", counts.crossings}, {"without_area", counts.needles}};
+  };
+  return {{"signed", found.is_signed},
+          {"vertices", found.vertices},
+          {"triangles", found.triangles},
+          {"components", found.components},
+          {"valid", found.valid()},
+          {"closed", found.closed()},
+          {"manifold", found.manifold()},
+          {"border_edges", found.border_edges},
+          {"non_manifold_edges", found.non_manifold_edges},
+          {"pinched_vertices", found.pinched_vertices},
+          {"turned_edges", found.turned_edges},
+          {"crossings", mending.left.crossings},
+          {"without_area", mending.left.needles},
+          {"mended",
+           {{"before", faults(mending.before)},
+            {"rounds", mending.rounds},
+            {"moved_vertices", mending.moved_vertices},
+            {"flipped_edges", mending.flipped_edges},
+            {"split_edges", mending.split_edges}}},
+          {"distance_error", {{"worst", found.worst_error}, {"rms", found.rms_error}}}};
+}
+
 /// `achieved` sums up what became of the vertices, of which `distance` was the farthest that was asked.
 std::string report_of(const OffsetStatistics& statistics, double distance, const AchievedSummary& achieved,
                       const RunFacts& run) {
-  Json options = Json::object(), seconds = Json::object(), states = Json::object();
-  for (const auto& [key, value] : run.options) options[key] = value;
+  Json seconds = Json::object(), states = Json::object();
   for (std::size_t s = 0; s < kStageCount; ++s) seconds[name(static_cast<Stage>(s))] = statistics.seconds[s];
   seconds["total"] = run.total_seconds;
   for (std::size_t s = 0; s < kVertexStateCount; ++s)
@@ -177,7 +209,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
   Json report = {{"version", version()},
                  {"input", run.input},
                  {"output", run.output},
-                 {"options", options},
+                 {"options", options_json(run)},
                  {"distance", distance},
                  {"distance_as_given", run.distance_text},
                  {"voxel_size", statistics.plan.voxel_size},
@@ -247,6 +279,30 @@ std::string report_json(const LayersResult& result, const RunFacts& run) {
   if (result.heights.empty()) return report_of(result.statistics, 0, {}, run);
   const Distances& thickness = result.heights.back();
   return report_of(result.statistics, thickness.farthest(), summarise(result.states, result.achieved, thickness), run);
+}
+
+std::string report_json(const CaptureStatistics& statistics, const RunFacts& run) {
+  Json seconds = Json::object();
+  for (const Stage stage : kCaptureStages) seconds[name(stage)] = statistics.seconds[static_cast<std::size_t>(stage)];
+  seconds["total"] = run.total_seconds;
+  const Json report = {{"version", version()},
+                       {"input", run.input},
+                       {"output", run.output},
+                       {"options", options_json(run)},
+                       {"distance", statistics.distance},
+                       {"distance_as_given", run.distance_text},
+                       {"voxel_size", statistics.plan.voxel_size},
+                       {"voxel_size_reason", statistics.plan.reason},
+                       {"threads", statistics.threads},
+                       {"mesh", facts_json(statistics.source)},
+                       {"grid",
+                        {{"leaf_nodes", statistics.leaf_nodes},
+                         {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
+                         {"estimated_bytes", statistics.plan.bytes}}},
+                       {"seconds", seconds},
+                       {"peak_memory_bytes", peak_memory()},
+                       {"surface", surface_json(statistics)}};
+  return report.dump(2) + "\n";
 }
 
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {

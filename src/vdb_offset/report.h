@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/capture.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/layer_report.h"
 #include "vdb_offset/offset.h"
@@ -39,6 +40,9 @@ struct RunFacts {
 std::string report_json(const OffsetResult& result, const RunFacts& run);
 /// The same for layers: what is said of vertices is that of the outermost surface.
 std::string report_json(const LayersResult& result, const RunFacts& run);
+
+/// The same for a captured surface.
+std::string report_json(const CaptureStatistics& statistics, const RunFacts& run);
 
 /// What a check found, as JSON text; the same keys where they mean the same.
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);

@@ -390,18 +390,6 @@ TriangleShape shape_of(const Surface& surface, std::size_t t) {
   return {n / twice, twice / 2};
 }
 
-void list_incident_triangles(Surface& surface) {
-  auto& begin = surface.incident_begin;
-  begin.assign(surface.vertices.size() + 2, 0);
-  for (const auto& t : surface.triangles)
-    for (const auto v : t) ++begin[v + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  surface.incident.resize(3 * surface.triangles.size());
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
-    for (const auto v : surface.triangles[t]) surface.incident[begin[v + 1]++] = t;
-  begin.pop_back();
-}
-
 void measure(PolygonView polygons, Surface& surface) {
   MeshFacts& facts = surface.facts;
   std::vector<std::uint8_t> degenerate(polygons.face_count(), 1);
@@ -501,6 +489,18 @@ TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) 
     }
   }
   return best;
+}
+
+void list_incident_triangles(Surface& surface) {
+  auto& begin = surface.incident_begin;
+  begin.assign(surface.vertices.size() + 2, 0);
+  for (const auto& t : surface.triangles)
+    for (const auto v : t) ++begin[v + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  surface.incident.resize(3 * surface.triangles.size());
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    for (const auto v : surface.triangles[t]) surface.incident[begin[v + 1]++] = t;
+  begin.pop_back();
 }
 
 Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient orient) {

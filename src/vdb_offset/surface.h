@@ -114,6 +114,9 @@ void place(Surface& surface, double voxel_size);
 /// The same with the origin of another surface's frame.
 void place_in_frame(Surface& surface, const Vec3d& origin);
 
+/// Lists the triangles around each vertex, as they are now.
+void list_incident_triangles(Surface& surface);
+
 /// Puts another surface beside one, without joining them. \pre both stand in one frame. Facts, and what is said of the
 /// input's vertices, stay those of the first; the other's have no representative (kNone).
 void append(Surface& surface, const Surface& other);

@@ -43,6 +43,7 @@ Examples:
   vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
   vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
   vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
+  vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
 
@@ -71,11 +72,12 @@ std::size_t parse_size(const std::string& text) {
 struct Raw {
   std::vector<std::string> distances, only;
   std::optional<std::size_t> layers;
-  std::optional<double> growth;
+  std::optional<double> growth, adaptivity;
   std::string distance_from, first_height, total_thickness, heights;
   bool structured = false;
   std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
-  std::optional<std::string> solver, collision, border, format;
+  std::optional<std::string> solver, collision, border, format, transport;
+  std::string mode = "topology";
   std::string normals = "recompute";
   std::optional<double> voxel_size, voxels_per_distance;
   int threads = 0;
@@ -93,6 +95,18 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
       ->type_name("D")
       ->expected(1)
       ->take_all();
+  app.add_option("--mode", raw.mode,
+                 "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "
+                 "closed and manifold, for which INPUT may be anything [topology]")
+      ->type_name("MODE");
+  app.add_option("--adaptivity", raw.adaptivity,
+                 "With --mode iso: how readily cells are merged where the surface is flat, 0 to 1 [0]")
+      ->type_name("X");
+  app.add_option(
+         "--transport", raw.transport,
+         "With --mode iso: what comes along from INPUT, of 'uv', 'color' and 'material', separated by commas, or "
+         "'none' [all that INPUT has and OUTPUT can hold]")
+      ->type_name("LIST");
   app.add_option("--distance-from", raw.distance_from,
                  "Each vertex's distance, world units: a file of numbers (text or .npy), or 'ply:NAME', a vertex "
                  "property of INPUT; elsewhere '@FILE' and 'ply:NAME' say the same")
@@ -316,6 +330,64 @@ void check_layers(const Raw& raw, Arguments& args) {
   require(args.output != "-", "OUTPUT: expected a file for layers, got '-'");
 }
 
+io::TransportRequest parse_transport(const std::string& text) {
+  io::TransportRequest request{false, false, false, true};
+  if (text == "none") return request;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    bool* const wanted = word == "uv"         ? &request.texture
+                         : word == "color"    ? &request.colours
+                         : word == "material" ? &request.materials
+                                              : nullptr;
+    require(wanted != nullptr,
+            fmt::format("--transport: expected 'uv', 'color' and 'material', separated by commas, or 'none', got '{}'",
+                        text));
+    *wanted = true;
+    begin = end + 1;
+  }
+  return request;
+}
+
+void check_iso(const Raw& raw, Arguments& args) {
+  require(raw.mode == "topology" || raw.mode == "iso",
+          fmt::format("--mode: expected 'topology' or 'iso', got '{}'", raw.mode));
+  const bool asked = raw.mode == "iso";
+  for (const auto& [name, given] :
+       {std::pair{"--adaptivity", raw.adaptivity.has_value()}, {"--transport", raw.transport.has_value()}})
+    require(asked || !given, fmt::format("{}: expected it with --mode iso", name));
+  if (!asked) return;
+  for (const auto& [name, given] : {std::pair{"--layers", raw.layers || !raw.heights.empty()},
+                                    {"--shell", args.shell},
+                                    {"--only", !raw.only.empty()},
+                                    {"--border", raw.border.has_value()},
+                                    {"--obstacle", !args.obstacles.empty()},
+                                    {"--distance-from", !raw.distance_from.empty()},
+                                    {"--collision", raw.collision.has_value()},
+                                    {"--solver", raw.solver.has_value()},
+                                    {"--normals", raw.normals != "recompute"},
+                                    {"--states", !args.states.empty()},
+                                    {"--save-vdb", !args.vdb.empty()}})
+    require(!given, fmt::format("{}: expected it without --mode iso", name));
+  IsoRequest& iso = args.iso.emplace();
+  iso.adaptivity = raw.adaptivity.value_or(0);
+  require(iso.adaptivity >= 0 && iso.adaptivity <= 1,
+          fmt::format("--adaptivity: expected a number from 0 to 1, got {}", iso.adaptivity));
+  if (!raw.transport) return;
+  iso.transport_text = *raw.transport;
+  iso.transport = parse_transport(*raw.transport);
+}
+
+/// Those of an iso-surface are even, and not 0.
+void check_even(const Arguments& args) {
+  if (!args.iso) return;
+  for (const DistanceRequest& request : args.distances) {
+    require(!request.distance.expression && request.from.empty(),
+            fmt::format("--distance: expected a number with --mode iso, got '{}'", request.text));
+    require(request.distance.value != 0, "--distance: expected one other than 0 with --mode iso");
+  }
+}
+
 void check_surroundings(const Raw& raw, Arguments& args) {
   args.only_texts = raw.only;
   for (const std::string& text : raw.only) {
@@ -343,6 +415,7 @@ void check_surroundings(const Raw& raw, Arguments& args) {
 }
 
 void check(const Raw& raw, Arguments& args) {
+  check_iso(raw, args);
   check_layers(raw, args);
   check_file_options(raw, args);
   args.curves = holds_curves(args.input);
@@ -350,6 +423,7 @@ void check(const Raw& raw, Arguments& args) {
   else check_names(args);
   check_apart(args);
   if (!args.layers) check_distances(raw, args);
+  check_even(args);
   check_surroundings(raw, args);
   require(!(raw.voxel_size && raw.voxels_per_distance), "--voxel-size: expected it or --voxels-per-distance, got both");
   for (const auto& [name, value] :

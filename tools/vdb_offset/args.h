@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/captured_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/selection.h"
 #include "vdb_offset/offset.h"
@@ -29,6 +30,13 @@ struct LayersRequest {
   bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
 };
 
+/// The offset surface as a mesh of its own, asked for with --mode iso.
+struct IsoRequest {
+  double adaptivity = 0;
+  io::TransportRequest transport;
+  std::string transport_text;  ///< As given; empty: all that there is.
+};
+
 /// What the command line asks for.
 struct Arguments {
   std::string input, output;
@@ -36,6 +44,7 @@ struct Arguments {
   std::optional<DistanceRequest> inner;    ///< Of the inner skin of a shell, above 0.
   bool shell = false;
   std::optional<LayersRequest> layers;
+  std::optional<IsoRequest> iso;
   std::vector<io::Selector> only;
   std::vector<std::string> only_texts, obstacles;
   scene::Distance clearance;

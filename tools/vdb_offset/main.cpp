@@ -10,6 +10,7 @@
 #include "args.h"
 #include "check_command.h"
 #include "inputs.h"
+#include "iso_command.h"
 #include "layers_command.h"
 #include "outputs.h"
 #include "summary.h"
@@ -63,6 +64,7 @@ int run(Arguments args) {
   bar.show(Stage::Read, 0);
   Source source = read_source(args);
   if (args.layers) return run_layers(args, source, start, bar) || !args.strict ? kDone : kProcessing;
+  if (args.iso) return run_iso(args, source, start, bar) || !args.strict ? kDone : kProcessing;
   const std::vector<Distances> distances = settle_options(source, args);
   const std::vector<Destination> places = destinations(args);
   const double read_seconds = seconds_since(start);

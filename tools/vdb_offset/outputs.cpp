@@ -57,7 +57,11 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
                                                                : "free";
   const auto text_of = [](const std::optional<DistanceRequest>& request) { return request ? request->text : ""; };
   const LayersRequest layers = args.layers.value_or(LayersRequest{});
+  const IsoRequest iso = args.iso.value_or(IsoRequest{});
   return {{"distance", to.distance},
+          {"mode", args.iso ? "iso" : "topology"},
+          {"adaptivity", fmt::format("{}", iso.adaptivity)},
+          {"transport", iso.transport_text.empty() ? "all" : iso.transport_text},
           {"layers", fmt::format("{}", layers.count)},
           {"first-height", text_of(layers.first)},
           {"total-thickness", text_of(layers.total)},
@@ -162,6 +166,11 @@ void write_layers_report(const Arguments& args, const LayersResult& result, cons
   RunFacts facts = facts_of(args, {args.output, args.report, args.states, {}}, start);
   facts.layers = report;
   write_file(args.report, report_json(result, facts));
+}
+
+void write_iso_report(const Arguments& args, const Destination& to, const CaptureResult& result,
+                      Clock::time_point start) {
+  write_file(to.report, report_json(result.statistics, facts_of(args, to, start)));
 }
 
 std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,

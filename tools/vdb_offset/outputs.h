@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "inputs.h"
+#include "vdb_offset/capture.h"
 #include "vdb_offset/layer_report.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shell.h"
@@ -40,6 +41,10 @@ void tell_losses(const Arguments& args, const std::string& path, const io::Write
 /// The report of a run with --layers, to where the command line says.
 void write_layers_report(const Arguments& args, const LayersResult& result, const LayerReport& report,
                          Clock::time_point start);
+
+/// The report of a run with --mode iso, to where it goes.
+void write_iso_report(const Arguments& args, const Destination& to, const CaptureResult& result,
+                      Clock::time_point start);
 
 /// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
 /// held before. Returns the facts of a shell, if it is one.

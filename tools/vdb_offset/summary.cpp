@@ -7,8 +7,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-void print_facts(std::FILE* out, const OffsetStatistics& statistics) {
-  const MeshFacts& facts = statistics.facts;
+void print_facts(std::FILE* out, const MeshFacts& facts) {
   std::size_t faces = 0;
   for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
   fmt::print(out, "mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n",
@@ -54,7 +53,7 @@ void print_plan(std::FILE* out, const OffsetStatistics& statistics, const Distan
 
 /// All that is known of the mesh and the grid, and the seconds of each stage.
 void print_details(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances) {
-  print_facts(out, statistics);
+  print_facts(out, statistics.facts);
   print_plan(out, statistics, distances);
   for (std::size_t s = 0; s < kStageCount; ++s)
     fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), statistics.seconds[s]);
@@ -92,10 +91,20 @@ void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shel
   fmt::print(out, "\n");
 }
 
+void print_iso_plan(std::FILE* out, const CaptureStatistics& statistics, double distance) {
+  const CapturePlan& plan = statistics.plan;
+  print_facts(out, statistics.source);
+  fmt::print(out, "distance   {:.9g}{}\n", distance,
+             statistics.is_signed ? "" : ", on all sides of the surface, as it has no inside");
+  fmt::print(out, "voxel size {:.6g} ({})\n", plan.voxel_size, plan.reason);
+  fmt::print(out, "estimate   {} leaf nodes, {} triangles, {:.1f} MiB\n", plan.leaf_nodes, plan.triangles,
+             static_cast<double>(plan.bytes) / 1048576.0);
+}
+
 }  // namespace
 
 void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest) {
-  print_facts(stdout, statistics);
+  print_facts(stdout, statistics.facts);
   print_plan(stdout, statistics, farthest);
   print_orientation(stdout, statistics.facts, args.options.orient);
 }
@@ -118,6 +127,33 @@ void print_summary(const Arguments& args, const Outcome& outcome, const std::opt
     fmt::print(out, "{} vertices stand with one of which another distance was asked; they go the mean\n",
                result.statistics.disagreeing_distances);
   print_doubts(out, result.statistics, args.options.orient);
+}
+
+void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance) {
+  print_iso_plan(stdout, statistics, distance);
+  print_orientation(stdout, statistics.source, args.options.orient);
+}
+
+void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
+                       double total_seconds) {
+  std::FILE* const out = args.output == "-" ? stderr : stdout;
+  const CaptureStatistics& found = result.statistics;
+  const MeshFaults& left = found.mending.left;
+  if (args.verbose) {
+    print_iso_plan(out, found, distance);
+    for (const Stage stage : kCaptureStages)
+      fmt::print(out, "{:<10} {:.3f} s\n", name(stage), found.seconds[static_cast<std::size_t>(stage)]);
+  }
+  fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {}, {}, {} crossing{}", path, found.vertices,
+             found.triangles, distance, found.closed() ? "closed" : "not closed",
+             found.manifold() ? "manifold" : "not manifold", left.crossings, left.crossings == 1 ? "" : "s");
+  if (left.needles > 0) fmt::print(out, ", {} triangles without area", left.needles);
+  fmt::print(out, ", distance off by {:.2g} at most ({:.2f} s)\n", found.worst_error, total_seconds);
+  if (!found.is_signed)
+    fmt::print(out,
+               "the input is not closed, or its faces do not agree about the outside: the surface is on all its "
+               "sides\n");
+  print_orientation(out, found.source, args.options.orient);
 }
 
 void print_layers_summary(const Arguments& args, const LayersResult& result, const LayerReport& report,

@@ -16,6 +16,13 @@ void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, co
 void print_summary(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
                    double total_seconds);
 
+/// What --dry-run prints with --mode iso.
+void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance);
+
+/// What is printed of a captured surface.
+void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
+                       double total_seconds);
+
 /// The same of layers.
 void print_layers_summary(const Arguments& args, const LayersResult& result, const LayerReport& report,
                           double total_seconds);

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/labels.h"
 #include "vdb_offset/io/ply_header.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/parallel.h"
@@ -370,6 +371,26 @@ Attributes read_attributes(const MeshFile& source) {
       break;
   }
   return attributes;
+}
+
+Materials read_materials(const MeshFile& source) {
+  Materials materials;
+  if (source.format != Format::Obj || !has_extra(source, "materials")) return materials;
+  std::unordered_map<std::string, std::uint32_t> index_of;
+  std::string name;
+  Scanner scanner = scanner_at(source, byte_order_mark(source.text()));
+  for (; !scanner.at_end(); scanner.next_line()) {
+    const std::string_view keyword = scanner.token();
+    if (keyword == "usemtl") name = rest_of_line(scanner);
+    else if (keyword == "mtllib") materials.libraries.push_back(rest_of_line(scanner));
+    if (keyword != "f") continue;
+    const auto [known, is_new] = index_of.try_emplace(name, static_cast<std::uint32_t>(materials.names.size()));
+    if (is_new) materials.names.push_back(name);
+    materials.of_face.push_back(known->second);
+  }
+  const bool any = materials.names.size() > 1 || (materials.names.size() == 1 && !materials.names[0].empty());
+  if (!any || materials.of_face.size() != source.polygons.face_count()) return {};
+  return materials;
 }
 
 std::vector<Vec2d> vertex_texture(const MeshFile& source) {

@@ -37,6 +37,16 @@ struct Attributes {
 /// Goes over the file again for them, so that reading a mesh does not have to.
 Attributes read_attributes(const MeshFile& source);
 
+/// What faces are made of, by the name of their material.
+struct Materials {
+  std::vector<std::string> names;      ///< "" for faces that have none.
+  std::vector<std::uint32_t> of_face;  ///< Index into `names`. Empty: no face has a material.
+  std::vector<std::string> libraries;  ///< What the file says of where they are described.
+};
+
+/// The materials of an OBJ file; other files have none.
+Materials read_materials(const MeshFile& source);
+
 /// Texture coordinates, one for each vertex: those of the first corner at the vertex that has any, NaNs if none has.
 /// Zero for a vertex that no face uses. \throw InvalidInput if the file holds no texture coordinates at all.
 std::vector<Vec2d> vertex_texture(const MeshFile& source);

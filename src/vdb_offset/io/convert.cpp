@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "vdb_offset/io/encode.h"
 #include "vdb_offset/io/normals.h"
 #include "vdb_offset/io/shell_formats.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/transport.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -99,6 +103,100 @@ void name_losses_of_triangles(const MeshFile& source, std::vector<std::string>& 
   lost.emplace_back("digits beyond single precision");
 }
 
+CornerValues<Vec3d> normals_of(const CaptureResult& captured) {
+  const Precision single{Precision::Kind::Single};
+  CornerValues<Vec3d> normals{captured.normals, {}, true};
+  for (Vec3d& normal : normals.value) normal = single(normal);
+  return normals;
+}
+
+/// Colours of the closest points.
+std::vector<std::array<double, 4>> colours_of(const SourceLookup& lookup, PolygonView source, const Attributes& with,
+                                              std::size_t vertices) {
+  std::vector<std::array<double, 4>> colours(vertices, {0, 0, 0, 0});
+  for_each_index(vertices, [&](std::size_t v) {
+    const SourcePoint point = lookup.at_vertex(static_cast<std::uint32_t>(v));
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 4; ++k)
+        colours[v][k] += point.weight[i] * with.colours[source.corners[point.corner[i]]][k];
+    for (double& colour : colours[v]) colour = std::clamp(colour, 0.0, 1.0);  // rounding
+  });
+  return colours;
+}
+
+/// Numbers alike what is of equal value: seams are where values differ. What has none is alike, too.
+std::vector<std::uint32_t> number_values(PolygonView source, const CornerValues<Vec2d>& texture) {
+  std::vector<std::uint32_t> order(texture.value.size()), number(order.size()), of_corner(source.corners.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec2d &u = texture.value[a], &v = texture.value[b];
+    return std::pair(u[0], u[1]) < std::pair(v[0], v[1]);
+  };
+  std::sort(order.begin(), order.end(), less);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    number[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? number[order[i - 1]] : static_cast<std::uint32_t>(i);
+  for (std::size_t c = 0; c < of_corner.size(); ++c) {
+    const std::uint32_t index = texture.index(c, source.corners[c]);
+    of_corner[c] = index == kNoNormal ? kNoNormal : number[index];
+  }
+  return of_corner;
+}
+
+/// The texture coordinates at a point, if all corners around it have some.
+std::optional<Vec2d> texture_at(const SourcePoint& point, PolygonView source, const CornerValues<Vec2d>& texture) {
+  Vec2d uv(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::uint32_t index = texture.index(point.corner[i], source.corners[point.corner[i]]);
+    if (index == kNoNormal) return std::nullopt;
+    uv += texture.value[index] * point.weight[i];
+  }
+  return uv;
+}
+
+/// One value for all corners of a vertex that have the same.
+CornerValues<Vec2d> texture_of(const CaptureResult& captured, SourceLookup& lookup, PolygonView source,
+                               const CornerValues<Vec2d>& texture) {
+  lookup.cut_into_charts(number_values(source, texture));
+  const std::vector<std::uint32_t>& corners = captured.polygons.corners;
+  std::vector<std::optional<Vec2d>> at(corners.size());
+  for_each_index(corners.size(),
+                 [&](std::size_t c) { at[c] = texture_at(lookup.at_corner(c / 3, c % 3), source, texture); });
+  CornerValues<Vec2d> result;
+  result.single = texture.single;
+  result.of_corner.assign(corners.size(), kNoNormal);
+  std::vector<std::uint32_t> latest(captured.polygons.positions.size(), kNoNormal), before;  // of a vertex, of a value
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    if (!at[c]) continue;
+    std::uint32_t known = latest[corners[c]];
+    while (known != kNoNormal && !(result.value[known] == *at[c])) known = before[known];
+    if (known == kNoNormal) {
+      known = static_cast<std::uint32_t>(result.value.size());
+      result.value.push_back(*at[c]);
+      before.push_back(std::exchange(latest[corners[c]], known));
+    }
+    result.of_corner[c] = known;
+  }
+  return result;
+}
+
+/// Puts the triangles in the order of their materials, and what their corners name with them.
+void sort_by_material(const SourceLookup& lookup, const Materials& materials, Content& content, Polygons& mesh) {
+  const std::size_t count = mesh.face_count();
+  std::vector<std::uint32_t> order(count), of_face(count);
+  for_each_index(count, [&](std::size_t t) { of_face[t] = materials.of_face[lookup.face_of(t)]; });
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t s, std::uint32_t t) { return of_face[s] < of_face[t]; });
+  content.materials = {materials.names, {}, materials.libraries};
+  for (const auto t : order) content.materials.of_face.push_back(of_face[t]);
+  const auto put_in_order = [&](std::vector<std::uint32_t>& of_corner) {
+    const std::vector<std::uint32_t> was = of_corner;
+    for (std::size_t c = 0; c < was.size(); ++c) of_corner[c] = was[3 * order[c / 3] + c % 3];
+  };
+  put_in_order(mesh.corners);
+  put_in_order(content.with.texture.of_corner);
+}
+
 /// What each skin's vertices have.
 template <class Value>
 void double_up(std::vector<Value>& of_vertices) {
@@ -150,6 +248,10 @@ std::vector<Part> parts_of(const Shell& shell) {
 
 bool keeps_parts(Format format) { return format == Format::Obj || format == Format::Ply; }
 
+Pieces keep_alive(Pieces pieces, std::shared_ptr<const Polygons> mesh) {
+  return {pieces.count, [make = std::move(pieces.make), mesh = std::move(mesh)](std::size_t i) { return make(i); }};
+}
+
 /// Drops what would be no number, and what the format has no place for.
 Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
                       WriteResult& result) {
@@ -170,7 +272,7 @@ Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_p
 Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Precision& precision,
                Normals normals, WriteResult& result) {
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
-  const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}});
+  const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
   Attributes& with = content->with;
   if (!with.normals.empty() && normals == Normals::Recompute && target != Format::Stl)
     update_normals(source, positions, precision, with.normals.value, result.disagreeing_normals);
@@ -180,8 +282,8 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
 Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Precision& precision, Normals normals,
                WriteResult& result) {
   const PolygonView mesh = source.polygons.view();
-  const auto content =
-      std::make_shared<Content>(Content{shell.polygons.view(), precision, read_attributes(source), parts_of(shell)});
+  const auto content = std::make_shared<Content>(
+      Content{shell.polygons.view(), precision, read_attributes(source), parts_of(shell), {}});
   Attributes& with = content->with;
   double_up(with.colours);
   if (!with.texture.of_corner.empty()) with.texture.of_corner = values_of_shell(mesh, shell, with.texture);
@@ -199,7 +301,36 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
 
 Pieces convert(Format target, const Shell& shell, const Precision& precision, WriteResult& result) {
   if (!keeps_parts(target)) result.lost = kShellParts;
-  return encode(target, std::make_shared<Content>(Content{shell.polygons.view(), precision, {}, parts_of(shell)}));
+  return encode(target, std::make_shared<Content>(Content{shell.polygons.view(), precision, {}, parts_of(shell), {}}));
+}
+
+Pieces convert(const MeshFile& source, Format target, const CaptureResult& captured, const Transported& transported,
+               const Precision& precision, WriteResult& result) {
+  const PolygonView from = source.polygons.view();
+  const Attributes& of_source = transported.attributes;
+  // Sorted, the triangles are a copy, which must live as long as the pieces.
+  const auto mesh = std::make_shared<Polygons>(captured.polygons);
+  const auto content = std::make_shared<Content>(Content{mesh->view(), precision, {}, {}, {}});
+  Attributes& with = content->with;
+  with.lost = of_source.lost;
+  if (target != Format::Stl) with.normals = normals_of(captured);
+  SourceLookup lookup(captured, from);
+  with.has_alpha = of_source.has_alpha;
+  if (!of_source.colours.empty()) with.colours = colours_of(lookup, from, of_source, mesh->positions.size());
+  if (!of_source.texture.empty()) with.texture = texture_of(captured, lookup, from, of_source.texture);
+  if (target == Format::Obj && !transported.materials.of_face.empty()) {
+    std::erase(with.lost, "materials");
+    sort_by_material(lookup, transported.materials, *content, *mesh);
+  }
+  fit(target, content->mesh, with);
+  result.lost = fmt::format("{}", fmt::join(with.lost, ", "));
+  return keep_alive(encode(target, content), mesh);
+}
+
+Pieces convert(Format target, const CaptureResult& captured, const Precision& precision) {
+  const auto content = std::make_shared<Content>(Content{captured.polygons.view(), precision, {}, {}, {}});
+  if (target != Format::Stl) content->with.normals = normals_of(captured);
+  return encode(target, content);
 }
 
 }  // namespace vdb_offset::io

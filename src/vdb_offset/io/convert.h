@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vdb_offset/capture.h"
+#include "vdb_offset/io/captured_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/pieces.h"
 #include "vdb_offset/shell.h"
@@ -18,5 +20,12 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
 
 /// A shell of a mesh that comes from no file.
 Pieces convert(Format target, const Shell& shell, const Precision& precision, WriteResult& result);
+
+/// A captured mesh with what it takes of the source (see captured_file.h); normals are those of phi.
+Pieces convert(const MeshFile& source, Format target, const CaptureResult& captured, const Transported& transported,
+               const Precision& precision, WriteResult& result);
+
+/// The same of a mesh that comes from no file.
+Pieces convert(Format target, const CaptureResult& captured, const Precision& precision);
 
 }  // namespace vdb_offset::io

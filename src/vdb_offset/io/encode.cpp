@@ -37,9 +37,18 @@ void append_values(std::string& bytes, const Point& p, bool single) {
     else append_binary(bytes, p[k]);
 }
 
+/// Ahead of the first face of each run that has the same.
+void append_material(std::string& text, const Materials& materials, std::size_t f) {
+  if (materials.of_face.empty()) return;
+  const std::uint32_t material = materials.of_face[f], before = f > 0 ? materials.of_face[f - 1] : kNoNormal;
+  if (material != before && !materials.names[material].empty()) text += "usemtl " + materials.names[material] + "\n";
+}
+
 void append_obj_face(std::string& text, const Content& content, std::size_t f) {
-  const auto& [mesh, precision, with, parts] = content;
+  const PolygonView& mesh = content.mesh;
+  const Attributes& with = content.with;
   const auto face = mesh.face(f);
+  append_material(text, content.materials, f);
   text += 'f';
   for (std::size_t k = 0; k < face.size(); ++k) {
     const std::size_t corner = mesh.face_begin[f] + k;
@@ -58,9 +67,9 @@ void append_obj_face(std::string& text, const Content& content, std::size_t f) {
 
 Pieces to_obj(const SharedContent& content) {
   const auto append_vertex = [content](std::string& text, std::size_t v) {
-    const auto& [mesh, precision, with, parts] = *content;
+    const Attributes& with = content->with;
     text += "v ";
-    append_point(text, mesh.positions[v], precision);
+    append_point(text, content->mesh.positions[v], content->precision);
     for (std::size_t k = 0; !with.colours.empty() && k < (with.has_alpha ? 4 : 3); ++k) {
       text += ' ';
       append_number(text, with.colours[v][k], {Precision::Kind::Single});
@@ -89,12 +98,14 @@ Pieces to_obj(const SharedContent& content) {
   }
   const std::size_t others = content->mesh.face_count() - first;
   sections.push_back({others, [=](std::string& text, std::size_t f) { append_obj_face(text, *content, first + f); }});
-  return in_sections({}, std::move(sections));
+  std::string header;
+  for (const std::string& library : content->materials.libraries) header += "mtllib " + library + "\n";
+  return in_sections(header, std::move(sections));
 }
 
 void append_off_vertex(std::string& text, const Content& content, std::size_t v) {
-  const auto& [mesh, precision, with, parts] = content;
-  append_point(text, mesh.positions[v], precision);
+  const Attributes& with = content.with;
+  append_point(text, content.mesh.positions[v], content.precision);
   if (!with.normals.empty()) append_values(text, with.normals.value[v]);
   for (std::size_t k = 0; !with.colours.empty() && k < 4; ++k) {
     text += ' ';
@@ -105,7 +116,8 @@ void append_off_vertex(std::string& text, const Content& content, std::size_t v)
 }
 
 Pieces to_off(const SharedContent& content) {
-  const auto& [mesh, precision, with, parts] = *content;
+  const PolygonView& mesh = content->mesh;
+  const Attributes& with = content->with;
   const auto append_face = [content](std::string& text, std::size_t f) {
     const auto face = content->mesh.face(f);
     append_integer(text, face.size());
@@ -158,7 +170,7 @@ struct TextureLists {
 };
 
 std::string ply_header(const Content& content, const TextureLists& lists) {
-  const auto& [mesh, precision, with, parts] = content;
+  const auto& [mesh, precision, with, parts, materials] = content;
   std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.size());
   const auto add = [&](const char* type, std::initializer_list<const char*> names) {
     for (const char* name : names) header += fmt::format("property {} {}\n", type, name);

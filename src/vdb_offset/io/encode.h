@@ -19,6 +19,7 @@ struct Content {
   Precision precision;  ///< Of coordinates in a text.
   Attributes with;
   std::vector<Part> parts;  ///< One behind the other: all faces, or no part at all.
+  Materials materials;      ///< Kept in OBJ.
 };
 using SharedContent = std::shared_ptr<const Content>;
 

@@ -109,7 +109,7 @@ std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positio
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
-  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}})),
+  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})),
                options.before_rename);
 }
 
