@@ -476,3 +476,61 @@ TEST_CASE("command: options of layers that do not go together", "[command][layer
         {"out.vtu --layers 2 --first-height 1 --structured", "--structured"}})
     check_failure(shell, std::string("sphere.obj ") + arguments, 1, message);
 }
+
+TEST_CASE("command: a captured surface, its report and what comes along", "[command][capture]") {
+  const Shell shell;
+  std::ofstream(shell.file("square.obj")) << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                                             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3 4/4\n";
+  const Run run = shell("square.obj tube.obj -d 0.1 --mode iso --voxel-size 0.05 --report tube.json --strict");
+  CHECK(run.code == 0);
+  CHECK(run.err.empty());
+  CHECK_THAT(run.out, Catch::Contains("closed, manifold, 0 crossings") && Catch::Contains("on all its sides"));
+  const auto report = nlohmann::json::parse(shell.slurp(shell.file("tube.json")));
+  const auto& surface = report["surface"];
+  CHECK(surface["valid"] == true);
+  CHECK(surface["closed"] == true);
+  CHECK(surface["manifold"] == true);
+  CHECK(surface["signed"] == false);
+  CHECK(surface["crossings"] == 0);
+  CHECK(surface["distance_error"]["worst"] < 1e-8);
+  CHECK(report["voxel_size"] == 0.05);
+  CHECK(report["options"]["mode"] == "iso");
+  CHECK(report["seconds"]["capture"] > 0);
+  const std::string tube = shell.slurp(shell.file("tube.obj"));
+  for (const char* line : {"mtllib a.mtl\n", "usemtl red\n", "\nvt ", "\nvn "}) CHECK_THAT(tube, Catch::Contains(line));
+  CHECK(io::read_mesh(shell.file("tube.obj")).polygons.face_count() == surface["triangles"]);
+
+  CHECK(shell("square.obj bare.obj -d 0.1 --mode iso --voxel-size 0.05 --transport none").code == 0);
+  CHECK_THAT(shell.slurp(shell.file("bare.obj")), !Catch::Contains("usemtl") && !Catch::Contains("vt "));
+  CHECK(shell("square.obj '{d}.stl' -d 0.1 -d 0.2 --mode iso --voxel-size 0.05 -q").code == 0);
+  CHECK(shell.has("0.1.stl"));
+  CHECK(shell.has("0.2.stl"));
+  const Run plan = shell("sphere.obj out.obj -d 5% --mode iso --dry-run");
+  CHECK(plan.code == 0);
+  CHECK_THAT(plan.out, Catch::Contains("voxel size") && Catch::Contains("triangles"));
+  CHECK(!shell.has("out.obj"));
+}
+
+TEST_CASE("command: options of captured surfaces that do not go together", "[command][capture]") {
+  const Shell shell;
+  const std::string iso = "sphere.obj out.obj -d 0.1 --mode iso ";
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --mode front", 1, "--mode: expected 'topology' or 'iso'");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --adaptivity 0.5", 1, "--adaptivity: expected it with --mode iso");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --transport uv", 1, "--transport: expected it with --mode iso");
+  for (const std::string option :
+       {"--shell", "--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge", "--solver eikonal",
+        "--normals keep", "--states a.csv", "--save-vdb a.vdb"})
+    check_failure(shell, iso + option, 1, option.substr(0, option.find(' ')) + ": expected it without --mode iso");
+  check_failure(shell, "sphere.obj out.vtu --mode iso --layers 3 --first-height 0.1", 1,
+                "--layers: expected it without");
+  check_failure(shell, iso + "--adaptivity 2", 1, "--adaptivity: expected a number from 0 to 1");
+  check_failure(shell, iso + "--transport uv,", 1, "--transport: expected 'uv'");
+  check_failure(shell, iso + "--transport uv", 1, "expected texture coordinates");
+  check_failure(shell, "sphere.obj out.obj --mode iso -d 'x+1'", 1, "--distance: expected a number");
+  check_failure(shell, "sphere.obj out.obj --mode iso -d 0", 1, "--distance: expected one other than 0");
+  check_failure(shell, "sphere.obj out.obj --mode iso --distance-from a.txt", 1,
+                "--distance-from: expected it without");
+  check_failure(shell, "sphere.obj out.obj --mode iso -d -2", 2, "expected a surface at distance -2");
+  check_failure(shell, iso + "--voxel-size 0.0001 --max-memory 1G", 3, "a larger voxel size needs less");
+  check_failure(shell, "absent.obj out.obj --mode iso -d 1", 2, "absent.obj");
+}
