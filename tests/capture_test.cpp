@@ -250,6 +250,38 @@ TEST_CASE("capture: around a box every vertex is at the closed form's distance",
   CHECK(volume(result.polygons) == Approx(exact).epsilon(0.02));
 }
 
+TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]") {
+  // Inward of a box they are its edges and corners, so that all of the smaller box is exact, between vertices, too.
+  const CaptureResult inner = captured(scene::box({1, 0.7, 0.52}, 3, true), -0.1, 0.03);
+  check_sound(inner);
+  CHECK(volume(inner.polygons) == Approx(0.8 * 0.5 * 0.32).epsilon(1e-7));
+  CHECK(inner.statistics.interior.worst < 1e-7);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d at(corner & 1 ? 0.4 : -0.4, corner & 2 ? 0.25 : -0.25, corner & 4 ? 0.16 : -0.16);
+    double least = 1;
+    for (const Vec3d& p : inner.polygons.positions) least = std::min(least, (p - at).length());
+    CHECK(least < 1e-8);
+  }
+  // Outward, where spheres around two balls meet: in a plane between them.
+  Polygons balls = scene::icosphere(1, 4);
+  add(balls, scene::icosphere(1, 4), {2.2, 0, 0});
+  const CaptureResult outer = captured(balls, 0.4, 0.1);
+  check_sound(outer);
+  const double exact = std::sqrt(1.4 * 1.4 - 1.1 * 1.1);
+  double least = 10, most = 0;  // distance from the axis, of vertices in the plane
+  std::size_t count = 0;
+  for (const Vec3d& p : outer.polygons.positions) {
+    if (std::abs(p[0] - 1.1) > 1e-6) continue;
+    const double radius = std::hypot(p[1], p[2]);
+    least = std::min(least, radius);
+    most = std::max(most, radius);
+    ++count;
+  }
+  CHECK(count > 40);  // a voxel has a tenth, and the circle is 5.4 long
+  CHECK(least > exact - 0.01);
+  CHECK(most < exact + 0.01);
+}
+
 TEST_CASE("capture: spheres and tori keep their shape", "[capture]") {
   const Polygons sphere = scene::icosphere(1, 3);
   const CaptureResult ball = captured(sphere, 0.3, 0.12);

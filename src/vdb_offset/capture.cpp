@@ -10,19 +10,18 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
+#include "vdb_offset/creases.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/iso_grid.h"
+#include "vdb_offset/level_set.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
 using openvdb::Coord;
-
-// Vertices are put nearer to the distance than this share of it, if rounding lets them.
-constexpr double kTolerance = 1e-9;
-const double kRoot3 = std::sqrt(3.0);
 
 // Voxel corners of a leaf node, OpenVDB's grids of signs and point numbers, and the new mesh with all that is made to
 // check it; measured: 18,000 to 29,000, and the file is still to be made.
@@ -40,63 +39,6 @@ struct CaptureTimer {
   ~CaptureTimer() { seconds += std::chrono::duration<double>(Steady::now() - start).count(); }
   CaptureTimer(const CaptureTimer&) = delete;
   CaptureTimer& operator=(const CaptureTimer&) = delete;
-};
-
-/// The iso-surface of phi - level, as a place to put vertices on.
-class LevelSet {
- public:
-  LevelSet(const ClosestQuery& query, const Inside& inside, double level, double voxel_size)
-      : query_(query), inside_(inside), level_(level), h_(voxel_size) {}
-
-  double level() const { return level_; }
-  double distance() const { return std::abs(level_); }
-
-  /// phi - level.
-  double operator()(const Vec3d& x, std::uint32_t& hint) const {
-    const Closest closest = query_(x, hint);
-    hint = closest.triangle;
-    return (inside_(x) ? -closest.distance : closest.distance) - level_;
-  }
-
-  /// From x along the gradient of phi, as long as that stays where `is_near` holds. Inward, phi is straight along the
-  /// way and one step is exact; outward it may rise less than hoped for, and not at all at the medial axis.
-  template <class IsNear>
-  std::optional<Vec3d> follow(Vec3d x, std::uint32_t& hint, IsNear&& is_near) const {
-    constexpr int kMostSteps = 20;
-    for (int step = 0; step < kMostSteps; ++step) {
-      const Closest closest = query_(x, hint);
-      hint = closest.triangle;
-      if (std::abs(closest.distance - distance()) <= kTolerance * distance())
-        return is_on_side(x) ? std::optional(x) : std::nullopt;
-      if (closest.distance == 0) return std::nullopt;
-      x = closest.point + (x - closest.point) * (distance() / closest.distance);
-      if (!is_near(x)) return std::nullopt;
-    }
-    return std::nullopt;
-  }
-
-  /// Where phi = level between two points with phi on either side of it.
-  Vec3d between(Vec3d below, Vec3d above, std::uint32_t& hint) const {
-    constexpr int kMostSteps = 60;
-    for (int step = 0; step < kMostSteps; ++step) {
-      const Vec3d middle = (below + above) / 2.0;
-      const double value = (*this)(middle, hint);
-      if (std::abs(value) <= kTolerance * distance()) return middle;
-      (value < 0 ? below : above) = middle;
-    }
-    return (below + above) / 2.0;
-  }
-
- private:
-  /// Only a voxel that may hold some of the source has both sides in it.
-  bool is_on_side(const Vec3d& x) const {
-    if (!inside_.has_inside() || 2 * kRoot3 * h_ < distance()) return true;
-    return inside_(x) == (level_ < 0);
-  }
-
-  const ClosestQuery& query_;
-  const Inside& inside_;
-  double level_, h_;
 };
 
 /// Puts the vertices that volumeToMesh makes onto the surface.
@@ -151,24 +93,55 @@ class Projection {
   bool merged_;
 };
 
-/// Triangles of what volumeToMesh makes, its quads split along the shorter diagonal. Turned round, if asked for.
-Polygons split_polygons(std::vector<Vec3d> places, const std::vector<openvdb::Vec3I>& triangles,
-                        const std::vector<openvdb::Vec4I>& quads, bool turned) {
+/// Splits quads along the shorter diagonal; those at a crease along the one whose middle is nearer to the surface, so
+/// that the other does not cut it. Where three corners are on one crease both may be: then no triangle is to be flat.
+class QuadSplitter {
+ public:
+  QuadSplitter(const LevelSet& level, std::span<const Vec3d> places, std::span<const std::uint32_t> closest,
+               std::span<const std::uint8_t> on_crease)
+      : level_(level), places_(places), closest_(closest), on_crease_(on_crease) {}
+
+  /// The corner that the diagonal starts at, 0 or 1.
+  std::uint8_t operator()(const openvdb::Vec4I& q) const {
+    const auto length = [&](int i, int j) { return (places_[q[i]] - places_[q[j]]).lengthSqr(); };
+    if (!on_crease_[q[0]] && !on_crease_[q[1]] && !on_crease_[q[2]] && !on_crease_[q[3]])
+      return length(0, 2) > length(1, 3);
+    const double even = error(q[0], q[2]), odd = error(q[1], q[3]), alike = 1e-3 * level_.voxel_size();
+    if (std::abs(even - odd) > alike) return even > odd;
+    return std::min(area(q, 0, 1, 2), area(q, 0, 2, 3)) < std::min(area(q, 1, 2, 3), area(q, 1, 3, 0));
+  }
+
+ private:
+  double error(std::uint32_t a, std::uint32_t b) const {
+    return std::abs(level_.query()((places_[a] + places_[b]) / 2.0, closest_[a]).distance - level_.distance());
+  }
+  double area(const openvdb::Vec4I& q, int i, int j, int k) const {
+    return (places_[q[j]] - places_[q[i]]).cross(places_[q[k]] - places_[q[i]]).lengthSqr();
+  }
+
+  const LevelSet& level_;
+  std::span<const Vec3d> places_;
+  std::span<const std::uint32_t> closest_;
+  std::span<const std::uint8_t> on_crease_;
+};
+
+/// Triangles of a mesh, without its places; turned round if asked for.
+Polygons split_polygons(const VoxelMesh& voxels, const QuadSplitter& split, bool turned) {
+  std::vector<std::uint8_t> first(voxels.quads.size());  // corner of the diagonal
+  for_each_index(first.size(), [&](std::size_t i) { first[i] = split(voxels.quads[i]); });
   Polygons mesh;
-  mesh.positions = std::move(places);
-  mesh.corners.reserve(3 * (triangles.size() + 2 * quads.size()));
+  mesh.corners.reserve(3 * (voxels.triangles.size() + 2 * voxels.quads.size()));
+  mesh.face_begin.reserve(voxels.triangles.size() + 2 * voxels.quads.size() + 1);
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (turned) mesh.add_face({a, c, b});
     else mesh.add_face({a, b, c});
   };
-  for (const auto& t : triangles) add(t[0], t[1], t[2]);
-  const auto apart = [&](std::uint32_t a, std::uint32_t b) {
-    return (mesh.positions[a] - mesh.positions[b]).lengthSqr();
-  };
-  for (const auto& q : quads) {
-    const unsigned first = apart(q[0], q[2]) <= apart(q[1], q[3]) ? 0 : 1;
-    add(q[first], q[first + 1], q[first + 2]);
-    add(q[first], q[first + 2], q[(first + 3) % 4]);
+  for (const auto& t : voxels.triangles) add(t[0], t[1], t[2]);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto& q = voxels.quads[i];
+    const unsigned k = first[i];
+    add(q[k], q[k + 1], q[k + 2]);
+    add(q[k], q[k + 2], q[(k + 3) % 4]);
   }
   return mesh;
 }
@@ -199,6 +172,8 @@ class Capture {
 
   void prepare();
   Surface extract();
+  void project(const IsoGrid& grid, const VoxelMesh& voxels, std::vector<Vec3d>& places,
+               std::vector<std::uint32_t>& closest);
   std::optional<Vec3d> onto(const Vec3d& wish);
   Vec3d as_written(const Vec3d& local) const { return options_.precision(source().origin + local); }
   void hand_over(const Surface& mesh);
@@ -321,9 +296,6 @@ void Capture::prepare() {
 Surface Capture::extract() {
   std::size_t most_leaves = std::numeric_limits<std::size_t>::max();
   if (options_.max_memory > 0) most_leaves = options_.max_memory / static_cast<std::size_t>(kCaptureLeafBytes);
-  std::vector<openvdb::Vec3s> points;
-  std::vector<openvdb::Vec3I> triangles;
-  std::vector<openvdb::Vec4I> quads;
   IsoGrid grid;
   {
     const CaptureTimer timer(result_.statistics, Stage::Rasterise);
@@ -331,28 +303,40 @@ Surface Capture::extract() {
   }
   const CaptureTimer timer(result_.statistics, Stage::Capture);
   result_.statistics.leaf_nodes = grid.leaf_nodes;
-  openvdb::tools::volumeToMesh(*grid.phi, points, triangles, quads, 0.0, options_.adaptivity);
-  if (triangles.empty() && quads.empty())
+  VoxelMesh voxels;
+  voxels.merged = options_.adaptivity > 0;
+  openvdb::tools::volumeToMesh(*grid.phi, voxels.points, voxels.triangles, voxels.quads, 0.0, options_.adaptivity);
+  if (voxels.points.empty())
     throw InvalidInput(
         fmt::format("capture: expected a surface at distance {:.6g}, found none (nothing inside is that "
                     "far from the surface, or only what is thinner than a voxel of {:.6g})",
                     options_.distance, h_));
-  const Projection project(grid, *level_, h_, options_.adaptivity > 0);
-  std::vector<Vec3d> places(points.size());
+  std::vector<Vec3d> places(voxels.points.size());
+  std::vector<std::uint32_t> closest(places.size());
+  project(grid, voxels, places, closest);
+  const std::vector<std::uint8_t> on_crease = put_on_creases(*level_, voxels, places, closest);
+  Polygons mesh = split_polygons(voxels, {*level_, places, closest, on_crease}, inside_->is_turned());
+  for_each_index(places.size(), [&](std::size_t v) { places[v] = as_written(places[v]); });
+  mesh.positions = std::move(places);
+  return build_surface(mesh.view(), {.enabled = false});
+}
+
+void Capture::project(const IsoGrid& grid, const VoxelMesh& voxels, std::vector<Vec3d>& places,
+                      std::vector<std::uint32_t>& closest) {
+  const Projection project(grid, *level_, h_, voxels.merged);
   // Runs of one length, whatever the number of threads: an answer may depend on its hint.
   constexpr std::size_t kRun = 256;
-  Progress progress(options_.progress, Stage::Capture, points.size());
-  for_each_index((points.size() + kRun - 1) / kRun,
-                 [&](std::size_t run) {
-                   std::uint32_t hint = 0;
-                   const std::size_t end = std::min(points.size(), (run + 1) * kRun);
-                   for (std::size_t i = run * kRun; i < end; ++i)
-                     places[i] = as_written(project(Vec3d(points[i]), hint));
-                   progress.advance(kRun);
-                 },
-                 1);
-  const Polygons mesh = split_polygons(std::move(places), triangles, quads, inside_->is_turned());
-  return build_surface(mesh.view(), {.enabled = false});
+  Progress progress(options_.progress, Stage::Capture, places.size());
+  const auto run = [&](std::size_t r) {
+    std::uint32_t hint = 0;
+    const std::size_t end = std::min(places.size(), (r + 1) * kRun);
+    for (std::size_t v = r * kRun; v < end; ++v) {
+      places[v] = project(Vec3d(voxels.points[v]), hint);
+      closest[v] = hint;
+    }
+    progress.advance(kRun);
+  };
+  for_each_index((places.size() + kRun - 1) / kRun, run, 1);
 }
 
 std::optional<Vec3d> Capture::onto(const Vec3d& wish) {
@@ -424,6 +408,10 @@ void Capture::check_topology() {
   statistics.non_manifold_edges = mesh.facts.non_manifold_edges;
   statistics.turned_edges = mesh.facts.orientation_conflicts;
   statistics.pinched_vertices = count_pinched(mesh);
+  constexpr std::size_t kInteriorSamples = 10000;
+  const std::vector<std::uint32_t> none(mesh.vertices.size(), kNone);  // of its vertices is one of the source's
+  const Body body{result_.source->query, mesh, none, {}, {}};
+  statistics.interior = measure_interior(body, mesh.vertices, Distances(level_->distance()), kInteriorSamples);
 }
 
 }  // namespace

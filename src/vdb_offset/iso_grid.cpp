@@ -147,7 +147,9 @@ IsoGrid rasterise_iso(const ClosestQuery& query, const Inside& inside, double le
   const IsoRasteriser rasteriser(query, inside, level, voxel_size);
   const std::vector<Cube> leaves = rasteriser.find_leaves(most_leaf_nodes);
   const auto beyond = static_cast<float>(voxel_size);
-  IsoGrid grid{openvdb::FloatGrid::create(beyond), leaves.size()};
+  IsoGrid grid;
+  grid.phi = openvdb::FloatGrid::create(beyond);
+  grid.leaf_nodes = leaves.size();
   std::vector<std::unique_ptr<PhiLeaf>> nodes(leaves.size());
   Progress progress(callback, Stage::Rasterise, leaves.size());
   for_each_index(

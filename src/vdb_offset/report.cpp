@@ -195,7 +195,8 @@ Json surface_json(const CaptureStatistics& found) {
             {"moved_vertices", mending.moved_vertices},
             {"flipped_edges", mending.flipped_edges},
             {"split_edges", mending.split_edges}}},
-          {"distance_error", {{"worst", found.worst_error}, {"rms", found.rms_error}}}};
+          {"distance_error", {{"worst", found.worst_error}, {"rms", found.rms_error}}},
+          {"face_interior_error", interior_json(found.interior)}};
 }
 
 /// `achieved` sums up what became of the vertices, of which `distance` was the farthest that was asked.
