@@ -232,6 +232,8 @@ std::size_t split_longest_edges(Surface& mesh, const TriangleList& wrong, const 
   TriangleList taken;
   std::size_t splits = 0;
   for (const auto t : wrong) {
+    // Its corners may be new by now, which no star is listed for.
+    if (std::find(taken.begin(), taken.end(), t) != taken.end()) continue;
     const std::size_t k = longest_edge(mesh, t);
     const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
     const TriangleList sides = triangles_at(mesh, a, b);
