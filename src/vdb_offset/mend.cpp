@@ -37,9 +37,9 @@ class MendingRound {
       const TriangleList wrong = wrong_triangles();
       for (const auto t : wrong) {
         if (!is_wrong(t)) continue;
-        for (std::size_t k = 0; k < 3 && is_wrong(t); ++k) try_to_flip(t, k);
         for (const auto v : std::array(mesh_.triangles[t]))
           if (is_wrong(t)) try_to_move(v);
+        for (std::size_t k = 0; k < 3 && is_wrong(t); ++k) try_to_flip(t, k);
       }
     }
   }
