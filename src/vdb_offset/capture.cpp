@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 #include <openvdb/tools/VolumeToMesh.h>
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -17,6 +15,7 @@
 #include "vdb_offset/iso_grid.h"
 #include "vdb_offset/level_set.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {
@@ -28,18 +27,6 @@ using openvdb::Coord;
 constexpr double kCaptureLeafBytes = 34e3;
 constexpr double kTrianglesPerLeaf = 110;
 constexpr double kCaptureProcessBytes = 64 << 20;
-
-struct CaptureTimer {
-  using Steady = std::chrono::steady_clock;
-  double& seconds;
-  Steady::time_point start = Steady::now();
-
-  CaptureTimer(CaptureStatistics& statistics, Stage stage)
-      : seconds(statistics.seconds[static_cast<std::size_t>(stage)]) {}
-  ~CaptureTimer() { seconds += std::chrono::duration<double>(Steady::now() - start).count(); }
-  CaptureTimer(const CaptureTimer&) = delete;
-  CaptureTimer& operator=(const CaptureTimer&) = delete;
-};
 
 /// Puts the vertices that volumeToMesh makes onto the surface.
 class Projection {
@@ -157,10 +144,10 @@ class Capture {
     prepare();
     Surface mesh = extract();
     {
-      const CaptureTimer timer(result_.statistics, Stage::Limit);
+      const StageTimer timer(result_.statistics.seconds, Stage::Limit);
       result_.statistics.mending = mend(mesh, [&](const Vec3d& wish) { return onto(wish); });
     }
-    const CaptureTimer timer(result_.statistics, Stage::Capture);
+    const StageTimer timer(result_.statistics.seconds, Stage::Capture);
     hand_over(mesh);
     measure();
     check_topology();
@@ -268,17 +255,10 @@ void require_usable(const CaptureOptions& options) {
     throw InvalidInput(fmt::format("capture: expected a finite distance other than 0, got {}", options.distance));
   if (!(options.adaptivity >= 0 && options.adaptivity <= 1))
     throw InvalidInput(fmt::format("capture: expected an adaptivity from 0 to 1, got {}", options.adaptivity));
-  if (options.threads < 0)
-    throw InvalidInput(fmt::format("capture: expected 0 threads or more, got {}", options.threads));
-}
-
-int thread_count(const CaptureOptions& options) {
-  const int most = tbb::info::default_concurrency();
-  return options.threads > 0 ? std::min(options.threads, most) : most;
 }
 
 void Capture::prepare() {
-  const CaptureTimer timer(result_.statistics, Stage::Rasterise);
+  const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
   Surface surface = build_surface(mesh_, options_.weld, options_.orient);
   result_.statistics.plan = plan_voxels(surface, options_);
   result_.statistics.source = surface.facts;
@@ -298,10 +278,10 @@ Surface Capture::extract() {
   if (options_.max_memory > 0) most_leaves = options_.max_memory / static_cast<std::size_t>(kCaptureLeafBytes);
   IsoGrid grid;
   {
-    const CaptureTimer timer(result_.statistics, Stage::Rasterise);
+    const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
     grid = rasterise_iso(result_.source->query, *inside_, level_->level(), h_, most_leaves, options_.progress);
   }
-  const CaptureTimer timer(result_.statistics, Stage::Capture);
+  const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   result_.statistics.leaf_nodes = grid.leaf_nodes;
   VoxelMesh voxels;
   voxels.merged = options_.adaptivity > 0;
@@ -418,7 +398,7 @@ void Capture::check_topology() {
 
 CaptureResult capture(PolygonView mesh, const CaptureOptions& options) {
   require_usable(options);
-  const int threads = thread_count(options);
+  const int threads = thread_count(options.threads);
   CaptureResult result;
   tbb::task_arena arena(threads);
   arena.execute([&] { result = Capture(mesh, options, threads).run(); });
@@ -428,7 +408,7 @@ CaptureResult capture(PolygonView mesh, const CaptureOptions& options) {
 CaptureStatistics plan_capture(PolygonView mesh, const CaptureOptions& options) {
   require_usable(options);
   CaptureStatistics statistics;
-  statistics.threads = thread_count(options);
+  statistics.threads = thread_count(options.threads);
   const Surface surface = build_surface(mesh, options.weld, options.orient);
   statistics.source = surface.facts;
   statistics.is_signed = surface.facts.closed() && surface.facts.oriented();

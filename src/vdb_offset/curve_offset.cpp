@@ -67,7 +67,7 @@ class CurvePipeline {
  private:
   /// Puts the curves into a ribbon as high as the voxel size asks for.
   void stand_up(const Reach& farthest) {
-    const StageTimer timer(shared_, Stage::Rasterise);
+    const StageTimer timer(shared_.seconds, Stage::Rasterise);
     const MeshFacts& facts = shared_.facts;
     const VoxelSize chosen = choose_voxel_size(facts.median_edge, facts.diagonal,
                                                std::max(farthest.inside, farthest.outside), options_.grid);
@@ -151,16 +151,16 @@ class CurvePipeline {
   void make_field() {
     Front front;
     {
-      const StageTimer timer(shared_, Stage::Rasterise);
+      const StageTimer timer(shared_.seconds, Stage::Rasterise);
       place(ribbon_, shared_.plan.voxel_size);
       front = rasterise(ribbon_, {shared_.plan.voxel_size, shared_.plan.band, true}, options_.progress);
     }
-    const StageTimer timer(shared_, Stage::Sweep);
+    const StageTimer timer(shared_.seconds, Stage::Sweep);
     field_ = sweep(std::move(front), ribbon_, {options_.solver, shared_.plan.reach}, options_.progress);
   }
 
   std::vector<Paths> march() {
-    const StageTimer timer(shared_, Stage::Propagate);
+    const StageTimer timer(shared_.seconds, Stage::Propagate);
     const DirectionField directions = make_directions(field_, !ribbon_.facts.closed() || !ribbon_.facts.oriented());
     describe_field(field_, directions, shared_);
     return propagate(*query_, directions, distances_, options_.progress);
@@ -170,7 +170,7 @@ class CurvePipeline {
     OffsetResult result;
     result.statistics = shared_;
     if (options_.collision == Collision::Limit) {
-      const StageTimer timer(result.statistics, Stage::Limit);
+      const StageTimer timer(result.statistics.seconds, Stage::Limit);
       result.statistics.limit = limit_curves({*query_, source_, distances, options_.precision}, paths);
     }
     hand_over(distances, paths, result);

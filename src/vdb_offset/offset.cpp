@@ -187,13 +187,13 @@ class Pipeline {
     const std::vector<Vec3d> source = work_.source(mesh_);
     FaultFinder faults(body, source, distances_.front(), options_.precision);
     {
-      const StageTimer timer(statistics, Stage::Limit);
+      const StageTimer timer(statistics.seconds, Stage::Limit);
       statistics.limit = untangle(faults, body, source, distances_.front(), paths.front(), options_.progress);
     }
     std::optional<CellColumns> columns;
     LayerStack stack;
     {
-      const StageTimer timer(statistics, Stage::Layers);
+      const StageTimer timer(statistics.seconds, Stage::Layers);
       columns.emplace(mesh_, body, source);
       stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, faults, paths.front(),
                            options_.progress);
@@ -205,7 +205,7 @@ class Pipeline {
  private:
   void prepare(const Reach& farthest, std::size_t layers) {
     {
-      const StageTimer timer(shared_, Stage::Rasterise);
+      const StageTimer timer(shared_.seconds, Stage::Rasterise);
       work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
     }
     shared_.facts = work_.surface().facts;
@@ -221,18 +221,18 @@ class Pipeline {
   void make_field(const Reach& farthest, std::size_t layers) {
     Front front;
     {
-      const StageTimer timer(shared_, Stage::Rasterise);
+      const StageTimer timer(shared_.seconds, Stage::Rasterise);
       shared_.plan = plan(work_, mesh_, farthest, options_, threads_, layers);
       place(work_, shared_.plan.voxel_size);
       front = rasterise(work_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
     }
-    const StageTimer timer(shared_, Stage::Sweep);
+    const StageTimer timer(shared_.seconds, Stage::Sweep);
     field_ = sweep(std::move(front), work_.front, {options_.solver, shared_.plan.reach}, options_.progress);
   }
 
   /// One march for all distances.
   std::vector<Paths> march() {
-    const StageTimer timer(shared_, Stage::Propagate);
+    const StageTimer timer(shared_.seconds, Stage::Propagate);
     const MeshFacts& facts = work_.front.facts;
     const DirectionField directions = make_directions(field_, !facts.closed() || !facts.oriented());
     describe_field(field_, directions, shared_);
@@ -258,7 +258,7 @@ class Pipeline {
     const Body body = work_.body(*query_, keep_away(), options_.off_source);
     const std::vector<Vec3d> source = work_.source(mesh_);
     if (options_.collision == Collision::Limit) {
-      const StageTimer timer(result.statistics, Stage::Limit);
+      const StageTimer timer(result.statistics.seconds, Stage::Limit);
       FaultFinder faults(body, source, distances, options_.precision, source_crossings_);
       source_crossings_ = faults.source_crossings();
       result.statistics.limit = limit(faults, body, source, distances, paths, options_.progress);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <span>
 
@@ -13,8 +14,8 @@ namespace vdb_offset {
 /// Adds the time that it lives to one stage's seconds.
 class StageTimer {
  public:
-  StageTimer(OffsetStatistics& statistics, Stage stage)
-      : seconds_(statistics.seconds[static_cast<std::size_t>(stage)]), start_(Clock::now()) {}
+  StageTimer(std::array<double, kStageCount>& seconds, Stage stage)
+      : seconds_(seconds[static_cast<std::size_t>(stage)]), start_(Clock::now()) {}
   ~StageTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;

@@ -223,6 +223,7 @@ void check_curves(const Raw& raw, const Arguments& args) {
                                     {"--obstacle", !args.obstacles.empty()},
                                     {"--shell", args.shell},
                                     {"--layers", args.layers.has_value()},
+                                    {"--mode iso", args.iso.has_value()},
                                     {"--weld", raw.weld != "exact"},
                                     {"--orient", raw.orient != "keep"}})
     require(!given, fmt::format("{}: expected a mesh, as this is not for curves", name));
