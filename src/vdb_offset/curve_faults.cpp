@@ -15,16 +15,19 @@ constexpr double kOnSource = 1e-9;
 // Segments along the curve that a crossing of the source may slide over.
 constexpr int kSlides = 2;
 
-template <class Wrong>
-void judge_again(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
-  std::erase_if(wrong, [&](std::uint32_t i) { return std::binary_search(some.begin(), some.end(), i); });
-  const auto before = static_cast<std::ptrdiff_t>(wrong.size());
-  for (const auto i : some)
-    if (is_wrong(i)) wrong.push_back(i);
-  std::inplace_merge(wrong.begin(), wrong.begin() + before, wrong.end());
+}  // namespace
+
+void CurveFaults::Pairs::add(const SegmentPair& pair) {
+  of[pair.first].push_back(pair.second);
+  of[pair.second].push_back(pair.first);
+  ++count;
 }
 
-}  // namespace
+void CurveFaults::Pairs::remove_all_of(std::uint32_t segment) {
+  for (const auto other : of[segment]) std::erase(of[other], segment);
+  count -= of[segment].size();
+  of[segment].clear();
+}
 
 CurveFaults::CurveFaults(const PlaneCurves& curves)
     : curves_(curves),
@@ -34,6 +37,8 @@ CurveFaults::CurveFaults(const PlaneCurves& curves)
       misplaced_at_(curves.source.size(), 0),
       fault_(curves.line().segments.size(), Fault::None),
       finder_(curves.line().segments, place_) {
+  crossing_.of.resize(fault_.size());
+  slid_.of.resize(fault_.size());
   source_crossings_ = finder_.all();
   mark_source_crossings();
 }
@@ -105,6 +110,14 @@ bool CurveFaults::is_new(const SegmentPair& pair) const {
 
 void CurveFaults::move(const Indices& points, std::span<const Vec2d> place) {
   constexpr std::size_t kGrain = 64;
+  const Indices segments = segments_around(points);
+  const auto count_wrong = [&] {
+    std::size_t at_points = 0, of_segments = 0;
+    for (const auto p : points) at_points += misplaced_at_[p];
+    for (const auto s : segments) of_segments += fault_[s] != Fault::None;
+    return std::pair(at_points, of_segments);
+  };
+  const auto before = count_wrong();
   for_each_index(
       points.size(),
       [&](std::size_t i) {
@@ -113,48 +126,46 @@ void CurveFaults::move(const Indices& points, std::span<const Vec2d> place) {
         measure(p);
       },
       kGrain);
-  const Indices segments = segments_around(points);
   for_each_index(
       segments.size(), [&](std::size_t i) { fault_[segments[i]] = judge(segments[i]); }, kGrain);
-  judge_again(misplaced_, points, [&](std::uint32_t p) { return misplaced_at_[p] != 0; });
-  judge_again(segments_, segments, [&](std::uint32_t s) { return fault_[s] != Fault::None; });
+  const auto after = count_wrong();
+  misplaced_ += after.first - before.first;
+  wrong_segments_ += after.second - before.second;
   finder_.update(segments);
-  const auto touched = [&](std::uint32_t s) { return std::binary_search(segments.begin(), segments.end(), s); };
-  for (auto* pairs : {&crossings_, &slid_})
-    std::erase_if(*pairs, [&](const SegmentPair& pair) { return touched(pair.first) || touched(pair.second); });
-  for (const SegmentPair& pair : finder_.of(segments)) {
-    if (!is_new(pair)) continue;
-    (std::binary_search(near_.begin(), near_.end(), pair) ? slid_ : crossings_).push_back(pair);
+  for (const auto s : segments) {
+    crossing_.remove_all_of(s);
+    slid_.remove_all_of(s);
   }
+  for (const SegmentPair& pair : finder_.of(segments))
+    if (is_new(pair)) (std::binary_search(near_.begin(), near_.end(), pair) ? slid_ : crossing_).add(pair);
 }
 
 FaultCounts CurveFaults::count() const {
   FaultCounts counts;
-  for (const auto s : segments_) ++(fault_[s] == Fault::Inverted ? counts.inverted : counts.collapsed);
-  counts.crossings = crossings_.size();
+  counts.inverted = static_cast<std::size_t>(std::count(fault_.begin(), fault_.end(), Fault::Inverted));
+  counts.collapsed = wrong_segments_ - counts.inverted;
+  counts.crossings = crossing_.count;
   return counts;
 }
 
 Indices CurveFaults::wrong_points() const {
-  Indices wrong = misplaced_;
-  const auto add = [&](std::uint32_t s) {
-    wrong.insert(wrong.end(), curves_.line().segments[s].begin(), curves_.line().segments[s].end());
-  };
-  for (const auto s : segments_) add(s);
-  for (const auto& [s, t] : crossings_) add(s), add(t);
+  Indices wrong;
+  for (std::uint32_t p = 0; p < place_.size(); ++p)
+    if (misplaced_at_[p]) wrong.push_back(p);
+  for (std::uint32_t s = 0; s < fault_.size(); ++s) {
+    if (fault_[s] == Fault::None && crossing_.of[s].empty()) continue;
+    const Segment& segment = curves_.line().segments[s];
+    wrong.insert(wrong.end(), segment.begin(), segment.end());
+  }
   sort_unique(wrong);
   return wrong;
 }
 
 bool CurveFaults::any_around(const Indices& points) const {
-  const Indices segments = segments_around(points);
-  const auto touched = [&](std::uint32_t s) { return std::binary_search(segments.begin(), segments.end(), s); };
-  for (const auto p : points)
-    if (misplaced_at_[p]) return true;
-  for (const auto s : segments)
-    if (fault_[s] != Fault::None) return true;
-  return std::any_of(crossings_.begin(), crossings_.end(),
-                     [&](const SegmentPair& pair) { return touched(pair.first) || touched(pair.second); });
+  const auto is_wrong = [&](std::uint32_t s) { return fault_[s] != Fault::None || !crossing_.of[s].empty(); };
+  return std::any_of(points.begin(), points.end(), [&](std::uint32_t p) {
+    return misplaced_at_[p] || std::any_of(around(p).begin(), around(p).end(), is_wrong);
+  });
 }
 
 }  // namespace vdb_offset

@@ -43,7 +43,7 @@ class CurveFaults {
   /// Moves points, sorted, no two the same, to `place` and looks at what is around them.
   void move(const Indices& points, std::span<const Vec2d> place);
 
-  bool any() const { return !segments_.empty() || !crossings_.empty() || !misplaced_.empty(); }
+  bool any() const { return wrong_segments_ + misplaced_ + crossing_.count > 0; }
   FaultCounts count() const;
   /// Points that something is wrong with.
   Indices wrong_points() const;
@@ -54,12 +54,20 @@ class CurveFaults {
   double distance_of(std::uint32_t point) const { return distance_[point]; }
   std::size_t source_crossings() const { return source_crossings_.size(); }
   /// New pairs that have only slid along from one of those.
-  std::size_t crossings_near_source() const { return slid_.size(); }
+  std::size_t crossings_near_source() const { return slid_.count; }
   /// The segments around a point: at most two, but where curves branch.
   std::span<const std::uint32_t> around(std::uint32_t point) const { return curves_.line().triangles_around(point); }
 
  private:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed };
+
+  /// Pairs of segments, each known to both: what a few of them are part of is found without looking at the others.
+  struct Pairs {
+    std::vector<Indices> of;  // each segment's partners
+    std::size_t count = 0;
+    void add(const SegmentPair& pair);
+    void remove_all_of(std::uint32_t segment);
+  };
 
   Indices segments_around(const Indices& points) const;
   void measure(std::uint32_t point);
@@ -73,8 +81,9 @@ class CurveFaults {
   std::vector<std::uint8_t> misplaced_at_;  // of each point
   std::vector<Fault> fault_;                // of each segment
   SegmentCrossings finder_;
-  Indices segments_, misplaced_;
-  std::vector<SegmentPair> crossings_, slid_, source_crossings_;
+  std::size_t wrong_segments_ = 0, misplaced_ = 0;
+  Pairs crossing_, slid_;
+  std::vector<SegmentPair> source_crossings_;
   std::vector<SegmentPair> near_;  // pairs of segments that are no more than two from a crossing of the source
 };
 
