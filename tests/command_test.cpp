@@ -534,3 +534,36 @@ TEST_CASE("command: options of captured surfaces that do not go together", "[com
   check_failure(shell, iso + "--voxel-size 0.0001 --max-memory 1G", 3, "a larger voxel size needs less");
   check_failure(shell, "absent.obj out.obj --mode iso -d 1", 2, "absent.obj");
 }
+
+TEST_CASE("command: curves are offset, reported, and refuse what is for meshes", "[command][curves]") {
+  const Shell shell;
+  std::ofstream(shell.file("square.dat")) << "A square\n1 0\n1 1\n0 1\n0 0\n1 0\n";
+  const Run run = shell("square.dat out.dat --distance 0.5 --report r.json --states s.csv");
+  REQUIRE(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("5 vertices at 0.5: 100.000 % reached"));
+  std::ifstream out(shell.file("out.dat"));
+  std::string title, line;
+  std::getline(out, title);
+  CHECK(title == "A square");
+  const double far = 1 + std::sqrt(0.125);
+  for (const auto& [x, y] : {std::pair{far, 1 - far}, {far, far}, {1 - far, far}, {1 - far, 1 - far}, {far, 1 - far}}) {
+    double a = 0, b = 0;
+    REQUIRE(out >> a >> b);
+    CHECK(a == Approx(x));
+    CHECK(b == Approx(y).margin(1e-12));
+  }
+  const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
+  CHECK(report["mesh"]["closed_components"] == 1);
+  CHECK(report["mesh"]["faces"] == 4);
+  CHECK(shell.has("s.csv"));
+  CHECK(shell("square.dat lines.obj --distance 10% -q").code == 0);
+  CHECK(shell("lines.obj back.txt --distance '-0.1*(1 + nx*nx)' -q").code == 0);
+  CHECK(shell("square.dat none.dat --distance 1 --dry-run").code == 0);
+  for (const char* const wrong : {"none.ply", "none.dat --only group=a", "none.dat --shell", "none.dat --mode iso"}) {
+    const Run refused = shell(std::string("square.dat ") + wrong + " --distance 1");
+    CHECK(refused.code == 1);
+    CHECK_THAT(refused.err, Catch::Contains("expected"));
+  }
+  CHECK(shell("square.dat none.dat --distance u").code == 2);
+  CHECK_FALSE(shell.has("none.dat"));
+}
