@@ -257,6 +257,7 @@ TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are
 TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {
   const Curves circle = star(120, [](double) { return 1.0; });
   std::vector<double> each;
+  each.reserve(120);
   for (int p = 0; p < 120; ++p) each.push_back(p < 20 ? 0 : 0.05 + 0.04 * std::sin(kTurn * p / 120));
   OffsetOptions options;
   const Distances distances{std::vector<double>(each)};
