@@ -154,6 +154,10 @@ TEST_CASE("curves: the circle of 40 points goes where the exact offset of its po
   for (const double d : {-0.1, 0.1}) {
     const OffsetResult result = offset_of(circle, d);
     CHECK(reached(result) == 40);
+    CHECK(result.statistics.interior.samples == 40);
+    // Inward segments lie on parallels; outward their middles are nearer by what a chord is nearer than its arc.
+    const double sag = d < 0 ? 0 : (0.5 - 0.6) * std::cos(std::numbers::pi / 40) + 0.1;
+    CHECK(result.statistics.interior.worst == Approx(sag / 0.1).margin(1e-9));
     // Inward the corners lie on both neighbours' parallels; outward they are as far from the corner itself.
     const double radius = d < 0 ? 0.5 - 0.1 / std::cos(std::numbers::pi / 40) : 0.6;
     for (std::size_t p = 0; p < 40; ++p)
@@ -265,6 +269,17 @@ TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {
   require_honest(circle, result);
   for (std::size_t p = 0; p < 20; ++p) CHECK(result.positions[p] == circle.positions[p]);
   CHECK(reached(result) == 120);
+}
+
+TEST_CASE("curves: leaf nodes are estimated before they are made", "[curves]") {
+  for (const double d : {0.005, 0.05, -0.3}) {
+    const Curves shape = star(500, [](double a) { return 1 + 0.3 * std::sin(5 * a); });
+    const Distances distances(d);
+    const std::size_t planned = plan_curves(shape.view(), {&distances, 1}, {}).plan.leaf_nodes,
+                      made = offset_of(shape, d).statistics.leaf_nodes;
+    CHECK(planned > made / 2);
+    CHECK(2 * planned < 5 * made);
+  }
 }
 
 TEST_CASE("curves: the same bytes for any number of threads", "[curves]") {

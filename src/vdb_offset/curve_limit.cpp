@@ -24,12 +24,13 @@ constexpr int kLettings = 10;
 
 class CurveLimiter {
  public:
-  CurveLimiter(const PlaneCurves& curves, Paths& paths)
+  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback)
       : curves_(curves),
         paths_(paths),
         faults_(curves),
         way_(curves.source.size(), Vec2d(0.0)),
-        share_(curves.source.size(), 1.0) {
+        share_(curves.source.size(), 1.0),
+        progress_(callback, Stage::Limit, 4 * curves.source.size()) {
     points_.resize(curves.source.size());
     std::iota(points_.begin(), points_.end(), 0u);
     for (const auto p : points_) way_[p] = {paths.displacement[p][0], paths.displacement[p][1]};
@@ -120,13 +121,18 @@ class CurveLimiter {
   void spread() {
     for (const int bridge : {0, 2, 8}) {
       if (!faults_.any() && bridge > 0) return;
-      for (const auto& run : bad_runs(bridge))
+      for (const auto& run : bad_runs(bridge)) {
+        progress_.advance(run.size());
+        // The one before may have taken it along.
+        if (std::none_of(run.begin(), run.end(), [&](auto p) { return is_short(p) || faults_.any_around({p}); }))
+          continue;
         for (std::size_t more = 1;; more *= 2) {
           const std::vector<std::uint32_t> points = widened(run, more);
           ++statistics_.untanglings;
           if (spread(points) || points.size() < run.size() + more) break;
           if (more > kWidest * run.size()) break;
         }
+      }
     }
   }
 
@@ -186,6 +192,7 @@ class CurveLimiter {
 
   void pull() {
     for (; faults_.any() && statistics_.rounds < kMostPulls; ++statistics_.rounds) {
+      progress_.advance(0);
       const bool all_the_way = statistics_.rounds + 1 == kMostPulls;
       const Indices wrong = faults_.wrong_points();
       for (const auto p : wrong) share_[p] *= all_the_way ? 0 : kPull;
@@ -207,6 +214,7 @@ class CurveLimiter {
     std::vector<double> most(share_.size(), 1.0);
     for (int i = 0; i < kLettings; ++i) {
       bool any = false;
+      progress_.advance(0);
       for (const auto p : points_) {
         if (!(share_[p] < most[p])) continue;
         const double before = share_[p];
@@ -249,10 +257,13 @@ class CurveLimiter {
   std::vector<Vec2d> way_;     // of each point, from its source
   std::vector<double> share_;  // of that, which is gone
   LimitStatistics statistics_;
+  Progress progress_;
 };
 
 }  // namespace
 
-LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths) { return CurveLimiter(curves, paths).run(); }
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress) {
+  return CurveLimiter(curves, paths, progress).run();
+}
 
 }  // namespace vdb_offset

@@ -4,6 +4,7 @@
 
 #include "vdb_offset/curve_faults.h"
 #include "vdb_offset/limit.h"
+#include "vdb_offset/progress.h"
 #include "vdb_offset/propagate.h"
 
 namespace vdb_offset {
@@ -20,6 +21,6 @@ namespace vdb_offset {
 ///
 /// `paths` are those of the ribbon's vertices; ways stay in the plane. The result does not depend on the number of
 /// threads.
-LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths);
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress = {});
 
 }  // namespace vdb_offset

@@ -10,6 +10,7 @@
 #include "vdb_offset/curve_limit.h"
 #include "vdb_offset/directions.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/parallel.h"
 #include "vdb_offset/rasterise.h"
 #include "vdb_offset/run.h"
 
@@ -76,7 +77,7 @@ class CurvePipeline {
     ribbon_.facts.boundary_left = 2 * chains_.ends;
     GridOptions grid;
     grid.voxel_size = chosen.size;
-    shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads);
+    shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads, {0, true});
     shared_.plan.reason = chosen.reason;
   }
 
@@ -171,11 +172,28 @@ class CurvePipeline {
     result.statistics = shared_;
     if (options_.collision == Collision::Limit) {
       const StageTimer timer(result.statistics.seconds, Stage::Limit);
-      result.statistics.limit = limit_curves({*query_, source_, distances, options_.precision}, paths);
+      result.statistics.limit =
+          limit_curves({*query_, source_, distances, options_.precision}, paths, options_.progress);
     }
+    result.statistics.interior = measure_segments(distances, paths);
     hand_over(distances, paths, result);
     if (wanted.uniform()) result.distances = wanted;
     return result;
+  }
+
+  /// How far off segments are at their middles, relative to what their ends are asked for.
+  InteriorError measure_segments(const Distances& distances, const Paths& paths) const {
+    std::vector<double> errors(line_.segments.size(), -1);
+    for_each_index(errors.size(), [&](std::size_t s) {
+      const auto [a, b] = line_.segments[s];
+      const double target = std::abs(distances[a] + distances[b]) / 2;
+      if (target <= 1e-3 * distances.scale()) return;
+      const Vec3d middle =
+          (line_.vertices[a] + paths.displacement[a] + line_.vertices[b] + paths.displacement[b]) * 0.5;
+      errors[s] = std::abs((*query_)(middle, static_cast<std::uint32_t>(s)).distance - target) / target;
+    });
+    std::erase(errors, -1);
+    return sum_up_errors(std::move(errors));
   }
 
   void hand_over(const Distances& distances, const Paths& paths, OffsetResult& result) const {

@@ -33,15 +33,19 @@ InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, 
   };
   for_each_index(count, look, 64);
   std::erase(error, kLeftOut);
-  if (error.empty()) return {};
+  return sum_up_errors(std::move(error));
+}
+
+InteriorError sum_up_errors(std::vector<double> errors) {
+  if (errors.empty()) return {};
   InteriorError result;
-  result.samples = error.size();
-  for (const double e : error) {
-    result.mean += e / static_cast<double>(error.size());
+  result.samples = errors.size();
+  for (const double e : errors) {
+    result.mean += e / static_cast<double>(errors.size());
     result.worst = std::max(result.worst, e);
   }
-  const auto at = error.begin() + static_cast<std::ptrdiff_t>(99 * error.size() / 100);
-  std::nth_element(error.begin(), at, error.end());
+  const auto at = errors.begin() + static_cast<std::ptrdiff_t>(99 * errors.size() / 100);
+  std::nth_element(errors.begin(), at, errors.end());
   result.quantile_99 = *at;
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "vdb_offset/body.h"
 #include "vdb_offset/distances.h"
@@ -20,5 +21,8 @@ struct InteriorError {
 /// triangles off it, are left out. The result does not depend on the number of threads.
 InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, const Distances& distances,
                                std::size_t most = 0);
+
+/// Sums up errors of single places, relative to what was asked there.
+InteriorError sum_up_errors(std::vector<double> errors);
 
 }  // namespace vdb_offset

@@ -149,7 +149,7 @@ GridPlan plan(const Workpiece& work, PolygonView mesh, const Reach& farthest, co
   std::size_t beside = layers_bytes(mesh, layers);
   for (const auto* surface : {&work.whole, &work.rest, &work.obstacles})
     if (*surface) beside += surface_bytes(**surface);
-  return plan_grid(work.front, farthest, options.grid, options.max_memory, threads, beside);
+  return plan_grid(work.front, farthest, options.grid, options.max_memory, threads, {beside});
 }
 
 bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthest.outside > 0; }

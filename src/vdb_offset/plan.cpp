@@ -78,37 +78,40 @@ void add_triangle(CellSet& cells, const Vec3d& a, const Vec3d& b, const Vec3d& c
 
 /// Leaf nodes within reach of the surface. Counted, in cells as small as leaf nodes where those are not too many;
 /// else each coarser cell is taken to hold a sheet of them, or as many as the surface's area asks for.
-double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf) {
+double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf, bool slab) {
   constexpr double kMostCellsAcross = 192, kMostReachInCells = 4;
   const MeshFacts& facts = surface.facts;
   const double far = std::max(reach.inside, reach.outside), near = std::min(reach.inside, reach.outside);
   const double across = facts.diagonal + 2 * far;
   double cell = leaf;
   while (across / cell > kMostCellsAcross || far / cell > kMostReachInCells) cell *= 2;
-  CellSet cells(facts.lower - Vec3d(far), facts.upper + Vec3d(far), cell);
+  // A slab is one cell thick, as all that lies above or below counts as in it.
+  const Vec3d wide(far, far, slab ? 0 : far);
+  const Vec3d upper = slab ? Vec3d(facts.upper[0], facts.upper[1], facts.lower[2]) : facts.upper;
+  CellSet cells(facts.lower - wide, upper + wide, cell);
   for (const auto& [a, b, c] : surface.triangles)
     add_triangle(cells, surface.vertices[a], surface.vertices[b], surface.vertices[c], far, cell);
   const double counted = static_cast<double>(cells.count()), ratio = cell / leaf;
   if (ratio == 1) return counted;
-  // A flat piece of a slab of thickness T meets area * (T + w) / leaf^3 cubes, w = 1.5 leaf the mean width of a
+  // A flat piece of a sheet of thickness T meets area * (T + w) / leaf^3 cubes, w = 1.5 leaf the mean width of a
   // cube; curved outwards it has more area farther out.
   const double spread = 1 + 2 * reach.outside / facts.diagonal;
-  const double slab = facts.area * spread * spread * (far + near + 1.5 * leaf) / (leaf * leaf * leaf);
-  return std::min(counted * ratio * ratio * ratio, std::max(slab, counted * ratio));
+  const double sheet = facts.area * spread * spread * (far + near + 1.5 * leaf) / (leaf * leaf * leaf);
+  return std::min(counted * ratio * ratio * (slab ? 1 : ratio), std::max(sheet, counted * ratio));
 }
 
 double longer(const Reach& farthest) { return std::max(farthest.inside, farthest.outside); }
 
-GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int threads, std::size_t beside) {
+GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int threads, const PlanContext& context) {
   GridPlan plan;
   plan.voxel_size = h;
   plan.band = kBandVoxels * h;
   plan.reach = {farthest.inside + kHaloVoxels * h, farthest.outside + kHaloVoxels * h};
-  const double leaves = count_leaf_nodes(surface, plan.reach, 8 * h);
+  const double leaves = count_leaf_nodes(surface, plan.reach, 8 * h, context.slab);
   const double vertices = static_cast<double>(surface.facts.vertices),
                triangles = static_cast<double>(surface.triangles.size());
   const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes +
-                       static_cast<double>(beside);
+                       static_cast<double>(context.bytes_beside);
   if (bytes > 0x1p62) {  // only to be refused; the casts below must not overflow
     plan.bytes = plan.leaf_nodes = plan.voxels = std::size_t{1} << 62;
     return plan;
@@ -130,16 +133,16 @@ constexpr double kCoarser = 1.25;  // one step when looking for a size that fits
 
 /// The finest size, in steps from `h`, that fits; 0 if even a grid of a few voxels does not.
 double coarsen_until_it_fits(const Surface& surface, const Reach& farthest, double h, std::size_t max_memory,
-                             std::size_t beside) {
+                             const PlanContext& context) {
   const double coarsest = 4 * (surface.facts.diagonal + longer(farthest));
   for (; h < coarsest; h *= kCoarser)
-    if (fits(estimate(surface, farthest, h, 1, beside), surface.facts, max_memory)) return h;
+    if (fits(estimate(surface, farthest, h, 1, context), surface.facts, max_memory)) return h;
   return 0;
 }
 
 void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest, std::size_t max_memory,
-            std::size_t beside) {
-  const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory, beside);
+            const PlanContext& context) {
+  const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory, context);
   const auto mib = [](std::size_t bytes) { return static_cast<double>(bytes) / 1048576.0; };
   throw OutOfBudget(fmt::format(
       "plan: expected a grid that fits into {:.0f} MiB and {:.0f} voxels across, got about {:.0f} MiB in {} leaf nodes "
@@ -191,16 +194,16 @@ VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance
 }
 
 GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
-                   int threads, std::size_t beside) {
+                   int threads, const PlanContext& context) {
   const MeshFacts& facts = surface.facts;
   VoxelSize choice = choose_voxel_size(facts.median_edge, facts.diagonal, longer(farthest), options);
   if (!options.voxel_size && !options.voxels_per_distance) {
-    const double fitting = coarsen_until_it_fits(surface, farthest, choice.size, max_memory, beside);
+    const double fitting = coarsen_until_it_fits(surface, farthest, choice.size, max_memory, context);
     if (fitting > choice.size) choice = {fitting, "the finest that the memory allows"};
   }
-  GridPlan plan = estimate(surface, farthest, choice.size, threads, beside);
+  GridPlan plan = estimate(surface, farthest, choice.size, threads, context);
   plan.reason = choice.reason;
-  if (!fits(plan, facts, max_memory)) refuse(plan, surface, farthest, max_memory, beside);
+  if (!fits(plan, facts, max_memory)) refuse(plan, surface, farthest, max_memory, context);
   return plan;
 }
 

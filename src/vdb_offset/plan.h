@@ -25,16 +25,22 @@ struct GridPlan {
   double seconds = 0;                                 ///< Rough estimate for `threads` threads.
 };
 
+/// What a plan depends on beside the surface and its field.
+struct PlanContext {
+  std::size_t bytes_beside = 0;  ///< That the run needs for other things.
+  bool slab = false;             ///< The surface is a ribbon, and its field one leaf node thick (see ribbon.h).
+};
+
 /// Chooses the voxel size and estimates the cost.
 ///
 /// The grid serves directions only, distances are exact without it, so its voxel size is a smoothing length: the
 /// distance itself (the farthest, where they differ), no finer than half the median edge or diagonal / 1024, no coarser
 /// than diagonal / 64 or distance / 16, whichever is larger, and coarser still where `max_memory` (bytes; 0 for no
 /// limit) asks for it. A size that the caller gives is taken as it is. `farthest` is how far vertices go on each side,
-/// world units; not 0 on both. `beside` are the bytes that the run needs beside this surface and its field.
+/// world units; not 0 on both.
 /// \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
 GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
-                   int threads, std::size_t beside = 0);
+                   int threads, const PlanContext& context = {});
 /// The same for one distance, negative inward.
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
                    int threads);

@@ -1,14 +1,17 @@
 // Measures the tables of Wang, Guibault, Camarero and Tchon (AIAA 2005) as CSV: the circle and the cube, by their
-// method (first-order sweep, stop on interpolated phi) and by this library's. See scripts/paper_tables.
+// method (first-order sweep, stop on interpolated phi) and by this library's. With "circle", where the circle's points
+// go. See scripts/paper_tables.
 #include <fmt/format.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <string_view>
 
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/directions.h"
@@ -56,7 +59,7 @@ void measure_errors(const std::vector<Vec3d>& from, const std::vector<Vec3d>& to
 class InterpolatedMarch {
  public:
   InterpolatedMarch(const DistanceField& field, const DirectionField& directions)
-      : phi_(*field.phi), sampler_(directions), h_(field.voxel_size) {}
+      : sampler_(directions), phi_(*field.phi), h_(field.voxel_size) {}
 
   Vec3d operator()(Vec3d x) {
     double here = depth(x);
@@ -87,8 +90,8 @@ class InterpolatedMarch {
     return x + (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (kTimeStep / 6);
   }
 
-  const openvdb::FloatGrid& phi_;
   DirectionSampler sampler_;
+  const openvdb::FloatGrid& phi_;
   double h_;
 };
 
@@ -100,7 +103,7 @@ void cut_at_surface(DistanceField& field) {
 
 /// The paper's method for points on a surface, or half way up a ribbon; `tight` with a grid that ends there.
 Row paper_method(Surface surface, std::vector<Vec3d> points, double h, bool slab, const Answer& answer,
-                 bool tight = false) {
+                 bool tight = false, std::vector<Vec3d>* arrived = nullptr) {
   Row row;
   place(surface, h);
   Front front;
@@ -122,6 +125,7 @@ Row paper_method(Surface surface, std::vector<Vec3d> points, double h, bool slab
     if (slab)
       for (Vec3d& p : *some) p[2] = 0;
   measure_errors(points, ends, answer, row);
+  if (arrived) *arrived = std::move(ends);
   return row;
 }
 
@@ -148,12 +152,12 @@ OffsetOptions our_options(double h) {
 
 /// Of several runs the median of each time; the rest is the same in all.
 Row median_of(const std::function<Row()>& run) {
-  std::vector<Row> rows;
-  for (int i = 0; i < kRuns; ++i) rows.push_back(run());
+  std::array<Row, kRuns> rows;
+  for (Row& row : rows) row = run();
   Row row = rows.front();
   for (const auto time : {&Row::initialise, &Row::sweep, &Row::gradient, &Row::capture, &Row::propagate}) {
-    std::vector<double> all;
-    for (const Row& each : rows) all.push_back(each.*time);
+    std::array<double, kRuns> all{};
+    std::transform(rows.begin(), rows.end(), all.begin(), [&](const Row& each) { return each.*time; });
     std::sort(all.begin(), all.end());
     row.*time = all[kRuns / 2];
   }
@@ -178,7 +182,7 @@ Curves circle_of(int count) {
   return circle;
 }
 
-Row paper_circle(const Curves& circle, double h, const Answer& answer) {
+Row paper_circle(const Curves& circle, double h, const Answer& answer, std::vector<Vec3d>* arrived = nullptr) {
   std::vector<Vec2d> points;
   std::vector<Vec3d> starts;
   const double height = (kLeafWidth - 1) * h;
@@ -188,7 +192,7 @@ Row paper_circle(const Curves& circle, double h, const Answer& answer) {
   }
   const CurveChains chains = join_curves(circle.view(), points);
   const Polygons ribbon = make_ribbon(chains.segments, points, height);
-  return paper_method(build_surface(ribbon.view(), {}), std::move(starts), h, true, answer);
+  return paper_method(build_surface(ribbon.view(), {}), std::move(starts), h, true, answer, false, arrived);
 }
 
 Row our_circle(const Curves& circle, double h, const Answer& answer) {
@@ -209,6 +213,20 @@ void circle_tables() {
     print("circle of 10240 points", "paper", n, h, median_of([&] { return paper_circle(fine, h, of_circle); }));
     print("circle of 10240 points", "ours", n, h, median_of([&] { return our_circle(fine, h, of_circle); }));
   }
+}
+
+/// Where the circle's 40 points are before, and after by both methods on a grid of n cells across.
+void print_circle(int n) {
+  const Curves circle = circle_of(40);
+  std::vector<Vec3d> by_paper;
+  const Answer anywhere = [](const Vec3d& x) { return x; };
+  paper_circle(circle, 1.0 / n, anywhere, &by_paper);
+  const Distances distance(-kDistance);
+  const OffsetResult ours = offset_curves(circle.view(), {&distance, 1}, our_options(1.0 / n)).front();
+  for (std::size_t p = 0; p < circle.positions.size(); ++p)
+    for (const auto& [name, positions] :
+         {std::pair{"source", &circle.positions}, {"paper", &by_paper}, {"ours", &ours.positions}})
+      fmt::print("{},{},{},{:.9g},{:.9g}\n", n, name, p, (*positions)[p][0], (*positions)[p][1]);
 }
 
 void cube_tables(int finest) {
@@ -234,6 +252,11 @@ void cube_tables(int finest) {
 int main(int argc, char** argv) {
   using namespace vdb_offset;
   openvdb::initialize();
+  if (argc > 1 && std::string_view(argv[1]) == "circle") {
+    fmt::print("n,method,point,x,y\n");
+    for (const int n : {20, 320}) print_circle(n);
+    return 0;
+  }
   const int finest = argc > 1 ? std::max(20, std::atoi(argv[1])) : 320;
   fmt::print("shape,method,n,h,nodes,initialise,sweep,gradient,capture,propagate,l2,linf\n");
   circle_tables();

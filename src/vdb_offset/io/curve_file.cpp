@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
@@ -235,6 +237,9 @@ std::optional<CurveFormat> curve_format_of(std::string_view path) {
 bool holds_curves(const std::string& path) {
   const auto format = curve_format_of(path);
   if (format != CurveFormat::Obj) return format.has_value();
+  // What is compressed, or a pipe, is not read twice.
+  std::error_code unknown;
+  if (without_compression(path) != path || !std::filesystem::is_regular_file(path, unknown)) return false;
   const FileBytes bytes = FileBytes::open(path);
   const std::string_view text = bytes.view();
   const auto has_line = [&](std::string_view start) {

@@ -27,7 +27,7 @@ struct CurveFile {
 };
 
 /// True for an OBJ without faces but with `l` elements, and for files with another of the endings. An OBJ is opened
-/// for that. \throw ReadError
+/// for that; one that is compressed, or no regular file, is taken for a mesh. \throw ReadError
 bool holds_curves(const std::string& path);
 
 /// Text: a first line that is not two or three numbers is a title; behind # is a comment. A curve is closed if it ends
