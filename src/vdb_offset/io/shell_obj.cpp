@@ -28,7 +28,7 @@ constexpr FaceState kFaceStates[kFaceStateCount] = {{"o", ""},
                                                     {"bevel", "bevel off\n"},
                                                     {"c_interp", "c_interp off\n"},
                                                     {"d_interp", "d_interp off\n"}};
-constexpr std::size_t kObject = 0, kSmooth = 2, kNoState = kFaceStateCount;
+constexpr std::size_t kObject = 0, kSmoothGroup = 2, kNoState = kFaceStateCount;
 
 std::size_t face_state_of(std::string_view keyword) {
   std::size_t i = 0;
@@ -294,7 +294,7 @@ class ObjShellWriter {
 
   /// The rim meets the skins at an angle.
   static StateLines with_flat_rim(StateLines state) {
-    if (!state[kSmooth].empty()) state[kSmooth] = kFaceStates[kSmooth].reset;
+    if (!state[kSmoothGroup].empty()) state[kSmoothGroup] = kFaceStates[kSmoothGroup].reset;
     return state;
   }
 
