@@ -7,14 +7,16 @@ namespace vdb_offset {
 namespace {
 
 /// By hand, as <cctype> depends on the locale.
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.'; }
+bool is_ascii_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_word_character(char c) {
+  return is_ascii_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+}
 
 std::string cleaned(std::string name) {
   if (name.empty()) return "wall";
   std::replace_if(
       name.begin(), name.end(), [](char c) { return !is_word_character(c); }, '_');
-  return is_letter(name[0]) ? name : "wall_" + name;
+  return is_ascii_letter(name[0]) ? name : "wall_" + name;
 }
 
 }  // namespace
