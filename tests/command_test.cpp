@@ -567,3 +567,35 @@ TEST_CASE("command: curves are offset, reported, and refuse what is for meshes",
   CHECK(shell("square.dat none.dat --distance u").code == 2);
   CHECK_FALSE(shell.has("none.dat"));
 }
+
+TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][curves][layers]") {
+  const Shell shell;
+  std::ofstream(shell.file("square.dat")) << "1 0\n1 1\n0 1\n0 0\n1 0\n";
+  const std::string layers = " --layers 3 --first-height 0.1 --growth 1.5 ";
+  const Run run = shell("square.dat out.vtu" + layers + "--report r.json --states s.csv");
+  REQUIRE(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("12 quadrilaterals, 16 points, area"));
+  const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
+  // Corners go along the diagonals: a square in a square.
+  const double side = 1 + 2 * 0.475 / std::sqrt(2.0);
+  CHECK(report["layers"]["volume"] == Approx(side * side - 1));
+  CHECK(report["layers"]["area"] == Approx(4));
+  CHECK(report["layers"]["coverage"] == 1);
+  for (const char* const right :
+       {"out.su2", "out.vts --structured", "out.xyz --structured", "layer.dat", "none.vtu --dry-run"}) {
+    INFO(right);
+    CHECK(shell(std::string("square.dat ") + right + layers).code == 0);
+  }
+  std::ifstream block(shell.file("out.xyz"));
+  unsigned ni = 0, nj = 0, nk = 0;
+  CHECK((block >> ni >> nj >> nk && ni == 5 && nj == 4 && nk == 1));
+  for (const char* const made : {"layer_001.dat", "layer_002.dat", "layer_003.dat"}) CHECK(shell.has(made));
+  for (const char* const wrong :
+       {"none.msh", "none.xyz", "none.vtu --structured", "none.cgns", "none.obj --only group=a"}) {
+    INFO(wrong);
+    const Run refused = shell(std::string("square.dat ") + wrong + layers);
+    CHECK(refused.code == 1);
+    CHECK_THAT(refused.err, Catch::Contains("expected"));
+  }
+  CHECK_FALSE(shell.has("none.vtu"));
+}

@@ -29,7 +29,9 @@ inline constexpr LocalFaces kCellFaces[kCellTypeCount] = {
       {4, {1, 2, 6, 5}},
       {4, {2, 3, 7, 6}},
       {4, {3, 0, 4, 7}}}},
-    {0, {}}};
+    {0, {}},
+    {3, {{2, {0, 1}}, {2, {1, 2}}, {2, {2, 0}}}},
+    {4, {{2, {0, 1}}, {2, {1, 2}}, {2, {2, 3}}, {2, {3, 0}}}}};
 
 /// Calls visit(std::span<const std::uint32_t>) with the corners of each face of a cell, ccw seen from outside.
 template <class Visit>

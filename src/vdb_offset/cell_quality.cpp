@@ -143,6 +143,23 @@ double polyhedron_jacobian(const VolumeMesh& mesh, std::span<const std::uint32_t
   return std::isfinite(least) ? least : 0;
 }
 
+/// Least sine of the corners, and the same for triangles as for a regular one.
+double plane_jacobian(const CellPoints& x, const Vec3d& normal) {
+  const std::size_t n = x.corners.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3d next = x[(k + 1) % n] - x[k], last = x[(k + n - 1) % n] - x[k];
+    const double lengths = next.length() * last.length();
+    least = std::min(least, lengths > 0 ? next.cross(last).dot(normal) / lengths : 0);
+  }
+  return n == 3 ? least * 2 / std::numbers::sqrt3 : least;
+}
+
+/// Twice the area, signed, that edges enclose.
+double twice_area_below(const VolumeMesh& mesh, std::span<const std::uint32_t> edge, const Vec3d& origin) {
+  return (mesh.points[edge[0]] - origin).cross(mesh.points[edge[1]] - origin).dot(mesh.normal);
+}
+
 }  // namespace
 
 double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell) {
@@ -156,6 +173,9 @@ double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell) {
       return prism_quality(x).jacobian;
     case CellType::Hexahedron:
       return hexahedron_quality(x).jacobian;
+    case CellType::Triangle:
+    case CellType::Quadrilateral:
+      return plane_jacobian(x, mesh.normal);
     case CellType::Polyhedron:
       break;
   }
@@ -186,9 +206,10 @@ double cell_volume(const VolumeMesh& mesh, std::size_t cell) {
   const CellType type = mesh.cell_types[cell];
   const Vec3d origin = mesh.points[corners[type == CellType::Polyhedron ? 2 : 0]];
   double sum = 0;
-  for_each_cell_face(type, corners,
-                     [&](std::span<const std::uint32_t> face) { sum += six_volumes_below(mesh.points, face, origin); });
-  return sum / 6;
+  for_each_cell_face(type, corners, [&](std::span<const std::uint32_t> face) {
+    sum += mesh.plane() ? twice_area_below(mesh, face, origin) : six_volumes_below(mesh.points, face, origin);
+  });
+  return sum / (mesh.plane() ? 2 : 6);
 }
 
 std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
@@ -216,20 +237,23 @@ double enclosed_volume(const VolumeMesh& mesh) {
         [&](std::size_t b) {
           const std::size_t end = std::min(patch.face_count(), (b + 1) * kBlock);
           for (std::size_t f = b * kBlock; f < end; ++f)
-            sums[b] += six_volumes_below(mesh.points, patch.face(f), mesh.points[0]);
+            sums[b] += mesh.plane() ? twice_area_below(mesh, patch.face(f), mesh.points[0])
+                                    : six_volumes_below(mesh.points, patch.face(f), mesh.points[0]);
         },
         1);
     for (const double part : sums) sum += part;
   }
-  return sum / 6;
+  return sum / (mesh.plane() ? 2 : 6);
 }
 
 double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first, std::span<const std::uint32_t> face) {
-  const Vec3d normal = twice_area(wall, face);
   Vec3d rise(0.0);
   for (const auto v : face) rise += first[v] - wall[v];
+  const bool edge = face.size() == 2;
+  const Vec3d axis = edge ? wall[face[1]] - wall[face[0]] : twice_area(wall, face);
   // By the tangent, which knows small angles.
-  const double along = std::abs(normal.dot(rise)), across = normal.cross(rise).length();
+  double along = std::abs(axis.dot(rise)), across = axis.cross(rise).length();
+  if (edge) std::swap(along, across);
   return along > 0 ? std::atan2(across, along) * 180 / std::numbers::pi : 90;
 }
 

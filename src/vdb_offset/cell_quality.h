@@ -15,14 +15,14 @@ namespace vdb_offset {
 /// too. At most 1; below 0 for a cell that is inside out somewhere, and 0 where an edge has no length. Pyramids are the
 /// worst of the four tetrahedra over their base's corners; other than Verdict's, theirs keeps its sign below 0.
 /// Polyhedra: over corners of three edges; not those where their first face is straight or turns inwards, which a right
-/// prism over a concave face has as well.
+/// prism over a concave face has as well. Triangles (factor 2 / sqrt 3) and quadrilaterals: the least sine of a corner.
 double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell);
 
 /// Longest edge by shortest; infinite if that has no length. For a cell in a layer, its width by its height.
 double aspect_ratio(const VolumeMesh& mesh, std::size_t cell);
 
-/// World units^3. Faces that are not flat are taken as the fan around their corner of the lowest index, so that the
-/// cells on both sides agree, and the volumes of all cells sum up to what the boundary encloses.
+/// World units^3, of a plane mesh's ^2. Faces that are not flat are taken as the fan around their corner of the lowest
+/// index, so that the cells on both sides agree, and the volumes of all cells sum up to what the boundary encloses.
 double cell_volume(const VolumeMesh& mesh, std::size_t cell);
 
 /// Six times the volume between a face and `origin`, signed: the sum over a closed boundary is six times what it
@@ -35,8 +35,9 @@ std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh);
 /// What the boundary encloses, which is the sum of all cells' volumes; the same for any number of threads.
 double enclosed_volume(const VolumeMesh& mesh);
 
-/// Angle in degrees, 0 .. 90, between the normal of a wall's face and the mean of the edges that rise from its corners
-/// to the first layer: 0 is best. 90 if either has no direction. \pre `first` has a position for each of `wall`.
+/// Angle in degrees, 0 .. 90, between the normal of a wall's face, or of a segment, and the mean of the edges that rise
+/// from its corners to the first layer: 0 is best. 90 if either has no direction. \pre `first` has a position for each
+/// of `wall`.
 double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first, std::span<const std::uint32_t> face);
 
 }  // namespace vdb_offset

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "vdb_offset/curve_limit.h"
+#include "vdb_offset/curve_stack.h"
 #include "vdb_offset/directions.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
@@ -19,6 +20,8 @@ namespace {
 
 /// The ribbon fills the voxel centres of one leaf node's height.
 constexpr double kRibbonVoxels = kLeafWidth - 1;
+// What a point takes in each layer: its places, beside what cells are made of it.
+constexpr std::size_t kLayerPointBytes = 180;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -29,8 +32,8 @@ double median(std::vector<double> values) {
 /// The pipeline of curves: joined, stood up as a ribbon, then what surfaces go through.
 class CurvePipeline {
  public:
-  CurvePipeline(CurvesView curves, const OffsetOptions& options, int threads)
-      : curves_(curves), options_(options), frame_(plane_of(curves)) {
+  CurvePipeline(CurvesView curves, const OffsetOptions& options, int threads, std::size_t layers = 0)
+      : curves_(curves), options_(options), layers_(layers), frame_(plane_of(curves)) {
     shared_.threads = threads;
     points_.reserve(curves.positions.size());
     for (const Vec3d& p : curves.positions) points_.push_back(frame_.to_plane(p));
@@ -65,6 +68,25 @@ class CurvePipeline {
     return results;
   }
 
+  LayersResult grow(std::span<const Distances> heights) {
+    prepare(heights.last(1));
+    make_field();
+    draw_line();
+    std::vector<Distances> on_points;
+    for (const Distances& each : heights) on_points.push_back(on_line(each));
+    distances_.push_back(on_points.back());
+    std::vector<Paths> paths = march();
+    OffsetStatistics statistics = shared_;
+    limit(on_points.back(), paths.front(), statistics);
+    LayerStack stack;
+    {
+      const StageTimer timer(statistics.seconds, Stage::Layers);
+      stack = stack_curves({*query_, source_, on_points.back(), options_.precision}, on_points, paths.front(),
+                           options_.progress);
+    }
+    return hand_over(std::move(statistics), on_points, paths.front(), stack);
+  }
+
  private:
   /// Puts the curves into a ribbon as high as the voxel size asks for.
   void stand_up(const Reach& farthest) {
@@ -77,7 +99,8 @@ class CurvePipeline {
     ribbon_.facts.boundary_left = 2 * chains_.ends;
     GridOptions grid;
     grid.voxel_size = chosen.size;
-    shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads, {0, true});
+    shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads,
+                             {layers_ * points_.size() * kLayerPointBytes, true});
     shared_.plan.reason = chosen.reason;
   }
 
@@ -170,15 +193,16 @@ class CurvePipeline {
   OffsetResult finish(const Distances& wanted, const Distances& distances, Paths& paths) {
     OffsetResult result;
     result.statistics = shared_;
-    if (options_.collision == Collision::Limit) {
-      const StageTimer timer(result.statistics.seconds, Stage::Limit);
-      result.statistics.limit =
-          limit_curves({*query_, source_, distances, options_.precision}, paths, options_.progress);
-    }
+    if (options_.collision == Collision::Limit) limit(distances, paths, result.statistics);
     result.statistics.interior = measure_segments(distances, paths);
     hand_over(distances, paths, result);
     if (wanted.uniform()) result.distances = wanted;
     return result;
+  }
+
+  void limit(const Distances& distances, Paths& paths, OffsetStatistics& statistics) const {
+    const StageTimer timer(statistics.seconds, Stage::Limit);
+    statistics.limit = limit_curves({*query_, source_, distances, options_.precision}, paths, options_.progress);
   }
 
   /// How far off segments are at their middles, relative to what their ends are asked for.
@@ -215,6 +239,39 @@ class CurvePipeline {
     count_states(result.states, result.statistics);
   }
 
+  LayersResult hand_over(OffsetStatistics statistics, std::span<const Distances> heights, const Paths& paths,
+                         const LayerStack& stack) const {
+    OffsetResult outermost;
+    outermost.statistics = std::move(statistics);
+    hand_over(heights.back(), paths, outermost);
+    LayersResult result;
+    result.statistics = std::move(outermost.statistics);
+    result.layer_statistics = stack.statistics;
+    result.states = std::move(outermost.states);
+    result.achieved = std::move(outermost.achieved);
+    const std::size_t count = points_.size();
+    result.share.assign(count, 0.0);
+    result.first_achieved.assign(count, 0.0);
+    const std::vector<Vec3d> wall(curves_.positions.begin(), curves_.positions.end());
+    result.positions.assign(heights.size() + 1, wall);
+    std::vector<std::vector<double>> asked(heights.size(), std::vector<double>(count, 0.0));
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const auto v = vertex_[p];
+      if (v == kNone) continue;
+      result.share[p] = stack.share[v];
+      result.first_achieved[p] = stack.first_achieved[v];
+      const auto places = stack.stacks.of(v);
+      for (std::size_t k = 0; k < heights.size(); ++k) {
+        asked[k][p] = heights[k][v];
+        if (stack.stacks.is_flat(v)) continue;
+        const Vec3d way = places[k + 1] - places[0];
+        result.positions[k + 1][p] += frame_.to_space({way[0], way[1]});
+      }
+    }
+    for (auto& each : asked) result.heights.emplace_back(std::move(each));
+    return result;
+  }
+
   /// A distance of 0 needs no field.
   OffsetResult unmoved(const Distances& distances) const {
     OffsetResult result;
@@ -230,6 +287,7 @@ class CurvePipeline {
 
   CurvesView curves_;
   const OffsetOptions& options_;
+  std::size_t layers_;
   PlaneFrame frame_;
   OffsetStatistics shared_;  // by all results
   std::vector<Vec2d> points_;
@@ -243,10 +301,18 @@ class CurvePipeline {
   std::optional<CurveQuery> query_;
 };
 
+void require_one_for_each_point(CurvesView curves, std::span<const Distances> distances) {
+  for (const Distances& each : distances)
+    if (!each.uniform() && each.count() != curves.positions.size())
+      throw InvalidInput("offset: expected a distance for each of " + std::to_string(curves.positions.size()) +
+                         " points, got " + std::to_string(each.count()));
+}
+
 }  // namespace
 
-OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options) {
-  CurvePipeline pipeline(curves, options, thread_count(options.threads));
+OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options,
+                             std::size_t layers) {
+  CurvePipeline pipeline(curves, options, thread_count(options.threads), layers);
   pipeline.prepare(distances);
   return pipeline.statistics();
 }
@@ -254,16 +320,23 @@ OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> dista
 std::vector<OffsetResult> offset_curves(CurvesView curves, std::span<const Distances> distances,
                                         const OffsetOptions& options) {
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
-  for (const Distances& each : distances)
-    if (!each.uniform() && each.count() != curves.positions.size())
-      throw InvalidInput("offset: expected a distance for each of " + std::to_string(curves.positions.size()) +
-                         " points, got " + std::to_string(each.count()));
+  require_one_for_each_point(curves, distances);
   const int threads = thread_count(options.threads);
   std::vector<OffsetResult> results;
   // An arena of its own keeps the number of threads a matter of this call alone.
   tbb::task_arena arena(threads);
   arena.execute([&] { results = CurvePipeline(curves, options, threads).run(distances); });
   return results;
+}
+
+LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options) {
+  require_one_for_each_point(curves, heights);
+  require_heights(heights, curves.positions.size());
+  const int threads = thread_count(options.threads);
+  LayersResult result;
+  tbb::task_arena arena(threads);
+  arena.execute([&] { result = CurvePipeline(curves, options, threads, heights.size()).grow(heights); });
+  return result;
 }
 
 }  // namespace vdb_offset

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/offset.h"
+#include "vdb_offset/layers.h"
 #include "vdb_offset/ribbon.h"
 
 namespace vdb_offset {
@@ -19,7 +19,14 @@ namespace vdb_offset {
 std::vector<OffsetResult> offset_curves(CurvesView curves, std::span<const Distances> distances,
                                         const OffsetOptions& options);
 
-/// What offset_curves() would do, without doing it. \throw as offset_curves()
-OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options);
+/// Grows layers on curves, as grow_layers() does on a mesh: one march goes to the outermost, which is made valid as
+/// with Collision::Limit, and stack_curves() stands the others in between; cells are make_curve_cells()'s. \throw
+/// InvalidInput as grow_layers() and offset_curves().
+LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options);
+
+/// What offset_curves() would do, or grow_curve_layers() if there are layers, without doing it. \throw as
+/// offset_curves()
+OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options,
+                             std::size_t layers = 0);
 
 }  // namespace vdb_offset

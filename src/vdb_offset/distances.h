@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace vdb_offset {
@@ -31,5 +32,9 @@ class Distances {
   double uniform_ = 0, outward_ = 0, inward_ = 0;
   std::vector<double> each_;
 };
+
+/// \throw InvalidInput unless these can be the heights of layers over so many vertices, as grow_layers() has it. \pre
+/// each is uniform or has one for each vertex
+void require_heights(std::span<const Distances> heights, std::size_t vertices);
 
 }  // namespace vdb_offset

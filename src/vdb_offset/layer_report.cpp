@@ -169,7 +169,9 @@ Spread spread(std::vector<Weighted> values) {
           quantiles[3],         quantiles[4], values.back().value, sum / whole};
 }
 
+/// Of a segment its length.
 double area_of(std::span<const Vec3d> points, std::span<const std::uint32_t> face) {
+  if (face.size() == 2) return (points[face[1]] - points[face[0]]).length();
   Vec3d sum(0.0);
   for (std::size_t k = 2; k < face.size(); ++k)
     sum += (points[face[k - 1]] - points[face[0]]).cross(points[face[k]] - points[face[0]]);
@@ -334,6 +336,7 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
         patches.size(), [&](std::size_t p) { report.patches[p] = source.figures(patches[p], faces.of(p)); }, 1);
   }
   report.volume = enclosed_volume(volume);
+  report.plane = volume.plane();
   report.points = volume.points.size();
   report.growing = layers.layer_statistics;
   report.turned_faces = facts.turned_faces;
@@ -346,11 +349,11 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
 
 std::string summary(const LayerReport& report) {
   const LayerFigures& all = report.all;
-  std::string text = fmt::format("{} layers: {}, {} points, volume {:.6g}\n", report.layers, cells_by_type(all),
-                                 report.points, report.volume);
-  text +=
-      fmt::format("thickness {:.4g} of {:.4g} (5 %: {:.4g}), {:.1f} layers, full on {:.1f} % of the area\n",
-                  all.reached.mean, all.asked.mean, all.reached.quantile_05, all.layers_reached, 100 * all.coverage);
+  std::string text = fmt::format("{} layers: {}, {} points, {} {:.6g}\n", report.layers, cells_by_type(all),
+                                 report.points, report.plane ? "area" : "volume", report.volume);
+  text += fmt::format("thickness {:.4g} of {:.4g} (5 %: {:.4g}), {:.1f} layers, full on {:.1f} % of the {}\n",
+                      all.reached.mean, all.asked.mean, all.reached.quantile_05, all.layers_reached, 100 * all.coverage,
+                      report.plane ? "length" : "area");
   text += fmt::format("first height: {:.1e} off at most; at the wall {:.1f} degrees (95 %: {:.1f}, most {:.1f})\n",
                       all.first_error, all.wall_angle.median, all.wall_angle.quantile_95, all.wall_angle.most);
   text += fmt::format(
@@ -359,8 +362,8 @@ std::string summary(const LayerReport& report) {
       all.scaled_jacobian.median, all.scaled_jacobian.quantile_01, all.scaled_jacobian.least, all.inverted_cells,
       all.aspect_ratio.median, all.aspect_ratio.most);
   if (all.transition_cells > 0 || left_out(all) > 0)
-    text +=
-        fmt::format("{} transition cells where layers end, {} faces left out\n", all.transition_cells, left_out(all));
+    text += fmt::format("{} transition cells where layers end, {} {} left out\n", all.transition_cells, left_out(all),
+                        report.plane ? "segments" : "faces");
   if (report.unpaired_sides > 0)
     text += fmt::format("{} sides on edges of three faces, or of two that disagree, are on the boundary\n",
                         report.unpaired_sides);

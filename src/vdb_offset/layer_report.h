@@ -14,7 +14,7 @@ struct Spread {
   double mean = 0;
 };
 
-/// Figures of the layers on a part of the wall, or on all of it.
+/// Figures of the layers on a part of the wall, or on all of it. On curves, faces are segments and areas lengths.
 struct LayerFigures {
   std::string name;  ///< Of the patch.
   std::array<std::size_t, kFaceRoleCount> faces_by_role{};
@@ -35,7 +35,8 @@ struct LayerReport {
   std::size_t layers = 0;
   LayerFigures all;
   std::vector<LayerFigures> patches;  ///< In the order of the walls in VolumeMesh::patches.
-  double volume = 0;                  ///< Of all cells, world units^3.
+  bool plane = false;                 ///< Layers on curves.
+  double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
   std::size_t points = 0;
   LayerStatistics growing;
   std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;

@@ -4,34 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include "vdb_offset/layer_rail.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-// How much of its heights a vertex keeps in a round of thinning; below the last share it keeps none.
-constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
-// Rounds in which thinned vertices are let out again, each by one step.
-constexpr int kLetOuts = 12;
-// Thickness may change by so much of the length of an edge.
-constexpr double kThicknessSlope = 0.5;
-// Heights are solved far below the promised 1e-6.
-constexpr double kHeightTolerance = 1e-7, kNearlyThere = 2e-4;
-// What the way up must have at least of each face's normal at the wall.
-constexpr double kLeastSlope = 1e-2;
 // Vertices that a thread takes at a time.
 constexpr std::size_t kVertexBlock = 64;
 // Where more triangles than this may be the closest ones, a tree finds them sooner.
 constexpr std::size_t kMostNear = 200;
 // How much longer than the way straight to the vertex the way along the rail may be.
 constexpr double kReachRoom = 1.01;
-
-/// The curve that a vertex's layers stand on: x(eta) = whole eta + bend eta (1 - eta)^2, from 0 at the surface to 1.
-struct Rail {
-  Vec3d whole, bend;
-  Vec3d operator()(double eta) const { return whole * eta + bend * (eta * (1 - eta) * (1 - eta)); }
-  Vec3d along(double eta) const { return whole + bend * ((1 - eta) * (1 - 3 * eta)); }
-};
 
 class Stacker {
  public:
@@ -67,7 +51,7 @@ class Stacker {
     faults_.look(back, [&](std::uint32_t v) { return outermost(v); });
     check_all_columns();
     stack_.statistics.wrong_columns = wrong_columns_.size();
-    straighten();
+    while (straighten()) progress.advance(0);
     while (thin()) progress.advance(1);
     let_all_out(progress);
     finish();
@@ -190,32 +174,9 @@ class Stacker {
     return true;
   }
 
-  /// The distance of a point, and the way there from the surface.
-  struct Phi {
-    double value;
-    Vec3d away;
-  };
-
-  /// Distances along a vertex's rail, of points in the front's frame. The closest triangle to one point is likely to be
-  /// that of the next: find() looks for it, at() believes it and is never too small.
-  class CareField {
-   public:
-    CareField(const ClosestQuery& front, std::uint32_t hint) : front_(front), triangle_(hint) {}
-
-    Phi at(const Vec3d& x) const { return phi(front_.surface().closest_on(triangle_, x), x); }
-    Phi find(const Vec3d& x) {
-      const Closest found = front_(x, triangle_);
-      triangle_ = found.triangle;
-      return {found.distance, x - found.point};
-    }
-
-   private:
-    const ClosestQuery& front_;
-    std::uint32_t triangle_;
-  };
-  /// The same where the closest triangle is one of a few. Who goes a length from one place to another comes nearer to
-  /// any of them by no more than that, so that few have to be looked at again: on the way down to the surface, what was
-  /// farther than the closest mostly stays so. Nor is a triangle nearer than its plane.
+  /// As CareField, where the closest triangle is one of a few. Who goes a length from one place to another comes nearer
+  /// to any of them by no more than that, so that few have to be looked at again: on the way down to the surface, what
+  /// was farther than the closest mostly stays so. Nor is a triangle nearer than its plane.
   class FewField {
    public:
     FewField(const Surface& front, const Vec3d& end, Near& near) : front_(front), near_(near), end_(end), place_(end) {
@@ -223,7 +184,7 @@ class Stacker {
       triangle_ = std::min_element(near.triangles.begin(), near.triangles.end(), less)->triangle;
     }
 
-    Phi at(const Vec3d& x) const { return phi(front_.closest_on(triangle_, x), x); }
+    Phi at(const Vec3d& x) const { return phi_of(front_.closest_on(triangle_, x), x); }
     Phi find(const Vec3d& x) {
       gone_ += (x - place_).length();
       place_ = x;
@@ -239,7 +200,7 @@ class Stacker {
         const auto& [normal, height] = near_.planes[i];
         const double enough = nearest.value * (1 - kRounding);
         if (least - gone_ >= enough || std::abs(normal.dot(from_end) - height) >= enough) continue;
-        const Phi other = phi(front_.closest_on(triangle, x), x);
+        const Phi other = phi_of(front_.closest_on(triangle, x), x);
         least = other.value + gone_;
         if (!(other.value < nearest.value)) continue;
         nearest = other;
@@ -256,10 +217,6 @@ class Stacker {
     double gone_ = 0;
     std::uint32_t triangle_;
   };
-  static Phi phi(const TrianglePoint& nearest, const Vec3d& x) {
-    return {std::sqrt(nearest.squared_distance), x - nearest.point};
-  }
-
   /// What may be the closest triangle to some point of the rail is no farther from its end than that point's distance
   /// and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers. False if
   /// that was wrong of a layer, or does not lead to its height.
@@ -279,7 +236,7 @@ class Stacker {
   }
 
   void put_with_care(std::uint32_t v) {
-    descend(v, CareField(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
+    descend(v, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
   }
 
   /// Goes down a vertex's rail from height to height, from the outermost. `placed` is told of each layer and its
@@ -290,52 +247,16 @@ class Stacker {
     const double share = stack_.share[v];
     const Rail rail = rail_of(v);
     const Vec3d origin = source_[v] - front_.origin;
-    Place above{1, field.find(origin + rail.whole)};
+    RailPlace above{1, field.find(origin + rail.whole)};
     for (std::size_t k = heights_.size(); k-- > 0;) {
       const double target = share * std::abs(heights_[k][v]);
       const bool at_end = k + 1 == heights_.size() && share == most_[v];
-      if (!at_end) above = solve(rail, origin, above, target, field);
+      if (!at_end) above = place_on(rail, origin, above, target, field);
       stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(above.eta), target));
       if (!placed(k, above.phi.value)) return false;
       stack_.first_achieved[v] = above.phi.value;
     }
     return true;
-  }
-
-  /// A place on a rail, and its distance.
-  struct Place {
-    double eta;
-    Phi phi;
-  };
-
-  /// Where on the rail, between its start and the place `above`, the distance is `target`: Newton's method on the
-  /// distance of one triangle, kept between what is known to be below and above; where that does not lead on, or has
-  /// led there, on the closest one's.
-  template <class Field>
-  static Place solve(const Rail& rail, const Vec3d& origin, const Place& above, double target, Field&& field) {
-    constexpr int kMost = 60;
-    double low = 0, high = above.eta, believed_high = high;
-    Place here = above;
-    for (int i = 0; i < kMost; ++i) {
-      const double slope = here.phi.away.dot(rail.along(here.eta)) / here.phi.value;
-      const double next = here.eta - (here.phi.value - target) / slope;
-      const bool leads_on = slope > 0 && next > low && next < believed_high;
-      // Newton's error shrinks to the square of what it was.
-      const bool leads_there = leads_on && i > 0 && std::abs(here.phi.value - target) <= kNearlyThere * target;
-      here.eta = leads_on ? next : (low + high) / 2;
-      const Vec3d x = origin + rail(here.eta);
-      if (leads_on && !leads_there) {
-        here.phi = field.at(x);
-        if (here.phi.value < target) low = here.eta;
-        else believed_high = here.eta;
-        continue;
-      }
-      here.phi = field.find(x);
-      if (std::abs(here.phi.value - target) <= kHeightTolerance * target) break;
-      (here.phi.value < target ? low : high) = here.eta;
-      believed_high = high;
-    }
-    return here;
   }
 
   void check_all_columns() {
@@ -377,16 +298,18 @@ class Stacker {
     return corners;
   }
 
-  /// Stands the layers of wrong cells' vertices on straight lines, where these see all faces around.
-  void straighten() {
+  /// Stands the layers of wrong cells' vertices on straight lines, where these see all faces around. False if none is
+  /// left that could be.
+  bool straighten() {
     Indices corners = corners_of_wrong_columns();
     std::erase_if(corners, [&](std::uint32_t v) {
       return straight_[v] || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
     });
-    if (corners.empty()) return;
+    if (corners.empty()) return false;
     for (const auto v : corners) straight_[v] = 1;
-    stack_.statistics.straightened = corners.size();
+    stack_.statistics.straightened += corners.size();
     move(corners);
+    return true;
   }
 
   Indices wrong_vertices() const {

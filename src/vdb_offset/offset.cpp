@@ -32,28 +32,6 @@ void require_clearance(const OffsetOptions& options) {
     throw InvalidInput("clearance: expected a length >= 0, got " + std::to_string(options.clearance));
 }
 
-/// Heights of layers: all to one side, rising at every vertex, somewhere above 0.
-void require_heights(PolygonView mesh, std::span<const Distances> heights) {
-  if (heights.empty()) throw InvalidInput("layers: expected a height, got none");
-  for (const Distances& each : heights) {
-    require_one_each(mesh, each);
-    if (each.outward() > 0 && each.inward() > 0)
-      throw InvalidInput("layers: expected heights to one side, got some above 0 and some below");
-  }
-  if (heights.back().scale() == 0) throw InvalidInput("layers: expected a height other than 0");
-  const bool uniform = std::all_of(heights.begin(), heights.end(), [](const Distances& d) { return d.uniform(); });
-  const bool inward = heights.back().inward() > 0;
-  for (std::size_t k = 0; k < heights.size(); ++k)
-    for (std::size_t v = 0; v < (uniform ? 1 : mesh.positions.size()); ++v) {
-      const double below = k > 0 ? heights[k - 1][v] : 0, here = heights[k][v];
-      if (inward ? here < below : here > below) continue;
-      if (here == 0 && heights.back()[v] == 0) continue;  // this vertex stays
-      throw InvalidInput("layers: expected heights that rise from the wall on, got " + std::to_string(here) +
-                         " behind " + std::to_string(below) +
-                         (uniform ? "" : " at vertex " + std::to_string(v) + " (counted from 0)"));
-    }
-}
-
 OffsetResult unmoved(PolygonView mesh) {
   OffsetResult result;
   result.positions.assign(mesh.positions.begin(), mesh.positions.end());
@@ -347,7 +325,8 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
 }
 
 LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options) {
-  require_heights(mesh, heights);
+  for (const Distances& each : heights) require_one_each(mesh, each);
+  require_heights(heights, mesh.positions.size());
   require_clearance(options);
   const int threads = thread_count(options.threads);
   LayersResult result;

@@ -589,6 +589,8 @@ const char* name(VertexState state) {
 
 Vec3d start_direction(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).direction; }
 
+Vec3d start_direction(const Polyline& line, std::uint32_t vertex) { return start_of(line, vertex).direction; }
+
 bool is_folded(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).slope <= 0; }
 
 Vec3d round_way(const Vec3d& way, double target) {

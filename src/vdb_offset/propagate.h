@@ -38,6 +38,7 @@ struct Paths {
 /// The unit direction in which a vertex sets out, outward: its normal, weighted by angles; where faces turn away from
 /// that, one that more of them face. Zero for a vertex without any.
 Vec3d start_direction(const Surface& surface, std::uint32_t vertex);
+Vec3d start_direction(const Polyline& line, std::uint32_t vertex);
 /// Whether the faces around a vertex fold so that none of the directions tried for that is one that all of them face.
 /// What moves such a vertex, however little, takes a face to its own back, and so through the surface.
 bool is_folded(const Surface& surface, std::uint32_t vertex);

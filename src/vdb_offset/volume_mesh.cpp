@@ -3,7 +3,8 @@
 namespace vdb_offset {
 
 const char* name(CellType type) {
-  constexpr const char* kNames[kCellTypeCount] = {"tetrahedra", "pyramids", "prisms", "hexahedra", "polyhedra"};
+  constexpr const char* kNames[kCellTypeCount] = {"tetrahedra", "pyramids",  "prisms",        "hexahedra",
+                                                  "polyhedra",  "triangles", "quadrilaterals"};
   return kNames[static_cast<std::size_t>(type)];
 }
 

@@ -214,15 +214,26 @@ void check_apart(const Arguments& args) {
   }
 }
 
+void require_structured(const Arguments& args) {
+  require(!args.layers || args.layers->structured == io::structured_format_of(args.output).has_value(),
+          args.output + ": expected .vts or .xyz with --structured, and nothing else");
+}
+
 /// Curves stay curves, and know nothing of faces.
 void check_curves(const Raw& raw, const Arguments& args) {
-  require(io::curve_format_of(args.output).has_value(),
-          args.output + ": expected an output that ends in .dat, .txt, .xy or .obj, as the input holds curves");
+  const auto volume = io::volume_format_of(args.output);
+  const auto structured = io::structured_format_of(args.output);
+  const bool cells = volume == io::VolumeFormat::Vtu || volume == io::VolumeFormat::Su2 || structured;
+  require(
+      io::curve_format_of(args.output).has_value() || (args.layers && cells),
+      args.output +
+          ": expected an output that ends in .dat, .txt, .xy or .obj, or with --layers in .vtu, .su2, .vts or .xyz, "
+          "as the input holds curves");
+  require_structured(args);
   for (const auto& [name, given] : {std::pair{"--only", !raw.only.empty()},
                                     {"--border", raw.border.has_value()},
                                     {"--obstacle", !args.obstacles.empty()},
                                     {"--shell", args.shell},
-                                    {"--layers", args.layers.has_value()},
                                     {"--mode iso", args.iso.has_value()},
                                     {"--weld", raw.weld != "exact"},
                                     {"--orient", raw.orient != "keep"}})
@@ -237,8 +248,7 @@ void check_names(const Arguments& args) {
   const bool volume =
       io::volume_format_of(args.output).has_value() || io::structured_format_of(args.output).has_value();
   require(!volume || args.layers, args.output + ": expected a mesh, as this is for --layers");
-  require(!args.layers || args.layers->structured == io::structured_format_of(args.output).has_value(),
-          args.output + ": expected .vts or .xyz with --structured, and nothing else");
+  require_structured(args);
   require(volume || format_of(args.output, args).has_value(),
           args.output +
               ": expected an output that ends in .obj, .ply, .stl or .off (or these and .gz or .zst), or "

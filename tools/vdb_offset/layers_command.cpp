@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "summary.h"
+#include "vdb_offset/curve_cells.h"
+#include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/states_file.h"
@@ -28,8 +30,18 @@ struct Grown {
   LayerReport report;
 };
 
+Grown grow_on_curves(const Arguments& args, CurvesView curves, std::span<const Distances> heights) {
+  Grown grown;
+  grown.layers = grow_curve_layers(curves, heights, args.options);
+  CurveCells cells = make_curve_cells(curves, grown.layers);
+  grown.report = report_layers(cells.segments.view(), grown.layers, {}, cells.mesh, cells.facts);
+  grown.volume = std::move(cells.mesh);
+  return grown;
+}
+
 Grown grow(const Arguments& args, const Source& source, std::span<const Distances> heights) {
   const PolygonView mesh = source.view();
+  if (source.curves) return grow_on_curves(args, mesh, heights);
   const WallNames names = source.file ? io::wall_names(*source.file) : WallNames{};
   Grown grown;
   grown.layers = grow_layers(mesh, heights, args.options);
@@ -43,6 +55,10 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
   for (std::size_t k = 0; k < layers.count(); ++k) {
     const std::string path = name_of_layer(args.output, k + 1, layers.count());
     io::WriteOptions options = args.write;
+    if (source.curves) {
+      io::write_curves(path, *source.curves, layers.positions[k + 1], options);
+      continue;
+    }
     options.format = format_of(path, args);
     if (source.file) {
       tell_losses(args, path, io::write_mesh(path, *source.file, layers.positions[k + 1], options));
@@ -55,7 +71,8 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
 
 void write_cells(const Arguments& args, const Source& source, const Grown& grown) {
   if (args.layers->structured)
-    io::write_structured(args.output, make_block(source.view(), grown.layers, args.options.weld));
+    io::write_structured(args.output, source.curves ? make_curve_block(source.view(), grown.layers)
+                                                    : make_block(source.view(), grown.layers, args.options.weld));
   else if (is_volume(args.output)) io::write_volume(args.output, grown.volume);
   else write_surfaces(args, source, grown.layers);
 }
@@ -75,13 +92,17 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   const std::vector<Distances> heights = settle_layers(source, args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
-    print_dry_run(args, plan_several(source.view(), std::span(heights).last(1), args.options, heights.size()),
+    const auto outermost = std::span(heights).last(1);
+    print_dry_run(args,
+                  source.curves ? plan_curves(source.view(), outermost, args.options, heights.size())
+                                : plan_several(source.view(), outermost, args.options, heights.size()),
                   heights.back());
     return true;
   }
   require_names(args, heights.size());
   if (source.file && !is_volume(args.output))
     args.options.precision = io::precision_of(name_of_layer(args.output, 1, heights.size()), *source.file, args.write);
+  if (source.curves && !is_volume(args.output)) args.options.precision = io::precision_of_curves(args.write);
   Grown grown = grow(args, source, heights);
   LayersResult& layers = grown.layers;
   bar.show(Stage::Write, 0);

@@ -37,7 +37,7 @@ bool are_points(const VolumeMesh& mesh, std::span<const std::uint32_t> corners) 
 }
 
 bool is_cell(const VolumeMesh& mesh, CellType type, std::span<const std::uint32_t> cell) {
-  constexpr std::size_t kCorners[] = {4, 5, 6, 8};
+  constexpr std::size_t kCorners[kCellTypeCount] = {4, 5, 6, 8, 0, 3, 4};
   if (type != CellType::Polyhedron)
     return cell.size() == kCorners[static_cast<std::size_t>(type)] && are_points(mesh, cell);
   std::size_t at = 1, faces = 0;
@@ -63,6 +63,10 @@ void require_consistent(const std::string& path, const VolumeMesh& mesh) {
               std::is_sorted(mesh.cell_begin.begin(), mesh.cell_begin.end()),
           path, "cells whose corners end where the next one's begin");
   require_cells(path, mesh);
+  const auto is_of_a_plane = [](CellType type) { return type >= CellType::Triangle; };
+  const auto of_planes = std::count_if(mesh.cell_types.begin(), mesh.cell_types.end(), is_of_a_plane);
+  require(of_planes == (mesh.plane() ? static_cast<std::ptrdiff_t>(mesh.cell_count()) : 0), path,
+          "triangles and quadrilaterals in a plane mesh, and in no other");
   for (const VolumePatch& patch : mesh.patches) {
     require(patch.cell.size() == patch.face_count() && patch.face_begin.back() == patch.corners.size(), path,
             "a cell behind each face of a patch");
@@ -130,6 +134,8 @@ void write_volume(const std::string& path, const VolumeMesh& mesh) {
   if (!format)
     throw InvalidInput(path + ": expected a name that ends in .vtu, .msh, .cgns or .su2, or a folder named polyMesh");
   require_consistent(path, mesh);
+  require(!mesh.plane() || *format == VolumeFormat::Vtu || *format == VolumeFormat::Su2, path,
+          "a name that ends in .vtu or .su2, as the cells lie in a plane");
   switch (*format) {
     case VolumeFormat::Vtu:
       return write_vtu(path, mesh);

@@ -25,6 +25,7 @@ std::optional<VolumeFormat> volume_format_of(std::string_view path);
 /// - .su2: text; a marker for each patch. No fields, no polyhedra.
 /// - polyMesh: text; points, faces, owner, neighbour and boundary (`wall` for walls, `patch` else). No fields. The
 ///   folder is made if it is not there, and its other files stay.
+/// Plane meshes: .vtu, and .su2 in two dimensions if they lie in a plane of constant z.
 /// Patches' names become words without blanks and quotes, .cgns: of 32 bytes. Fields without values are left out.
 /// \throw InvalidInput for an unknown ending, polyhedra where the format has none, a patch that is not the boundary
 /// (polyMesh, .cgns with polyhedra), no cells, or arrays that do not fit each other; WriteError.

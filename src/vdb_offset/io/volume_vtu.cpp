@@ -26,7 +26,8 @@ namespace {
 constexpr std::size_t kMostInt32 = std::numeric_limits<std::int32_t>::max();
 
 vtkSmartPointer<vtkUnsignedCharArray> vtk_types(const VolumeMesh& mesh) {
-  constexpr unsigned char kTypes[kCellTypeCount] = {VTK_TETRA, VTK_PYRAMID, VTK_WEDGE, VTK_HEXAHEDRON, VTK_POLYHEDRON};
+  constexpr unsigned char kTypes[kCellTypeCount] = {VTK_TETRA,      VTK_PYRAMID,  VTK_WEDGE, VTK_HEXAHEDRON,
+                                                    VTK_POLYHEDRON, VTK_TRIANGLE, VTK_QUAD};
   auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
   types->SetNumberOfValues(static_cast<vtkIdType>(mesh.cell_count()));
   for_each_index(mesh.cell_count(), [&](std::size_t c) {
