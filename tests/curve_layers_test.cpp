@@ -163,7 +163,7 @@ TEST_CASE("curves: where there is no room layers get thin, and stay valid", "[cu
 
 TEST_CASE("curves: layers do not depend on the number of threads", "[curves][layers]") {
   const Curves curves = comb(4, 0.3, 0.02);
-  const std::vector<Distances> heights = rising(0.4, 6);
+  const std::vector<Distances> heights = rising(-0.4, 6);
   OffsetOptions options;
   options.threads = 1;
   const LayersResult one = grow_curve_layers(curves.view(), heights, options);
