@@ -22,7 +22,8 @@ constexpr double kStraightTolerance = 1e-3;
 constexpr double kNothingLeft = 1e-9;
 // Below this the faces around a vertex turn away from its normal so far that a straight path says little.
 constexpr double kLeastStraightSlope = 0.2;
-constexpr double kStepVoxels = 0.75;
+// Longest step, in voxels; and in distances, where the way is straight (cosine between its ends) on a finer grid.
+constexpr double kStepVoxels = 0.75, kStepShare = 0.125, kStraightCourse = 0.9995;
 // A path may run this far, in distances, without getting anywhere before it counts as stopped.
 constexpr double kPatience = 0.5;
 constexpr int kMaxSteps = 400;
@@ -244,8 +245,9 @@ class Traveller {
       }
       if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
       // Not far beyond the last stop, which the last step is cut at; not much less than a voxel, for a slow climb.
-      const double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi, kStepVoxels * h_,
-                                    std::max(last - here.phi, kLeastStep * std::min(h_, last))});
+      double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
+                              std::max(kStepVoxels * h_, kStepShare * last),
+                              std::max(last - here.phi, kLeastStep * std::min(h_, last))});
       Sample next = measure(runge_kutta(here, step));
       bool in_the_way = false;
       if (obstacles_) {
@@ -340,13 +342,21 @@ class Traveller {
     return along.lengthSqr() > kLeastGradient * kLeastGradient ? along.unit() : normal_;
   }
 
-  Vec3d runge_kutta(const Sample& from, double step) {
+  /// Shortens a step of more voxels than one that the way bends on.
+  Vec3d runge_kutta(const Sample& from, double& step) {
     const Vec3d fallback = from.phi > 0 ? from.away / from.phi : normal_;
-    const Vec3d k1 = course(from.x, from.phi, fallback), k2 = course(from.x + k1 * (step / 2), from.phi + step / 2, k1),
-                k3 = course(from.x + k2 * (step / 2), from.phi + step / 2, k2),
-                k4 = course(from.x + k3 * step, from.phi + step, k3);
-    const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
-    return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
+    const Vec3d k1 = course(from.x, from.phi, fallback);
+    while (true) {
+      const Vec3d k2 = course(from.x + k1 * (step / 2), from.phi + step / 2, k1),
+                  k3 = course(from.x + k2 * (step / 2), from.phi + step / 2, k2),
+                  k4 = course(from.x + k3 * step, from.phi + step, k3);
+      if (step > kStepVoxels * h_ && std::min(k1.dot(k2), k1.dot(k4)) < kStraightCourse) {
+        step = std::max(step / 4, kStepVoxels * h_);
+        continue;
+      }
+      const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
+      return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
+    }
   }
 
   /// Between a point short of the target and one at or past it: Illinois' false position on the exact distance.
