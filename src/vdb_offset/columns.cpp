@@ -6,13 +6,12 @@
 #include <numeric>
 #include <optional>
 
+#include "vdb_offset/layer_rail.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-// The way up leans towards a cell's faces by no less than this sine.
-constexpr double kLeastLean = 1e-3;
 // From so many corners on, a cell is a polyhedron, whose faces need not be convex.
 constexpr std::size_t kPolyhedron = 5;
 

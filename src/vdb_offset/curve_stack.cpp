@@ -10,9 +10,6 @@
 namespace vdb_offset {
 namespace {
 
-// Sine of the least angle of a cell's corner.
-constexpr double kLeastLean = 1e-3;
-
 /// > 0 if a to b and a to c turn counterclockwise, as far as a corner has to.
 bool turns(const Vec3d& a, const Vec3d& b, const Vec3d& c, double sign) {
   const Vec3d ab = b - a, ac = c - a;

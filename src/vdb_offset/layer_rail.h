@@ -17,6 +17,8 @@ inline constexpr int kLetOuts = 12;
 inline constexpr double kThicknessSlope = 0.5;
 // What the way up must have at least of each face's normal at the wall.
 inline constexpr double kLeastSlope = 1e-2;
+// The way up leans towards the sides of a cell by no less than this sine.
+inline constexpr double kLeastLean = 1e-3;
 
 /// The curve that a vertex's layers stand on: x(eta) = whole eta + bend eta (1 - eta)^2, from 0 at the surface to 1.
 struct Rail {
