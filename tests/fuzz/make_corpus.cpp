@@ -1,5 +1,5 @@
 // Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, and numbers of three vertices
-// to FOLDER/numbers: what fuzzing starts from.
+// to FOLDER/numbers, and curves to FOLDER/curves: what fuzzing starts from.
 
 #include <algorithm>
 #include <cstdint>
@@ -206,6 +206,13 @@ void numbers_seeds() {
   numbers_seed("u8", npy(1, ">u8", "(3,1)", std::string(24, '\xab')));
 }
 
+/// The first byte stands for the format.
+void curves_seeds() {
+  write("title.curves", "@airfoil\n1 0\n0.5 0.1\n0 0\n\n# closed\n3 4\n5 6\n7 1e3\n");
+  write("lednicer.curves", "@NACA 1\n 3. 3.\n\n0 0\n.5 .1\n1 0\n\n0 0\n.5 -.1\n1 0\n");
+  write("lines.curves", "Av 0 0 0\nv 1 0 0 1\nv 1 1e-3 -0\no a\nl 1 2/1 3\nl -1 -2\n");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -226,6 +233,7 @@ int main(int count, char** arguments) {
     }
     stl_seeds();
     numbers_seeds();
+    curves_seeds();
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 4;

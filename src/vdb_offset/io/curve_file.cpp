@@ -187,6 +187,7 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   if (curves.file.text().empty()) throw InvalidInput(name + ", byte 0: expected curves, got an empty file");
   if (format == CurveFormat::Text) TextParser(curves).run();
   else LineElementParser(curves.file).run();
+  if (curves.file.polygons.face_count() == 0) throw InvalidInput(name + ": expected an element 'l', got none");
   return curves;
 }
 

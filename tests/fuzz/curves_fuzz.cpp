@@ -1,0 +1,71 @@
+// A libFuzzer target for files of curves: the first byte chooses the format; whatever the others are, they are refused
+// with InvalidInput or are curves that keep the promises of io/curve_file.h. What else is thrown ends the process.
+
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/mesh_file.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+/// Not an assert: it must hold in every build.
+void require(bool holds, const char* rule) {
+  if (holds) return;
+  std::fprintf(stderr, "violated: %s\n", rule);
+  std::abort();
+}
+
+std::optional<io::CurveFile> parsed(io::CurveFormat format, const std::string& bytes) {
+  try {
+    return io::parse_curves("fuzz", format, bytes);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+void check_curves(const io::CurveFile& file) {
+  const Polygons& curves = file.file.polygons;
+  require(!curves.face_begin.empty() && curves.face_begin.front() == 0, "face_begin starts with 0");
+  require(curves.face_begin.back() == curves.corners.size(), "face_begin ends with the number of corners");
+  require(curves.face_count() > 0, "a file has a curve");
+  for (std::size_t f = 0; f < curves.face_count(); ++f)
+    require(curves.face_begin[f] < curves.face_begin[f + 1], "a curve has a point");
+  for (const auto v : curves.corners) require(v < curves.positions.size(), "corners are indices of points");
+  for (const Vec3d& p : curves.positions)
+    for (int k = 0; k < 3; ++k)
+      require(std::isfinite(p[k]) && (k < 2 || !file.planar || p[k] == 0), "points are finite");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  if (size == 0) return 0;
+  const io::CurveFormat format = data[0] % 2 == 0 ? io::CurveFormat::Text : io::CurveFormat::Obj;
+  const std::string bytes(reinterpret_cast<const char*>(data + 1), size - 1);
+  const std::optional<io::CurveFile> file = parsed(format, bytes);
+  if (!file) return 0;
+  check_curves(*file);
+  std::vector<Vec3d> places = file->file.polygons.positions;
+  require(io::patched_bytes(file->file, places) == bytes, "curves that stay keep every byte");
+  for (Vec3d& p : places) p = Vec3d(p[1] / 3, -p[0] / 7, p[2]);
+  const std::string moved = io::patched_bytes(file->file, places);
+  const std::optional<io::CurveFile> back = parsed(format, moved);
+  require(back.has_value(), "what was written can be read");
+  check_curves(*back);
+  require(back->file.polygons.corners == file->file.polygons.corners, "curves stay");
+  for (std::size_t p = 0; p < places.size(); ++p)
+    require(back->file.polygons.positions[p] == file->file.precision(places[p]), "points are those that were written");
+  return 0;
+}
