@@ -227,6 +227,7 @@ TEST_CASE("curve files: mistakes are told by their line", "[curves][io]") {
   fails(Text, "1 2\n1 2 3\n", "f, line 2: expected 2 coordinates");
   fails(Text, "1 2\n1\n", "f, line 2: expected a coordinate, got the end of the line");
   fails(Text, "1 2\nnan 2\n", "finite");
+  fails(Text, "1 2\n\n3 4\n", "f: expected a curve of 2 points or more, got single points alone (2)");
   fails(Obj, "v 0 0 0\nl 1\n", "f, line 2: expected at least 2 points");
   fails(Obj, "v 0 0 0\nl 1 2\n", "f, line 2: expected a vertex index up to 1");
   fails(Obj, "v 0 0 0\nl 1 -2\n", "f, line 2: expected a vertex index within the 1 read so far");

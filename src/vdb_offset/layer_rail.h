@@ -9,12 +9,6 @@
 /// What layers over surfaces and over curves have in common.
 namespace vdb_offset {
 
-// How much of its heights a vertex keeps in a round of thinning; below the last share it keeps none.
-inline constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
-// Rounds in which thinned vertices are let out again, each by one step.
-inline constexpr int kLetOuts = 12;
-// Thickness may change by so much of the length of an edge.
-inline constexpr double kThicknessSlope = 0.5;
 // What the way up must have at least of each face's normal at the wall.
 inline constexpr double kLeastSlope = 1e-2;
 // The way up leans towards the sides of a cell by no less than this sine.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "vdb_offset/layer_rail.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/stacker.h"
 
 namespace vdb_offset {
 namespace {
@@ -17,46 +17,16 @@ constexpr std::size_t kMostNear = 200;
 // How much longer than the way straight to the vertex the way along the rail may be.
 constexpr double kReachRoom = 1.01;
 
-class Stacker {
+class SurfaceStacker final : public Stacker {
  public:
-  Stacker(const Body& body, const BorderSlides* slides, const CellColumns& columns, std::span<const Vec3d> source,
-          std::span<const Distances> heights, FaultFinder& faults, Paths& paths)
-      : body_(body),
+  SurfaceStacker(const Body& body, const BorderSlides* slides, const CellColumns& columns,
+                 std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults, Paths& paths)
+      : Stacker(source, body.front.surface().origin, heights, paths),
+        body_(body),
         front_(body.front.surface()),
         slides_(slides),
         columns_(columns),
-        source_(source),
-        heights_(heights),
-        side_(heights.back().farthest() < 0 ? -1 : 1),
-        faults_(faults),
-        paths_(paths),
-        most_(source.size(), 0.0),
-        straight_(source.size(), 0),
-        wrong_column_(columns.size(), 0) {
-    stack_.stacks = Stacks(source.size(), heights.size());
-    stack_.first_achieved.assign(source.size(), 0.0);
-    for_each_index(source.size(), [&](std::size_t v) { most_[v] = share_at_end(static_cast<std::uint32_t>(v)); });
-    stack_.share = most_;
-  }
-
-  LayerStack run(Progress& progress) {
-    Indices all(source_.size());
-    for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = v;
-    Indices uneven = all;
-    if (heights_.back().uniform()) std::erase_if(uneven, [&](std::uint32_t v) { return stack_.share[v] == 1; });
-    smooth(std::move(uneven));
-    put(all);
-    Indices back = std::move(all);
-    std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || (stack_.share[v] == most_[v] && most_[v] > 0); });
-    faults_.look(back, [&](std::uint32_t v) { return outermost(v); });
-    check_all_columns();
-    stack_.statistics.wrong_columns = wrong_columns_.size();
-    while (straighten()) progress.advance(0);
-    while (thin()) progress.advance(1);
-    let_all_out(progress);
-    finish();
-    return std::move(stack_);
-  }
+        faults_(faults) {}
 
  private:
   /// Triangles near a rail: what they are no nearer than, and their planes, seen from the rail's end.
@@ -77,23 +47,10 @@ class Stacker {
     }
   };
 
-  double asked(std::uint32_t v) const { return std::abs(heights_.back()[v]); }
-  bool moves(std::uint32_t v) const { return body_.on_front(v) && heights_.back()[v] != 0; }
-  const Vec3d& outermost(std::uint32_t v) const { return stack_.stacks.of(v).back(); }
+  bool moves(std::uint32_t v) const override { return body_.on_front(v) && heights_.back()[v] != 0; }
+  bool is_bound(std::uint32_t v) const override { return body_.is_bound(v); }
 
-  /// What a vertex could keep of its heights for where its path ended; nothing where no way up has all of the faces
-  /// around it in view.
-  double share_at_end(std::uint32_t v) {
-    if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
-    const Vec3d& whole = paths_.displacement[v];
-    straight_[v] = body_.is_bound(v) || !sees_all_faces(v, start_of_rail(v));
-    if (straight_[v] && !sees_all_faces(v, whole)) return 0;
-    if (paths_.state[v] == VertexState::Reached) return 1;
-    const double share = std::min(1.0, paths_.achieved[v] / asked(v));
-    return share < kLeastShare ? 0 : share;
-  }
-
-  bool sees_all_faces(std::uint32_t v, const Vec3d& way) const {
+  bool sees_all_faces(std::uint32_t v, const Vec3d& way) const override {
     const double length = way.length();
     for (const auto t : body_.surface.triangles_around(v)) {
       const auto& [a, b, c] = body_.surface.triangles[t];
@@ -104,44 +61,28 @@ class Stacker {
     return true;
   }
 
-  /// As long as the whole way.
-  Vec3d start_of_rail(std::uint32_t v) const {
-    const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
-    return start_direction(front_, on_front) * (side_ * paths_.displacement[v].length());
+  Vec3d direction_of(std::uint32_t v) const override {
+    return start_direction(front_, body_.front_vertex.empty() ? v : body_.front_vertex[v]);
   }
 
-  Rail rail_of(std::uint32_t v) const {
-    const Vec3d& whole = paths_.displacement[v];
-    if (straight_[v]) return {whole, Vec3d(0.0)};
-    return {whole, start_of_rail(v) - whole};
-  }
+  std::size_t column_count() const override { return columns_.size(); }
+  std::span<const std::uint32_t> base(std::size_t column) const override { return columns_.base(column); }
+  std::span<const std::uint32_t> columns_around(std::uint32_t v) const override { return columns_.around(v); }
+  bool is_valid(std::size_t column) const override { return columns_.is_valid(column, stack_.stacks, side_); }
 
-  /// Lowers shares of these vertices and their neighbours until thickness is even enough: for each what the lowest
-  /// allow. Returns all vertices that it lowered.
-  Indices smooth(Indices changed) {
-    Indices lowered;
-    for (std::size_t i = 0; i < changed.size(); ++i) {
-      const std::uint32_t v = changed[i];
-      if (!moves(v)) continue;
-      const double thickness = stack_.share[v] * asked(v);
-      for (const auto column : columns_.around(v)) {
-        const auto base = columns_.base(column);
-        const std::size_t k = static_cast<std::size_t>(std::find(base.begin(), base.end(), v) - base.begin());
-        for (const auto w : {base[(k + 1) % base.size()], base[(k + base.size() - 1) % base.size()]}) {
-          const double most = thickness + kThicknessSlope * (source_[w] - source_[v]).length();
-          if (!(stack_.share[w] * asked(w) > most * (1 + 1e-9))) continue;
-          stack_.share[w] = most / asked(w) < kLeastShare ? 0 : most / asked(w);
-          lowered.push_back(w);
-          changed.push_back(w);
-        }
-      }
-    }
-    sort_unique(lowered);
-    return lowered;
+  void look(const Indices& vertices) override {
+    faults_.look(vertices, [&](std::uint32_t v) { return outermost(v); });
   }
+  /// What is wrong where paths end is known.
+  void look_first(const Indices& all) override {
+    Indices back = all;
+    std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || is_at_end(v); });
+    look(back);
+  }
+  Indices faulty_vertices() const override { return faults_.wrong_vertices(); }
+  double distance_of(std::uint32_t v) const override { return faults_.distance_of(v); }
 
-  /// Puts these vertices' layers where their shares want them.
-  void put(const Indices& vertices) {
+  void put(const Indices& vertices) override {
     for_each_index((vertices.size() + kVertexBlock - 1) / kVertexBlock,
                    [&](std::size_t block) {
                      const std::size_t first = block * kVertexBlock;
@@ -228,7 +169,7 @@ class Stacker {
     body_.front.collect(end, reach, near.triangles);
     if (near.triangles.empty() || near.triangles.size() > kMostNear) return false;
     near.find_planes(front_, end);
-    return descend(v, FewField(front_, end, near), [&](std::size_t k, double phi) {
+    return put_down(v, FewField(front_, end, near), [&](std::size_t k, double phi) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
       return std::abs(phi - height) <= kReachedTolerance * height &&
              (stack[k + 1] - source_[v] - whole).length() + phi <= reach;
@@ -236,176 +177,14 @@ class Stacker {
   }
 
   void put_with_care(std::uint32_t v) {
-    descend(v, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
-  }
-
-  /// Goes down a vertex's rail from height to height, from the outermost. `placed` is told of each layer and its
-  /// distance, and may end the descent: then this is false.
-  template <class Field, class Placed>
-  bool descend(std::uint32_t v, Field&& field, Placed&& placed) {
-    const auto stack = stack_.stacks.of(v);
-    const double share = stack_.share[v];
-    const Rail rail = rail_of(v);
-    const Vec3d origin = source_[v] - front_.origin;
-    RailPlace above{1, field.find(origin + rail.whole)};
-    for (std::size_t k = heights_.size(); k-- > 0;) {
-      const double target = share * std::abs(heights_[k][v]);
-      const bool at_end = k + 1 == heights_.size() && share == most_[v];
-      if (!at_end) above = place_on(rail, origin, above, target, field);
-      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(above.eta), target));
-      if (!placed(k, above.phi.value)) return false;
-      stack_.first_achieved[v] = above.phi.value;
-    }
-    return true;
-  }
-
-  void check_all_columns() {
-    for_each_index(
-        columns_.size(), [&](std::size_t c) { wrong_column_[c] = !columns_.is_valid(c, stack_.stacks, side_); }, 64);
-    for (std::uint32_t c = 0; c < columns_.size(); ++c)
-      if (wrong_column_[c]) wrong_columns_.push_back(c);
-  }
-
-  Indices columns_around(const Indices& vertices) const {
-    Indices columns;
-    for (const auto v : vertices) columns.insert(columns.end(), columns_.around(v).begin(), columns_.around(v).end());
-    sort_unique(columns);
-    return columns;
-  }
-
-  void check_columns(const Indices& moved) {
-    const Indices columns = columns_around(moved);
-    for_each_index(
-        columns.size(),
-        [&](std::size_t i) { wrong_column_[columns[i]] = !columns_.is_valid(columns[i], stack_.stacks, side_); }, 64);
-    std::erase_if(wrong_columns_, [&](std::uint32_t c) { return !wrong_column_[c]; });
-    for (const auto c : columns)
-      if (wrong_column_[c]) wrong_columns_.push_back(c);
-    sort_unique(wrong_columns_);
-  }
-
-  void move(const Indices& vertices) {
-    put(vertices);
-    faults_.look(vertices, [&](std::uint32_t v) { return outermost(v); });
-    check_columns(vertices);
-    ++stack_.statistics.rounds;
-  }
-
-  Indices corners_of_wrong_columns() const {
-    Indices corners;
-    for (const auto c : wrong_columns_) corners.insert(corners.end(), columns_.base(c).begin(), columns_.base(c).end());
-    sort_unique(corners);
-    return corners;
-  }
-
-  /// Stands the layers of wrong cells' vertices on straight lines, where these see all faces around. False if none is
-  /// left that could be.
-  bool straighten() {
-    Indices corners = corners_of_wrong_columns();
-    std::erase_if(corners, [&](std::uint32_t v) {
-      return straight_[v] || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
-    });
-    if (corners.empty()) return false;
-    for (const auto v : corners) straight_[v] = 1;
-    stack_.statistics.straightened += corners.size();
-    move(corners);
-    return true;
-  }
-
-  Indices wrong_vertices() const {
-    Indices wrong = faults_.wrong_vertices();
-    const Indices corners = corners_of_wrong_columns();
-    wrong.insert(wrong.end(), corners.begin(), corners.end());
-    sort_unique(wrong);
-    return wrong;
-  }
-
-  /// Thins the layers of the vertices that something is wrong with. False if none of them has any height left.
-  bool thin() {
-    Indices wrong = wrong_vertices();
-    std::erase_if(wrong, [&](std::uint32_t v) { return stack_.share[v] == 0; });
-    if (wrong.empty()) return false;
-    for (const auto v : wrong) {
-      stack_.share[v] *= kKeptHeight;
-      if (stack_.share[v] < kLeastShare) stack_.share[v] = 0;
-    }
-    const Indices lowered = smooth(wrong);
-    wrong.insert(wrong.end(), lowered.begin(), lowered.end());
-    sort_unique(wrong);
-    move(wrong);
-    return true;
-  }
-
-  /// Lets all that is thinned out again, step by step.
-  void let_all_out(Progress& progress) {
-    Indices thinned;
-    for (std::uint32_t v = 0; v < source_.size(); ++v)
-      if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) thinned.push_back(v);
-    std::vector<double> before = stack_.share;
-    for (int i = 0; i < kLetOuts && let_out(thinned, before); ++i) {
-      for (const auto v : thinned) before[v] = stack_.share[v];
-      progress.advance(1);
-    }
-  }
-
-  /// Lets these vertices out by one step, as far as thickness stays even, and takes those back to their share `before`
-  /// that something is then wrong with. False if none could be let out.
-  bool let_out(const Indices& thinned, const std::vector<double>& before) {
-    Indices out = thinned;
-    std::erase_if(out, [&](std::uint32_t v) { return !(before[v] < most_[v]); });
-    for (const auto v : out) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
-    smooth_around(out);
-    std::erase_if(out, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
-    for (Indices moved = out; !moved.empty();) {
-      move(moved);
-      moved = wrong_vertices();
-      std::erase_if(moved, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
-      for (const auto v : moved) stack_.share[v] = before[v];
-      const Indices lowered = smooth(moved);
-      moved.insert(moved.end(), lowered.begin(), lowered.end());
-      sort_unique(moved);
-    }
-    return std::any_of(out.begin(), out.end(), [&](std::uint32_t v) { return stack_.share[v] > before[v]; });
-  }
-
-  /// As smooth(), where vertices have been let out that their neighbours may hold back.
-  void smooth_around(const Indices& vertices) {
-    Indices around = vertices;
-    for (const auto v : vertices)
-      for (const auto column : columns_.around(v))
-        around.insert(around.end(), columns_.base(column).begin(), columns_.base(column).end());
-    sort_unique(around);
-    smooth(std::move(around));
-  }
-
-  void finish() {
-    for (std::uint32_t v = 0; v < source_.size(); ++v) {
-      if (!moves(v)) continue;
-      paths_.displacement[v] =
-          stack_.share[v] == most_[v] && most_[v] > 0 ? paths_.displacement[v] : outermost(v) - source_[v];
-      if (stack_.share[v] == 1) continue;
-      ++stack_.statistics.thinned_vertices;
-      stack_.statistics.flat_vertices += stack_.share[v] == 0;
-      if (stack_.share[v] == most_[v] && most_[v] > 0) continue;  // as far as its path went
-      paths_.achieved[v] = stack_.share[v] > 0 ? faults_.distance_of(v) : 0;
-      paths_.state[v] = VertexState::Limited;
-    }
+    put_down(v, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
   }
 
   const Body& body_;
   const Surface& front_;
   const BorderSlides* slides_;
   const CellColumns& columns_;
-  std::span<const Vec3d> source_;
-  std::span<const Distances> heights_;
-  int side_;
   FaultFinder& faults_;
-  Paths& paths_;
-  std::vector<double> most_;            // the share that each vertex could keep for where its path ended
-  std::vector<std::uint8_t> straight_;  // whether its layers stand on a straight line
-  std::vector<std::uint8_t> wrong_column_;
-  Indices wrong_columns_;
-  LayerStack stack_;
 };
 
 }  // namespace
@@ -415,7 +194,7 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
                         Paths& paths, const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
-  return Stacker(body, slides, columns, source, heights, faults, paths).run(progress);
+  return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
 }
 
 }  // namespace vdb_offset

@@ -187,7 +187,13 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   if (curves.file.text().empty()) throw InvalidInput(name + ", byte 0: expected curves, got an empty file");
   if (format == CurveFormat::Text) TextParser(curves).run();
   else LineElementParser(curves.file).run();
-  if (curves.file.polygons.face_count() == 0) throw InvalidInput(name + ": expected an element 'l', got none");
+  const Curves& read = curves.file.polygons;
+  if (read.face_count() == 0) throw InvalidInput(name + ": expected an element 'l', got none");
+  if (read.corners.size() == read.face_count())
+    throw InvalidInput(
+        fmt::format("{}: expected a curve of 2 points or more, got single points alone ({}), with empty "
+                    "lines between them",
+                    name, read.face_count()));
   return curves;
 }
 

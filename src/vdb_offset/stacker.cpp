@@ -1,0 +1,224 @@
+#include "vdb_offset/stacker.h"
+
+#include <algorithm>
+
+#include "vdb_offset/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+// How much of its heights a vertex keeps in a round of thinning; below the last share it keeps none.
+constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
+// Rounds in which thinned vertices are let out again, each by one step.
+constexpr int kLetOuts = 12;
+// Thickness may change by so much of the length of an edge.
+constexpr double kThicknessSlope = 0.5;
+
+}  // namespace
+
+Stacker::Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::span<const Distances> heights,
+                 Paths& paths)
+    : source_(source),
+      front_origin_(front_origin),
+      heights_(heights),
+      side_(heights.back().farthest() < 0 ? -1 : 1),
+      paths_(paths),
+      most_(source.size(), 0.0),
+      straight_(source.size(), 0) {
+  stack_.stacks = Stacks(source.size(), heights.size());
+  stack_.first_achieved.assign(source.size(), 0.0);
+}
+
+LayerStack Stacker::run(Progress& progress) {
+  for_each_index(source_.size(), [&](std::size_t v) { most_[v] = share_at_end(static_cast<std::uint32_t>(v)); });
+  stack_.share = most_;
+  Indices all(source_.size());
+  for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = v;
+  Indices uneven = all;
+  if (heights_.back().uniform()) std::erase_if(uneven, [&](std::uint32_t v) { return stack_.share[v] == 1; });
+  smooth(std::move(uneven));
+  put(all);
+  look_first(all);
+  check_all_columns();
+  stack_.statistics.wrong_columns = wrong_columns_.size();
+  while (straighten()) progress.advance(0);
+  while (thin()) progress.advance(1);
+  let_all_out(progress);
+  finish();
+  return std::move(stack_);
+}
+
+/// What a vertex could keep of its heights for where its path ended; nothing where no way up has all of the faces
+/// around it in view.
+double Stacker::share_at_end(std::uint32_t v) {
+  if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
+  const Vec3d& whole = paths_.displacement[v];
+  straight_[v] = is_bound(v) || !sees_all_faces(v, start_of_rail(v));
+  if (straight_[v] && !sees_all_faces(v, whole)) return 0;
+  if (paths_.state[v] == VertexState::Reached) return 1;
+  const double share = std::min(1.0, paths_.achieved[v] / asked(v));
+  return share < kLeastShare ? 0 : share;
+}
+
+/// As long as the whole way.
+Vec3d Stacker::start_of_rail(std::uint32_t v) const {
+  return direction_of(v) * (side_ * paths_.displacement[v].length());
+}
+
+Rail Stacker::rail_of(std::uint32_t v) const {
+  const Vec3d& whole = paths_.displacement[v];
+  if (straight_[v]) return {whole, Vec3d(0.0)};
+  return {whole, start_of_rail(v) - whole};
+}
+
+/// Lowers shares of these vertices and their neighbours until thickness is even enough: for each what the lowest
+/// allow. Returns all vertices that it lowered.
+Indices Stacker::smooth(Indices changed) {
+  Indices lowered;
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const std::uint32_t v = changed[i];
+    if (!moves(v)) continue;
+    const double thickness = stack_.share[v] * asked(v);
+    for (const auto column : columns_around(v)) {
+      const auto ring = base(column);
+      const std::size_t k = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
+      for (const auto w : {ring[(k + 1) % ring.size()], ring[(k + ring.size() - 1) % ring.size()]}) {
+        const double most = thickness + kThicknessSlope * (source_[w] - source_[v]).length();
+        if (!(stack_.share[w] * asked(w) > most * (1 + 1e-9))) continue;
+        stack_.share[w] = most / asked(w) < kLeastShare ? 0 : most / asked(w);
+        lowered.push_back(w);
+        changed.push_back(w);
+      }
+    }
+  }
+  sort_unique(lowered);
+  return lowered;
+}
+
+/// As smooth(), where vertices have been let out that their neighbours may hold back.
+void Stacker::smooth_around(const Indices& vertices) {
+  Indices around = vertices;
+  for (const auto v : vertices)
+    for (const auto column : columns_around(v)) around.insert(around.end(), base(column).begin(), base(column).end());
+  sort_unique(around);
+  smooth(std::move(around));
+}
+
+void Stacker::check_all_columns() {
+  wrong_column_.assign(column_count(), 0);
+  for_each_index(
+      column_count(), [&](std::size_t c) { wrong_column_[c] = !is_valid(c); }, 64);
+  for (std::uint32_t c = 0; c < column_count(); ++c)
+    if (wrong_column_[c]) wrong_columns_.push_back(c);
+}
+
+void Stacker::check_columns(const Indices& moved) {
+  Indices columns;
+  for (const auto v : moved) columns.insert(columns.end(), columns_around(v).begin(), columns_around(v).end());
+  sort_unique(columns);
+  for_each_index(
+      columns.size(), [&](std::size_t i) { wrong_column_[columns[i]] = !is_valid(columns[i]); }, 64);
+  std::erase_if(wrong_columns_, [&](std::uint32_t c) { return !wrong_column_[c]; });
+  for (const auto c : columns)
+    if (wrong_column_[c]) wrong_columns_.push_back(c);
+  sort_unique(wrong_columns_);
+}
+
+void Stacker::move(const Indices& vertices) {
+  put(vertices);
+  look(vertices);
+  check_columns(vertices);
+  ++stack_.statistics.rounds;
+}
+
+Indices Stacker::corners_of_wrong_columns() const {
+  Indices corners;
+  for (const auto c : wrong_columns_) corners.insert(corners.end(), base(c).begin(), base(c).end());
+  sort_unique(corners);
+  return corners;
+}
+
+Indices Stacker::wrong_vertices() const {
+  Indices wrong = faulty_vertices();
+  const Indices corners = corners_of_wrong_columns();
+  wrong.insert(wrong.end(), corners.begin(), corners.end());
+  sort_unique(wrong);
+  return wrong;
+}
+
+/// Stands the layers of wrong cells' vertices on straight lines, where these see all faces around. False if none is
+/// left that could be.
+bool Stacker::straighten() {
+  Indices corners = corners_of_wrong_columns();
+  std::erase_if(corners, [&](std::uint32_t v) {
+    return straight_[v] || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
+  });
+  if (corners.empty()) return false;
+  for (const auto v : corners) straight_[v] = 1;
+  stack_.statistics.straightened += corners.size();
+  move(corners);
+  return true;
+}
+
+/// Thins the layers of the vertices that something is wrong with. False if none of them has any height left.
+bool Stacker::thin() {
+  Indices wrong = wrong_vertices();
+  std::erase_if(wrong, [&](std::uint32_t v) { return stack_.share[v] == 0; });
+  if (wrong.empty()) return false;
+  for (const auto v : wrong) {
+    stack_.share[v] *= kKeptHeight;
+    if (stack_.share[v] < kLeastShare) stack_.share[v] = 0;
+  }
+  const Indices lowered = smooth(wrong);
+  wrong.insert(wrong.end(), lowered.begin(), lowered.end());
+  sort_unique(wrong);
+  move(wrong);
+  return true;
+}
+
+/// Lets all that is thinned out again, step by step.
+void Stacker::let_all_out(Progress& progress) {
+  Indices thinned;
+  for (std::uint32_t v = 0; v < source_.size(); ++v)
+    if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) thinned.push_back(v);
+  std::vector<double> before = stack_.share;
+  for (int i = 0; i < kLetOuts && let_out(thinned, before); ++i) {
+    for (const auto v : thinned) before[v] = stack_.share[v];
+    progress.advance(1);
+  }
+}
+
+/// Lets these vertices out by one step, as far as thickness stays even, and takes those back to their share `before`
+/// that something is then wrong with. False if none could be let out.
+bool Stacker::let_out(const Indices& thinned, const std::vector<double>& before) {
+  Indices out = thinned;
+  std::erase_if(out, [&](std::uint32_t v) { return !(before[v] < most_[v]); });
+  for (const auto v : out) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
+  smooth_around(out);
+  std::erase_if(out, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
+  for (Indices moved = out; !moved.empty();) {
+    move(moved);
+    moved = wrong_vertices();
+    std::erase_if(moved, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
+    for (const auto v : moved) stack_.share[v] = before[v];
+    const Indices lowered = smooth(moved);
+    moved.insert(moved.end(), lowered.begin(), lowered.end());
+    sort_unique(moved);
+  }
+  return std::any_of(out.begin(), out.end(), [&](std::uint32_t v) { return stack_.share[v] > before[v]; });
+}
+
+void Stacker::finish() {
+  for (std::uint32_t v = 0; v < source_.size(); ++v) {
+    if (!moves(v)) continue;
+    if (!is_at_end(v)) paths_.displacement[v] = outermost(v) - source_[v];
+    if (stack_.share[v] == 1) continue;
+    ++stack_.statistics.thinned_vertices;
+    stack_.statistics.flat_vertices += stack_.share[v] == 0;
+    if (is_at_end(v)) continue;  // as far as its path went
+    paths_.achieved[v] = stack_.share[v] > 0 ? distance_of(v) : 0;
+    paths_.state[v] = VertexState::Limited;
+  }
+}
+
+}  // namespace vdb_offset
