@@ -64,7 +64,7 @@ DirectionField make_directions(DistanceField& field, bool open_surface) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, graph.size(), 4), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const PhiBlock block(graph, graph[i]);
-      leaves[i] = std::make_unique<GradientLeaf>(graph[i].origin(), openvdb::Vec3s(0.0f));
+      leaves[i] = std::make_unique<GradientLeaf>(graph[i].origin, openvdb::Vec3s(0.0f));
       for (auto voxel = graph[i].phi->cbeginValueOn(); voxel; ++voxel) {
         const auto n = static_cast<int>(voxel.pos());
         leaves[i]->setValueOn(voxel.pos(), gradient_at(block, padded_index(n >> 6, n >> 3 & 7, n & 7), h));

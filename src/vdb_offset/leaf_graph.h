@@ -15,20 +15,21 @@ inline constexpr int opposite(int face) { return face ^ 1; }
 
 /// A leaf node of both field grids, its raw buffers (voxel (i, j, k) at i << 6 | j << 3 | k) and its neighbours.
 struct GraphLeaf {
-  PhiLeaf* phi;
-  ClosestLeaf* closest;
-  std::array<std::int32_t, kFaces> neighbour;  ///< Index in the graph, or -1.
+  openvdb::Coord origin;
+  PhiLeaf* phi = nullptr;
+  ClosestLeaf* closest = nullptr;
+  std::array<std::int32_t, kFaces> neighbour = {-1, -1, -1, -1, -1, -1};  ///< Index in the graph, or -1.
 
-  const openvdb::Coord& origin() const { return phi->origin(); }
   /// 0 or 1; leaf nodes that share a face differ.
-  int colour() const { return (origin()[0] + origin()[1] + origin()[2]) / kLeafWidth & 1; }
+  int colour() const { return (origin[0] + origin[1] + origin[2]) / kLeafWidth & 1; }
 };
 
 /// Finds leaf nodes by their origin. Open addressing: a sweep asks six times for each leaf node that it makes.
 class LeafIndex {
  public:
   void reserve(std::size_t count);
-  void insert(const openvdb::Coord& origin, std::int32_t leaf);
+  /// The leaf node that stands there already, or else `leaf`, which does now.
+  std::int32_t find_or_insert(const openvdb::Coord& origin, std::int32_t leaf);
   /// -1 if there is none.
   std::int32_t find(const openvdb::Coord& origin) const;
 
@@ -54,19 +55,23 @@ class LeafGraph {
   int open_faces() const { return grids_.slab ? 4 : kFaces; }
   const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
 
-  /// The neighbour across a face; made if there is none, without active voxels and with buffers yet to be allocated
-  /// (LeafNode::allocate), which is better done in parallel. Not thread-safe.
+  /// The neighbour across a face; if there is none, it is noted down, for make_new_leaves() to make. Not thread-safe.
   std::int32_t touch_neighbour(std::int32_t leaf, int face);
 
-  /// Hands those leaf nodes that touch_neighbour() made and that have active voxels to the grids' trees, and frees the
+  /// Makes the leaf nodes that have been noted down, in parallel: without active voxels, and with buffers yet to be
+  /// allocated (LeafNode::allocate).
+  void make_new_leaves();
+
+  /// Hands those leaf nodes that make_new_leaves() made and that have active voxels to the grids' trees, and frees the
   /// others: the graph is of no more use then.
   void attach_new_leaves();
 
  private:
-  void append(PhiLeaf* phi, ClosestLeaf* closest);
+  void link(std::size_t leaf, std::size_t first_new);
 
   FieldGrids& grids_;
   std::vector<GraphLeaf> leaves_;
+  std::size_t grid_leaves_;  // the first so many are the grids' own
   LeafIndex index_;
   std::vector<std::unique_ptr<PhiLeaf>> new_phi_;
   std::vector<std::unique_ptr<ClosestLeaf>> new_closest_;

@@ -15,6 +15,10 @@ constexpr float kFar = 1e15f;
 // Handed-on points are samples of the surface about a voxel apart: up to this many voxels too far away.
 constexpr float kSampling = 0.25f;
 
+// Up to so many voxels beyond its reach, a voxel still walks to its closest triangle: what it finds, or that it is
+// within reach after all, is of use to its neighbours.
+constexpr float kWalkBeyond = 1;
+
 // A squared distance is worth another visit if it falls below this share of what is known.
 constexpr float kWorthAVisit = 0.999f;
 
@@ -84,6 +88,11 @@ struct ClosestBlock {
   }
 };
 
+template <class Value>
+void copy_row(const Value* from, Value* to) {
+  for (int k = 0; k < kLeafWidth; k += kLanes) store_lanes(to + k, load_lanes(from + k));
+}
+
 /// Calls work(i, j, padded index, voxel number) for the first voxel of each of a leaf node's rows along k.
 template <class Work>
 void for_each_row(Work&& work) {
@@ -102,12 +111,14 @@ class ClosestSweep {
         reach_(field.reach),
         background_(field.phi->background()),
         front_leaves_(graph_.size()) {
-    const auto squared_voxels = [&](double length) {
-      const auto voxels = static_cast<float>(length / h_) + kSampling;
+    const auto squared_voxels = [&](double length, float more) {
+      const auto voxels = static_cast<float>(length / h_) + kSampling + more;
       return voxels * voxels;
     };
-    reach_inside_ = squared_voxels(reach_.inside);
-    reach_outside_ = squared_voxels(reach_.outside);
+    reach_inside_ = squared_voxels(reach_.inside, 0);
+    reach_outside_ = squared_voxels(reach_.outside, 0);
+    walk_inside_ = squared_voxels(reach_.inside, kWalkBeyond);
+    walk_outside_ = squared_voxels(reach_.outside, kWalkBeyond);
     points_.resize(front_leaves_);
     frozen_.reserve(front_leaves_);
     for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].phi->getValueMask());
@@ -152,11 +163,11 @@ class ClosestSweep {
 
   void set_point(std::size_t leaf, int n, const Vec3d& point) {
     for (int k = 0; k < 3; ++k)
-      points_[leaf]->p[k][n] = static_cast<float>(point[k] * voxels_per_unit_ - graph_[leaf].origin()[k]);
+      points_[leaf]->p[k][n] = static_cast<float>(point[k] * voxels_per_unit_ - graph_[leaf].origin[k]);
   }
 
   Vec3d centre(std::size_t leaf, int n) const {
-    return (graph_[leaf].origin() + openvdb::Coord(n >> 6, n >> 3 & 7, n & 7)).asVec3d() * h_;
+    return (graph_[leaf].origin + openvdb::Coord(n >> 6, n >> 3 & 7, n & 7)).asVec3d() * h_;
   }
 
   /// The closest points that the rasteriser's triangles stand for.
@@ -199,16 +210,37 @@ class ClosestSweep {
     return find_news(block);
   }
 
+  /// Asks the memory for what load() is about to read of the leaf nodes above and below, which is a bit of every line.
+  void prefetch(std::size_t leaf) const {
+    for (const std::size_t face : {4, 5}) {
+      const auto neighbour = graph_[leaf].neighbour[face];
+      if (neighbour < 0 || !points_[static_cast<std::size_t>(neighbour)]) continue;
+      const LeafPoints& points = *points_[static_cast<std::size_t>(neighbour)];
+      const std::int32_t* id = graph_[static_cast<std::size_t>(neighbour)].closest->buffer().data();
+      constexpr int kLine = 16;  // of four bytes
+      for (int n = 0; n < kLeafVoxels; n += kLine) {
+        for (const auto& axis : points.p) __builtin_prefetch(axis + n);
+        __builtin_prefetch(id + n);
+      }
+    }
+  }
+
   void load(std::size_t leaf, ClosestBlock& block) const {
-    for (auto& axis : block.p) std::fill(std::begin(axis), std::end(axis), kFar);
+    prefetch(leaf);
     const std::int32_t* id = graph_[leaf].closest->buffer().data();
     for_each_row([&](int, int, int padded, int n) {
-      for (int axis = 0; axis < 3; ++axis) std::copy_n(points_[leaf]->p[axis] + n, kLeafWidth, block.p[axis] + padded);
-      std::copy_n(id + n, kLeafWidth, block.id + padded);
+      for (int axis = 0; axis < 3; ++axis) copy_row(points_[leaf]->p[axis] + n, block.p[axis] + padded);
+      copy_row(id + n, block.id + padded);
     });
     for (int face = 0; face < kFaces; ++face) {
       const auto neighbour = graph_[leaf].neighbour[static_cast<std::size_t>(face)];
-      if (neighbour < 0 || !points_[static_cast<std::size_t>(neighbour)]) continue;
+      if (neighbour < 0 || !points_[static_cast<std::size_t>(neighbour)]) {
+        for_each_halo_voxel(face, [&](int padded, int) {
+          for (auto& axis : block.p) axis[padded] = kFar;
+          block.id[padded] = -1;
+        });
+        continue;
+      }
       const LeafPoints& points = *points_[static_cast<std::size_t>(neighbour)];
       const std::int32_t* ids = graph_[static_cast<std::size_t>(neighbour)].closest->buffer().data();
       float shift[3] = {0, 0, 0};
@@ -223,8 +255,8 @@ class ClosestSweep {
   void store(std::size_t leaf, const ClosestBlock& block) {
     std::int32_t* id = graph_[leaf].closest->buffer().data();
     for_each_row([&](int, int, int padded, int n) {
-      for (int axis = 0; axis < 3; ++axis) std::copy_n(block.p[axis] + padded, kLeafWidth, points_[leaf]->p[axis] + n);
-      std::copy_n(block.id + padded, kLeafWidth, id + n);
+      for (int axis = 0; axis < 3; ++axis) copy_row(block.p[axis] + padded, points_[leaf]->p[axis] + n);
+      copy_row(block.id + padded, id + n);
     });
   }
 
@@ -286,7 +318,7 @@ class ClosestSweep {
           continue;
         }
         const bool inside = id[n] < 0;
-        if (p[0][n] != kFar) {
+        if (squared_to(p, i, j, k, n) <= (inside ? walk_inside_ : walk_outside_)) {
           std::uint32_t triangle = best_start(p, id, i, j, k);
           const TrianglePoint nearest = surface_.walk_to_closest(centre(leaf, n), triangle);
           const double distance = std::sqrt(nearest.squared_distance);
@@ -306,20 +338,22 @@ class ClosestSweep {
     at.closest->setValueMask(active);
   }
 
+  /// Squared distance from voxel (i, j, k) to the closest point of voxel n.
+  static float squared_to(const float (&p)[3][kLeafVoxels], int i, int j, int k, int n) {
+    const float x = static_cast<float>(i) - p[0][n], y = static_cast<float>(j) - p[1][n],
+                z = static_cast<float>(k) - p[2][n];
+    return x * x + y * y + z * z;
+  }
+
   /// The triangle of voxel (i, j, k) itself, or of one of the three settled before it whose closest point is nearer.
   static std::uint32_t best_start(const float (&p)[3][kLeafVoxels], const std::int32_t* id, int i, int j, int k) {
     const int n = i << 6 | j << 3 | k, ijk[3] = {i, j, k};
-    const auto squared_to = [&](int m) {
-      const float x = static_cast<float>(i) - p[0][m], y = static_cast<float>(j) - p[1][m],
-                  z = static_cast<float>(k) - p[2][m];
-      return x * x + y * y + z * z;
-    };
     std::uint32_t triangle = triangle_of(id[n]);
-    float nearest = squared_to(n);
+    float nearest = squared_to(p, i, j, k, n);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int before = n - kLeafStride[axis];
       if (ijk[axis] == 0 || id[before] < 0) continue;
-      const float squared = squared_to(before);
+      const float squared = squared_to(p, i, j, k, before);
       if (!(squared < nearest)) continue;
       nearest = squared;
       triangle = static_cast<std::uint32_t>(id[before]);
@@ -373,6 +407,7 @@ class ClosestSweep {
   Reach reach_;
   float background_;
   float reach_inside_, reach_outside_;  // in voxels, squared, with room for the error of samples
+  float walk_inside_, walk_outside_;    // within which voxels look for their triangle
   std::size_t front_leaves_;
   std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
   std::vector<std::unique_ptr<LeafPoints>> points_;

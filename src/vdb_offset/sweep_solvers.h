@@ -52,6 +52,7 @@ class LeafRounds {
           progress.advance(range.size());
         });
         for (std::size_t i = 0; i < round.size(); ++i) tell_neighbours(round[i], found[i]);
+        graph_.make_new_leaves();
         grow(graph_.size());
       }
   }
