@@ -347,15 +347,15 @@ class Traveller {
     const Vec3d fallback = from.phi > 0 ? from.away / from.phi : normal_;
     const Vec3d k1 = course(from.x, from.phi, fallback);
     while (true) {
-      const Vec3d k2 = course(from.x + k1 * (step / 2), from.phi + step / 2, k1),
-                  k3 = course(from.x + k2 * (step / 2), from.phi + step / 2, k2),
-                  k4 = course(from.x + k3 * step, from.phi + step, k3);
-      if (step > kStepVoxels * h_ && std::min(k1.dot(k2), k1.dot(k4)) < kStraightCourse) {
-        step = std::max(step / 4, kStepVoxels * h_);
-        continue;
+      const auto bends = [&](const Vec3d& k) { return step > kStepVoxels * h_ && k1.dot(k) < kStraightCourse; };
+      const Vec3d k2 = course(from.x + k1 * (step / 2), from.phi + step / 2, k1);
+      if (!bends(k2)) {
+        const Vec3d k3 = course(from.x + k2 * (step / 2), from.phi + step / 2, k2),
+                    k4 = course(from.x + k3 * step, from.phi + step, k3);
+        const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
+        if (!bends(k4)) return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
       }
-      const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
-      return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
+      step = std::max(step / 4, kStepVoxels * h_);
     }
   }
 
