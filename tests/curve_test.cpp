@@ -145,10 +145,27 @@ TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are
   // Each trough of this star is narrower than the offset, and all points still find a place on it.
   const Curves star_of_twelve = star(1200, [](double a) { return 1 + 0.4 * std::sin(12 * a); });
   const OffsetResult result = offset_of(star_of_twelve, 0.1);
-  CHECK(result.statistics.limit.before.inverted > 0);
-  CHECK(result.statistics.limit.before.crossings > 0);
+  CHECK(result.statistics.limit.untanglings > 0);
   CHECK(reached(result) == 1200);
   require_honest(star_of_twelve, result);
+}
+
+TEST_CASE("curves: points of a rough curve that overtake each other are put back in order", "[curves]") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> noise(0, 4e-3);
+  for (const bool closed : {true, false}) {
+    Curves curves = star(3000, [&](double a) { return 1 + 0.05 * std::sin(9 * a) + noise(random); });
+    if (!closed) curves.corners.pop_back(), curves.face_begin.back() -= 1;
+    for (const double d : {-0.06, 0.06}) {
+      const OffsetResult result = offset_of(curves, d);
+      CHECK(reached(result) == 3000);
+      // All at once, not patch by patch.
+      CHECK(result.statistics.limit.untanglings >= 1);
+      CHECK(result.statistics.limit.untanglings < 10);
+      CHECK(result.statistics.limit.before.total() < 10);
+      require_honest(curves, result);
+    }
+  }
 }
 
 TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {

@@ -6,16 +6,14 @@
 #include <numeric>
 #include <optional>
 
+#include "vdb_offset/curve_order.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-// As far from where it came from, in distances, a point may be put when it is spread.
-constexpr double kFarthest = 8;
 // Points that are spread along with a run of bad ones, to either side, by the length of that.
 constexpr std::size_t kWidest = 16;
-constexpr int kProjections = 8;
 // Pulled back by this in each round; after so many it goes all the way.
 constexpr double kPull = 0.85;
 constexpr int kMostPulls = 40;
@@ -37,6 +35,7 @@ class CurveLimiter {
   }
 
   LimitStatistics run() {
+    statistics_.untanglings += put_in_order(curves_, paths_, way_) > 0;
     place(points_);
     statistics_.before = faults_.count();
     statistics_.source_crossings = faults_.source_crossings();
@@ -152,7 +151,7 @@ class CurveLimiter {
         [&](std::size_t i) {
           if (!all) return;
           const std::uint32_t p = window[i + 1];
-          const auto place = on_front(from + (to - from) * (along[i + 1] / along.back()), p);
+          const auto place = place_on_front(curves_, from + (to - from) * (along[i + 1] / along.back()), p);
           if (!place) all = false;
           else moves[i] = {p, *place - curves_.source[p]};
         },
@@ -169,25 +168,6 @@ class CurveLimiter {
     for (const auto& [p, way] : moves) way_[p] = way;
     place(moved);
     return false;
-  }
-
-  /// The place at a point's distance that lies straight over or under `x`, if that is on the side asked for.
-  std::optional<Vec2d> on_front(Vec2d x, std::uint32_t point) const {
-    const double target = std::abs(curves_.distances[point]);
-    if (target == 0 || (x - curves_.source[point]).length() > 2 * kFarthest * target) return std::nullopt;
-    std::uint32_t hint = faults_.around(point).front();
-    for (int i = 0; i < kProjections; ++i) {
-      const Vec3d at = curves_.in_frame(x);
-      const Closest closest = curves_.front(at, hint);
-      hint = closest.triangle;
-      const Vec3d away = at - closest.point;
-      const double towards = curves_.line().pseudonormal(closest.triangle, closest.feature).dot(away);
-      if (!(towards * curves_.side(point) > 0)) return std::nullopt;
-      if (std::abs(closest.distance - target) <= 1e-3 * kReachedTolerance * target)
-        return (x - curves_.source[point]).length() <= kFarthest * target ? std::optional(x) : std::nullopt;
-      x += Vec2d(away[0], away[1]) * (target / closest.distance - 1);
-    }
-    return std::nullopt;
   }
 
   void pull() {

@@ -11,7 +11,7 @@ namespace vdb_offset {
 
 /// What limit() found and did.
 struct LimitStatistics {
-  FaultCounts before;                     ///< In what propagate() made.
+  FaultCounts before;                     ///< In what propagate() made; of curves, with points in order.
   FaultCounts left;                       ///< 0 but where rounding to the format's numbers makes a source cross itself.
   std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
   std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
