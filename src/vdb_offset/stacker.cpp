@@ -176,36 +176,35 @@ bool Stacker::thin() {
   return true;
 }
 
-/// Lets all that is thinned out again, step by step.
+/// Lets all that is thinned out again, step by step, each vertex until it cannot go on.
 void Stacker::let_all_out(Progress& progress) {
   Indices thinned;
   for (std::uint32_t v = 0; v < source_.size(); ++v)
     if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) thinned.push_back(v);
-  std::vector<double> before = stack_.share;
-  for (int i = 0; i < kLetOuts && let_out(thinned, before); ++i) {
-    for (const auto v : thinned) before[v] = stack_.share[v];
+  for (int i = 0; i < kLetOuts && !thinned.empty(); ++i) {
+    let_out(thinned);
     progress.advance(1);
   }
 }
 
-/// Lets these vertices out by one step, as far as thickness stays even, and takes those back to their share `before`
-/// that something is then wrong with. False if none could be let out.
-bool Stacker::let_out(const Indices& thinned, const std::vector<double>& before) {
-  Indices out = thinned;
-  std::erase_if(out, [&](std::uint32_t v) { return !(before[v] < most_[v]); });
-  for (const auto v : out) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
-  smooth_around(out);
-  std::erase_if(out, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
-  for (Indices moved = out; !moved.empty();) {
+/// Lets these vertices out by one step, as far as thickness stays even, and takes those back that something is then
+/// wrong with. Keeps in `thinned` who has been let out, and is not at its end yet.
+void Stacker::let_out(Indices& thinned) {
+  const std::vector<double> before = stack_.share;
+  const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
+  for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
+  smooth_around(thinned);
+  std::erase_if(thinned, stays);
+  for (Indices moved = thinned; !moved.empty();) {
     move(moved);
     moved = wrong_vertices();
-    std::erase_if(moved, [&](std::uint32_t v) { return stack_.share[v] == before[v]; });
+    std::erase_if(moved, stays);
     for (const auto v : moved) stack_.share[v] = before[v];
     const Indices lowered = smooth(moved);
     moved.insert(moved.end(), lowered.begin(), lowered.end());
     sort_unique(moved);
   }
-  return std::any_of(out.begin(), out.end(), [&](std::uint32_t v) { return stack_.share[v] > before[v]; });
+  std::erase_if(thinned, [&](std::uint32_t v) { return stays(v) || stack_.share[v] == most_[v]; });
 }
 
 void Stacker::finish() {

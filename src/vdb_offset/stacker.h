@@ -97,7 +97,7 @@ class Stacker {
   bool straighten();
   bool thin();
   void let_all_out(Progress& progress);
-  bool let_out(const Indices& thinned, const std::vector<double>& before);
+  void let_out(Indices& thinned);
   void finish();
 
   std::vector<std::uint8_t> straight_;  // whether a vertex's layers stand on a straight line
