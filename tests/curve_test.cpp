@@ -141,6 +141,30 @@ TEST_CASE("curves: nothing crosses that did not before, in slits, stars and curv
     for (const double d : {0.01, -0.01, 0.08, -0.08, 0.3}) require_honest(shape, offset_of(shape, d));
 }
 
+TEST_CASE("curves: where two curves share a piece of the front, what is judged is what comes out", "[curves]") {
+  struct Oval {
+    double x, y, radius;
+  };
+  const std::vector<Oval> sets[] = {
+      {{-2.2087, 1.1366, 1.367}, {1.6365, -0.5141, 0.4925}, {1.7296, -1.2776, 1.1084}, {-1.4902, 0.7369, 0.8528}},
+      {{0.9843, -2.6399, 0.8843}, {0.0324, -2.9008, 1.4698}, {-0.9629, 1.1523, 1.1783}, {0.8193, -0.912, 1.2504}}};
+  for (const auto& ovals : sets) {
+    Curves curves;
+    for (const auto& [x, y, radius] : ovals) {
+      const auto first = static_cast<std::uint32_t>(curves.positions.size());
+      for (std::uint32_t i = 0; i < 200; ++i) {
+        const double a = kTurn * i / 200;
+        curves.corners.push_back(first + i);
+        curves.positions.emplace_back(x + radius * std::cos(a), y + radius * (1 + 0.3 * std::sin(5 * a)) * std::sin(a),
+                                      0);
+      }
+      curves.corners.push_back(first);
+      curves.close_face();
+    }
+    for (const double d : {0.1, -0.1, 0.25, -0.25}) require_honest(curves, offset_of(curves, d));
+  }
+}
+
 TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are spread over the rest", "[curves]") {
   // Each trough of this star is narrower than the offset, and all points still find a place on it.
   const Curves star_of_twelve = star(1200, [](double a) { return 1 + 0.4 * std::sin(12 * a); });

@@ -52,8 +52,19 @@ class CurveLimiter {
   void place(const Indices& points) {
     std::vector<Vec2d> places;
     places.reserve(points.size());
-    for (const auto p : points) places.push_back(curves_.source[p] + way_[p] * share_[p]);
+    for (const auto p : points) {
+      const Vec3d way = rounded_way(p);
+      places.push_back(curves_.source[p] + Vec2d(way[0], way[1]));
+    }
     faults_.move(points, places);
+  }
+
+  /// What a point will be handed back with, so that this is what is looked at: where two curves share a part of the
+  /// front, their segments meet or not by the last bit.
+  Vec3d rounded_way(std::uint32_t p) const {
+    const double target = std::abs(curves_.distances[p]);
+    const Vec2d way = way_[p] * share_[p];
+    return target == 0 ? Vec3d(0.0) : round_way(Vec3d(way[0], way[1], 0), target);
   }
 
   /// The next point along the curve, or the one before; kNone at an end, and where curves branch.
@@ -215,11 +226,8 @@ class CurveLimiter {
     double lost = 0;
     for (const auto p : points_) {
       const double target = std::abs(curves_.distances[p]), before = paths_.achieved[p];
-      const Vec2d way = way_[p] * share_[p];
       const bool pulled = share_[p] < 1;
-      if (way != Vec2d(paths_.displacement[p][0], paths_.displacement[p][1]))
-        paths_.displacement[p] = round_way(Vec3d(way[0], way[1], 0), std::max(target, 1e-300));
-      else paths_.displacement[p][2] = 0;
+      paths_.displacement[p] = rounded_way(p);
       paths_.achieved[p] = faults_.distance_of(p);
       if (target == 0) continue;
       if (std::abs(paths_.achieved[p] - target) <= kReachedTolerance * target) paths_.state[p] = VertexState::Reached;

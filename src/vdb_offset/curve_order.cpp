@@ -161,11 +161,18 @@ class ChainOrder {
     }
   }
 
-  /// Points have to be apart as they are on the source; those that have not arrived take up no room.
+  /// Points have to be apart by a share of what they are on the source, which all of the front has room for twice;
+  /// those in order by no more than they are. Those that have not arrived take up no room.
   void space() {
+    const double share = std::min(kLeastSpacing, 0.5 * along_front_.back() / along_.back());
     spaced_.push_back(0);
-    for (std::size_t i = 1; i < points_.size(); ++i)
-      spaced_.push_back(spaced_.back() + (arrived_[i - 1].on_front ? kLeastSpacing * (along_[i] - along_[i - 1]) : 0));
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const Arrived &before = arrived_[i - 1], &here = arrived_[i];
+      double apart = before.on_front ? share * (along_[i] - along_[i - 1]) : 0;
+      if (before.on_front && here.on_front && here.front > before.front)
+        apart = std::min(apart, here.front - before.front);
+      spaced_.push_back(spaced_.back() + apart);
+    }
   }
 
   Vec2d front_at(double length) const {
