@@ -11,6 +11,7 @@
 #include <sstream>
 #include <thread>
 
+#include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene/shapes.h"
 
@@ -236,8 +237,8 @@ TEST_CASE("command: help and version", "[command]") {
   const Run help = shell("--help");
   CHECK(help.code == 0);
   for (const char* word : {"--distance", "--voxel-size", "--voxels-per-distance", "--collision", "--solver", "--weld",
-                           "--threads", "--max-memory", "--report", "--states", "--save-vdb", "--strict", "--dry-run",
-                           "--quiet", "--verbose", "Examples", "Exit codes"})
+                           "--threads", "--max-memory", "--report", "--states", "--paths", "--save-vdb", "--strict",
+                           "--dry-run", "--quiet", "--verbose", "Examples", "Exit codes"})
     CHECK_THAT(help.out, Catch::Contains(word));
   CHECK_THAT(shell("--version").out, Catch::StartsWith("vdb_offset "));
 }
@@ -255,6 +256,25 @@ TEST_CASE("command: --states tells of every vertex", "[command]") {
   CHECK(coloured.polygons.corners == source.polygons.corners);
   check_failure(shell, "sphere.obj out2.obj -d 0.1 --states s.txt", 1, "s.txt");
   check_failure(shell, "sphere.obj out2.obj -d 0.1 --states out2.obj", 1, "out2.obj");
+}
+
+TEST_CASE("command: --paths draws a line for each vertex that moves", "[command]") {
+  const Shell shell;
+  CHECK(shell("sphere.obj out.obj -d 0.1 -d 0.2 --paths p.obj -q").code == 0);
+  const io::MeshFile source = io::read_mesh(shell.file("sphere.obj")), out = io::read_mesh(shell.file("out_002.obj"));
+  const Curves paths = io::read_curves(shell.file("p_002.obj")).file.polygons;
+  const std::size_t count = source.polygons.positions.size();
+  REQUIRE(paths.face_count() == count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto path = paths.view().face(v);
+    CHECK(paths.positions[path.front()] == source.polygons.positions[v]);
+    CHECK(paths.positions[path.back()] == out.polygons.positions[v]);
+  }
+  CHECK(io::read_curves(shell.file("p_001.obj")).file.polygons.face_count() == count);
+  check_failure(shell, "sphere.obj out2.obj -d 0.1 --paths p.ply", 1, "p.ply: expected a file of paths");
+  check_failure(shell, "sphere.obj out2.obj -d 0.1 --paths out2.obj", 1, "file of its own");
+  check_failure(shell, "sphere.obj out2.vtu --layers 2 --first-height 0.1 --paths p.obj", 1,
+                "--paths: expected it without --layers");
 }
 
 TEST_CASE("command: check measures any two meshes", "[command]") {
@@ -519,7 +539,7 @@ TEST_CASE("command: options of captured surfaces that do not go together", "[com
   check_failure(shell, "sphere.obj out.obj -d 0.1 --transport uv", 1, "--transport: expected it with --mode iso");
   for (const std::string option :
        {"--shell", "--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge", "--solver eikonal",
-        "--normals keep", "--states a.csv", "--save-vdb a.vdb"})
+        "--normals keep", "--states a.csv", "--paths a.obj", "--save-vdb a.vdb"})
     check_failure(shell, iso + option, 1, option.substr(0, option.find(' ')) + ": expected it without --mode iso");
   check_failure(shell, "sphere.obj out.vtu --mode iso --layers 3 --first-height 0.1", 1,
                 "--layers: expected it without");

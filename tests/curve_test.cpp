@@ -192,6 +192,25 @@ TEST_CASE("curves: points of a rough curve that overtake each other are put back
   }
 }
 
+TEST_CASE("curves: paths stay in the curves' plane, from where points stood to where they are", "[curves]") {
+  Curves tilted = star(200, [](double a) { return 1 + 0.3 * std::sin(5 * a); });
+  for (Vec3d& p : tilted.positions) p = Vec3d(p[0], p[1], 0.5 * p[0] - p[1]);
+  const Distances distance(-0.2);
+  OffsetOptions options;
+  options.keep_paths = true;
+  const OffsetResult result = offset_curves(tilted.view(), {&distance, 1}, options).front();
+  REQUIRE(result.paths.size() == 200);
+  std::size_t places = 0;
+  for (std::size_t p = 0; p < 200; ++p) {
+    const auto& path = result.paths[p];
+    places += path.size();
+    CHECK(path.front() == tilted.positions[p]);
+    CHECK(path.back() == result.positions[p]);
+    for (const Vec3d& x : path) CHECK(x[2] == Approx(0.5 * x[0] - x[1]).margin(1e-12));
+  }
+  CHECK(places > 1000);
+}
+
 TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {
   const Curves circle = star(120, [](double) { return 1.0; });
   std::vector<double> each;

@@ -97,6 +97,49 @@ TEST_CASE("offset: the paper's cube, inward", "[offset]") {
   }
 }
 
+TEST_CASE("offset: paths lead from where vertices stood to where they are, and rise all the way", "[offset]") {
+  const Polygons cube = scene::box(Vec3d(0.5), 21, true);
+  for (const bool merge : {false, true}) {
+    OffsetOptions options = by(-0.1, 0.025);
+    if (merge) options = merged(options);
+    CHECK(offset(cube.view(), options).paths.empty());
+    options.keep_paths = true;
+    options.threads = 1;
+    const OffsetResult result = offset(cube.view(), options);
+    options.threads = 4;
+    CHECK(offset(cube.view(), options).paths == result.paths);
+    const auto depth = [](const Vec3d& x) { return 0.25 - std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])}); };
+    REQUIRE(result.paths.size() == cube.positions.size());
+    std::size_t long_ones = 0;
+    for (std::size_t v = 0; v < result.paths.size(); ++v) {
+      const auto& path = result.paths[v];
+      REQUIRE(path.size() >= 2);
+      CHECK(path.front() == cube.positions[v]);
+      CHECK(path.back() == result.positions[v]);
+      long_ones += path.size() > 4;
+      for (std::size_t i = 1; merge && i < path.size(); ++i) CHECK(depth(path[i]) > depth(path[i - 1]));
+    }
+    CHECK(long_ones > result.paths.size() / 2);
+  }
+}
+
+TEST_CASE("offset: several distances have a path each, and who stays has none", "[offset]") {
+  const Polygons cube = scene::box(Vec3d(0.5), 11, true);
+  std::vector<double> some(cube.positions.size(), -0.05);
+  some.front() = 0;
+  const Distances distances[] = {Distances(-0.03), Distances(some), Distances(0.0)};
+  OffsetOptions options;
+  options.keep_paths = true;
+  const std::vector<OffsetResult> results = offset_several(cube.view(), distances, options);
+  for (const OffsetResult& result : results)
+    for (std::size_t v = 0; v < cube.positions.size(); ++v) {
+      CHECK(result.paths[v].front() == cube.positions[v]);
+      CHECK(result.paths[v].back() == result.positions[v]);
+    }
+  CHECK(results[1].paths.front().size() == 1);
+  CHECK(results[2].paths.back().size() == 1);
+}
+
 TEST_CASE("offset: cube, outward, keeps corners and edges in place", "[offset]") {
   const Polygons cube = scene::box(Vec3d(0.5), 20, true);
   for (const double h : {0.05, 0.025, 0.0125}) {

@@ -187,7 +187,10 @@ class CurvePipeline {
     const StageTimer timer(shared_.seconds, Stage::Propagate);
     const DirectionField directions = make_directions(field_, !ribbon_.facts.closed() || !ribbon_.facts.oriented());
     describe_field(field_, directions, shared_);
-    return propagate(*query_, directions, distances_, options_.progress);
+    std::vector<Paths> paths = propagate(*query_, directions, distances_, options_.progress,
+                                         options_.keep_paths ? Traces::Keep : Traces::Drop);
+    for (Paths& each : paths) end_traces(each);
+    return paths;
   }
 
   OffsetResult finish(const Distances& wanted, const Distances& distances, Paths& paths) {
@@ -235,8 +238,22 @@ class CurvePipeline {
       result.achieved[p] = paths.achieved[v];
       asked[p] = distances[v];
     }
+    if (!paths.trace.empty()) hand_out_paths(paths, result);
     result.distances = Distances(std::move(asked));
     count_states(result.states, result.statistics);
+  }
+
+  void hand_out_paths(const Paths& paths, OffsetResult& result) const {
+    const auto to_space = [&](const Vec3d& way) { return frame_.to_space({way[0], way[1]}); };
+    result.paths.resize(points_.size());
+    for_each_index(points_.size(), [&](std::size_t p) {
+      const auto v = vertex_[p];
+      result.paths[p] = {curves_.positions[p]};
+      if (v == kNone) return;
+      std::vector<Vec3d> trace;
+      for (const Vec3d& way : paths.trace[v]) trace.push_back(to_space(way));
+      result.paths[p] = places_on_path(curves_.positions[p], trace, to_space(paths.displacement[v]));
+    });
   }
 
   LayersResult hand_over(OffsetStatistics statistics, std::span<const Distances> heights, const Paths& paths,
@@ -281,6 +298,8 @@ class CurvePipeline {
     for (const auto place : chains_.place)
       result.states.push_back(place == kNone ? VertexState::Unused : VertexState::Reached);
     result.distances = distances;
+    if (options_.keep_paths)
+      for (const Vec3d& position : result.positions) result.paths.push_back({position});
     count_states(result.states, result.statistics);
     return result;
   }

@@ -89,6 +89,10 @@ Paths paths_of_body(const Workpiece& work, Paths of_front) {
     paths.state[w] = of_front.state[f];
     paths.closest[w] = of_front.closest[f];
   }
+  if (of_front.trace.empty()) return paths;
+  paths.trace.resize(count);
+  for (std::size_t w = 0; w < count; ++w)
+    if (work.front_vertex[w] != kNone) paths.trace[w] = std::move(of_front.trace[work.front_vertex[w]]);
   return paths;
 }
 
@@ -114,6 +118,16 @@ void move_vertices(PolygonView mesh, const Surface& surface, const Paths& paths,
   result.statistics.straight_vertices = paths.straight;
 }
 
+void hand_out_paths(const Surface& surface, const std::vector<Vec3d>& source, const Paths& paths,
+                    OffsetResult& result) {
+  result.paths.resize(result.positions.size());
+  for_each_index(result.paths.size(), [&](std::size_t v) {
+    const auto w = surface.welded[v];
+    if (w == kNone) result.paths[v] = {result.positions[v]};
+    else result.paths[v] = places_on_path(source[w], paths.trace[w], paths.displacement[w]);
+  });
+}
+
 /// How far any vertex goes on each side, for any of the distances.
 Reach farthest_of(std::span<const Distances> distances) {
   Reach farthest{0, 0};
@@ -122,11 +136,15 @@ Reach farthest_of(std::span<const Distances> distances) {
   return farthest;
 }
 
+// What a vertex's path takes that is kept and handed out.
+constexpr std::size_t kPathBytes = 600;
+
 GridPlan plan(const Workpiece& work, PolygonView mesh, const Reach& farthest, const OffsetOptions& options, int threads,
               std::size_t layers) {
   std::size_t beside = layers_bytes(mesh, layers);
   for (const auto* surface : {&work.whole, &work.rest, &work.obstacles})
     if (*surface) beside += surface_bytes(**surface);
+  if (options.keep_paths) beside += kPathBytes * mesh.positions.size();
   return plan_grid(work.front, farthest, options.grid, options.max_memory, threads, {beside});
 }
 
@@ -219,11 +237,13 @@ class Pipeline {
     if (obstacles_) keep_away_.emplace(Obstacles{*obstacles_, options_.clearance});
     std::vector<Distances> on_front;
     for (const Distances& distances : distances_) on_front.push_back(distances_on_front(work_, distances));
-    std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress);
+    std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress,
+                                         options_.keep_paths ? Traces::Keep : Traces::Drop);
     if (options_.border == Border::Slide && work_.rest) slides_.emplace(work_, *query_);
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (slides_) slide_borders(work_, *slides_, *query_, on_front[i], paths[i]);
       paths[i] = paths_of_body(work_, std::move(paths[i]));
+      end_traces(paths[i]);
     }
     return paths;
   }
@@ -242,6 +262,7 @@ class Pipeline {
       result.statistics.limit = limit(faults, body, source, distances, paths, options_.progress);
     }
     move_vertices(mesh_, surface, paths, result);
+    if (options_.keep_paths) hand_out_paths(surface, source, paths, result);
     result.distances = distances_of_input(surface, distances);
     std::vector<Vec3d> places = source;
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += paths.displacement[w];
@@ -290,6 +311,8 @@ class Pipeline {
     result.distances = distances_of_input(work_.surface(), distances);
     for (std::size_t v = 0; v < result.states.size(); ++v)
       if (work_.surface().welded[v] != kNone) result.states[v] = VertexState::Reached;
+    if (options_.keep_paths)
+      for (const Vec3d& position : result.positions) result.paths.push_back({position});
     return result;
   }
 

@@ -44,6 +44,7 @@ struct OffsetOptions {
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
   bool keep_field = false;     ///< Hand the distance field out with the result.
+  bool keep_paths = false;     ///< The same for the vertices' paths; not for layers.
   ProgressCallback progress;   ///< See progress.h; may cancel.
 };
 
@@ -69,6 +70,9 @@ struct OffsetResult {
   Distances distances;              ///< What was asked of each input vertex, in the end.
   OffsetStatistics statistics;
   std::shared_ptr<DistanceField> field;  ///< Only with keep_field and a distance other than 0.
+  /// Only with keep_paths: the places that each input vertex came by on its march, from where it stood to where that
+  /// ended; after that, if it has been moved to keep the result valid, its position.
+  std::vector<std::vector<Vec3d>> paths;
 };
 
 /// Offsets a mesh: the same vertices and faces, each vertex at `distance` from the surface or as near to that as

@@ -201,6 +201,11 @@ class Traveller {
     march_on(*first, stops, tell);
   }
 
+  /// From now on the places come by are noted down, after these.
+  void keep_trace(std::vector<Vec3d> so_far) { trace_ = std::move(so_far); }
+  /// Ways to the places come by, up to the last that was told.
+  const std::vector<Vec3d>& trace() const { return *trace_; }
+
   /// The same from a place on the way, if the distance still rises there, so that no ridge has been passed, and there
   /// is nothing between that and the vertex; else tells of no stop.
   /// `triangle` is one near the place.
@@ -238,12 +243,14 @@ class Traveller {
     Sample before{origin_, 0, normal_}, here = first;
     Peak peak{before, here, here};
     double since_peak = 0;
+    std::size_t noted_at_peak = 0;
     for (int i = 0;; ++i) {
       for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
         tell(stops[passed], Arrival{arrived(here.phi) ? here.x : cut(before, here), outside_});
         if (++passed == stops.size()) return;
       }
       if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
+      if (trace_) trace_->push_back(here.x - origin_);
       // Not far beyond the last stop, which the last step is cut at; not much less than a voxel, for a slow climb.
       double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
                               std::max(kStepVoxels * h_, kStepShare * last),
@@ -260,12 +267,14 @@ class Traveller {
       if (next.phi > peak.at.phi) {
         if (next.phi - peak.at.phi > kSlowest * step) since_peak = 0;
         peak = {here, next, next};
+        if (trace_) noted_at_peak = trace_->size();
       }
       before = here;
       here = next;
       if (in_the_way) return tell_blocked(before, here, stops.subspan(passed), tell);
     }
     const Vec3d end = climb(peak);
+    if (trace_) trace_->resize(noted_at_peak);
     for (const Stop& stop : stops.subspan(passed)) tell(stop, Arrival{end, outside_});
   }
 
@@ -425,6 +434,7 @@ class Traveller {
   Pace pace_;
   Feature feature_ = Feature::Face;
   bool outside_ = false;
+  std::optional<std::vector<Vec3d>> trace_;
 };
 
 /// Tries the straight paths of all vertices; a component of which one vertex has none has none at all.
@@ -456,12 +466,13 @@ template <class Query>
 class Marches {
  public:
   Marches(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
-          const Obstacles* obstacles, std::vector<Paths>& paths)
+          const Obstacles* obstacles, Traces traces, std::vector<Paths>& paths)
       : query_(query),
         surface_(query.surface()),
         directions_(directions),
         distances_(distances),
         obstacles_(obstacles),
+        traces_(traces),
         paths_(paths) {
     const std::size_t count = surface_.vertices.size();
     for (std::size_t set = 0; set < distances.size(); ++set) {
@@ -469,6 +480,7 @@ class Marches {
       paths[set].achieved.resize(count);
       paths[set].state.resize(count);
       paths[set].closest.resize(count, kNone);
+      if (traces == Traces::Keep) paths[set].trace.resize(count);
       arrival_.emplace_back(count);
       straight_.push_back(go_straight(query, directions, distances[set], arrival_.back()));
       for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_straight(set, v);
@@ -530,11 +542,16 @@ class Marches {
              std::vector<End>& ends) const {
     std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
     const auto vertex = static_cast<std::uint32_t>(v);
-    const auto tell = [&](const Stop& stop, const Arrival& end) { ends.push_back({vertex, stop, end}); };
     const auto pace = attempt == Attempt::InHaste ? Pace::Hasty : Pace::Careful;
     Traveller<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
     const Paths& nearest = paths_[stops.front().set];
-    if (attempt != Attempt::FromThere) traveller.march(stops, tell);
+    const bool keep = traces_ == Traces::Keep, anew = attempt != Attempt::FromThere;
+    if (keep) traveller.keep_trace(anew ? std::vector<Vec3d>() : nearest.trace[v]);
+    const auto tell = [&](const Stop& stop, const Arrival& end) {
+      ends.push_back({vertex, stop, end});
+      if (keep) paths_[stop.set].trace[v] = traveller.trace();
+    };
+    if (anew) traveller.march(stops, tell);
     else if (nearest.achieved[v] > kOnTheWay * stops.front().distance)
       traveller.march_from(surface_.vertices[v] + nearest.displacement[v], nearest.closest[v], stops, tell);
   }
@@ -568,6 +585,7 @@ class Marches {
   const DirectionField& directions_;
   std::span<const Distances> distances_;
   const Obstacles* obstacles_;
+  Traces traces_;
   std::vector<Paths>& paths_;
   std::vector<std::vector<Vec3d>> arrival_;          // of each set, on straight paths
   std::vector<std::vector<std::uint8_t>> straight_;  // of each set, by component
@@ -575,12 +593,12 @@ class Marches {
 
 template <class Query>
 std::vector<Paths> march_all(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
-                             const Obstacles* obstacles, const ProgressCallback& callback) {
+                             const Obstacles* obstacles, const ProgressCallback& callback, Traces traces) {
   const std::size_t count = query.surface().vertices.size();
   Progress progress(callback, Stage::Propagate, count);
   std::vector<Paths> paths(distances.size());
   using All = Marches<Query>;
-  const All marches(query, directions, distances, obstacles, paths);
+  const All marches(query, directions, distances, obstacles, traces, paths);
   for_each_index((count + All::kBlock - 1) / All::kBlock,
                  [&](std::size_t block) {
                    marches(block);
@@ -612,15 +630,29 @@ Vec3d round_way(const Vec3d& way, double target) {
           whole(way[2] * per_quantum) * quantum};
 }
 
+void end_traces(Paths& paths) {
+  for (std::size_t v = 0; v < paths.trace.size(); ++v) paths.trace[v].push_back(paths.displacement[v]);
+}
+
+std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end) {
+  std::vector<Vec3d> places{start};
+  const auto come_by = [&](const Vec3d& way) {
+    if (places.back() != start + way) places.push_back(start + way);
+  };
+  for (const Vec3d& way : trace) come_by(way);
+  come_by(end);
+  return places;
+}
+
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles,
-                             const ProgressCallback& progress) {
-  return march_all(query, directions, distances, obstacles, progress);
+                             const ProgressCallback& progress, Traces traces) {
+  return march_all(query, directions, distances, obstacles, progress, traces);
 }
 
 std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
-                             std::span<const Distances> distances, const ProgressCallback& progress) {
-  return march_all(query, directions, distances, nullptr, progress);
+                             std::span<const Distances> distances, const ProgressCallback& progress, Traces traces) {
+  return march_all(query, directions, distances, nullptr, progress, traces);
 }
 
 }  // namespace vdb_offset

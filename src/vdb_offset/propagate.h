@@ -33,7 +33,13 @@ struct Paths {
   std::vector<VertexState> state;
   std::vector<std::uint32_t> closest;  ///< The triangle of the front that is closest to the end point.
   std::size_t straight = 0;            ///< Vertices of components that moved along their normals alone.
+  /// Ways from each vertex's start to the places that it came by, in order; the end, which `displacement` leads to, is
+  /// not among them. Empty unless traces are kept.
+  std::vector<std::vector<Vec3d>> trace;
 };
+
+/// Whether the places are kept that vertices come by: about ten of 24 bytes each.
+enum class Traces : bool { Drop, Keep };
 
 /// The unit direction in which a vertex sets out, outward: its normal, weighted by angles; where faces turn away from
 /// that, one that more of them face. Zero for a vertex without any.
@@ -46,6 +52,11 @@ bool is_folded(const Surface& surface, std::uint32_t vertex);
 /// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
 /// the result independent of where the mesh stands.
 Vec3d round_way(const Vec3d& way, double target);
+
+/// Notes down the ends of paths as places come by, before anything else moves the vertices. \pre traces are kept
+void end_traces(Paths& paths);
+/// The places that a vertex came by, from `start` to the end of its way, along ways from there.
+std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end);
 
 /// Moves every surface vertex to its distance from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
 /// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls). `distances` are those of the surface's vertices;
@@ -61,10 +72,11 @@ Vec3d round_way(const Vec3d& way, double target);
 /// depend on the number of threads.
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
-                             const ProgressCallback& progress = {});
+                             const ProgressCallback& progress = {}, Traces traces = Traces::Drop);
 
 /// The same for the vertices of plane curves, in directions from the field of their ribbon (see ribbon.h).
 std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
-                             std::span<const Distances> distances, const ProgressCallback& progress = {});
+                             std::span<const Distances> distances, const ProgressCallback& progress = {},
+                             Traces traces = Traces::Drop);
 
 }  // namespace vdb_offset

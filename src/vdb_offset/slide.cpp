@@ -164,6 +164,7 @@ void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQue
     paths.displacement[f] = round_way(slides(v, distances[f]) - work.whole->vertices[v], target);
     const Vec3d place = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
     const Closest closest = front(place - front.surface().origin, front.surface().triangles_around(f).front());
+    if (!paths.trace.empty()) paths.trace[f].clear();
     paths.achieved[f] = closest.distance;
     paths.closest[f] = closest.triangle;
     paths.state[f] = std::abs(paths.achieved[f] - target) <= kReachedTolerance * target ? VertexState::Reached

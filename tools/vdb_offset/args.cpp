@@ -178,6 +178,7 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--states", args.states,
                  "Write state, target and achieved distance of every vertex: .csv, or .ply to colour by in a viewer")
       ->type_name("FILE");
+  app.add_option("--paths", args.paths, "Write the path of every vertex as a line: .obj (or .txt)")->type_name("FILE");
   app.add_option("--save-vdb", args.vdb, "Write phi and the closest triangles as OpenVDB grids")->type_name("FILE");
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use falls short of the distance");
   app.add_flag("--dry-run", args.dry_run, "Read the input, print what would be done, write nothing");
@@ -206,8 +207,10 @@ void check_apart(const Arguments& args) {
             path + ": expected an obstacle that ends in .obj, .ply, .stl or .off (or these and .gz or .zst)");
     taken.push_back(path);
   }
-  for (const auto& [name, path] :
-       {std::pair{"--report", args.report}, {"--states", args.states}, {"--save-vdb", args.vdb}}) {
+  for (const auto& [name, path] : {std::pair{"--report", args.report},
+                                   {"--states", args.states},
+                                   {"--paths", args.paths},
+                                   {"--save-vdb", args.vdb}}) {
     for (const std::string& other : taken)
       require(!same_file(path, other), fmt::format("{}: expected a file of its own, got {}", name, path));
     taken.push_back(path);
@@ -267,6 +270,8 @@ bool holds_curves(const std::string& path) {
 void check_file_options(const Raw& raw, Arguments& args) {
   require(args.states.empty() || io::is_states_file(args.states),
           args.states + ": expected a file of states that ends in .csv or .ply");
+  require(args.paths.empty() || io::curve_format_of(args.paths),
+          args.paths + ": expected a file of paths that ends in .obj or .txt");
   if (raw.format) {
     args.format = io::format_of("." + *raw.format);
     require(args.format && raw.format->find('.') == std::string::npos,
@@ -336,6 +341,7 @@ void check_layers(const Raw& raw, Arguments& args) {
                                     {"--distance-from", !raw.distance_from.empty()},
                                     {"--shell", args.shell},
                                     {"--collision", raw.collision.has_value()},
+                                    {"--paths", !args.paths.empty()},
                                     {"--save-vdb", !args.vdb.empty()}})
     require(!given, fmt::format("{}: expected it without --layers", name));
   require(args.output != "-", "OUTPUT: expected a file for layers, got '-'");
@@ -378,6 +384,7 @@ void check_iso(const Raw& raw, Arguments& args) {
                                     {"--solver", raw.solver.has_value()},
                                     {"--normals", raw.normals != "recompute"},
                                     {"--states", !args.states.empty()},
+                                    {"--paths", !args.paths.empty()},
                                     {"--save-vdb", !args.vdb.empty()}})
     require(!given, fmt::format("{}: expected it without --mode iso", name));
   IsoRequest& iso = args.iso.emplace();

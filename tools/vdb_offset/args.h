@@ -53,7 +53,7 @@ struct Arguments {
   std::optional<Solver> solver;        ///< The same.
   std::optional<Collision> collision;  ///< The same.
   std::string weld_text, orient_text;  ///< As given.
-  std::string report, states, vdb;
+  std::string report, states, paths, vdb;
   bool curves = false;               ///< What INPUT holds, in place of a mesh.
   std::optional<io::Format> format;  ///< Of files whose ending names none.
   io::WriteOptions write;            ///< All but its format, which is the output's alone.

@@ -44,7 +44,7 @@ int judge(const Arguments& args, const Source& source, std::span<const OffsetRes
 
 void require_places(const Arguments& args, std::span<const Destination> places) {
   for (const Destination& to : places)
-    for (const std::string& path : {to.mesh, to.report, to.states})
+    for (const std::string& path : {to.mesh, to.report, to.states, to.paths})
       if (!path.empty()) require_writable(path);
   if (!args.vdb.empty()) require_writable(args.vdb);
 }
@@ -76,6 +76,7 @@ int run(Arguments args) {
     return kDone;
   }
   args.options.keep_field = !args.vdb.empty();
+  args.options.keep_paths = !args.paths.empty();
   if (args.options.keep_field &&
       std::all_of(distances.begin(), distances.end(), [](const Distances& d) { return d.scale() == 0; }))
     throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");

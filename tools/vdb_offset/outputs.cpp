@@ -7,6 +7,7 @@
 
 #include "vdb_offset/field.h"
 #include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/shell_file.h"
 #include "vdb_offset/io/states_file.h"
 #include "vdb_offset/report.h"
@@ -128,6 +129,20 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   return {};
 }
 
+/// Each path as a line.
+void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>& paths) {
+  Curves lines;
+  for (const std::vector<Vec3d>& places : paths) {
+    if (places.size() < 2) continue;  // of who stayed
+    for (const Vec3d& place : places) {
+      lines.corners.push_back(static_cast<std::uint32_t>(lines.positions.size()));
+      lines.positions.push_back(place);
+    }
+    lines.close_face();
+  }
+  io::write_curves(path, lines.view());
+}
+
 }  // namespace
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -138,7 +153,7 @@ std::vector<Destination> destinations(const Arguments& args) {
   std::vector<Destination> all;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
-    all.push_back({named(args.output), named(args.report), named(args.states), texts[i]});
+    all.push_back({named(args.output), named(args.report), named(args.states), named(args.paths), texts[i]});
   }
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -163,7 +178,7 @@ std::string name_of_layer(const std::string& output, std::size_t number, std::si
 
 void write_layers_report(const Arguments& args, const LayersResult& result, const LayerReport& report,
                          Clock::time_point start) {
-  RunFacts facts = facts_of(args, {args.output, args.report, args.states, {}}, start);
+  RunFacts facts = facts_of(args, {args.output, args.report, args.states, {}, {}}, start);
   facts.layers = report;
   write_file(args.report, report_json(result, facts));
 }
@@ -186,6 +201,7 @@ std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& sou
   if (!to.states.empty())
     io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin},
                      {result.states, result.achieved, result.distances});
+  if (!to.paths.empty()) write_paths(to.paths, result.paths);
   const auto writing = Clock::now();
   std::optional<Shell> shell;
   std::optional<ShellFacts> facts;

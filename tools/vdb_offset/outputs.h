@@ -17,7 +17,7 @@ double seconds_since(Clock::time_point start);
 
 /// Where the offset for one distance goes. Names of files that were not asked for are empty.
 struct Destination {
-  std::string mesh, report, states;
+  std::string mesh, report, states, paths;
   std::string distance;  ///< As given.
 };
 

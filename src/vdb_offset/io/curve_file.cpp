@@ -228,6 +228,13 @@ std::string as_text(CurvesView curves, const Precision& precision) {
   return text;
 }
 
+/// \throw InvalidInput for an unknown ending
+CurveFormat format_of_curves(const std::string& path) {
+  const auto format = curve_format_of(path);
+  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy or .obj");
+  return *format;
+}
+
 }  // namespace
 
 std::optional<CurveFormat> curve_format_of(std::string_view path) {
@@ -257,9 +264,7 @@ bool holds_curves(const std::string& path) {
 }
 
 CurveFile read_curves(const std::string& path) {
-  const auto format = curve_format_of(path);
-  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy or .obj");
-  return parse_bytes(path, *format, FileBytes::open(path));
+  return parse_bytes(path, format_of_curves(path), FileBytes::open(path));
 }
 
 CurveFile parse_curves(const std::string& name, CurveFormat format, std::string bytes) {
@@ -270,16 +275,24 @@ Precision precision_of_curves(const WriteOptions& options) {
   return options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
 }
 
+void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options) {
+  const CurveFormat format = format_of_curves(path);
+  const Precision precision = precision_of_curves(options);
+  write_pieces(
+      path, in_sections(format == CurveFormat::Obj ? as_obj(curves, precision) : as_text(curves, precision), {}), [&] {
+        if (options.before_rename) options.before_rename();
+      });
+}
+
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
                   const WriteOptions& options) {
-  const auto format = curve_format_of(path);
-  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy or .obj");
+  const CurveFormat format = format_of_curves(path);
   const Precision precision = precision_of_curves(options);
   const Curves& read = source.file.polygons;
   const CurvesView moved{positions, read.corners, read.face_begin};
-  Pieces pieces = *format == source.format      ? patch(source.file, positions, precision)
-                  : *format == CurveFormat::Obj ? in_sections(as_obj(moved, precision), {})
-                                                : in_sections(as_text(moved, precision), {});
+  Pieces pieces = format == source.format      ? patch(source.file, positions, precision)
+                  : format == CurveFormat::Obj ? in_sections(as_obj(moved, precision), {})
+                                               : in_sections(as_text(moved, precision), {});
   write_pieces(path, pieces, [&] {
     source.file.bytes.require_unchanged(source.file.path);
     if (options.before_rename) options.before_rename();

@@ -46,6 +46,9 @@ CurveFile parse_curves(const std::string& name, CurveFormat format, std::string 
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
                   const WriteOptions& options = {});
 
+/// Writes curves that come from no file: line elements in an OBJ, or text. \throw as the other one
+void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options = {});
+
 /// What write_curves() would keep of coordinates.
 Precision precision_of_curves(const WriteOptions& options);
 
