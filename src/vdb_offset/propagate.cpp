@@ -243,7 +243,7 @@ class Traveller {
     Sample before{origin_, 0, normal_}, here = first;
     Peak peak{before, here, here};
     double since_peak = 0;
-    std::size_t noted_at_peak = 0;
+    std::size_t noted_at_peak = trace_ ? trace_->size() : 0;
     for (int i = 0;; ++i) {
       for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
         tell(stops[passed], Arrival{arrived(here.phi) ? here.x : cut(before, here), outside_});
