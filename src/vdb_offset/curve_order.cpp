@@ -11,7 +11,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr int kProjections = 8;
-// Points are at least this share of their distance on the source apart when they have been put in order.
+// Points that are put in order have to be apart by this share of what they are on the source.
 constexpr double kLeastSpacing = 0.2;
 
 /// Segments that follow each other, from end to end or all around.

@@ -21,9 +21,10 @@ std::optional<Vec2d> place_on_front(const PlaneCurves& curves, Vec2d x, std::uin
 /// source does that is closest to it, so that what has arrived, sorted by its closest point, is the front itself as a
 /// line of points. The places along it that keep the curve's order and move points least, in the sense of least squares
 /// (found by pooling adjacent violators: Barlow et al., Statistical Inference under Order Restrictions, 1972), are
-/// where they are put, each to its exact distance and no two closer than a fifth of what they are on the source. All
-/// that takes the time of sorting. Points that have not arrived stay where they are, as do those that would have to go
-/// too far: the result may have faults.
+/// where they are put, each to its exact distance, and apart by a fifth of what they are on the source: by less where
+/// the front has no room for that twice, or where they were nearer already, and in order. All that takes the time of
+/// sorting. Points that have not arrived stay where they are, as do those that would have to go too far: the result may
+/// have faults.
 ///
 /// `way` leads from each point's source to its place. Curves with points that stay put, or with both signs of distance,
 /// are left alone. Returns how many points have been put elsewhere. The result does not depend on the number of

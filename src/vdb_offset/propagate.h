@@ -53,7 +53,7 @@ bool is_folded(const Surface& surface, std::uint32_t vertex);
 /// the result independent of where the mesh stands.
 Vec3d round_way(const Vec3d& way, double target);
 
-/// Notes down the ends of paths as places come by, before anything else moves the vertices. \pre traces are kept
+/// Notes down the ends of paths as places come by, before anything else moves the vertices, if traces are kept.
 void end_traces(Paths& paths);
 /// The places that a vertex came by, from `start` to the end of its way, along ways from there.
 std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end);
