@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "vdb_offset/lanes.h"
+#include "vdb_offset/parallel.h"
 #include "vdb_offset/sweep_solvers.h"
 
 namespace vdb_offset {
@@ -26,8 +27,18 @@ constexpr float kWorthAVisit = 0.999f;
 constexpr double kTolerance = 0.002;
 
 /// Closest points of a leaf node's voxels, in voxels from its voxel (0, 0, 0).
-struct LeafPoints {
+struct Points {
   float p[3][kLeafVoxels];
+};
+
+/// Of so many leaf nodes together, to ask for memory more seldom.
+constexpr std::size_t kPool = 16;
+
+/// What a leaf node's voxels hand on: closest points and, in the leaf node's own buffer, their triangles. A look at a
+/// neighbour would else wait for its leaf node to come from memory, just to learn where its buffer is.
+struct LeafPoints {
+  Points* points = nullptr;
+  std::int32_t* id = nullptr;
 };
 
 /// A triangle and the side of it: as it is for phi >= 0, its complement for phi < 0.
@@ -46,6 +57,12 @@ struct ClosestBlock {
   float p[3][kPaddedVoxels];   // closest point
   std::int32_t id[kPaddedVoxels];
 
+  /// Nothing is known of the leaf node yet; its halo is left alone.
+  void forget() {
+    for (auto& axis : p) std::fill(std::begin(axis), std::end(axis), kFar);
+    std::fill(std::begin(id), std::end(id), -1);
+  }
+
   /// Squared distance from voxel (i, j, k) to the closest point of voxel n.
   float squared(int i, int j, int k, int n) const {
     const float x = static_cast<float>(i) - p[0][n], y = static_cast<float>(j) - p[1][n],
@@ -57,6 +74,13 @@ struct ClosestBlock {
     const Lanes x = static_cast<float>(i) - load_lanes(p[0] + n), y = static_cast<float>(j) - load_lanes(p[1] + n),
                 z = (static_cast<float>(k) + kCount) - load_lanes(p[2] + n);
     return x * x + y * y + z * z;
+  }
+
+  /// True if row n, or the halo at one of its ends, has a closest point.
+  bool any_known(int n) const {
+    const IntLanes known =
+        (load_lanes(p[0] + n - 1) < kFar) | (load_lanes(p[0] + n + 3) < kFar) | (load_lanes(p[0] + n + 5) < kFar);
+    return any(known);
   }
 
   /// Offers the closest points of row m to the eight voxels of row n, which lies at (i, j). True if one is nearer.
@@ -119,7 +143,7 @@ class ClosestSweep {
     reach_outside_ = squared_voxels(reach_.outside, 0);
     walk_inside_ = squared_voxels(reach_.inside, kWalkBeyond);
     walk_outside_ = squared_voxels(reach_.outside, kWalkBeyond);
-    points_.resize(front_leaves_);
+    grow(front_leaves_);
     frozen_.reserve(front_leaves_);
     for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].phi->getValueMask());
   }
@@ -128,13 +152,14 @@ class ClosestSweep {
     Progress progress(callback, Stage::Sweep, 16 * front_leaves_);
     for_each_leaf(progress, [&](std::size_t leaf) { find_points_of_front(leaf); });
     LeafRounds(graph_).run(
-        progress, [&](std::size_t leaves) { points_.resize(leaves); }, [&](std::size_t leaf) { return relax(leaf); });
+        progress, [&](std::size_t leaves) { grow(leaves); }, [&](std::size_t leaf) { return relax(leaf); });
     for_each_leaf(progress, [&](std::size_t leaf) { settle(leaf); });
     for (int colour = 0; colour < 2; ++colour)
       for_each_leaf(progress, [&](std::size_t leaf) {
         if (graph_[leaf].colour() == colour) compare_with_neighbours(leaf);
       });
-    for_each_leaf(progress, [&](std::size_t leaf) { points_[leaf].reset(); });
+    for_each_index(
+        pools_.size(), [&](std::size_t i) { pools_[i].reset(); }, 16);
     graph_.attach_new_leaves();
   }
 
@@ -153,17 +178,17 @@ class ClosestSweep {
   }
   float reach_squared(std::int32_t id) const { return id < 0 ? reach_inside_ : reach_outside_; }
 
-  void allocate(std::size_t leaf) {
-    points_[leaf] = std::make_unique_for_overwrite<LeafPoints>();
-    for (auto& axis : points_[leaf]->p) std::fill(std::begin(axis), std::end(axis), kFar);
-    if (leaf < front_leaves_) return;
-    graph_[leaf].closest->allocate();
-    std::fill_n(graph_[leaf].closest->buffer().data(), kLeafVoxels, -1);
+  void grow(std::size_t leaves) {
+    if (leaves > points_.capacity()) points_.reserve(2 * leaves);
+    for (std::size_t i = points_.size(); i < leaves; ++i) {
+      if (i % kPool == 0) pools_.push_back(std::make_unique_for_overwrite<Points[]>(kPool));
+      points_.push_back({&pools_.back()[i % kPool]});
+    }
   }
 
   void set_point(std::size_t leaf, int n, const Vec3d& point) {
     for (int k = 0; k < 3; ++k)
-      points_[leaf]->p[k][n] = static_cast<float>(point[k] * voxels_per_unit_ - graph_[leaf].origin[k]);
+      points_[leaf].points->p[k][n] = static_cast<float>(point[k] * voxels_per_unit_ - graph_[leaf].origin[k]);
   }
 
   Vec3d centre(std::size_t leaf, int n) const {
@@ -172,8 +197,8 @@ class ClosestSweep {
 
   /// The closest points that the rasteriser's triangles stand for.
   void find_points_of_front(std::size_t leaf) {
-    allocate(leaf);
-    std::int32_t* id = graph_[leaf].closest->buffer().data();
+    std::int32_t* id = points_[leaf].id = graph_[leaf].closest->buffer().data();
+    for (auto& axis : points_[leaf].points->p) std::fill(std::begin(axis), std::end(axis), kFar);
     for (auto voxel = frozen_[leaf].beginOn(); voxel; ++voxel) {
       const auto n = static_cast<int>(voxel.pos());
       const auto triangle = static_cast<std::uint32_t>(id[n]);
@@ -184,9 +209,16 @@ class ClosestSweep {
 
   /// Hands closest points on within one leaf node, and tells what those across its faces would learn.
   News relax(std::size_t leaf) {
-    if (!points_[leaf]) allocate(leaf);
     ClosestBlock block;
-    load(leaf, block);
+    prefetch(leaf);
+    if (points_[leaf].id == nullptr) {
+      graph_[leaf].closest->allocate();
+      points_[leaf].id = graph_[leaf].closest->buffer().data();
+      block.forget();
+    } else {
+      load_own(leaf, block);
+    }
+    load_halo(leaf, block);
     const float farthest = std::max(reach_inside_, reach_outside_);
     for_each_row([&](int i, int j, int padded, int n) {
       for (int k = 0; k < kLeafWidth; k += kLanes) {
@@ -196,66 +228,80 @@ class ClosestSweep {
       for (unsigned frozen = frozen_row(leaf, n); frozen != 0; frozen &= frozen - 1)
         block.limit[padded + std::countr_zero(frozen)] = -1;
     });
-    for (const bool down_i : {false, true})
-      for (const bool down_j : {false, true})
-        for (int a = 0; a < kLeafWidth; ++a)
-          for (int b = 0; b < kLeafWidth; ++b) {
-            const int i = down_i ? 7 - a : a, j = down_j ? 7 - b : b, n = padded_index(i, j, 0);
-            bool news = !down_i && !down_j;
-            news |= block.offer_row(i, j, n, down_i ? n + kPaddedStride[0] : n - kPaddedStride[0]);
-            news |= block.offer_row(i, j, n, down_j ? n + kPaddedStride[1] : n - kPaddedStride[1]);
-            if (news) block.offer_along_row(i, j, n);
-          }
+    sweep(block);
     store(leaf, block);
     return find_news(block);
   }
 
-  /// Asks the memory for what load() is about to read of the leaf nodes above and below, which is a bit of every line.
+  /// From row to row in the four directions along i and j, and along each row both ways whenever it learns something. A
+  /// row is not asked again before it has changed.
+  static void sweep(ClosestBlock& block) {
+    constexpr int kRows = kPaddedWidth * kPaddedWidth;
+    int changed[kRows] = {};  // by row: the last pass that it has changed in
+    for (int pass = 0; pass < 4; ++pass)
+      for (int a = 0; a < kLeafWidth; ++a)
+        for (int b = 0; b < kLeafWidth; ++b) {
+          const bool down_i = pass & 2, down_j = pass & 1;
+          const int i = down_i ? 7 - a : a, j = down_j ? 7 - b : b, n = padded_index(i, j, 0), row = n / kPaddedWidth;
+          const int before_i = down_i ? kPaddedWidth : -kPaddedWidth, before_j = down_j ? 1 : -1;
+          bool news = pass == 0 && block.any_known(n);
+          // It has been asked along i in the pass before this one, along j two passes before.
+          if (!down_j || changed[row + before_i] >= pass) news |= block.offer_row(i, j, n, n + kPaddedWidth * before_i);
+          if (!down_i || changed[row + before_j] >= pass - 1)
+            news |= block.offer_row(i, j, n, n + kPaddedWidth * before_j);
+          if (!news) continue;
+          block.offer_along_row(i, j, n);
+          changed[row] = pass;
+        }
+  }
+
+  /// Asks the memory for what load_halo() is about to read of the leaf nodes above and below, which is a bit of every
+  /// line.
   void prefetch(std::size_t leaf) const {
     for (const std::size_t face : {4, 5}) {
       const auto neighbour = graph_[leaf].neighbour[face];
-      if (neighbour < 0 || !points_[static_cast<std::size_t>(neighbour)]) continue;
-      const LeafPoints& points = *points_[static_cast<std::size_t>(neighbour)];
-      const std::int32_t* id = graph_[static_cast<std::size_t>(neighbour)].closest->buffer().data();
+      if (neighbour < 0 || points_[static_cast<std::size_t>(neighbour)].id == nullptr) continue;
+      const auto& [points, id] = points_[static_cast<std::size_t>(neighbour)];
       constexpr int kLine = 16;  // of four bytes
       for (int n = 0; n < kLeafVoxels; n += kLine) {
-        for (const auto& axis : points.p) __builtin_prefetch(axis + n);
+        for (const auto& axis : points->p) __builtin_prefetch(axis + n);
         __builtin_prefetch(id + n);
       }
     }
   }
 
-  void load(std::size_t leaf, ClosestBlock& block) const {
-    prefetch(leaf);
-    const std::int32_t* id = graph_[leaf].closest->buffer().data();
+  void load_own(std::size_t leaf, ClosestBlock& block) const {
+    const auto& [points, id] = points_[leaf];
     for_each_row([&](int, int, int padded, int n) {
-      for (int axis = 0; axis < 3; ++axis) copy_row(points_[leaf]->p[axis] + n, block.p[axis] + padded);
+      for (int axis = 0; axis < 3; ++axis) copy_row(points->p[axis] + n, block.p[axis] + padded);
       copy_row(id + n, block.id + padded);
     });
+  }
+
+  void load_halo(std::size_t leaf, ClosestBlock& block) const {
     for (int face = 0; face < kFaces; ++face) {
       const auto neighbour = graph_[leaf].neighbour[static_cast<std::size_t>(face)];
-      if (neighbour < 0 || !points_[static_cast<std::size_t>(neighbour)]) {
+      if (neighbour < 0 || points_[static_cast<std::size_t>(neighbour)].id == nullptr) {
         for_each_halo_voxel(face, [&](int padded, int) {
           for (auto& axis : block.p) axis[padded] = kFar;
           block.id[padded] = -1;
         });
         continue;
       }
-      const LeafPoints& points = *points_[static_cast<std::size_t>(neighbour)];
-      const std::int32_t* ids = graph_[static_cast<std::size_t>(neighbour)].closest->buffer().data();
+      const auto& theirs = points_[static_cast<std::size_t>(neighbour)];
       float shift[3] = {0, 0, 0};
       shift[face / 2] = face % 2 ? kLeafWidth : -kLeafWidth;
       for_each_halo_voxel(face, [&](int padded, int n) {
-        for (int axis = 0; axis < 3; ++axis) block.p[axis][padded] = points.p[axis][n] + shift[axis];
-        block.id[padded] = ids[n];
+        for (int axis = 0; axis < 3; ++axis) block.p[axis][padded] = theirs.points->p[axis][n] + shift[axis];
+        block.id[padded] = theirs.id[n];
       });
     }
   }
 
   void store(std::size_t leaf, const ClosestBlock& block) {
-    std::int32_t* id = graph_[leaf].closest->buffer().data();
+    std::int32_t* id = points_[leaf].id;
     for_each_row([&](int, int, int padded, int n) {
-      for (int axis = 0; axis < 3; ++axis) copy_row(block.p[axis] + padded, points_[leaf]->p[axis] + n);
+      for (int axis = 0; axis < 3; ++axis) copy_row(block.p[axis] + padded, points_[leaf].points->p[axis] + n);
       copy_row(block.id + padded, id + n);
     });
   }
@@ -306,8 +352,8 @@ class ClosestSweep {
     at.phi->allocate();
     float* phi = at.phi->buffer().data();
     if (leaf >= front_leaves_) std::fill_n(phi, kLeafVoxels, background_);
-    std::int32_t* id = at.closest->buffer().data();
-    auto& p = points_[leaf]->p;
+    std::int32_t* id = points_[leaf].id;
+    auto& p = points_[leaf].points->p;
     openvdb::util::NodeMask<3> active = at.phi->getValueMask();
     for_each_row([&](int i, int j, int, int row) {
       const unsigned frozen = frozen_row(leaf, row);
@@ -365,7 +411,9 @@ class ClosestSweep {
   void compare_with_neighbours(std::size_t leaf) {
     if (graph_[leaf].phi->isEmpty()) return;
     ClosestBlock block;
-    load(leaf, block);
+    prefetch(leaf);
+    load_own(leaf, block);
+    load_halo(leaf, block);
     const auto tolerance = static_cast<float>(kTolerance);
     for_each_row([&](int i, int j, int padded, int n) {
       const float* phi = graph_[leaf].phi->buffer().data() + n;
@@ -396,7 +444,7 @@ class ClosestSweep {
     float& phi = graph_[leaf].phi->buffer().data()[n];
     if (distance >= std::abs(phi)) return;
     phi = std::copysign(static_cast<float>(distance), phi);
-    graph_[leaf].closest->buffer().data()[n] = static_cast<std::int32_t>(triangle);
+    points_[leaf].id[n] = static_cast<std::int32_t>(triangle);
     set_point(leaf, n, nearest.point);
   }
 
@@ -410,7 +458,8 @@ class ClosestSweep {
   float walk_inside_, walk_outside_;    // within which voxels look for their triangle
   std::size_t front_leaves_;
   std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
-  std::vector<std::unique_ptr<LeafPoints>> points_;
+  std::vector<LeafPoints> points_;
+  std::vector<std::unique_ptr<Points[]>> pools_;
 };
 
 }  // namespace
