@@ -271,10 +271,10 @@ class ClosestSweep {
   }
 
   void load_own(std::size_t leaf, ClosestBlock& block) const {
-    const auto& [points, id] = points_[leaf];
+    const LeafPoints& own = points_[leaf];
     for_each_row([&](int, int, int padded, int n) {
-      for (int axis = 0; axis < 3; ++axis) copy_row(points->p[axis] + n, block.p[axis] + padded);
-      copy_row(id + n, block.id + padded);
+      for (int axis = 0; axis < 3; ++axis) copy_row(own.points->p[axis] + n, block.p[axis] + padded);
+      copy_row(own.id + n, block.id + padded);
     });
   }
 
