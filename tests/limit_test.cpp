@@ -184,6 +184,28 @@ TEST_CASE("limit: solids that close on each other stop before they touch", "[lim
     CHECK((v < base ? -1 : 1) * result.positions[v][0] > -0.01 * 0.1);
 }
 
+TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limit]") {
+  const std::pair<Polygons, double> cases[] = {{scene::gear(18, 0.8, 1, 0.3, 0.3, 6), -0.115},
+                                               {scene::naca_wing("2412", 1, 1, 80, 40), -0.042}};
+  for (const auto& [mesh, distance] : cases) {
+    const OffsetResult result = limited(mesh, distance);
+    std::size_t edges = 0, steep = 0;
+    const auto is_limited = [&](std::uint32_t v) { return result.states[v] == VertexState::Limited; };
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      const auto face = mesh.view().face(f);
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const std::uint32_t v = face[k], w = face[(k + 1) % face.size()];
+        if (v > w || (!is_limited(v) && !is_limited(w))) continue;
+        const double change = std::abs(result.achieved[v] - result.achieved[w]);
+        ++edges;
+        steep += change > 2.2 * (mesh.positions[v] - mesh.positions[w]).length();
+      }
+    }
+    REQUIRE(edges > 100);
+    CHECK(static_cast<double>(steep) < 0.02 * static_cast<double>(edges));
+  }
+}
+
 TEST_CASE("limit: patches around folds are freed at their distance", "[limit][untangle]") {
   // Ridges and grooves at whose feet the offset has creases.
   std::size_t folded = 0;

@@ -29,6 +29,9 @@ constexpr double kWorthwhile = 0.8;
 // Rounds in which pulled vertices are let out again, each by one step.
 constexpr int kReleases = 12;
 
+// How much more of its way, per distance between them, a vertex may go than a pulled one beside it.
+constexpr double kSteepest = 2;
+
 constexpr std::size_t kExpectedRounds = 32;
 
 class Limiter {
@@ -59,6 +62,7 @@ class Limiter {
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
     for (int i = 0; i < kReleases && release(); ++i) progress.advance(1);
+    ease();
   }
 
   /// Tells the paths what has become of them.
@@ -227,18 +231,53 @@ class Limiter {
     return true;
   }
 
-  /// Lets every pulled vertex out by one step, and takes those back that something is then wrong with. False if none
-  /// could be let out.
+  /// Vertices and the shares that they had, sorted by vertex.
+  using OldShares = std::vector<std::pair<std::uint32_t, double>>;
+
+  /// Lets every pulled vertex out by one step. False if none could be let out.
   bool release() {
-    Indices moved = pulled_;
-    std::erase_if(moved, [&](std::uint32_t v) { return share_[v] == 0 || share_[v] == 1; });
-    std::vector<std::pair<std::uint32_t, double>> before;
-    before.reserve(moved.size());
-    for (const auto v : moved) {
+    OldShares before;
+    for (const auto v : pulled_) {
+      if (share_[v] == 0 || share_[v] == 1) continue;
       before.emplace_back(v, share_[v]);
       share_[v] = std::min(1.0, share_[v] / kKept);
     }
-    for (std::size_t out = before.size(); !moved.empty();) {
+    return keep_valid(before) > 0;
+  }
+
+  /// Takes those around a pulled vertex back as well, as far as its dip is too steep; who stays pulled altogether need
+  /// not be followed.
+  void ease() {
+    Indices eased, open = pulled_;
+    const std::vector<double> before = share_;
+    while (!open.empty()) {
+      const std::uint32_t v = open.back();
+      open.pop_back();
+      if (share_[v] == 0) continue;
+      for (const auto t : surface_.triangles_around(v))
+        for (const auto w : surface_.triangles[t]) {
+          if (distances_[w] == 0 || !body_.on_front(w)) continue;
+          const double length = (source_[w] - source_[v]).length();
+          const double most = share_[v] + kSteepest * length / std::abs(distances_[w]);
+          if (!(share_[w] > most)) continue;
+          share_[w] = most;
+          eased.push_back(w);
+          open.push_back(w);
+        }
+    }
+    sort_unique(eased);
+    OldShares old;
+    for (const auto v : eased) old.emplace_back(v, before[v]);
+    keep_valid(old);
+  }
+
+  /// Gives what is wrong, now that these vertices have moved, its old share again, for as long as anything is. Returns
+  /// how many have kept their new one.
+  std::size_t keep_valid(const OldShares& before) {
+    Indices moved;
+    for (const auto& [v, share] : before) moved.push_back(v);
+    for (std::size_t kept = before.size();; kept -= moved.size()) {
+      if (moved.empty()) return kept;
       look(moved);
       ++statistics_.rounds;
       moved = faults_.wrong_vertices();
@@ -248,10 +287,7 @@ class Limiter {
         share_[v] = at->second;
         return false;
       });
-      out -= moved.size();
-      if (moved.empty()) return out > 0;
     }
-    return false;
   }
 
   Body body_;
