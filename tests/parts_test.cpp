@@ -206,6 +206,22 @@ TEST_CASE("part: what stays is in the way", "[part]") {
   CHECK(CrossingFinder(surface, surface.vertices).all().empty());
 }
 
+TEST_CASE("part: a lid that goes farther than the faces beside it are high", "[part]") {
+  const Polygons box = scene::box(Vec3d(1, 1, 1), 20, true);
+  OffsetOptions options;
+  options.only = faces_where(box, [](const Vec3d& p) { return p[2] == 0.5; });
+  const std::vector<std::uint8_t> lid = vertices_of(box, options.only, 1);
+  for (const Border border : {Border::Slide, Border::Free}) {
+    options.border = border;
+    options.distance = -0.6;  // twelve times as far
+    const OffsetResult result = offset(box.view(), options);
+    CHECK(result.statistics.limit.left.total() == 0);
+    CHECK(faults_of(box, result).crossings == 0);
+    for (std::size_t v = 0; v < box.positions.size(); ++v)
+      if (!lid[v]) CHECK(result.positions[v] == box.positions[v]);
+  }
+}
+
 TEST_CASE("part: marks that cannot be used are refused", "[part]") {
   const Polygons sphere = scene::icosphere(1, 1);
   OffsetOptions options;

@@ -215,7 +215,7 @@ class Limiter {
   /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.
   bool pull_back() {
     Indices wrong = faults_.wrong_vertices();
-    std::erase_if(wrong, [&](std::uint32_t v) { return share_[v] == 0; });
+    std::erase_if(wrong, [&](std::uint32_t v) { return share_[v] == 0 || !body_.on_front(v); });
     if (wrong.empty()) return false;
     const Indices held = faults_.caught();
     for (const auto v : wrong) {
