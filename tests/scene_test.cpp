@@ -43,12 +43,16 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     options.distance =
         scene::distances_of(scene.distance, scene.shape.view(), [&] { return vertex_normals(scene.shape.view()); }, {});
     scene.set(options);
-    CHECK(scene::unmet(scene.expect, scene.shape.view(), offset(scene.shape.view(), options)) ==
-          std::vector<std::string>{});
+    const OffsetResult result = offset(scene.shape.view(), options);
+    CHECK(scene::unmet(scene.expect, scene.shape.view(), result) == std::vector<std::string>{});
+    CHECK(scene.shell == scene.expect.volume.has_value());
+    if (scene.shell)
+      CHECK(scene::unmet(scene.expect, shell_of(scene.shape.view(), result, options).facts) ==
+            std::vector<std::string>{});
     CHECK(scene.expect.min_reached);
     ++count;
   }
-  CHECK(count >= 23);
+  CHECK(count >= 26);
 }
 
 TEST_CASE("scenes: an expectation that does not hold is told", "[scene][oracle]") {
@@ -65,6 +69,16 @@ TEST_CASE("scenes: an expectation that does not hold is told", "[scene][oracle]"
   expect.max_reached = 1;
   expect.answer->radius = 1.1;
   CHECK(scene::unmet(expect, sphere.view(), result).empty());
+
+  ShellFacts shell = shell_of(sphere.view(), result, options).facts;
+  expect.volume = shell.volume * 1.02;
+  expect.max_volume_error = 0.01;
+  CHECK(scene::unmet(expect, shell).size() == 1);
+  expect.max_volume_error = 0.03;
+  CHECK(scene::unmet(expect, shell).empty());
+  shell.closed = shell.oriented = false;
+  shell.non_manifold_edges = shell.crossings = 1;
+  CHECK(scene::unmet(expect, shell).size() == 4);
 }
 
 TEST_CASE("shapes: closed ones are closed, oriented outwards and of the right volume", "[scene]") {

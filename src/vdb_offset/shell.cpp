@@ -179,4 +179,10 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
   return shell;
 }
 
+Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options, const OffsetResult* inner) {
+  std::vector<Vec3d> out(mesh.positions.begin(), mesh.positions.end()), in = out;
+  for (std::size_t v = 0; v < out.size(); ++v) (result.distances[v] < 0 ? in : out)[v] = result.positions[v];
+  return make_shell(mesh, out, inner ? inner->positions : in, options.weld, options.precision);
+}
+
 }  // namespace vdb_offset

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/offset.h"
 #include "vdb_offset/precision.h"
 #include "vdb_offset/surface.h"
 
@@ -91,5 +92,11 @@ inline std::uint32_t Shell::source_corner(PolygonView mesh, std::size_t face, st
 /// \throw InvalidInput for a mesh that cannot be used, or skins that do not have one position for each of its vertices.
 Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
                  const Precision& precision = {});
+
+/// The same between a mesh and its offset: each vertex is where it was on one skin, and where it went on the other.
+/// \param inner an offset inward that the inner skin is, instead of the mesh
+/// \param options those that the offset was made with
+Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options,
+               const OffsetResult* inner = nullptr);
 
 }  // namespace vdb_offset

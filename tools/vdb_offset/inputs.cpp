@@ -28,6 +28,7 @@ void settle_scene(Source& source, Arguments& args) {
   const GridOptions given = args.options.grid;
   scene.set(args.options);
   if (given.voxel_size || given.voxels_per_distance) args.options.grid = given;
+  if (!args.layers && !args.iso) args.shell = args.shell || scene.shell;
   // What a scene expects holds for its own distance.
   if (args.layers || !args.distances.empty()) {
     scene.expect = {};

@@ -26,9 +26,13 @@ namespace {
 enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 };
 
 /// Exit code 3 if a scene's expectations, or --strict, are not met.
-int judge(const Arguments& args, const Source& source, std::span<const OffsetResult> results) {
-  const std::vector<std::string> failed =
-      source.scene ? scene::unmet(source.scene->expect, source.view(), results.front()) : std::vector<std::string>{};
+int judge(const Arguments& args, const Source& source, std::span<const OffsetResult> results,
+          const std::optional<ShellFacts>& shell) {
+  std::vector<std::string> failed;
+  if (source.scene) failed = scene::unmet(source.scene->expect, source.view(), results.front());
+  if (source.scene && source.scene->expect.volume)
+    for (std::string& expectation : scene::unmet(source.scene->expect, *shell))
+      failed.push_back(std::move(expectation));
   for (const std::string& expectation : failed) fmt::print(stderr, "vdb_offset: {}: {}\n", args.input, expectation);
   if (!failed.empty()) return kProcessing;
   if (!args.strict) return kDone;
@@ -89,14 +93,15 @@ int run(Arguments args) {
   bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
   const OffsetResult* const inner = args.inner ? &results.back() : nullptr;
+  std::optional<ShellFacts> shell;
   for (std::size_t i = 0; i < places.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
     const Outcome outcome{places[i], results[i], inner};
-    const std::optional<ShellFacts> shell = write_outputs(args, source, outcome, start);
+    shell = write_outputs(args, source, outcome, start);
     bar.clear();
     if (!args.quiet) print_summary(args, outcome, shell, seconds_since(start));
   }
-  return judge(args, source, results);
+  return judge(args, source, results, shell);
 }
 
 int fail(ExitCode code, const char* message) {

@@ -105,15 +105,6 @@ void write_report(const Arguments& args, const Outcome& outcome, const std::opti
   write_file(outcome.to.report, report_json(outcome.result, facts));
 }
 
-/// The skins of a shell: each vertex between where it was, or the inner skin, and where it went.
-Shell shell_of(PolygonView mesh, const Outcome& outcome, const OffsetOptions& options) {
-  std::vector<Vec3d> outer(mesh.positions.begin(), mesh.positions.end()), inner = outer;
-  for (std::size_t v = 0; v < outer.size(); ++v)
-    (outcome.result.distances[v] < 0 ? inner : outer)[v] = outcome.result.positions[v];
-  if (outcome.inner) inner = outcome.inner->positions;
-  return make_shell(mesh, outer, inner, options.weld, options.precision);
-}
-
 io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome, const std::optional<Shell>& shell,
                                     const io::WriteOptions& options) {
   const std::string& path = outcome.to.mesh;
@@ -206,7 +197,7 @@ std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& sou
   std::optional<Shell> shell;
   std::optional<ShellFacts> facts;
   if (args.shell) {
-    shell = shell_of(mesh, outcome, args.options);
+    shell = shell_of(mesh, outcome.result, args.options, outcome.inner);
     facts = shell->facts;
   }
   io::WriteOptions options = args.write;

@@ -99,6 +99,7 @@ Polygons make_shape(Reader shape) {
   static const std::map<std::string, std::function<Polygons(Reader&)>> kMakers = {
       {"icosphere", [](Reader& r) { return icosphere(r.number("radius"), r.count("subdivisions")); }},
       {"uv_sphere", [](Reader& r) { return uv_sphere(r.number("radius"), r.count("segments"), r.count("rings")); }},
+      {"hemisphere", [](Reader& r) { return hemisphere(r.number("radius"), r.count("segments"), r.count("rings")); }},
       {"cube",
        [](Reader& r) { return box(Vec3d(r.number("side")), r.count("divisions"), r.flag("triangles", false)); }},
       {"torus",
@@ -187,6 +188,10 @@ Expectations read_expectations(Reader reader) {
   expect.max_position_error = reader.optional_number("max_position_error");
   if (reader.find("answer")) expect.answer = read_answer(reader.object("answer"));
   if (expect.max_position_error && !expect.answer) reader.fail("an answer to measure 'max_position_error' against");
+  expect.volume = reader.optional_number("volume");
+  expect.max_volume_error = reader.optional_number("max_volume_error");
+  if (expect.volume.has_value() != expect.max_volume_error.has_value())
+    reader.fail("'volume' and 'max_volume_error', or neither");
   reader.finish();
   return expect;
 }
@@ -285,6 +290,7 @@ void Scene::set(OffsetOptions& options) const {
   options.border = border;
   options.obstacles = obstacle.view();
   options.clearance = clearance;
+  options.off_source = shell;
 }
 
 Vec3d Answer::lifted(const Vec3d& source, double distance) const {
@@ -342,6 +348,7 @@ Scene read_scene(const std::string& path) {
     scene.collision = collision == "merge" ? Collision::Merge : Collision::Limit;
   }
   read_part_and_obstacle(offset, scene);
+  scene.shell = offset.flag("shell", false);
   offset.finish();
   if (root.find("grid")) {
     Reader grid = root.object("grid");
@@ -355,6 +362,7 @@ Scene read_scene(const std::string& path) {
     grid.finish();
   }
   if (root.find("expect")) scene.expect = read_expectations(root.object("expect"));
+  if (scene.expect.volume && !scene.shell) root.fail("a shell ('offset.shell') to have the 'expect.volume'");
   root.finish();
   return scene;
 }
@@ -381,6 +389,24 @@ std::vector<std::string> unmet(const Expectations& expect, PolygonView source, c
   if (expect.max_position_error && worst > *expect.max_position_error)
     failed.push_back(
         fmt::format("expected positions within {} of the answer, got {:.3g}", *expect.max_position_error, worst));
+  return failed;
+}
+
+std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell) {
+  std::vector<std::string> failed;
+  const auto require = [&](bool holds, const std::string& what) {
+    if (!holds) failed.push_back("expected a shell " + what);
+  };
+  require(shell.closed && shell.border_edges_left == 0, "that is closed");
+  require(shell.oriented, "whose faces agree about the outside");
+  require(shell.non_manifold_edges == 0, fmt::format("without non-manifold edges, got {}", shell.non_manifold_edges));
+  const std::size_t crossings = shell.crossings + shell.crossings_near_source + shell.source_crossings;
+  require(crossings == 0, fmt::format("that does not cross itself, got {} pairs of triangles that meet", crossings));
+  if (!expect.volume) return failed;
+  const double error = std::abs(shell.volume - *expect.volume);
+  require(error <= *expect.max_volume_error * *expect.volume,
+          fmt::format("of volume {}, within a share of {}, got {:.9g}", *expect.volume, *expect.max_volume_error,
+                      shell.volume));
   return failed;
 }
 

@@ -7,6 +7,7 @@
 
 #include "vdb_offset/expression.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::scene {
 
@@ -59,6 +60,8 @@ struct Expectations {
   std::optional<double> min_reached, max_reached;  ///< Share of the vertices in use.
   std::optional<double> max_position_error;        ///< World units; needs an answer.
   std::optional<Answer> answer;
+  std::optional<double> volume;            ///< Of a shell, world units^3.
+  std::optional<double> max_volume_error;  ///< As a share of that; needs it.
 };
 
 /// A shape or a file, an offset, a grid, and what is expected: `scenes/*.json`, described in the README.
@@ -74,6 +77,7 @@ struct Scene {
   Border border = Border::Slide;
   Polygons obstacle;
   double clearance = 0;
+  bool shell = false;  ///< Source and offset are to be joined into one solid.
   Expectations expect;
 
   /// Its part of the options: all but the distance, into `options`. They refer to the scene.
@@ -88,5 +92,8 @@ Scene read_scene(const std::string& path);
 
 /// What a result does not fulfil, in words; empty if all is as expected.
 std::vector<std::string> unmet(const Expectations& expect, PolygonView source, const OffsetResult& result);
+/// The same for the shell of a scene that expects a volume: it is to be a solid, too, closed, manifold and oriented,
+/// that does not cross itself.
+std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell);
 
 }  // namespace vdb_offset::scene

@@ -106,6 +106,19 @@ void add_extrusion(Builder& builder, int points, double height, int stacks, Oute
   }
 }
 
+/// Of a sphere, from one latitude up to its pole.
+Polygons zone(double radius, int segments, int rings, double lowest) {
+  require_length("a radius", radius);
+  require_count("segments", segments, 3);
+  Builder builder;
+  builder.grid(segments, rings, [&](int i, int j) {
+    const double latitude = lowest + (pi / 2 - lowest) * j / rings;
+    const double r = j == rings || (j == 0 && lowest < 0) ? 0 : radius * std::cos(latitude);
+    return on_circle(r, i, segments, radius * std::sin(latitude));
+  });
+  return builder.take();
+}
+
 }  // namespace
 
 Polygons icosphere(double radius, int subdivisions) {
@@ -152,16 +165,13 @@ Polygons icosphere(double radius, int subdivisions) {
 }
 
 Polygons uv_sphere(double radius, int segments, int rings) {
-  require_length("a radius", radius);
-  require_count("segments", segments, 3);
   require_count("rings", rings, 2);
-  Builder builder;
-  builder.grid(segments, rings, [&](int i, int j) {
-    const double latitude = pi * j / rings - pi / 2;
-    const double r = j == 0 || j == rings ? 0 : radius * std::cos(latitude);
-    return on_circle(r, i, segments, radius * std::sin(latitude));
-  });
-  return builder.take();
+  return zone(radius, segments, rings, -pi / 2);
+}
+
+Polygons hemisphere(double radius, int segments, int rings) {
+  require_count("rings", rings, 1);
+  return zone(radius, segments, rings, 0);
 }
 
 Polygons box(const Vec3d& size, int divisions, bool triangles) {

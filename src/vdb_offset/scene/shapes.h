@@ -13,6 +13,8 @@ namespace vdb_offset::scene {
 Polygons icosphere(double radius, int subdivisions);
 /// Quads between rings of latitude, triangles at the poles (on the z axis).
 Polygons uv_sphere(double radius, int segments, int rings);
+/// Open: the upper half of such a sphere, whose border is a circle in the plane z = 0.
+Polygons hemisphere(double radius, int segments, int rings);
 /// Axis-aligned box centred at the origin, `divisions` faces along each edge: quads, or triangles by pairs.
 Polygons box(const Vec3d& size, int divisions, bool triangles);
 /// Around the z axis: `major` is the radius of the circle of centres, `minor` that of the tube.
