@@ -9,6 +9,7 @@
 
 #include "folder.h"
 #include "oracles.h"
+#include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/captured_file.h"
 #include "vdb_offset/iso_grid.h"
@@ -475,6 +476,22 @@ TEST_CASE("mend: pierced spheres become whole, on the sphere", "[capture]") {
   CHECK(unsound(mended) == 0);
   CHECK(brute_force_crossings(mended) == 0);
   for (const Vec3d& p : mended.positions) CHECK(p.length() == Approx(1).epsilon(1e-12));
+}
+
+TEST_CASE("mend: splits that lead nowhere end, and leave nothing behind", "[capture]") {
+  Polygons mesh = scene::icosphere(1, 3);
+  mesh.positions[90] = (mesh.positions[90] + Vec3d(0.25, -0.2, 0.15)).unit();
+  Surface surface = build_surface(mesh.view(), {.enabled = false});
+  // A surface with so few places that every split makes needles.
+  const Vec3d place = mesh.positions[90];
+  const MendStatistics statistics = mend(surface, [&](const Vec3d&) { return std::optional(place); });
+  CHECK(statistics.split_edges > 0);
+  CHECK(statistics.rounds < 10);
+  CHECK(statistics.left.total() > 0);
+  CHECK(statistics.left.total() <= statistics.before.total());
+  CHECK(surface.triangles.size() == mesh.face_count());
+  const std::vector<TrianglePair> crossings = CrossingFinder(surface, surface.vertices).all();
+  CHECK(crossings.size() == statistics.left.crossings);
 }
 
 TEST_CASE("transport: texture, colours and materials are those of the closest points", "[capture]") {

@@ -145,7 +145,11 @@ class Capture {
     Surface mesh = extract();
     {
       const StageTimer timer(result_.statistics.seconds, Stage::Limit);
-      result_.statistics.mending = mend(mesh, [&](const Vec3d& wish) { return onto(wish); });
+      Progress progress(options_.progress, Stage::Limit, 1);
+      result_.statistics.mending = mend(mesh, [&](const Vec3d& wish) {
+        progress.advance(0);
+        return onto(wish);
+      });
     }
     const StageTimer timer(result_.statistics.seconds, Stage::Capture);
     hand_over(mesh);

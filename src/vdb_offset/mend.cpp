@@ -11,7 +11,8 @@ namespace {
 
 using TriangleList = std::vector<std::uint32_t>;
 
-constexpr std::size_t kMostRounds = 12;
+// Splits alone make more faults; after so many rounds that leave no fewer than there have been, they lead nowhere.
+constexpr int kFruitlessRounds = 3;
 
 void make_set(TriangleList& list) {
   std::sort(list.begin(), list.end());
@@ -260,22 +261,36 @@ std::size_t split_longest_edges(Surface& mesh, const TriangleList& wrong, const 
 
 MendStatistics mend(Surface& mesh, const Onto& onto) {
   MendStatistics statistics;
-  for (;;) {
+  std::vector<Vec3d> places;  // of the mesh that had the fewest faults
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (int fruitless = 0; fruitless < kFruitlessRounds;) {
     TriangleList wrong;
     {
       MendingRound round(mesh, onto, statistics);
-      if (statistics.rounds++ == 0) statistics.before = round.faults();
+      const bool first = statistics.rounds++ == 0;
+      if (first) statistics.before = round.faults();
       round.move_and_flip();
-      statistics.left = round.faults();
       wrong = round.wrong_triangles();
+      if (first || round.faults().total() < statistics.left.total()) {
+        statistics.left = round.faults();
+        places = mesh.vertices;
+        triangles = mesh.triangles;
+        fruitless = 0;
+      } else {
+        ++fruitless;
+      }
     }
-    if (wrong.empty() || statistics.rounds == kMostRounds) return statistics;
+    if (wrong.empty()) break;
     list_incident_triangles(mesh);  // edges were flipped
     const std::size_t splits = split_longest_edges(mesh, wrong, onto);
-    if (splits == 0) return statistics;
+    if (splits == 0) break;
     statistics.split_edges += splits;
     list_incident_triangles(mesh);
   }
+  mesh.vertices = std::move(places);
+  mesh.triangles = std::move(triangles);
+  list_incident_triangles(mesh);
+  return statistics;
 }
 
 }  // namespace vdb_offset
