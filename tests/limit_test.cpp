@@ -184,6 +184,13 @@ TEST_CASE("limit: solids that close on each other stop before they touch", "[lim
     CHECK((v < base ? -1 : 1) * result.positions[v][0] > -0.01 * 0.1);
 }
 
+TEST_CASE("limit: corners of a wrong face that are not to blame for it go on", "[limit]") {
+  // Faces reach from the bore, where there is room, to the teeth, where there is none.
+  const OffsetResult result = limited(scene::gear(18, 0.8, 1, 0.3, 0.3, 6), -0.1136);
+  CHECK(result.statistics.limit.limited_vertices > 0);
+  CHECK(test::share(result, VertexState::Reached) > 0.97);
+}
+
 TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limit]") {
   const std::pair<Polygons, double> cases[] = {{scene::gear(18, 0.8, 1, 0.3, 0.3, 6), -0.115},
                                                {scene::naca_wing("2412", 1, 1, 80, 40), -0.042}};

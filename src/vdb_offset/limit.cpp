@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "vdb_offset/faults.h"
+#include "vdb_offset/mix.h"
 #include "vdb_offset/untangle.h"
 
 namespace vdb_offset {
@@ -28,6 +29,9 @@ constexpr double kWorthwhile = 0.8;
 
 // Rounds in which pulled vertices are let out again, each by one step.
 constexpr int kReleases = 12;
+// Rounds after that in which one of so many is let out by more.
+constexpr int kLeaps = 12;
+constexpr std::uint64_t kLeapers = 4;
 
 // How much more of its way, per distance between them, a vertex may go than a pulled one beside it.
 constexpr double kSteepest = 2;
@@ -61,7 +65,10 @@ class Limiter {
   void pull_back_and_release(Progress& progress) {
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
-    for (int i = 0; i < kReleases && release(); ++i) progress.advance(1);
+    const auto everyone = [](std::uint32_t) { return true; };
+    const auto a_step = [](double share) { return share / kKept; };
+    for (int i = 0; i < kReleases && release(everyone, a_step); ++i) progress.advance(1);
+    leap(progress);
     ease();
   }
 
@@ -234,15 +241,29 @@ class Limiter {
   /// Vertices and the shares that they had, sorted by vertex.
   using OldShares = std::vector<std::pair<std::uint32_t, double>>;
 
-  /// Lets every pulled vertex out by one step. False if none could be let out.
-  bool release() {
+  /// Lets those of the pulled vertices that are chosen(v) out to further(share). False if none could be let out.
+  template <class Chosen, class Further>
+  bool release(Chosen&& chosen, Further&& further) {
     OldShares before;
     for (const auto v : pulled_) {
-      if (share_[v] == 0 || share_[v] == 1) continue;
+      if (share_[v] == 0 || share_[v] == 1 || !chosen(v)) continue;
       before.emplace_back(v, share_[v]);
-      share_[v] = std::min(1.0, share_[v] / kKept);
+      share_[v] = std::min(1.0, further(share_[v]));
     }
     return keep_valid(before) > 0;
+  }
+
+  /// Lets a few of the pulled vertices at a time out the whole way, then half of what is left of it. Of a wrong face's
+  /// corners often one alone is in the wrong place; the others can go once they do not go along with it.
+  void leap(Progress& progress) {
+    std::uint64_t turn = 0;
+    for (const double part : {1.0, 0.5})
+      for (int i = 0; i < kLeaps; ++i) {
+        ++turn;
+        release([&](std::uint32_t v) { return mix(turn << 32 | v) % kLeapers == 0; },
+                [&](double share) { return share + (1 - share) * part; });
+        progress.advance(1);
+      }
   }
 
   /// Takes those around a pulled vertex back as well, as far as its dip is too steep; who stays pulled altogether need

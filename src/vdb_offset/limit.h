@@ -27,9 +27,10 @@ struct LimitStatistics {
 /// (Untangler), small ones, then larger ones and with smoother normals, and a patch keeps that where it makes nothing
 /// worse. That costs no distance. Then the vertices of a face that is wrong are pulled back towards where they came
 /// from, by a little in each round, until nothing is wrong; then those that were are let out again as far as nothing
-/// goes wrong. A surface pulled back altogether is the source, so that it ends. Last, vertices around the pulled ones
-/// follow these, where thickness would else change by more than twice the way from one to the other, as far as nothing
-/// goes wrong. Pulled vertices are `Limited`, with the distance that they keep.
+/// goes wrong, all together step by step, then a few at a time by leaps. A surface pulled back altogether is the
+/// source, so that it ends. Last, vertices around the pulled ones follow these, where thickness would else change by
+/// more than twice the way from one to the other, as far as nothing goes wrong. Pulled vertices are `Limited`, with the
+/// distance that they keep.
 ///
 /// `source` holds where the body's vertices stand in the input, world coordinates; `distances` and `paths` are theirs,
 /// and who is not on the front has no way to go. `faults` looks at the same. The result does not depend on the number
