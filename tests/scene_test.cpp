@@ -167,6 +167,11 @@ TEST_CASE("scenes: what is no scene is told with its key", "[scene]") {
       Catch::Contains("'shape.radius'"));
   CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": 1}, "expect": {"max_position_error": 1}})"),
                     Catch::Contains("an answer"));
+  CHECK_THROWS_WITH(
+      read("{" + shape + R"(, "offset": {"distance": 1}, "expect": {"volume": 1, "max_volume_error": 0.1}})"),
+      Catch::Contains("offset.shell"));
+  CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": 1, "shell": true}, "expect": {"volume": 1}})"),
+                    Catch::Contains("max_volume_error"));
   CHECK_THROWS_WITH(read("{" + shape + R"(, "offset": {"distance": 1}, "grid": {"solver": "magic"}})"),
                     Catch::Contains("eikonal"));
   CHECK_THROWS_AS(scene::read_scene("/nonexistent.json"), ReadError);

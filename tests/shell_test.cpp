@@ -51,9 +51,7 @@ Polygons upper_half(const Polygons& mesh) {
 Shell offset_shell(const Polygons& mesh, double distance) {
   OffsetOptions options;
   options.distance = distance;
-  const OffsetResult result = offset(mesh.view(), options);
-  return distance > 0 ? make_shell(mesh.view(), result.positions, mesh.positions, {})
-                      : make_shell(mesh.view(), mesh.positions, result.positions, {});
+  return shell_of(mesh.view(), offset(mesh.view(), options), options);
 }
 
 /// As the command makes it: what moves keeps off the source.
@@ -61,7 +59,7 @@ Shell solid_of(const Polygons& mesh, double distance) {
   OffsetOptions options;
   options.distance = distance;
   options.off_source = true;
-  return make_shell(mesh.view(), offset(mesh.view(), options).positions, mesh.positions, {});
+  return shell_of(mesh.view(), offset(mesh.view(), options), options);
 }
 
 /// Judged by what reads meshes: every edge has two faces, which run through it in both directions and meet nowhere

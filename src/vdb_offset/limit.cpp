@@ -271,9 +271,9 @@ class Limiter {
   void ease() {
     Indices eased, open = pulled_;
     const std::vector<double> before = share_;
-    while (!open.empty()) {
-      const std::uint32_t v = open.back();
-      open.pop_back();
+    // First in, first out: the last in would go round by long ways, over and over.
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const std::uint32_t v = open[i];
       if (share_[v] == 0) continue;
       for (const auto t : surface_.triangles_around(v))
         for (const auto w : surface_.triangles[t]) {

@@ -181,7 +181,7 @@ Answer read_answer(Reader reader) {
   return answer;
 }
 
-Expectations read_expectations(Reader reader) {
+Expectations read_expectations(Reader reader, bool shell) {
   Expectations expect;
   expect.min_reached = reader.optional_number("min_reached");
   expect.max_reached = reader.optional_number("max_reached");
@@ -192,6 +192,7 @@ Expectations read_expectations(Reader reader) {
   expect.max_volume_error = reader.optional_number("max_volume_error");
   if (expect.volume.has_value() != expect.max_volume_error.has_value())
     reader.fail("'volume' and 'max_volume_error', or neither");
+  if (expect.volume && !shell) reader.fail("'offset.shell' to be true where there is a 'volume'");
   reader.finish();
   return expect;
 }
@@ -361,8 +362,7 @@ Scene read_scene(const std::string& path) {
     }
     grid.finish();
   }
-  if (root.find("expect")) scene.expect = read_expectations(root.object("expect"));
-  if (scene.expect.volume && !scene.shell) root.fail("a shell ('offset.shell') to have the 'expect.volume'");
+  if (root.find("expect")) scene.expect = read_expectations(root.object("expect"), scene.shell);
   root.finish();
   return scene;
 }
