@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <cstring>
+#include <random>
 #include <sstream>
 
 #include "folder.h"
 #include "oracles.h"
+#include "random_scenes.h"
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/rim_crossings.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;
@@ -168,6 +172,154 @@ TEST_CASE("shell: a flat patch becomes a box of that height", "[shell]") {
   // The other way round it is inside out, which the sign tells.
   CHECK(make_shell(patch.view(), patch.positions, raised(patch.positions, 0.25), {}).facts.volume ==
         Approx(-9 * 0.25).epsilon(1e-14));
+}
+
+TEST_CASE("shell: a rim stops before what stands in its way", "[shell]") {
+  // A plate, and the tip of a triangle over its border, in the rim's way but not in that of the plate.
+  Polygons mesh = quad();
+  for (const Vec3d& p : {Vec3d(0.98, 0.5, 0.06), Vec3d(2, 0.4, 0.06), Vec3d(2, 0.6, 0.06)}) mesh.positions.push_back(p);
+  mesh.add_face({4, 5, 6});
+  OffsetOptions options;
+  options.distance = Distances(std::vector<double>{0.1, 0.1, 0.1, 0.1, 0, 0, 0});
+  CHECK(shell_of(mesh.view(), offset(mesh.view(), options), options).facts.crossings > 0);
+  options.off_source = true;
+  const OffsetResult result = offset(mesh.view(), options);
+  const Shell shell = shell_of(mesh.view(), result, options);
+  CHECK(shell.facts.crossings == 0);
+  CHECK(shell.facts.pinched_vertices == 3);
+  for (const std::size_t v : {1, 2}) {  // those of the edge below the tip
+    CHECK(result.states[v] == VertexState::Limited);
+    CHECK(result.achieved[v] < 0.06);
+    CHECK(result.achieved[v] > 0.04);
+  }
+  for (const std::size_t v : {0, 3}) CHECK(result.states[v] == VertexState::Reached);
+}
+
+TEST_CASE("shell: the outer skin of one sheet keeps off the inner skin of another", "[shell]") {
+  Polygons mesh = quad();
+  for (const Vec3d& p : raised(mesh.positions, 0.15)) mesh.positions.push_back(p + Vec3d(0.3, 0, 0));
+  mesh.add_face({4, 5, 6, 7});
+  const std::vector<Distances> both = {0.1, -0.1};
+  OffsetOptions options;
+  options.off_source = true;
+  std::vector<OffsetResult> results = offset_several(mesh.view(), both, options);
+  CHECK(shell_of(mesh.view(), results[0], options, &results[1]).facts.crossings > 0);
+  options.inner_skin_last = true;
+  results = offset_several(mesh.view(), both, options);
+  const Shell shell = shell_of(mesh.view(), results[0], options, &results[1]);
+  check_solid(shell);
+  CHECK(shell.facts.pinched_vertices == 0);
+  CHECK(results[1].states[0] == VertexState::Reached);
+  CHECK(results[0].states[4] == VertexState::Reached);
+}
+
+/// A shape made up from a seed, every other one opened by a plane, or two that may be in each other.
+Polygons random_sheets(unsigned seed) {
+  Polygons all;
+  for (const unsigned part : {seed, seed + 100000}) {
+    const Polygons whole = test::random_scene(part).mesh;
+    Vec3d lower = whole.positions[0], upper = lower;
+    for (const Vec3d& p : whole.positions) {
+      lower = openvdb::math::minComponent(lower, p);
+      upper = openvdb::math::maxComponent(upper, p);
+    }
+    Polygons mesh = whole;
+    for (Vec3d& p : mesh.positions) p = (p - (lower + upper) / 2.0) * (1.0 / (upper - lower).length());
+    if (seed % 2 == 0) mesh = upper_half(mesh);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      for (const auto v : mesh.view().face(f)) all.corners.push_back(first + v);
+      all.close_face();
+    }
+    if (seed % 3 == 0) break;
+  }
+  return all;
+}
+
+TEST_CASE("shell: of random sheets, nothing meets but where the source does", "[shell][property][random]") {
+  const auto number = [](const char* name, unsigned otherwise) {
+    const char* text = std::getenv(name);
+    return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : otherwise;
+  };
+  const unsigned first = number("VDB_OFFSET_RANDOM_FIRST", 1), count = number("VDB_OFFSET_RANDOM_COUNT", 12);
+  for (unsigned seed = first; seed < first + count; ++seed) {
+    INFO("seed " << seed);
+    const Polygons mesh = random_sheets(seed);
+    if (mesh.face_count() == 0) continue;
+    OffsetOptions options;
+    options.off_source = options.inner_skin_last = true;
+    const double distance = 0.003 * (1 + seed % 11);
+    const std::vector<OffsetResult> results =
+        offset_several(mesh.view(), std::vector<Distances>{distance, -distance}, options);
+    for (const OffsetResult* inner : {&results[1], static_cast<const OffsetResult*>(nullptr)}) {
+      const Shell shell = shell_of(mesh.view(), results[inner ? 0 : 1], options, inner);
+      CHECK(shell.facts.crossings == 0);
+    }
+  }
+}
+
+TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way faces run", "[shell]") {
+  std::mt19937 engine(7);
+  const auto in_box = [&](const Vec3d& lower, const Vec3d& upper) {
+    Vec3d p;
+    for (int k = 0; k < 3; ++k) p[k] = lower[k] + (upper[k] - lower[k]) * (engine() / 4294967296.0);
+    return p;
+  };
+  for (int round = 0; round < 20; ++round) {
+    INFO(round);
+    // A patch with some faces turned, and small triangles above it.
+    const Polygons patch = scene::patch(1, 0.05, 4);
+    Polygons mesh;
+    mesh.positions = patch.positions;
+    for (std::size_t f = 0; f < patch.face_count(); ++f) {
+      const auto face = patch.view().face(f);
+      if (f % 3 == 1) mesh.corners.insert(mesh.corners.end(), face.rbegin(), face.rend());
+      else mesh.corners.insert(mesh.corners.end(), face.begin(), face.end());
+      mesh.close_face();
+    }
+    for (int i = 0; i < 12; ++i) {
+      const Vec3d centre = in_box(Vec3d(-0.6, -0.6, 0.1), Vec3d(0.6, 0.6, 0.4));
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (int k = 0; k < 3; ++k) mesh.positions.push_back(centre + in_box(Vec3d(-0.1), Vec3d(0.1)));
+      mesh.add_face({first, first + 1, first + 2});
+    }
+    Surface surface = build_surface(mesh.view(), {});
+    REQUIRE(surface.facts.turned_triangles > 0);
+    place(surface, 0.1);
+    std::vector<Vec3d> source;
+    for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
+    std::vector<Vec3d> places = source;
+    const ClosestQuery query(surface);
+    const Distances distances(0.3);
+    CrossingFinder now(surface, places);
+    const CrossingFinder before(surface, source);
+    const NearCrossings none(surface, {});
+    const Body body{query, surface, {}, {}, {}};
+    RimCrossings rim(body, source, places, distances);
+    for (int step = 0; step < 4; ++step) {
+      std::vector<std::uint32_t> moved, touched;
+      for (std::uint32_t v = 0; v < places.size(); ++v) {
+        if (step > 0 && engine() % 10 < 7) continue;
+        moved.push_back(v);
+        places[v] = source[v] + in_box(Vec3d(-0.1, -0.1, 0), Vec3d(0.1, 0.1, 0.4));
+        const auto around = surface.triangles_around(v);
+        touched.insert(touched.end(), around.begin(), around.end());
+      }
+      sort_unique(touched);
+      now.update(touched);
+      rim.look(moved, touched, now, before, none);
+      std::vector<Vec3d> outer = mesh.positions;
+      for (std::size_t v = 0; v < outer.size(); ++v) outer[v] = places[surface.welded[v]];
+      const Shell shell = make_shell(mesh.view(), outer, mesh.positions, {});
+      const Surface solid = build_surface(shell.polygons.view(), {});
+      std::size_t expected = 0;
+      for (const auto& [s, t] : CrossingFinder(solid, solid.vertices).all())
+        expected += shell.part(solid.face[s]) == ShellPart::Rim || shell.part(solid.face[t]) == ShellPart::Rim;
+      CHECK(rim.count() == expected);
+      CHECK(expected > 0);
+    }
+  }
 }
 
 TEST_CASE("shell: what cannot be joined is counted", "[shell]") {

@@ -28,6 +28,10 @@ struct Body {
   /// Faces of the mesh, if what is off the front stays as a whole while layers rise from it: border vertices then go
   /// along those faces instead of taking them along. 0: they are taken along.
   std::size_t resting_faces = 0;
+  bool with_rim = false;  ///< A shell's rim joins its borders to those of its other skin; what meets it is wrong, too.
+  /// Of each vertex: where a shell's other skin stands, world coordinates, which what moves must not meet. Empty: that
+  /// is the source.
+  std::span<const Vec3d> other_skin;
 
   bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
   bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }

@@ -45,6 +45,18 @@ struct Couple {
       b[k] = places_of_b[of_b[k]];
     }
   }
+
+  /// Two triangles that share what corners of theirs are at one place.
+  Couple(const std::array<Vec3d, 3>& first, const std::array<Vec3d, 3>& second) : a(first), b(second) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto n = static_cast<std::size_t>(shared);
+      const auto found = std::find(b.begin() + shared, b.end(), a[i]);
+      if (found == b.end()) continue;
+      std::swap(*found, b[n]);
+      std::swap(a[i], a[n]);
+      ++shared;
+    }
+  }
 };
 
 // Differences of coordinates are exact to 2^-53 of themselves; a dot product of three with a cross product, or with a
@@ -126,19 +138,24 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
 
 CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
     : surface_(surface), positions_(positions) {
-  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(t, positions_); });
+  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(corners(t, positions_)); });
 }
 
 void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
-  tree_.refit(triangles, [&](std::size_t t) { return box_of(t, positions_); });
+  tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
+}
+
+std::array<Vec3d, 3> CrossingFinder::corners(std::size_t t, std::span<const Vec3d> places) const {
+  const auto& [a, b, c] = surface_.triangles[t];
+  return {places[a], places[b], places[c]};
 }
 
 /// Rounded outwards, relative to the surface's own frame.
-FloatBox CrossingFinder::box_of(std::size_t t, std::span<const Vec3d> places) const {
+FloatBox CrossingFinder::box_of(const std::array<Vec3d, 3>& corners) const {
   FloatBox box;
-  for (const auto v : surface_.triangles[t])
+  for (const Vec3d& corner : corners)
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto x = static_cast<float>(places[v][static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
+      const auto x = static_cast<float>(corner[static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
       const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
       box.lower[k] = std::min(box.lower[k], x - rounding);
       box.upper[k] = std::max(box.upper[k], x + rounding);
@@ -174,7 +191,7 @@ std::vector<TrianglePair> CrossingFinder::all() const {
 std::vector<TrianglePair> CrossingFinder::of(std::span<const std::uint32_t> triangles) const {
   return find_in_parallel(triangles.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
     const std::uint32_t t = triangles[i];
-    tree_.for_each_overlap(box_of(t, positions_), [&](std::size_t child) {
+    tree_.for_each_overlap(box_of(corners(t, positions_)), [&](std::size_t child) {
       const auto other = static_cast<std::uint32_t>(child);
       if (other == t || (other < t && std::binary_search(triangles.begin(), triangles.end(), other))) return;
       const TrianglePair pair = std::minmax(t, other);
@@ -185,11 +202,22 @@ std::vector<TrianglePair> CrossingFinder::of(std::span<const std::uint32_t> tria
 
 std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
   std::vector<std::uint32_t> met;
-  tree_.for_each_overlap(box_of(triangle, places), [&](std::size_t child) {
+  tree_.for_each_overlap(box_of(corners(triangle, places)), [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
     if (meet(Couple(surface_, places, triangle, positions_, other))) met.push_back(other);
   });
   return met;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> CrossingFinder::met_by(
+    std::span<const std::uint32_t> others, const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const {
+  return find_in_parallel(others.size(), 64, [&](std::size_t i, std::vector<TrianglePair>& found) {
+    const std::array<Vec3d, 3> other = corners_of(others[i]);
+    tree_.for_each_overlap(box_of(other), [&](std::size_t child) {
+      const auto t = static_cast<std::uint32_t>(child);
+      if (meet(Couple(other, corners(t, positions_)))) found.emplace_back(others[i], t);
+    });
+  });
 }
 
 }  // namespace vdb_offset

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -33,8 +35,15 @@ class CrossingFinder {
   /// corners that are at one place. In no particular order.
   std::vector<std::uint32_t> met_by(std::uint32_t triangle, std::span<const Vec3d> places) const;
 
+  /// Pairs of another triangle, whose corners are given in the surface's own coordinates, and one of the surface's that
+  /// it meets elsewhere than in corners and edges that are at one place. Sorted.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> met_by(
+      std::span<const std::uint32_t> others,
+      const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const;
+
  private:
-  FloatBox box_of(std::size_t triangle, std::span<const Vec3d> places) const;
+  std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> places) const;
+  FloatBox box_of(const std::array<Vec3d, 3>& corners) const;
 
   const Surface& surface_;
   std::span<const Vec3d> positions_;

@@ -45,6 +45,8 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
     find_folded();
   }
   if (body.obstacles) clearance_.emplace(*body.obstacles);
+  if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
+  if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, place_, distances_);
   source_crossings_.emplace(surface_, source_crossings ? std::move(*source_crossings) : finder_.all());
 }
 
@@ -72,7 +74,7 @@ Indices FaultFinder::triangles_around(const Indices& vertices) const {
   return triangles;
 }
 
-void FaultFinder::look_for_crossings(const Indices& touched) {
+void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touched) {
   finder_.update(touched);
   const auto has_moved = [&](std::uint32_t t) { return std::binary_search(touched.begin(), touched.end(), t); };
   const bool first = touched.size() == surface_.triangles.size();
@@ -86,6 +88,8 @@ void FaultFinder::look_for_crossings(const Indices& touched) {
       crossings_near_source_ += first;
     else crossings_.push_back(pair);
   }
+  if (rim_)
+    rim_->look(moved, touched, finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
 }
 
 /// Whether a vertex stands where its path ended, as good as: then what was found there holds here, phi being
@@ -173,6 +177,7 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
   if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return place_[v] == source_[v]; }))
     return false;
   if (source_finder_ && body_.is_front(t) && meets_source(t)) return true;
+  if (other_skin_finder_ && body_.is_front(t) && meets_other_skin(t)) return true;
   const Vec3d& origin = surface_.origin;
   return clearance_ && clearance_->is_crowded(
                            {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
@@ -194,6 +199,12 @@ bool FaultFinder::meets_source(std::uint32_t t) const {
     if (body_.rests(s) && has_bound(s)) return !has_bound(t);
     return body_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));
   });
+}
+
+bool FaultFinder::meets_other_skin(std::uint32_t t) const {
+  const Indices met = other_skin_finder_->met_by(t, place_);
+  return std::any_of(met.begin(), met.end(),
+                     [&](std::uint32_t s) { return body_.is_front(s) && !source_crossings_->sheets_cross(s, t); });
 }
 
 Indices FaultFinder::caught() const {
@@ -254,7 +265,7 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
       touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, moved, [&](std::uint32_t v) { return is_misplaced(v); });
-  look_for_crossings(touched);
+  look_for_crossings(moved, touched);
 }
 
 bool FaultFinder::is_misplaced(std::uint32_t v) const {
@@ -267,7 +278,7 @@ FaultCounts FaultFinder::count() const {
     ++(fault_[t] == Fault::Inverted    ? counts.inverted
        : fault_[t] == Fault::Collapsed ? counts.collapsed
                                        : counts.crowded);
-  counts.crossings = crossings_.size();
+  counts.crossings = crossings_.size() + (rim_ ? rim_->count() : 0);
   return counts;
 }
 

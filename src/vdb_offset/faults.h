@@ -13,6 +13,7 @@
 #include "vdb_offset/distances.h"
 #include "vdb_offset/near_crossings.h"
 #include "vdb_offset/precision.h"
+#include "vdb_offset/rim_crossings.h"
 
 namespace vdb_offset {
 
@@ -37,6 +38,7 @@ void sort_unique(Indices& indices);
 /// its distance has folded over) or, being no part of the front, against its own source; collapsed if its area is below
 /// 1e-6 of the source's, crowded if it is too near to an obstacle
 /// or meets the source where it must not: anywhere but where sheets of the source cross (see near_crossings.h).
+/// Of a shell, the other skin must not be met either, and the rim is judged as well (see rim_crossings.h).
 /// Crossings are found with exact predicates. All is judged on coordinates as they will be written, and only around
 /// what has moved since the last look. The result does not depend on the number of threads.
 class FaultFinder {
@@ -54,7 +56,7 @@ class FaultFinder {
   /// The same for all vertices. Where they stand at the ends of paths, what is known of those need not be found again.
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
 
-  bool any() const { return !faces_.empty() || !crossings_.empty(); }
+  bool any() const { return !faces_.empty() || !crossings_.empty() || (rim_ && rim_->count() > 0); }
   FaultCounts count() const;
   /// Vertices that are too far from the surface, or on the wrong side of it.
   const Indices& misplaced() const { return misplaced_; }
@@ -94,8 +96,9 @@ class FaultFinder {
   bool goes_along(std::uint32_t resting, std::uint32_t other) const;
   bool is_crowded(std::uint32_t triangle) const;
   bool meets_source(std::uint32_t triangle) const;
+  bool meets_other_skin(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
-  void look_for_crossings(const Indices& touched);
+  void look_for_crossings(const Indices& moved, const Indices& touched);
 
   const Body& body_;
   const Surface& surface_;
@@ -113,7 +116,9 @@ class FaultFinder {
   std::size_t crossings_near_source_ = 0;
   CrossingFinder finder_;
   std::optional<NearCrossings> source_crossings_;
-  std::optional<CrossingFinder> source_finder_;  // where what has moved must not meet the source
+  std::optional<CrossingFinder> source_finder_;      // where what has moved must not meet the source
+  std::optional<CrossingFinder> other_skin_finder_;  // where a shell's other skin is not the source
+  std::optional<RimCrossings> rim_;
   std::optional<ClearanceFinder> clearance_;
 };
 
@@ -127,6 +132,7 @@ void FaultFinder::for_each_wrong_corner(Visit&& visit) const {
     visit_corners(s);
     visit_corners(t);
   }
+  if (rim_) rim_->for_each_corner(visit);
 }
 
 }  // namespace vdb_offset

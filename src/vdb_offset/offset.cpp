@@ -164,8 +164,15 @@ class Pipeline {
     std::vector<Paths> paths(wanted.size());
     if (goes_anywhere(farthest)) paths = march();
     std::vector<OffsetResult> results;
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      results.push_back(goes_anywhere(farthest) ? finish(distances_[i], paths[i]) : stay(distances_[i]));
+    results.resize(wanted.size());
+    const auto make = [&](std::size_t i) {
+      results[i] = goes_anywhere(farthest) ? finish(distances_[i], paths[i]) : stay(distances_[i]);
+    };
+    if (options_.inner_skin_last) {
+      make(wanted.size() - 1);
+      keep_as_inner_skin(results.back());
+    }
+    for (std::size_t i = 0; i < wanted.size() - options_.inner_skin_last; ++i) make(i);
     if (options_.keep_field && goes_anywhere(farthest))
       results.front().field = std::make_shared<DistanceField>(std::move(field_));
     return results;
@@ -253,7 +260,9 @@ class Pipeline {
     OffsetResult result = unmoved(mesh_);
     result.statistics = shared_;
     const Surface& surface = work_.surface();
-    const Body body = work_.body(*query_, keep_away(), options_.off_source);
+    Body body = work_.body(*query_, keep_away(), options_.off_source);
+    body.with_rim = options_.off_source;
+    body.other_skin = inner_skin_;
     const std::vector<Vec3d> source = work_.source(mesh_);
     if (options_.collision == Collision::Limit) {
       const StageTimer timer(result.statistics.seconds, Stage::Limit);
@@ -268,6 +277,16 @@ class Pipeline {
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += paths.displacement[w];
     result.statistics.interior = measure_interior(body, places, distances, kInteriorTriangles);
     return result;
+  }
+
+  /// As it will be written.
+  void keep_as_inner_skin(const OffsetResult& result) {
+    const Surface& surface = work_.surface();
+    inner_skin_ = work_.source(mesh_);
+    for (std::size_t w = 0; w < inner_skin_.size(); ++w) {
+      const auto v = surface.representative[w];
+      if (v != kNone && result.positions[v] != inner_skin_[w]) inner_skin_[w] = options_.precision(result.positions[v]);
+    }
   }
 
   /// Layers as those of the input's vertices and faces.
@@ -329,6 +348,7 @@ class Pipeline {
   std::optional<Obstacles> keep_away_;
   std::optional<BorderSlides> slides_;
   std::optional<std::vector<TrianglePair>> source_crossings_;
+  std::vector<Vec3d> inner_skin_;  // of the body's vertices, once it is made
 };
 
 }  // namespace

@@ -35,7 +35,8 @@ struct OffsetOptions {
   Border border = Border::Slide;  ///< What the edge of that part does.
   PolygonView obstacles;          ///< Other geometry that nothing may touch, or come nearer to than `clearance`.
   double clearance = 0;           ///< World units, >= 0.
-  bool off_source = false;        ///< For shells: the result must not meet the surface that it comes from.
+  bool off_source = false;        ///< For shells: neither the result nor the rim may meet the surface they come from.
+  bool inner_skin_last = false;   ///< For shells of two offsets: the last of several is one that the others keep off.
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.

@@ -60,6 +60,8 @@ void turn_round(Surface& surface, const std::vector<std::uint8_t>& turned) {
   surface.next_around_edge = std::move(next);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     if (turned[t]) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+  surface.turned.resize(turned.size(), 0);
+  for (std::size_t t = 0; t < turned.size(); ++t) surface.turned[t] ^= turned[t];
 }
 
 /// A component of the surface, taken for a solid.

@@ -594,6 +594,9 @@ void append(Surface& surface, const Surface& other) {
     return std::array<std::uint32_t, 3>{t[0] + vertices, t[1] + vertices, t[2] + vertices};
   });
   add_all(surface.face, other.face, as_it_is);
+  surface.turned.resize(triangles, 0);
+  add_all(surface.turned, other.turned, as_it_is);
+  surface.turned.resize(surface.triangles.size(), 0);
   add_all(surface.next_around_edge, other.next_around_edge, shifted(3 * triangles));
   add_all(surface.triangle_normals, other.triangle_normals, as_it_is);
   add_all(surface.vertex_normals, other.vertex_normals, as_it_is);

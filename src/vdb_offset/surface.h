@@ -63,6 +63,8 @@ struct Surface {
   std::vector<Vec3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Sorted along a space-filling curve, as are the vertices.
   std::vector<std::uint32_t> face;                      ///< The input's face that each triangle is part of.
+  std::vector<std::uint8_t>
+      turned;  ///< Of each triangle: 1 if it runs against its face. Empty if none was turned round.
   /// The next half-edge around the same edge, cyclic: itself at a border, the twin on a manifold.
   std::vector<std::uint32_t> next_around_edge;
   std::vector<Vec3d> triangle_normals;  ///< Unit length; zero for a needle (see is_needle).
@@ -82,6 +84,7 @@ struct Surface {
   }
   std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
   std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
+  bool is_turned(std::uint32_t triangle) const { return !turned.empty() && turned[triangle]; }
   TrianglePoint closest_on(std::uint32_t triangle, const Vec3d& x) const {
     const auto& t = triangles[triangle];
     return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);

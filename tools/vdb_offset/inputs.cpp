@@ -44,6 +44,7 @@ void settle_surroundings(const Source& source, Arguments& args) {
   if (!args.only.empty()) options.only = io::select_faces(*source.file, args.only);
   if (args.border) options.border = *args.border;
   options.off_source = args.shell;
+  options.inner_skin_last = args.inner.has_value();
   if (source.obstacles.face_count() == 0) return;
   options.obstacles = source.obstacles.view();
   options.clearance = args.clearance.in_world_units(args.clearance.percent ? used_diagonal(source.view()) : 0);
