@@ -277,6 +277,109 @@ TEST_CASE("curve files: airfoils in Lednicer's order are one curve from end to e
   CHECK(io::patched_bytes(read.file, read.file.polygons.positions) == text);
 }
 
+TEST_CASE("curve files: a drawing keeps its bytes but for the shapes that move", "[curves][io]") {
+  const std::string head =
+                        "<?xml version='1.0'?>\r\n<svg:svg xmlns:svg=\"http://www.w3.org/2000/svg\"><!-- d=\"M\" -->"
+                        "<defs><path d=\"M0 0C1 1 2 2 3 3\"/><circle r='1'/></defs><text>a&amp;b</text>",
+                    first = "<svg:path id='d' d = '", second = "'/>\n<polygon points=\"",
+                    third = "\" fill='d=\"'/><polyline data-points='1' points='", tail = "'/></svg:svg>\n";
+  const auto drawing = [&](const std::string& path, const std::string& polygon, const std::string& line) {
+    return head + first + path + second + polygon + third + line + tail;
+  };
+  const std::string text = drawing("m1,2 3-.5h+1V1e1.5.25z l-1 0m5.5.5-1-1", "0 0 4 0 4,3", "7,7 8 8");
+  const Folder folder;
+  const io::CurveFile read = io::read_curves(folder.write("a.svg", text));
+  CHECK(read.planar);
+  const Curves& curves = read.file.polygons;
+  CHECK(curves.positions == std::vector<Vec3d>{{1, 2, 0},
+                                               {4, 1.5, 0},
+                                               {5, 1.5, 0},
+                                               {5, 10, 0},
+                                               {5, 0.5, 0},
+                                               {5, 0.25, 0},
+                                               {1, 2, 0},
+                                               {0, 2, 0},
+                                               {5.5, 2.5, 0},
+                                               {4.5, 1.5, 0},
+                                               {0, 0, 0},
+                                               {4, 0, 0},
+                                               {4, 3, 0},
+                                               {7, 7, 0},
+                                               {8, 8, 0}});
+  CHECK(curves.corners == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 0, 6, 7, 8, 9, 10, 11, 12, 10, 13, 14});
+  CHECK(curves.face_begin == std::vector<std::uint32_t>{0, 7, 9, 11, 15, 17});
+  std::vector<Vec3d> moved = curves.positions;
+  io::write_curves(folder.file("same.svg"), read, moved);
+  CHECK(slurp(folder.file("same.svg")) == text);
+  moved[9] = Vec3d(-1, 0.125, 0);
+  io::write_curves(folder.file("b.svg"), read, moved);
+  const std::string path = "M1,2 L4,1.5 L5,1.5 L5,10 L5,0.5 L5,0.25 Z M1,2 L0,2 M5.5,2.5 L-1,0.125";
+  CHECK(slurp(folder.file("b.svg")) == drawing(path, "0 0 4 0 4,3", "7,7 8 8"));
+  moved = curves.positions;
+  moved[12] = Vec3d(4, 4, 0);
+  moved[13] = Vec3d(6, 7, 0);
+  io::write_curves(folder.file("c.svg"), read, moved);
+  CHECK(slurp(folder.file("c.svg")) == drawing("m1,2 3-.5h+1V1e1.5.25z l-1 0m5.5.5-1-1", "0,0 4,0 4,4", "6,7 8,8"));
+  // Curves that come from elsewhere, and back.
+  io::write_curves(folder.file("d.txt"), io::read_curves(folder.file("c.svg")), moved);
+  const io::CurveFile plain = io::read_curves(folder.file("d.txt"));
+  io::write_curves(folder.file("e.svg"), plain, plain.file.polygons.positions);
+  const io::CurveFile back = io::read_curves(folder.file("e.svg"));
+  CHECK(back.file.polygons.face_count() == plain.file.polygons.face_count());
+  CHECK(back.file.polygons.positions == plain.file.polygons.positions);
+  moved[0][2] = 1;
+  CHECK_THROWS_WITH(io::write_curves(folder.file("f.svg"), Curves{moved, curves.corners, curves.face_begin}.view()),
+                    Catch::Contains("z = 0"));
+}
+
+TEST_CASE("curve files: a drawing's transforms are undone where points are written", "[curves][io]") {
+  const std::string text =
+      "<svg><g transform='translate(10 -5)scale(2)'><path transform='rotate(90),skewX(45)' d='M1 0 L1 1'/>"
+      "<path transform=' rotate ( 180 , 1 0.5 ) ' d='M0 0 L1 1'/></g>"
+      "<polyline transform='matrix(0 1 -1 0 3 4) scale(1 3)skewY(45)' points='1 2 3 4'/></svg>";
+  const io::CurveFile read = io::parse_curves("t.svg", io::CurveFormat::Svg, text);
+  const Vec3d expected[] = {{10, -3, 0}, {8, -1, 0}, {14, -3, 0}, {12, -5, 0}, {-6, 5, 0}, {-18, 7, 0}};
+  const auto& positions = read.file.polygons.positions;
+  REQUIRE(positions.size() == 6);
+  for (std::size_t p = 0; p < 6; ++p) CHECK((positions[p] - expected[p]).length() < 1e-14);
+  std::vector<Vec3d> moved = positions;
+  for (Vec3d& p : moved) p += Vec3d(0.5, -0.25, 0);
+  const Folder folder;
+  io::write_curves(folder.file("t.svg"), read, moved);
+  const io::CurveFile back = io::read_curves(folder.file("t.svg"));
+  for (std::size_t p = 0; p < 6; ++p) CHECK((back.file.polygons.positions[p] - moved[p]).length() < 1e-14);
+  CHECK(slurp(folder.file("t.svg")).find("rotate ( 180 , 1 0.5 ) ' d='M-0.2") != std::string::npos);
+}
+
+TEST_CASE("curve files: what a drawing has besides straight lines is told by its line", "[curves][io]") {
+  const auto fails = [](const std::string& text, const std::string& message) {
+    CHECK_THROWS_WITH(io::parse_curves("f.svg", io::CurveFormat::Svg, text), Catch::Contains(message));
+  };
+  const auto path = [](const std::string& data) { return "<svg>\n<path\nd='" + data + "'/></svg>"; };
+  fails("", "byte 0");
+  fails("<svg>\n<path", "f.svg, line 2: expected XML, got 'unclosed token'");
+  fails("solid\n", "f.svg, line 1: expected XML");
+  fails("<html/>", "f.svg, line 1: expected an element 'svg', got 'html'");
+  fails(std::string("\xff\xfe<\0s\0", 6), "expected a drawing in UTF-8, got UTF-16");
+  fails("<svg><defs><path d='M0 0L1 1'/></defs></svg>", "expected a path, polyline or polygon with two points");
+  fails(path("M0 0 C 1 1 2 2 3 3"),
+        "f.svg, line 2: expected straight segments (M, L, H, V, Z), got 'C 1 1 2 2 3 3' in a path's 'd'");
+  fails(path("M0 0 1"), "expected a number for y, got its end in a path's 'd'");
+  fails(path("L0 0"), "expected a path that begins with M, got 'L0 0'");
+  fails(path("1 2"), "expected one of the commands M, L, H, V and Z, got '1 2'");
+  fails(path("M0 0Z 1 2"), "expected one of the commands");
+  fails(path("M0 0L1e999 2"), "expected a number for x, got '1e999 2'");
+  fails(path("M0 0Linf 2"), "expected a number for x, got 'inf 2'");
+  fails("<svg>\n\n<circle r='1'/></svg>",
+        "f.svg, line 3: expected paths, polylines and polygons alone, got an element 'circle'");
+  fails("<svg><svg><path d='M0 0L1 1'/></svg></svg>", "expected one element 'svg', got another one in it");
+  fails("<svg><polygon points='0 0 1'/></svg>", "expected a number for y, got its end in a list of points");
+  fails("<svg transform='turn(3)'/>", "expected a transform that SVG knows, not 'turn' of 1 numbers, before here");
+  fails("<svg transform='scale(1 2 3)'/>", "not 'scale' of 3 numbers");
+  fails("<svg transform='scale 2'/>", "expected a transform such as 'translate(1 2)'");
+  fails("<svg transform='scale(0)'><path d='M0 0L1 1'/></svg>", "expected a transform that can be undone");
+}
+
 TEST_CASE("curve files: mistakes are told by their line", "[curves][io]") {
   const auto fails = [](io::CurveFormat format, const std::string& text, const std::string& message) {
     CHECK_THROWS_WITH(io::parse_curves("f", format, text), Catch::Contains(message));

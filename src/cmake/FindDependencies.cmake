@@ -23,6 +23,8 @@ find_library(MPFR_LIBRARY mpfr REQUIRED)
 # For compressed meshes.
 find_package(ZLIB REQUIRED)
 find_library(ZSTD_LIBRARY zstd REQUIRED)
+# For drawings.
+find_package(EXPAT REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
 # For volume meshes.
 find_path(CGNS_HEADERS cgnslib.h REQUIRED)

@@ -52,15 +52,22 @@ void check_curves(const io::CurveFile& file) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   if (size == 0) return 0;
-  const io::CurveFormat format = data[0] % 2 == 0 ? io::CurveFormat::Text : io::CurveFormat::Obj;
+  constexpr io::CurveFormat kFormats[] = {io::CurveFormat::Text, io::CurveFormat::Obj, io::CurveFormat::Svg};
+  const io::CurveFormat format = kFormats[data[0] % 3];
   const std::string bytes(reinterpret_cast<const char*>(data + 1), size - 1);
   const std::optional<io::CurveFile> file = parsed(format, bytes);
   if (!file) return 0;
   check_curves(*file);
   std::vector<Vec3d> places = file->file.polygons.positions;
-  require(io::patched_bytes(file->file, places) == bytes, "curves that stay keep every byte");
+  const auto patched = [&] {
+    if (format != io::CurveFormat::Svg) return io::patched_bytes(file->file, places);
+    return io::patch_svg(bytes, file->svg, file->file.polygons.view(), places, {});
+  };
+  require(patched() == bytes, "curves that stay keep every byte");
+  for (const auto& shape : file->svg.shapes)
+    if (shape.to_drawing != std::array<double, 6>{1, 0, 0, 1, 0, 0}) return 0;  // rounded once more
   for (Vec3d& p : places) p = Vec3d(p[1] / 3, -p[0] / 7, p[2]);
-  const std::string moved = io::patched_bytes(file->file, places);
+  const std::string moved = patched();
   const std::optional<io::CurveFile> back = parsed(format, moved);
   require(back.has_value(), "what was written can be read");
   check_curves(*back);

@@ -208,9 +208,13 @@ void numbers_seeds() {
 
 /// The first byte stands for the format.
 void curves_seeds() {
-  write("title.curves", "@airfoil\n1 0\n0.5 0.1\n0 0\n\n# closed\n3 4\n5 6\n7 1e3\n");
-  write("lednicer.curves", "@NACA 1\n 3. 3.\n\n0 0\n.5 .1\n1 0\n\n0 0\n.5 -.1\n1 0\n");
-  write("lines.curves", "Av 0 0 0\nv 1 0 0 1\nv 1 1e-3 -0\no a\nl 1 2/1 3\nl -1 -2\n");
+  write("title.curves", "Bairfoil\n1 0\n0.5 0.1\n0 0\n\n# closed\n3 4\n5 6\n7 1e3\n");
+  write("lednicer.curves", "BNACA 1\n 3. 3.\n\n0 0\n.5 .1\n1 0\n\n0 0\n.5 -.1\n1 0\n");
+  write("lines.curves", "@v 0 0 0\nv 1 0 0 1\nv 1 1e-3 -0\no a\nl 1 2/1 3\nl -1 -2\n");
+  write("drawing.curves",
+        "A<svg xmlns='x'><g transform='translate(1)'><path d='m0,0 1-1.5.5h3V2z l1 1'/></g>"
+        "<polygon points='0 0 1,0 1 1'/><polyline points='2 2 3 3'/><defs><path d='M0'/></defs></svg>");
+  write("plain.curves", "A<svg><path d=\"M0 0L1 0L1 1Z m2 2 3 3\"/><text>a</text></svg>");
 }
 
 }  // namespace

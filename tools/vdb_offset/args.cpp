@@ -227,11 +227,11 @@ void check_curves(const Raw& raw, const Arguments& args) {
   const auto volume = io::volume_format_of(args.output);
   const auto structured = io::structured_format_of(args.output);
   const bool cells = volume == io::VolumeFormat::Vtu || volume == io::VolumeFormat::Su2 || structured;
-  require(
-      io::curve_format_of(args.output).has_value() || (args.layers && cells),
-      args.output +
-          ": expected an output that ends in .dat, .txt, .xy or .obj, or with --layers in .vtu, .su2, .vts or .xyz, "
-          "as the input holds curves");
+  require(io::curve_format_of(args.output).has_value() || (args.layers && cells),
+          args.output +
+              ": expected an output that ends in .dat, .txt, .xy, .svg or .obj, or with --layers in .vtu, .su2, .vts "
+              "or .xyz, "
+              "as the input holds curves");
   require_structured(args);
   for (const auto& [name, given] : {std::pair{"--only", !raw.only.empty()},
                                     {"--border", raw.border.has_value()},
@@ -270,7 +270,8 @@ bool holds_curves(const std::string& path) {
 void check_file_options(const Raw& raw, Arguments& args) {
   require(args.states.empty() || io::is_states_file(args.states),
           args.states + ": expected a file of states that ends in .csv or .ply");
-  require(args.paths.empty() || io::curve_format_of(args.paths),
+  require(args.paths.empty() ||
+              (io::curve_format_of(args.paths) && io::curve_format_of(args.paths) != io::CurveFormat::Svg),
           args.paths + ": expected a file of paths that ends in .obj or .txt");
   if (raw.format) {
     args.format = io::format_of("." + *raw.format);

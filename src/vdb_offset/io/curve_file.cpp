@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
@@ -185,8 +186,18 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   curves.file.path = name;
   curves.file.bytes = std::move(bytes);
   if (curves.file.text().empty()) throw InvalidInput(name + ", byte 0: expected curves, got an empty file");
-  if (format == CurveFormat::Text) TextParser(curves).run();
-  else LineElementParser(curves.file).run();
+  switch (format) {
+    case CurveFormat::Text:
+      TextParser(curves).run();
+      break;
+    case CurveFormat::Obj:
+      LineElementParser(curves.file).run();
+      break;
+    case CurveFormat::Svg:
+      curves.svg = parse_svg(name, curves.file.text());
+      curves.file.polygons = std::exchange(curves.svg.curves, {});
+      curves.planar = true;
+  }
   const Curves& read = curves.file.polygons;
   if (read.face_count() == 0) throw InvalidInput(name + ": expected an element 'l', got none");
   if (read.corners.size() == read.face_count())
@@ -228,10 +239,16 @@ std::string as_text(CurvesView curves, const Precision& precision) {
   return text;
 }
 
+std::string as_file(CurveFormat format, CurvesView curves, const Precision& precision) {
+  return format == CurveFormat::Obj   ? as_obj(curves, precision)
+         : format == CurveFormat::Svg ? as_svg(curves, precision)
+                                      : as_text(curves, precision);
+}
+
 /// \throw InvalidInput for an unknown ending
 CurveFormat format_of_curves(const std::string& path) {
   const auto format = curve_format_of(path);
-  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy or .obj");
+  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy, .svg or .obj");
   return *format;
 }
 
@@ -243,6 +260,7 @@ std::optional<CurveFormat> curve_format_of(std::string_view path) {
   if (dot == std::string_view::npos) return std::nullopt;
   const std::string_view ending = path.substr(dot + 1);
   if (is_word(ending, "obj")) return CurveFormat::Obj;
+  if (is_word(ending, "svg")) return CurveFormat::Svg;
   for (const char* const text : {"dat", "txt", "xy"})
     if (is_word(ending, text)) return CurveFormat::Text;
   return std::nullopt;
@@ -278,10 +296,9 @@ Precision precision_of_curves(const WriteOptions& options) {
 void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
   const Precision precision = precision_of_curves(options);
-  write_pieces(
-      path, in_sections(format == CurveFormat::Obj ? as_obj(curves, precision) : as_text(curves, precision), {}), [&] {
-        if (options.before_rename) options.before_rename();
-      });
+  write_pieces(path, in_sections(as_file(format, curves, precision), {}), [&] {
+    if (options.before_rename) options.before_rename();
+  });
 }
 
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
@@ -290,9 +307,11 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
   const Precision precision = precision_of_curves(options);
   const Curves& read = source.file.polygons;
   const CurvesView moved{positions, read.corners, read.face_begin};
-  Pieces pieces = format == source.format      ? patch(source.file, positions, precision)
-                  : format == CurveFormat::Obj ? in_sections(as_obj(moved, precision), {})
-                                               : in_sections(as_text(moved, precision), {});
+  const Pieces pieces =
+      format != source.format ? in_sections(as_file(format, moved, precision), {})
+      : format == CurveFormat::Svg
+          ? in_sections(patch_svg(source.file.text(), source.svg, read.view(), positions, precision), {})
+          : patch(source.file, positions, precision);
   write_pieces(path, pieces, [&] {
     source.file.bytes.require_unchanged(source.file.path);
     if (options.before_rename) options.before_rename();
