@@ -233,7 +233,10 @@ class SvgReader {
     lines_.shapes.push_back({first, last, path, to_drawing, lines_.curves.face_count() - before});
   }
 
-  void end() { open_.pop_back(); }
+  /// Also called for an empty element that begin() has failed at.
+  void end() {
+    if (!thrown_) open_.pop_back();
+  }
 
   /// The bytes of an attribute of the tag that expat is at, and has found well-formed.
   std::pair<std::uint64_t, std::uint64_t> find_value(std::string_view wanted) const {
