@@ -191,6 +191,30 @@ class ClosestQuery::Search {
 
 Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const { return Search(*this, x, hint).run(); }
 
+/// The blocks of lowest boxes that some balls may meet, all together; returns how many, of which `blocks` has room for
+/// the first.
+std::size_t ClosestQuery::find_blocks(std::span<const Ball> balls, Blocks& blocks) const {
+  std::size_t count = 0;
+  const auto take = [&](std::size_t block) {
+    if (count < kMostBlocks) blocks[count] = static_cast<std::uint32_t>(block);
+    ++count;
+  };
+  if (tree_.levels().size() == 1) {
+    take(0);
+    return count;
+  }
+  FloatBox box;
+  for (const auto& [centre, radius] : balls)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = centre[static_cast<int>(k)] * scale_, r = radius * scale_;
+      const auto slack = slack_ + static_cast<float>((std::abs(x) + r) * 4e-7);
+      box.lower[k] = std::min(box.lower[k], static_cast<float>(x - r) - slack);
+      box.upper[k] = std::max(box.upper[k], static_cast<float>(x + r) + slack);
+    }
+  tree_.for_each_overlap(box, take, 1);
+  return count;
+}
+
 /// Some points whose closest points are looked for together.
 class ClosestQuery::Group {
  public:
@@ -202,20 +226,14 @@ class ClosestQuery::Group {
     for (std::size_t i = 0; i < points.size(); ++i) {
       triangle_[i] = hints[i];
       walked_[i] = query.surface_.walk_to_closest(points[i], triangle_[i]);
+      balls_[i] = {points[i], std::sqrt(walked_[i].squared_distance)};
     }
   }
 
   /// Points first .. last - 1: by halves, if the balls that nothing nearer lies outside of do not lie close together.
   void answer(std::size_t first, std::size_t last) const {
-    constexpr std::size_t kMostBlocks = 24;
-    std::array<std::uint32_t, kMostBlocks> blocks;
-    std::size_t count = 0;
-    const auto take = [&](std::size_t block) {
-      if (count < kMostBlocks) blocks[count] = static_cast<std::uint32_t>(block);
-      ++count;
-    };
-    if (query_.tree_.levels().size() == 1) take(0);
-    else query_.tree_.for_each_overlap(box_of_balls(first, last), take, 1);
+    Blocks blocks;
+    const std::size_t count = query_.find_blocks(std::span(balls_).subspan(first, last - first), blocks);
     if (count > kMostBlocks && last - first > 1) {
       answer(first, (first + last) / 2);
       return answer((first + last) / 2, last);
@@ -227,55 +245,88 @@ class ClosestQuery::Group {
   }
 
  private:
-  FloatBox box_of_balls(std::size_t first, std::size_t last) const {
-    FloatBox box;
-    for (std::size_t i = first; i < last; ++i) {
-      const double radius = std::sqrt(walked_[i].squared_distance);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double x = points_[i][static_cast<int>(k)] * query_.scale_, r = radius * query_.scale_;
-        const auto slack = query_.slack_ + static_cast<float>((std::abs(x) + r) * 4e-7);
-        box.lower[k] = std::min(box.lower[k], static_cast<float>(x - r) - slack);
-        box.upper[k] = std::max(box.upper[k], static_cast<float>(x + r) + slack);
-      }
-    }
-    return box;
-  }
-
   const ClosestQuery& query_;
   std::span<const Vec3d> points_;
   std::span<Closest> answers_;
   std::array<std::uint32_t, kMost> triangle_;
   std::array<TrianglePoint, kMost> walked_;
+  std::array<Ball, kMost> balls_;
 };
 
-void ClosestQuery::collect(const Vec3d& x, double radius, std::vector<Candidate>& near_triangles) const {
-  near_triangles.clear();
-  float local[3];
-  for (int k = 0; k < 3; ++k) local[k] = static_cast<float>(x[k] * scale_);
-  const float rounding = slack_ + 4e-7f * std::max({std::abs(local[0]), std::abs(local[1]), std::abs(local[2])});
-  const float reach = (static_cast<float>(radius * scale_) + rounding) * 1.000001f;
-  const float limit = reach * reach;
-  float squared[kWidth];
-  const auto look = [&](std::size_t leaf) {
-    float least[kLeafSize];
-    for (unsigned near = near_discs(discs_[leaf], local, limit, least); near != 0; near &= near - 1) {
-      const auto at = static_cast<std::size_t>(std::countr_zero(near));
-      near_triangles.push_back({static_cast<std::uint32_t>(leaf * kLeafSize + at),
-                                static_cast<double>(std::sqrt(least[at]) * 0.999999f - rounding) / scale_});
+/// Collects the triangles near one ball after the other.
+class ClosestQuery::Collector {
+ public:
+  Collector(const ClosestQuery& query, std::span<const Ball> balls,
+            const std::function<void(std::size_t, std::vector<Candidate>&)>& take)
+      : query_(query), balls_(balls), take_(take) {}
+
+  /// Balls first .. last - 1: by halves, if they do not lie close together.
+  void collect(std::size_t first, std::size_t last) {
+    Blocks blocks;
+    const std::size_t count = query_.find_blocks(balls_.subspan(first, last - first), blocks);
+    if (count > kMostBlocks && last - first > 1) {
+      collect(first, (first + last) / 2);
+      return collect((first + last) / 2, last);
     }
-  };
-  std::array<std::pair<std::uint32_t, std::uint32_t>, kWidth * 12> stack;  // level and node
-  std::size_t depth = 0;
-  stack[depth++] = {static_cast<std::uint32_t>(tree_.levels().size() - 1), 0};
-  while (depth > 0) {
-    const auto [level, node] = stack[--depth];
-    for (unsigned near = near_siblings(tree_.levels()[level][node], local, limit, squared); near != 0;
-         near &= near - 1) {
-      const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
-      if (level == 0) look(child);
-      else stack[depth++] = {level - 1, child};
+    for (std::size_t i = first; i < last; ++i) {
+      begin(balls_[i]);
+      if (count > kMostBlocks) descend();
+      else
+        for (std::size_t k = 0; k < count; ++k) open(0, blocks[k], [](std::size_t, std::uint32_t) {});
+      take_(i, near_);
     }
   }
+
+ private:
+  void begin(const Ball& ball) {
+    near_.clear();
+    for (int k = 0; k < 3; ++k) local_[k] = static_cast<float>(ball.centre[k] * query_.scale_);
+    rounding_ = query_.slack_ + 4e-7f * std::max({std::abs(local_[0]), std::abs(local_[1]), std::abs(local_[2])});
+    const float reach = (static_cast<float>(ball.radius * query_.scale_) + rounding_) * 1.000001f;
+    limit_ = reach * reach;
+  }
+
+  void descend() {
+    std::array<std::pair<std::size_t, std::uint32_t>, kWidth * 12> stack;  // level and node
+    std::size_t depth = 0;
+    stack[depth++] = {query_.tree_.levels().size() - 1, 0};
+    while (depth > 0) {
+      const auto [level, node] = stack[--depth];
+      open(level, node, [&](std::size_t below, std::uint32_t child) { stack[depth++] = {below, child}; });
+    }
+  }
+
+  /// Looks into lowest boxes, and hands on what is above these.
+  template <class HandOn>
+  void open(std::size_t level, std::uint32_t node, HandOn&& hand_on) {
+    float squared[kWidth];
+    for (unsigned near = near_siblings(query_.tree_.levels()[level][node], local_, limit_, squared); near != 0;
+         near &= near - 1) {
+      const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
+      if (level == 0) look_at_triangles(child);
+      else hand_on(level - 1, child);
+    }
+  }
+
+  void look_at_triangles(std::size_t leaf) {
+    float least[kLeafSize];
+    for (unsigned near = near_discs(query_.discs_[leaf], local_, limit_, least); near != 0; near &= near - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(near));
+      near_.push_back({static_cast<std::uint32_t>(leaf * kLeafSize + at),
+                       static_cast<double>(std::sqrt(least[at]) * 0.999999f - rounding_) / query_.scale_});
+    }
+  }
+
+  const ClosestQuery& query_;
+  std::span<const Ball> balls_;
+  const std::function<void(std::size_t, std::vector<Candidate>&)>& take_;
+  std::vector<Candidate> near_;
+  float local_[3], rounding_ = 0, limit_ = 0;
+};
+
+void ClosestQuery::collect_together(std::span<const Ball> balls,
+                                    const std::function<void(std::size_t, std::vector<Candidate>&)>& take) const {
+  if (!balls.empty()) Collector(*this, balls, take).collect(0, balls.size());
 }
 
 void ClosestQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -49,8 +51,15 @@ class ClosestQuery {
     std::uint32_t triangle;
     double least;
   };
-  /// All triangles within `radius` of x, world units, and some that are hardly farther, in the order of the tree.
-  void collect(const Vec3d& x, double radius, std::vector<Candidate>& near) const;
+  struct Ball {
+    Vec3d centre;
+    double radius;  ///< World units.
+  };
+  /// Calls take(i, near) for each of some balls, which are near each other, in their order: `near` are all triangles
+  /// that meet ball i, and some that are hardly farther. It may be changed. The order of these depends on the balls
+  /// together.
+  void collect_together(std::span<const Ball> balls,
+                        const std::function<void(std::size_t, std::vector<Candidate>& near)>& take) const;
 
   const Surface& surface() const { return surface_; }
 
@@ -64,8 +73,13 @@ class ClosestQuery {
   };
   class Search;
   class Group;
+  class Collector;
+  // More blocks of lowest boxes than this are too many to look through for each of some balls.
+  static constexpr std::size_t kMostBlocks = 48;
+  using Blocks = std::array<std::uint32_t, kMostBlocks>;
 
   Discs discs_of(std::size_t leaf) const;
+  std::size_t find_blocks(std::span<const Ball> balls, Blocks& blocks) const;
   static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);
   static unsigned near_discs(const Discs& discs, const float* local, float limit, float* squared);
 

@@ -35,7 +35,7 @@ class SurfaceStacker final : public Stacker {
       Vec3d normal;
       double height;
     };
-    std::vector<ClosestQuery::Candidate> triangles;
+    std::span<ClosestQuery::Candidate> triangles;
     std::vector<Plane> planes;
 
     void find_planes(const Surface& front, const Vec3d& end) {
@@ -86,18 +86,26 @@ class SurfaceStacker final : public Stacker {
     for_each_index((vertices.size() + kVertexBlock - 1) / kVertexBlock,
                    [&](std::size_t block) {
                      const std::size_t first = block * kVertexBlock;
-                     Near near;
-                     for (std::size_t i = first; i < std::min(first + kVertexBlock, vertices.size()); ++i)
-                       put(vertices[i], near);
+                     put_block(std::span(vertices).subspan(first, std::min(kVertexBlock, vertices.size() - first)));
                    },
                    1);
   }
 
-  void put(std::uint32_t v, Near& near) {
-    std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
-    if (!(stack_.share[v] > 0)) return;
-    if (slides_ && body_.is_bound(v) && put_along_border(v)) return;
-    if (!put_among_few(v, near)) put_with_care(v);
+  void put_block(std::span<const std::uint32_t> vertices) {
+    std::vector<std::uint32_t> open;
+    std::vector<ClosestQuery::Ball> balls;
+    for (const auto v : vertices) {
+      std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
+      if (!(stack_.share[v] > 0) || (slides_ && body_.is_bound(v) && put_along_border(v))) continue;
+      const Vec3d& whole = paths_.displacement[v];
+      open.push_back(v);
+      balls.push_back({source_[v] - front_.origin + whole, std::max(whole.length(), paths_.achieved[v]) * kReachRoom});
+    }
+    Near near;
+    body_.front.collect_together(balls, [&](std::size_t i, std::vector<ClosestQuery::Candidate>& triangles) {
+      near.triangles = triangles;
+      if (!put_among_few(open[i], balls[i], near)) put_with_care(open[i]);
+    });
   }
 
   /// False if a vertex gets to one of its heights not by sliding there.
@@ -161,12 +169,10 @@ class SurfaceStacker final : public Stacker {
   /// What may be the closest triangle to some point of the rail is no farther from its end than that point's distance
   /// and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers. False if
   /// that was wrong of a layer, or does not lead to its height.
-  bool put_among_few(std::uint32_t v, Near& near) {
+  bool put_among_few(std::uint32_t v, const ClosestQuery::Ball& ball, Near& near) {
     const auto stack = stack_.stacks.of(v);
     const Vec3d& whole = paths_.displacement[v];
-    const Vec3d end = source_[v] - front_.origin + whole;
-    const double reach = std::max(whole.length(), paths_.achieved[v]) * kReachRoom;
-    body_.front.collect(end, reach, near.triangles);
+    const auto& [end, reach] = ball;
     if (near.triangles.empty() || near.triangles.size() > kMostNear) return false;
     near.find_planes(front_, end);
     return put_down(v, FewField(front_, end, near), [&](std::size_t k, double phi) {
