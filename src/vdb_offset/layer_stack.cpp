@@ -172,7 +172,8 @@ class SurfaceStacker final : public Stacker {
   bool put_among_few(std::uint32_t v, const ClosestQuery::Ball& ball, Near& near) {
     const auto stack = stack_.stacks.of(v);
     const Vec3d& whole = paths_.displacement[v];
-    const auto& [end, reach] = ball;
+    const Vec3d& end = ball.centre;
+    const double reach = ball.radius;
     if (near.triangles.empty() || near.triangles.size() > kMostNear) return false;
     near.find_planes(front_, end);
     return put_down(v, FewField(front_, end, near), [&](std::size_t k, double phi) {
