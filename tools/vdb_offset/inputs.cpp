@@ -146,6 +146,9 @@ std::vector<Distances> settle_options(Source& source, Arguments& args) {
   std::vector<Distances> distances;
   for (const DistanceRequest& request : args.distances) distances.push_back(evaluate(source, args, request));
   if (args.inner) {
+    for (const Distances& outer : distances)
+      if (outer.inward() > 0)
+        throw InvalidInput("--distance: expected distances of 0 or more at all vertices with --inner");
     distances.push_back(scaled(evaluate(source, args, *args.inner), -1));
     if (distances.back().outward() > 0) throw InvalidInput("--inner: expected distances of 0 or more at all vertices");
   }

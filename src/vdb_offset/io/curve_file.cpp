@@ -220,6 +220,7 @@ std::string as_obj(CurvesView curves, const Precision& precision) {
   std::string text;
   for (const Vec3d& p : curves.positions) append_point(text += "v ", p, 3, precision);
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
+    if (curves.face(c).size() < 2) continue;  // a point alone is no element
     text += 'l';
     for (const auto p : curves.face(c)) append_integer(text += ' ', p + 1);
     text += '\n';

@@ -46,7 +46,6 @@ Vec3d transformed(const Matrix& m, const Vec2d& p) {
 }
 
 Vec2d transformed_back(const Matrix& m, const Vec3d& p) {
-  if (m == kIdentity) return {p[0], p[1]};
   const double x = p[0] - m[4], y = p[1] - m[5], det = determinant(m);
   return {(m[3] * x - m[2] * y) / det, (m[0] * y - m[1] * x) / det};
 }
@@ -71,6 +70,7 @@ class ValueScanner {
   double number(const char* expected) {
     if (!at_number()) fail(expected);
     const char* const first = value_.data() + at_ + (value_[at_] == '+');
+    if (value_[at_] == '+' && value_.substr(at_ + 1).starts_with('-')) fail(expected);
     double number = 0;
     const auto [end, error] = std::from_chars(first, value_.data() + value_.size(), number);
     if (error != std::errc() || !std::isfinite(number)) fail(expected);
@@ -128,6 +128,20 @@ Matrix parse_function(ValueScanner& value, std::string_view name) {
   return product(product({1, 0, 0, 1, n[1], n[2]}, turn), {1, 0, 0, 1, -n[1], -n[2]});
 }
 
+/// Whether a list of CSS declarations has one that moves the element.
+bool has_transform(std::string_view style) {
+  while (!style.empty()) {
+    std::string_view name = style.substr(0, style.find(';'));
+    style.remove_prefix(std::min(name.size() + 1, style.size()));
+    name = name.substr(0, name.find(':'));
+    while (!name.empty() && is_space(name.front())) name.remove_prefix(1);
+    while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
+    for (const char* const moving : {"transform", "translate", "rotate", "scale"})
+      if (name == moving) return true;
+  }
+  return false;
+}
+
 Matrix parse_transform(ValueScanner value) {
   Matrix all = kIdentity;
   while (!value.at_end()) {
@@ -141,7 +155,7 @@ Matrix parse_transform(ValueScanner value) {
 class SvgReader {
  public:
   SvgReader(const std::string& path, std::string_view text)
-      : path_(path), text_(text), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
+      : path_(path), text_(text), parser_(XML_ParserCreateNS(nullptr, kNamespaceEnd), XML_ParserFree) {
     if (!parser_) throw std::bad_alloc();
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(
@@ -173,6 +187,8 @@ class SvgReader {
     Matrix to_drawing;
     bool shown;
   };
+  // Between the namespace of an element and its name.
+  static constexpr char kNamespaceEnd = '|';
 
   /// No exception may pass through expat.
   template <class Do>
@@ -198,25 +214,31 @@ class SvgReader {
   }
 
   void begin(std::string_view name, const char** attributes) {
-    if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) name.remove_prefix(colon + 1);
+    Element element = open_.empty() ? Element{kIdentity, true} : open_.back();
+    if (const std::size_t end = name.rfind(kNamespaceEnd); end != std::string_view::npos) {
+      element.shown = element.shown && name.substr(0, end) == "http://www.w3.org/2000/svg";
+      name.remove_prefix(end + 1);
+    }
     const auto value_of = [&](std::string_view wanted) -> const char* {
       for (const char** a = attributes; *a; a += 2)
-        if (*a == wanted) return a[1];
+        if (*a == wanted && std::string_view(a[1]) != "none") return a[1];
       return nullptr;
     };
-    Element element = open_.empty() ? Element{kIdentity, true} : open_.back();
-    if (open_.empty() && name != "svg") fail_at(here(), "an element 'svg'", fmt::format("'{}'", name));
+    if (open_.empty() && (name != "svg" || !element.shown))
+      fail_at(here(), "an element 'svg'", fmt::format("'{}'", name));
     for (const char* const hidden : {"defs", "clipPath", "mask", "marker", "pattern", "symbol"})
       element.shown = element.shown && name != hidden;
     if (const char* const transform = value_of("transform"); transform && element.shown)
       element.to_drawing = product(element.to_drawing, parse_transform(scan(transform, "a transform")));
+    if (const char* const style = value_of("style"); style && element.shown && has_transform(style))
+      fail_at(here(), "transforms that are attributes", "one in a style");
     if (element.shown) look_at(name, element.to_drawing, value_of);
     open_.push_back(element);
   }
 
   template <class ValueOf>
   void look_at(std::string_view name, const Matrix& to_drawing, const ValueOf& value_of) {
-    for (const char* const other : {"line", "rect", "circle", "ellipse"})
+    for (const char* const other : {"line", "rect", "circle", "ellipse", "use"})
       if (name == other) fail_at(here(), "paths, polylines and polygons alone", fmt::format("an element '{}'", name));
     if (name == "svg" && !open_.empty()) fail_at(here(), "one element 'svg'", "another one in it");
     const bool path = name == "path";
@@ -241,23 +263,25 @@ class SvgReader {
   /// The bytes of an attribute of the tag that expat is at, and has found well-formed.
   std::pair<std::uint64_t, std::uint64_t> find_value(std::string_view wanted) const {
     std::size_t at = here() + 1;
+    const std::size_t end = here() + static_cast<std::size_t>(XML_GetCurrentByteCount(parser_.get()));
     const auto skip = [&](auto&& while_so) {
-      while (at < text_.size() && while_so(text_[at])) ++at;
+      while (at < end && while_so(text_[at])) ++at;
     };
     skip([](char c) { return !is_space(c); });
-    while (at < text_.size()) {
+    while (at < end) {
       skip(is_space);
       const std::size_t name = at;
       skip([](char c) { return c != '=' && !is_space(c); });
       const bool found = text_.substr(name, at - name) == wanted;
       skip([](char c) { return c != '"' && c != '\''; });
+      if (at >= end) break;
       const char quote = text_[at++];
       const std::size_t value = at;
       skip([&](char c) { return c != quote; });
       if (found) return {value, at};
       ++at;
     }
-    fail_at(here(), "a drawing in UTF-8", "another encoding");
+    fail_at(here(), fmt::format("an attribute '{}' in the element itself", wanted), "one that a DTD declares");
   }
 
   void add_point(const Vec2d& p) {
@@ -270,11 +294,23 @@ class SvgReader {
     lines_.own.push_back(p);
   }
 
+  /// Relative coordinates add up to where a curve began but for rounding.
+  void join_ends(std::uint32_t first) {
+    constexpr double kRounding = 1e-13;
+    double largest = 0;
+    for (std::size_t p = first; p < lines_.own.size(); ++p)
+      for (int k = 0; k < 2; ++k) largest = std::max(largest, std::abs(lines_.own[p][k]));
+    if (!((lines_.own.back() - lines_.own[first]).length() <= kRounding * largest)) return;
+    lines_.own.back() = lines_.own[first];
+    lines_.curves.positions.back() = lines_.curves.positions[first];
+  }
+
   /// A curve that ends where it begins is closed as it is.
   void end_curve(bool closed) {
     auto& curves = lines_.curves;
     const std::size_t first = curves.face_begin.back();
     if (curves.corners.size() == first) return;
+    if (curves.corners.size() > first + 2) join_ends(curves.corners[first]);
     if (closed && lines_.own[curves.corners[first]] != lines_.own.back() && curves.corners.size() > first + 1)
       curves.corners.push_back(curves.corners[first]);
     curves.close_face();
@@ -338,9 +374,16 @@ class SvgReader {
   SvgLines lines_;
 };
 
-void append_point(std::string& text, const Vec2d& p, const Precision& precision) {
+void append_point(std::string& text, const Vec2d& p, const Precision& precision = {}) {
   append_number(text, precision(p[0]), precision);
   append_number(text += ',', precision(p[1]), precision);
+}
+
+/// A point as its shape has it. Digits are those of the drawing's coordinates, on which results are judged: undoing a
+/// transform takes all there are.
+void append_own(std::string& text, const Matrix& to_drawing, const Vec3d& position, const Precision& precision) {
+  if (to_drawing == kIdentity) append_point(text, {position[0], position[1]}, precision);
+  else append_point(text, transformed_back(to_drawing, precision(position)));
 }
 
 }  // namespace
@@ -368,8 +411,8 @@ std::string patch_svg(std::string_view text, const SvgLines& lines, CurvesView s
         if (k > 0) patched += ' ';
         if (shape.is_path) patched += k == 0 ? 'M' : 'L';
         const std::uint32_t p = points[k];
-        append_point(patched, has_moved(p) ? transformed_back(shape.to_drawing, positions[p]) : lines.own[p],
-                     precision);
+        if (has_moved(p)) append_own(patched, shape.to_drawing, positions[p], precision);
+        else append_point(patched, lines.own[p]);
       }
       if (shape.is_path && lines.closed[c]) patched += " Z";
     }
@@ -397,7 +440,7 @@ std::string as_svg(CurvesView curves, const Precision& precision) {
   text += "\">\n";
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
     const auto points = curves.face(c);
-    const bool closed = points.size() > 2 && points.back() == points.front();
+    const bool closed = points.size() > 3 && curves.positions[points.back()] == curves.positions[points.front()];
     text += "<path d=\"";
     for (std::size_t k = 0; k < points.size() - closed; ++k) {
       text += k == 0 ? "M" : " L";

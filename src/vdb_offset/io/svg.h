@@ -30,9 +30,9 @@ struct SvgLines {
 
 /// Reads the straight lines of a drawing: `path` (M L H V Z and m l h v z), `polyline` and `polygon`, with the
 /// transforms of all that they are in. What is only referred to (`defs`, `clipPath`, `mask`, `marker`, `pattern`,
-/// `symbol`) is left alone, as is what has no lines, such as text and images.
-/// \throw InvalidInput (file, line, what was expected, what was found) for what is no XML in UTF-8, for curved segments
-/// and for other shapes, which would not be offset along with these
+/// `symbol`) is left alone, as is what has no lines, such as text and images, and what is not SVG's.
+/// \throw InvalidInput (file, line, what was expected, what was found) for what is no XML, or UTF-16, for curved
+/// segments, other shapes and `use`, which would not be offset along with these, and for transforms in a style
 SvgLines parse_svg(const std::string& path, std::string_view text);
 
 /// The same drawing with points at other positions: attributes of shapes of which a point has moved are written anew,
