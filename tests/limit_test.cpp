@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <random>
 
 #include "oracles.h"
@@ -255,12 +254,8 @@ TEST_CASE("limit: out and back again, a smooth shape is what it was", "[limit][p
 }
 
 TEST_CASE("limit: random scenes are valid and exact", "[limit][property][random]") {
-  const auto number = [](const char* name, unsigned otherwise) {
-    const char* text = std::getenv(name);
-    return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : otherwise;
-  };
-  const unsigned first = number("VDB_OFFSET_RANDOM_FIRST", 1), count = number("VDB_OFFSET_RANDOM_COUNT", 200);
-  for (unsigned seed = first; seed < first + count; ++seed) {
+  const test::Seeds seeds = test::random_seeds(200);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
     INFO("seed " << seed);
     const test::RandomScene scene = test::random_scene(seed);
     const OffsetResult result = limited(scene.mesh, scene.distance);

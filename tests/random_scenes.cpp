@@ -3,6 +3,7 @@
 #include <openvdb/math/Quat.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "vdb_offset/scene/shapes.h"
@@ -51,7 +52,17 @@ Polygons random_shape(Dice& dice, bool& closed) {
   }
 }
 
+unsigned number_from_environment(const char* name, unsigned otherwise) {
+  const char* text = std::getenv(name);
+  return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : otherwise;
+}
+
 }  // namespace
+
+Seeds random_seeds(unsigned count) {
+  const unsigned first = number_from_environment("VDB_OFFSET_RANDOM_FIRST", 1);
+  return {first, first + number_from_environment("VDB_OFFSET_RANDOM_COUNT", count)};
+}
 
 RandomScene random_scene(unsigned seed) {
   Dice dice(seed);

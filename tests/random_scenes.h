@@ -12,4 +12,11 @@ struct RandomScene {
 };
 RandomScene random_scene(unsigned seed);
 
+/// The seeds to try: `count` of them, from 1 on, if VDB_OFFSET_RANDOM_COUNT and VDB_OFFSET_RANDOM_FIRST say nothing
+/// else.
+struct Seeds {
+  unsigned first, end;
+};
+Seeds random_seeds(unsigned count);
+
 }  // namespace vdb_offset::test

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <sstream>
@@ -238,12 +237,8 @@ Polygons random_sheets(unsigned seed) {
 }
 
 TEST_CASE("shell: of random sheets, nothing meets but where the source does", "[shell][property][random]") {
-  const auto number = [](const char* name, unsigned otherwise) {
-    const char* text = std::getenv(name);
-    return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : otherwise;
-  };
-  const unsigned first = number("VDB_OFFSET_RANDOM_FIRST", 1), count = number("VDB_OFFSET_RANDOM_COUNT", 6);
-  for (unsigned seed = first; seed < first + count; ++seed) {
+  const test::Seeds seeds = test::random_seeds(6);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
     INFO("seed " << seed);
     const Polygons mesh = random_sheets(seed);
     if (mesh.face_count() == 0) continue;

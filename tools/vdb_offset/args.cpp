@@ -26,7 +26,8 @@ constexpr const char* kAbout =
 constexpr const char* kMore = R"(
 INPUT and OUTPUT end in .obj, .ply, .stl or .off, compressed with .gz or .zst behind it, or are '-' (standard input and
 output, with --format); INPUT may also be a scene (.json), which brings its distance. The same format in and out keeps
-every byte but coordinates and normals of what moved.
+every byte but coordinates and normals of what moved. Plane curves are files that end in .dat, .txt, .xy or .svg, or an
+.obj with line elements and no face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
 below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which tells each vertex its
 own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
@@ -84,7 +85,8 @@ struct Raw {
 };
 
 void declare(CLI::App& app, Arguments& args, Raw& raw) {
-  app.add_option("INPUT", args.input, "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), or a scene (.json)")
+  app.add_option("INPUT", args.input,
+                 "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)")
       ->required();
   app.add_option("OUTPUT", args.output, "Mesh to write, by extension; may be the input; '-' is standard output")
       ->required();
