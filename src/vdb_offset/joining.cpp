@@ -1,0 +1,160 @@
+#include "vdb_offset/joining.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/orientation.h"
+#include "vdb_offset/parallel.h"
+#include "vdb_offset/repeated_faces.h"
+
+namespace vdb_offset {
+namespace {
+
+/// Half-edges bucketed by their smaller end, in order; in a bucket, those with the same larger end make an edge.
+template <class Visit>
+void for_each_edge(const Surface& surface, Visit&& visit) {
+  const auto half_edges = static_cast<std::uint32_t>(3 * surface.triangles.size());
+  std::vector<std::uint32_t> begin(surface.vertices.size() + 2, 0), bucket(half_edges);
+  const auto smaller = [&](std::uint32_t e) { return std::min(surface.from(e), surface.to(e)); };
+  const auto larger = [&](std::uint32_t e) { return std::max(surface.from(e), surface.to(e)); };
+  for (std::uint32_t e = 0; e < half_edges; ++e) ++begin[smaller(e) + 2];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (std::uint32_t e = 0; e < half_edges; ++e) bucket[begin[smaller(e) + 1]++] = e;
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+    const auto first = bucket.begin() + begin[v], last = bucket.begin() + begin[v + 1];
+    std::sort(first, last,
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(larger(a), a) < std::pair(larger(b), b); });
+    for (auto run = first; run != last;) {
+      auto end = run;
+      while (end != last && larger(*end) == larger(*run)) ++end;
+      if (larger(*run) != v) visit(std::span<const std::uint32_t>(run, end));  // a repeated corner makes no edge
+      run = end;
+    }
+  }
+}
+
+std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t x) {
+  while (parent[x] != x) x = parent[x] = parent[parent[x]];
+  return x;
+}
+
+/// Numbers the components in the order of their first face and hands them to the vertices; one that several
+/// components share by a corner belongs to the last of them. Returns the component of each triangle.
+std::vector<std::uint32_t> number_components(Surface& surface, std::vector<std::uint32_t>& parent) {
+  std::vector<std::uint32_t> number(parent.size(), kNone), component_of(surface.triangles.size());
+  surface.component.resize(surface.vertices.size());
+  surface.facts.components = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    auto& component = number[root(parent, surface.face[t])];
+    if (component == kNone) component = static_cast<std::uint32_t>(surface.facts.components++);
+    for (const auto v : surface.triangles[t]) surface.component[v] = component;
+    component_of[t] = component;
+  }
+  return component_of;
+}
+
+/// What joining finds.
+struct Joined {
+  std::size_t boundary = 0, non_manifold = 0, conflicts = 0;  // edges
+  bool folded = false;                                        // two triangles over the same corners share an edge
+  std::vector<std::uint32_t> component_of;                    // each triangle
+};
+
+Joined join(Surface& surface, std::size_t face_count) {
+  Joined joined;
+  surface.next_around_edge.resize(3 * surface.triangles.size());
+  std::iota(surface.next_around_edge.begin(), surface.next_around_edge.end(), 0u);
+  std::vector<std::uint32_t> parent(face_count);
+  std::iota(parent.begin(), parent.end(), 0u);
+  std::vector<double> lengths;
+  lengths.reserve(surface.triangles.size() * 3 / 2);
+  const auto across = [&](std::uint32_t e) { return surface.triangles[e / 3][(e + 2) % 3]; };
+  for_each_edge(surface, [&](std::span<const std::uint32_t> edge) {
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      surface.next_around_edge[edge[i]] = edge[(i + 1) % edge.size()];
+      parent[root(parent, surface.face[edge[i] / 3])] = root(parent, surface.face[edge[0] / 3]);
+    }
+    const bool pair = edge.size() == 2;
+    joined.boundary += edge.size() == 1;
+    joined.non_manifold += edge.size() > 2;
+    joined.conflicts += pair && surface.from(edge[0]) == surface.from(edge[1]);
+    joined.folded |= pair && across(edge[0]) == across(edge[1]);
+    lengths.push_back((surface.vertices[surface.from(edge[0])] - surface.vertices[surface.to(edge[0])]).length());
+  });
+  // A line that had to stay is all border: it has no side.
+  joined.boundary +=
+      static_cast<std::size_t>(std::count_if(surface.triangles.begin(), surface.triangles.end(), repeats_corner));
+  joined.component_of = number_components(surface, parent);
+  if (!lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    surface.facts.median_edge = *middle;
+  }
+  return joined;
+}
+
+/// Whether a triangle faces against the polygon that it is part of, as where a bent one's fan folds over.
+bool is_folded_over(PolygonView polygons, const Surface& surface, std::size_t t) {
+  const auto polygon = polygons.face(surface.face[t]);
+  if (polygon.size() == 3) return false;
+  const auto at = [&](std::size_t k) { return polygons.positions[polygon[k]] - polygons.positions[polygon[0]]; };
+  Vec3d normal(0.0);
+  for (std::size_t k = 2; k < polygon.size(); ++k) normal += at(k - 1).cross(at(k));
+  const auto& [i, j, k] = surface.triangles[t];
+  return normal.dot((surface.vertices[j] - surface.vertices[i]).cross(surface.vertices[k] - surface.vertices[i])) < 0;
+}
+
+/// The triangles that are folded over onto another one: of two bent polygons that share three corners in a row, for
+/// one.
+std::vector<std::uint8_t> find_folded_triangles(PolygonView polygons, const Surface& surface) {
+  const std::size_t count = surface.triangles.size();
+  std::vector<std::uint8_t> folded(count), result(count, 0);
+  for_each_index(count, [&](std::size_t t) { folded[t] = is_folded_over(polygons, surface, t); });
+  std::vector<std::uint32_t> order(count), corners, begin(count + 1);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_partition(order.begin(), order.end(), [&](std::uint32_t t) { return !folded[t]; });
+  corners.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& triangle = surface.triangles[order[i]];
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+    begin[i + 1] = static_cast<std::uint32_t>(corners.size());
+  }
+  const std::vector<std::uint8_t> repeated = find_repeated_faces(corners, begin);
+  for (std::size_t i = 0; i < count; ++i) result[order[i]] = repeated[i] && folded[order[i]];
+  return result;
+}
+
+/// Leaves out every face that repeats another, whichever way round, and of the others the triangles that are folded
+/// over onto another. False if there are none.
+bool leave_out_repeated_faces(PolygonView polygons, Surface& surface) {
+  std::vector<std::uint32_t> corners(polygons.corners.size());
+  for_each_index(corners.size(), [&](std::size_t i) { corners[i] = surface.welded[polygons.corners[i]]; });
+  const std::vector<std::uint8_t> repeats = find_repeated_faces(corners, polygons.face_begin);
+  surface.facts.repeated_faces = static_cast<std::size_t>(std::count(repeats.begin(), repeats.end(), 1));
+  const std::size_t before = surface.triangles.size();
+  keep_triangles(surface, [&](std::size_t t) { return !repeats[surface.face[t]]; });
+  const std::vector<std::uint8_t> folded = find_folded_triangles(polygons, surface);
+  surface.facts.folded_triangles = static_cast<std::size_t>(std::count(folded.begin(), folded.end(), 1));
+  keep_triangles(surface, [&](std::size_t t) { return !folded[t]; });
+  return surface.triangles.size() < before;
+}
+
+}  // namespace
+
+void join_and_settle(PolygonView polygons, Orient orient, Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  Joined joined = join(surface, polygons.face_count());
+  facts.boundary_edges = joined.boundary;
+  facts.non_manifold_edges = joined.non_manifold;
+  if ((joined.non_manifold > 0 || joined.folded) && leave_out_repeated_faces(polygons, surface))
+    joined = join(surface, polygons.face_count());
+  facts.boundary_left = joined.boundary;
+  facts.non_manifold_left = joined.non_manifold;
+  facts.orientation_conflicts = joined.conflicts;
+  settle_orientation(surface);
+  settle_outside(surface, joined.component_of, orient);
+}
+
+}  // namespace vdb_offset
