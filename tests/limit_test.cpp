@@ -232,6 +232,32 @@ TEST_CASE("limit: patches around folds are freed at their distance", "[limit][un
   CHECK(folded > 0);
 }
 
+TEST_CASE("limit: a vertex that a face is folded over at gets off the surface", "[limit][untangle]") {
+  // Pushed across the edge that faces it, where it dips in or stands out a little: what is around it then faces both
+  // ways, and no direction leads away from all of it.
+  const Polygons box = scene::box(Vec3d(1), 8, true);
+  std::size_t f = 0;
+  const auto is_inner = [&](std::uint32_t v) {
+    const Vec3d& p = box.positions[v];
+    return p[2] == 0.5 && std::max(std::abs(p[0]), std::abs(p[1])) < 0.2;
+  };
+  while (!std::ranges::all_of(box.view().face(f), is_inner)) ++f;
+  const auto face = box.view().face(f);
+  for (const double push : {0.3, 0.6})
+    for (const double distance : {0.02, 0.1, -0.02, -0.1}) {
+      INFO("push " << push << " distance " << distance);
+      Polygons mesh = box;
+      Vec3d& pushed = mesh.positions[face[0]];
+      const Vec3d middle = (box.positions[face[1]] + box.positions[face[2]]) / 2.0;
+      pushed = middle + (middle - pushed) * push;
+      pushed[2] -= std::copysign(0.001, distance);
+      const OffsetResult result = limited(mesh, distance);
+      CHECK(std::abs(result.achieved[face[0]] - std::abs(distance)) < 1e-6 * std::abs(distance));
+      CHECK(test::share(result, VertexState::Limited) == 0);
+      CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).valid());
+    }
+}
+
 TEST_CASE("limit: the smaller offset lies inside the larger", "[limit][property]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 2, 5, 3);
   const OffsetResult small = limited(mesh, 0.1), large = limited(mesh, 0.2);

@@ -16,15 +16,21 @@ namespace {
 // small, as the skins of a shell touch where a vertex has not moved at all.
 constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
-// Patches are tried in these ways, with so many rings around what is wrong. What frees one patch fails in the next;
-// borders leave their planes only for what else does not free.
-constexpr Untangler::Options kAttempts[] = {{1, 4, true}, {0.1, 10, true}, {1, 30, false}, {0.01, 10, false}};
+// Patches are tried in these ways, with so many rings around what is wrong, and no more than `most_rings`. What frees
+// one patch fails in the next; borders leave their planes only for what else does not free. Large patches take nearly
+// all of the time, and where the first way frees none of them, the second hardly ever does.
+struct Attempt {
+  Untangler::Options options;
+  int most_rings;
+};
+constexpr int kFewRings = 3;
+constexpr Attempt kAttempts[] = {
+    {{1, 4, true}, 16}, {{0.1, 10, true}, kFewRings}, {{1, 30, false}, 16}, {{0.01, 10, false}, kFewRings}};
 constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
 constexpr std::size_t kManyFaults = 2000;
-constexpr int kFewRings = 3;
 constexpr double kWorthwhile = 0.8;
 
 // Rounds in which pulled vertices are let out again, each by one step.
@@ -58,7 +64,7 @@ class Limiter {
     faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); }, &paths_);
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
-    for (const Untangler::Options& attempt : kAttempts)
+    for (const Attempt& attempt : kAttempts)
       if (!untangle_with(attempt, progress)) break;
   }
 
@@ -103,15 +109,15 @@ class Limiter {
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
   /// wrong, fronts have run through each other, and large patches take long for little. False if it is not worth
   /// while to try another way.
-  bool untangle_with(const Untangler::Options& attempt, Progress& progress) {
+  bool untangle_with(const Attempt& attempt, Progress& progress) {
     const std::size_t before = fault_count();
     Indices last;
     for (const int rings : kRings) {
       if (!faults_.any()) return false;
-      if (rings > kFewRings && fault_count() > kManyFaults) break;
+      if (rings > attempt.most_rings || (rings > kFewRings && fault_count() > kManyFaults)) break;
       Indices chosen = patch_vertices(rings);
       if (chosen == last) break;
-      untangle(chosen, attempt);
+      untangle(chosen, attempt.options);
       ++statistics_.untanglings;
       progress.advance(1);
       last = std::move(chosen);
@@ -199,12 +205,12 @@ class Limiter {
   }
 
   /// Untangles patches of vertices, all at their distance, and keeps those where that makes nothing worse.
-  void untangle(const Indices& chosen, const Untangler::Options& attempt) {
+  void untangle(const Indices& chosen, const Untangler::Options& options) {
     const std::vector<Indices> patches = find_patches(chosen);
     const std::vector<std::size_t> before = faults_by_patch(patches.size());
     std::vector<Vec3d> old_way(chosen.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
-    const Untangler untangler(body_, distances_, attempt);
+    const Untangler untangler(body_, distances_, options);
     tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
     look(chosen);
     const std::vector<std::size_t> after = faults_by_patch(patches.size());

@@ -341,10 +341,11 @@ class Patch {
 
   /// Along the smoothed normal to the distance. On the way out phi is concave there, as the least of the distances to
   /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was. The triangles
-  /// around the last answer are asked what is near, and the exact query only whether that is so.
+  /// around the last answer are asked what is near, and the exact query only whether that is so. A vertex of a fold,
+  /// which no direction leads away from, may stand on the surface yet: it steps off.
   void return_to_distance(Point& p, const Vec3d& before) const {
     constexpr int kMostSteps = 40;
-    constexpr double kSettled = 1e-9, kLeastSlope = 0.1;
+    constexpr double kSettled = 1e-9, kLeastSlope = 0.1, kStepOff = 0.5;
     const Vec3d away = p.normal * p.side;
     for (int i = 0; i < kMostSteps; ++i) {
       TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
@@ -356,7 +357,11 @@ class Patch {
         distance = closest.distance;
         nearest.point = closest.point;
       }
-      if (!(distance > 1e-3 * p.target)) break;
+      if (!(distance > 1e-3 * p.target)) {
+        if (i > 0) break;
+        p.x += away * (kStepOff * p.target);
+        continue;
+      }
       const double slope = away.dot(p.x - nearest.point) / distance, free = kFreeShare * distance;
       p.x += away * std::clamp((p.target - distance) / std::max(slope, kLeastSlope), -free, free);
       if (!((p.x - before).length() < 2 * p.target)) break;
