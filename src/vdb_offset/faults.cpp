@@ -136,8 +136,7 @@ void FaultFinder::take(std::uint32_t v, const Vec3d& x, const Closest& closest) 
     right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
 }
 
-/// How far rounding may have moved a vertex.
-double FaultFinder::rounding(std::size_t v) const {
+double FaultFinder::rounding(std::uint32_t v) const {
   double size = 0;
   for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(place_[v][k]));
   return size * precision_.epsilon();

@@ -72,6 +72,8 @@ class FaultFinder {
 
   /// Exact distance of a vertex as it was last looked at.
   double distance_of(std::uint32_t vertex) const { return distance_[vertex]; }
+  /// How far the precision's rounding may have moved a vertex.
+  double rounding(std::uint32_t vertex) const;
   bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }
   /// World coordinates, as they will be written.
   std::span<const Vec3d> places() const { return place_; }
@@ -88,7 +90,6 @@ class FaultFinder {
   void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest);
-  double rounding(std::size_t vertex) const;
   bool is_misplaced(std::uint32_t vertex) const;
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
   Fault judge(std::uint32_t triangle) const;

@@ -16,17 +16,20 @@ namespace {
 // small, as the skins of a shell touch where a vertex has not moved at all.
 constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
-// Patches are tried in these ways, with so many rings around what is wrong, and no more than `most_rings`. What frees
-// one patch fails in the next; borders leave their planes only for what else does not free. Large patches take nearly
-// all of the time, and where the first way frees none of them, the second hardly ever does.
+// Patches are tried in these ways, with ever more rings around what is wrong, up to so many. What frees one patch fails
+// in the next; borders leave their planes only for what else does not free. Large patches take nearly all of the time,
+// and where the first way frees none of them, the second hardly ever does.
 struct Attempt {
   Untangler::Options options;
-  int most_rings;
+  int rings;
 };
 constexpr int kFewRings = 3;
 constexpr Attempt kAttempts[] = {
     {{1, 4, true}, 16}, {{0.1, 10, true}, kFewRings}, {{1, 30, false}, 16}, {{0.01, 10, false}, kFewRings}};
 constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
+
+// Then what has collided is tried in these, with so many rings around.
+constexpr Attempt kFreeings[] = {{{1, 30, false}, 1}, {{1, 4, true}, 0}, {{1, 30, false}, 0}, {{0.01, 10, false}, 0}};
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
@@ -66,6 +69,7 @@ class Limiter {
     statistics_.before = faults_.count();
     for (const Attempt& attempt : kAttempts)
       if (!untangle_with(attempt, progress)) break;
+    for (const Attempt& freeing : kFreeings) free_collided(freeing);
   }
 
   void pull_back_and_release(Progress& progress) {
@@ -82,17 +86,17 @@ class Limiter {
   LimitStatistics finish() {
     double lost = 0;
     std::size_t moving = 0;
-    for (std::size_t v = 0; v < share_.size(); ++v) {
+    for (std::uint32_t v = 0; v < share_.size(); ++v) {
       const double target = std::abs(distances_[v]);
-      if (target == 0 || !body_.on_front(static_cast<std::uint32_t>(v))) continue;
+      if (target == 0 || !body_.on_front(v)) continue;
       ++moving;
       const bool stayed = paths_.displacement[v] == way(v);
       paths_.displacement[v] = way(v);
       if (stayed) continue;
-      const double distance = faults_.distance_of(static_cast<std::uint32_t>(v));
+      const double distance = faults_.distance_of(v);
       lost += std::max(0.0, paths_.achieved[v] - distance) / target;
       paths_.achieved[v] = distance;
-      if (std::abs(distance - target) <= kReachedTolerance * target) {
+      if (std::abs(distance - target) <= kReachedTolerance * target + faults_.rounding(v)) {
         paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
       } else if (share_[v] != 1) {
         paths_.state[v] = VertexState::Limited;
@@ -114,7 +118,7 @@ class Limiter {
     Indices last;
     for (const int rings : kRings) {
       if (!faults_.any()) return false;
-      if (rings > attempt.most_rings || (rings > kFewRings && fault_count() > kManyFaults)) break;
+      if (rings > attempt.rings || (rings > kFewRings && fault_count() > kManyFaults)) break;
       Indices chosen = patch_vertices(rings);
       if (chosen == last) break;
       untangle(chosen, attempt.options);
@@ -123,6 +127,21 @@ class Limiter {
       last = std::move(chosen);
     }
     return fault_count() <= kManyFaults || fault_count() < kWorthwhile * static_cast<double>(before);
+  }
+
+  /// Lets what has collided slide to where it has its distance.
+  void free_collided(const Attempt& freeing) {
+    Indices chosen;
+    for (std::uint32_t v = 0; v < source_.size(); ++v)
+      if (may_slide(v) && is_short(v)) chosen.push_back(v);
+    if (chosen.empty()) return;
+    chosen = with_rings(std::move(chosen), freeing.rings);
+    std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
+    untangle(chosen, freeing.options);
+  }
+
+  bool is_short(std::uint32_t v) const {
+    return faults_.distance_of(v) < std::abs(distances_[v]) * (1 - kReachedTolerance) - faults_.rounding(v);
   }
 
   /// A share of the way: back along the straight line; the last of it on a parabola that meets the surface in the
@@ -176,22 +195,37 @@ class Limiter {
     return patches;
   }
 
-  /// What is wrong in each patch, corner by corner.
-  std::vector<std::size_t> faults_by_patch(std::size_t patches) const {
-    constexpr std::size_t kMisplaced = 1000000;  // a vertex too far out or on the wrong side: never worth it
-    std::vector<std::size_t> faults(patches, 0);
+  /// What is wrong in a patch, the worse first.
+  struct Wrong {
+    std::size_t misplaced = 0, corners = 0, collided = 0;
+    auto operator<=>(const Wrong&) const = default;
+    bool any_fault() const { return misplaced + corners > 0; }
+  };
+  std::vector<Wrong> wrong_by_patch(const std::vector<Indices>& patches) const {
+    std::vector<Wrong> wrong(patches.size());
     faults_.for_each_wrong_corner([&](std::uint32_t v) {
-      if (patch_[v] != kNone) ++faults[patch_[v]];
+      if (patch_[v] != kNone) ++wrong[patch_[v]].corners;
     });
     for (const auto v : faults_.misplaced())
-      if (patch_[v] != kNone) faults[patch_[v]] += kMisplaced;
-    return faults;
+      if (patch_[v] != kNone) ++wrong[patch_[v]].misplaced;
+    for (std::size_t i = 0; i < patches.size(); ++i)
+      wrong[i].collided = static_cast<std::size_t>(
+          std::count_if(patches[i].begin(), patches[i].end(), [&](std::uint32_t v) { return is_short(v); }));
+    return wrong;
   }
 
   /// What has collided may slide to where there is room; what stays put or is bound to its path may not.
   bool may_slide(std::uint32_t v) const {
-    const bool there = paths_.state[v] == VertexState::Reached || paths_.state[v] == VertexState::Collision;
+    const bool there =
+        paths_.state[v] == VertexState::Reached || (paths_.state[v] == VertexState::Collision && has_sides(v));
     return there && distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v);
+  }
+
+  /// Lines have none, nor do the vertices that only they hold.
+  bool has_sides(std::uint32_t v) const {
+    const auto around = surface_.triangles_around(v);
+    return std::any_of(around.begin(), around.end(),
+                       [&](std::uint32_t t) { return surface_.triangle_normals[t].lengthSqr() > 0; });
   }
 
   /// The vertices that may slide, so many rings around what is wrong.
@@ -207,17 +241,18 @@ class Limiter {
   /// Untangles patches of vertices, all at their distance, and keeps those where that makes nothing worse.
   void untangle(const Indices& chosen, const Untangler::Options& options) {
     const std::vector<Indices> patches = find_patches(chosen);
-    const std::vector<std::size_t> before = faults_by_patch(patches.size());
+    const std::vector<Wrong> before = wrong_by_patch(patches);
     std::vector<Vec3d> old_way(chosen.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
     const Untangler untangler(body_, distances_, options);
     tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
     look(chosen);
-    const std::vector<std::size_t> after = faults_by_patch(patches.size());
+    const std::vector<Wrong> after = wrong_by_patch(patches);
     Indices undone;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const std::uint32_t v = chosen[i];
-      if (after[patch_[v]] <= before[patch_[v]]) continue;
+      const Wrong &was = before[patch_[v]], &is = after[patch_[v]];
+      if (was.any_fault() ? is <= was : is < was) continue;
       whole_way_[v] = old_way[i];
       undone.push_back(v);
     }
