@@ -137,6 +137,33 @@ TEST_CASE("several: one march serves all distances", "[several][oracle]") {
   CHECK(offset_several(sphere.view(), distances, options)[0].positions == offset(sphere.view(), alone).positions);
 }
 
+TEST_CASE("several: the same bits for any number of threads, told as one run, cancelled as one",
+          "[several][invariant]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.5, 2.5, 11, 4);
+  const std::vector<Distances> distances = {0.3, 0.2, -0.1, 0.25, 0.1, 0.28};  // more than are made together
+  OffsetOptions one;
+  one.threads = 1;
+  const std::vector<OffsetResult> alone = offset_several(mesh.view(), distances, one);
+  OffsetOptions all;
+  bool ordered = true;
+  double last = 0;
+  all.progress = [&](Stage stage, double share) {
+    if (stage != Stage::Limit) return true;
+    ordered &= share >= last && share <= 1;
+    last = share;
+    return true;
+  };
+  const std::vector<OffsetResult> together = offset_several(mesh.view(), distances, all);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    CHECK(alone[i].positions == together[i].positions);
+    CHECK(alone[i].states == together[i].states);
+  }
+  CHECK(ordered);
+  CHECK(last > 0);
+  all.progress = [&](Stage stage, double share) { return stage != Stage::Limit || share < 0.2; };
+  CHECK_THROWS_AS(offset_several(mesh.view(), distances, all), Cancelled);
+}
+
 TEST_CASE("part: the lid of a box slides along its sides", "[part]") {
   const Polygons box = scene::box(Vec3d(1, 1, 1), 8, true);
   OffsetOptions options;

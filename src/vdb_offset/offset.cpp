@@ -1,5 +1,6 @@
 #include "vdb_offset/offset.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -139,12 +140,17 @@ Reach farthest_of(std::span<const Distances> distances) {
 // What a vertex's path takes that is kept and handed out.
 constexpr std::size_t kPathBytes = 600;
 
+/// How much a run makes: so many results, or layers of cells under one.
+struct Yield {
+  std::size_t results = 1, layers = 0;
+};
+
 GridPlan plan(const Workpiece& work, PolygonView mesh, const Reach& farthest, const OffsetOptions& options, int threads,
-              std::size_t layers) {
-  std::size_t beside = layers_bytes(mesh, layers);
+              const Yield& yield) {
+  std::size_t beside = layers_bytes(mesh, yield.layers) + results_bytes(mesh, yield.results);
   for (const auto* surface : {&work.whole, &work.rest, &work.obstacles})
     if (*surface) beside += surface_bytes(**surface);
-  if (options.keep_paths) beside += kPathBytes * mesh.positions.size();
+  if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
   return plan_grid(work.front, farthest, options.grid, options.max_memory, threads, {beside});
 }
 
@@ -158,21 +164,28 @@ class Pipeline {
 
   std::vector<OffsetResult> run(std::span<const Distances> wanted) {
     const Reach farthest = farthest_of(wanted);
-    prepare(farthest, 0);
+    prepare(farthest, {.results = wanted.size()});
     // The body is complete by now, obstacles and all.
     for (const Distances& distances : wanted) distances_.push_back(on_body(distances));
     std::vector<Paths> paths(wanted.size());
     if (goes_anywhere(farthest)) paths = march();
     std::vector<OffsetResult> results;
     results.resize(wanted.size());
-    const auto make = [&](std::size_t i) {
-      results[i] = goes_anywhere(farthest) ? finish(distances_[i], paths[i]) : stay(distances_[i]);
+    const auto make = [&](std::size_t i, const ProgressCallback& progress) {
+      results[i] = goes_anywhere(farthest) ? finish(distances_[i], paths[i], progress) : stay(distances_[i]);
     };
+    if (wanted.size() > 1 && options_.collision == Collision::Limit && goes_anywhere(farthest)) find_source_crossings();
+    const std::size_t outer = wanted.size() - options_.inner_skin_last;
     if (options_.inner_skin_last) {
-      make(wanted.size() - 1);
+      make(outer, options_.progress);
       keep_as_inner_skin(results.back());
     }
-    for (std::size_t i = 0; i < wanted.size() - options_.inner_skin_last; ++i) make(i);
+    JointProgress progress(options_.progress, outer);
+    for (std::size_t first = 0; first < outer; first += kResultsTogether)
+      tbb::parallel_for(first, std::min(first + kResultsTogether, outer), [&](std::size_t i) {
+        // Who waits for work on one result is not to begin another meanwhile.
+        tbb::this_task_arena::isolate([&] { make(i, progress.of(i)); });
+      });
     if (options_.keep_field && goes_anywhere(farthest))
       results.front().field = std::make_shared<DistanceField>(std::move(field_));
     return results;
@@ -180,7 +193,7 @@ class Pipeline {
 
   /// Layers up to the last of the heights, which is the one that the march goes to.
   LayersResult grow(std::span<const Distances> heights) {
-    prepare(farthest_of(heights.last(1)), heights.size());
+    prepare(farthest_of(heights.last(1)), {.layers = heights.size()});
     std::vector<Distances> on_vertices;
     for (const Distances& each : heights) on_vertices.push_back(on_body(each));
     distances_.push_back(on_vertices.back());
@@ -206,14 +219,14 @@ class Pipeline {
   }
 
  private:
-  void prepare(const Reach& farthest, std::size_t layers) {
+  void prepare(const Reach& farthest, const Yield& yield) {
     {
       const StageTimer timer(shared_.seconds, Stage::Rasterise);
       work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
     }
     shared_.facts = work_.surface().facts;
     shared_.threads = threads_;
-    if (goes_anywhere(farthest)) make_field(farthest, layers);
+    if (goes_anywhere(farthest)) make_field(farthest, yield);
   }
 
   Distances on_body(const Distances& of_input) {
@@ -221,11 +234,11 @@ class Pipeline {
     return distances_on(work_, options_.border, of_input, shared_.disagreeing_distances);
   }
 
-  void make_field(const Reach& farthest, std::size_t layers) {
+  void make_field(const Reach& farthest, const Yield& yield) {
     Front front;
     {
       const StageTimer timer(shared_.seconds, Stage::Rasterise);
-      shared_.plan = plan(work_, mesh_, farthest, options_, threads_, layers);
+      shared_.plan = plan(work_, mesh_, farthest, options_, threads_, yield);
       place(work_, shared_.plan.voxel_size);
       front = rasterise(work_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
     }
@@ -255,8 +268,14 @@ class Pipeline {
     return paths;
   }
 
+  /// That all results are compared with.
+  void find_source_crossings() {
+    const std::vector<Vec3d> source = work_.source(mesh_);
+    source_crossings_ = CrossingFinder(work_.surface(), source).all();
+  }
+
   /// Makes one of the results valid, and measures it.
-  OffsetResult finish(const Distances& distances, Paths& paths) {
+  OffsetResult finish(const Distances& distances, Paths& paths, const ProgressCallback& progress) const {
     OffsetResult result = unmoved(mesh_);
     result.statistics = shared_;
     const Surface& surface = work_.surface();
@@ -267,8 +286,7 @@ class Pipeline {
     if (options_.collision == Collision::Limit) {
       const StageTimer timer(result.statistics.seconds, Stage::Limit);
       FaultFinder faults(body, source, distances, options_.precision, source_crossings_);
-      source_crossings_ = faults.source_crossings();
-      result.statistics.limit = limit(faults, body, source, distances, paths, options_.progress);
+      result.statistics.limit = limit(faults, body, source, distances, paths, progress);
     }
     move_vertices(mesh_, surface, paths, result);
     if (options_.keep_paths) hand_out_paths(surface, source, paths, result);
@@ -414,7 +432,8 @@ OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> dista
   const Workpiece work = build_workpiece(mesh, {options.only, options.obstacles, options.weld, options.orient});
   statistics.facts = work.surface().facts;
   const Reach farthest = farthest_of(distances);
-  if (goes_anywhere(farthest)) statistics.plan = plan(work, mesh, farthest, options, statistics.threads, layers);
+  if (goes_anywhere(farthest))
+    statistics.plan = plan(work, mesh, farthest, options, statistics.threads, {distances.size(), layers});
   return statistics;
 }
 

@@ -25,6 +25,8 @@ constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 *
 constexpr std::size_t kTriangleBytes = 240, kVertexBytes = 330;
 // Of a layer: places of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
 constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
+// Of another result: its places, paths and states; what it takes to make it valid.
+constexpr std::size_t kResultVertexBytes = 60, kJudgedVertexBytes = 70;
 // The process itself: code, libraries, allocator.
 constexpr double kProcessBytes = 48 << 20;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles; only for the estimate that is shown.
@@ -219,6 +221,11 @@ std::size_t layers_bytes(PolygonView mesh, std::size_t layers) {
     cells += 4 * (corners > 4 ? 3 + 7 * corners : 2 * corners);
   }
   return layers * (cells + mesh.positions.size() * kLayerVertexBytes);
+}
+
+std::size_t results_bytes(PolygonView mesh, std::size_t results) {
+  return mesh.positions.size() *
+         ((results - 1) * kResultVertexBytes + (std::min(results, kResultsTogether) - 1) * kJudgedVertexBytes);
 }
 
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,

@@ -1,6 +1,7 @@
 #include "vdb_offset/progress.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "vdb_offset/error.h"
 
@@ -10,6 +11,16 @@ const char* name(Stage stage) {
   constexpr const char* kNames[kStageCount] = {"read",    "rasterise", "sweep",  "propagate",
                                                "capture", "limit",     "layers", "write"};
   return kNames[static_cast<std::size_t>(stage)];
+}
+
+ProgressCallback JointProgress::of(std::size_t piece) {
+  if (!callback_) return {};
+  return [this, piece](Stage stage, double share) {
+    const std::lock_guard lock(mutex_);
+    share_[piece] = share;
+    const double sum = std::accumulate(share_.begin(), share_.end(), 0.0);
+    return callback_(stage, sum / static_cast<double>(share_.size()));
+  };
 }
 
 Progress::Progress(const ProgressCallback& callback, Stage stage, std::size_t total)

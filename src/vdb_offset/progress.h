@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
+#include <vector>
 
 namespace vdb_offset {
 
@@ -17,6 +18,21 @@ const char* name(Stage stage);
 /// Called with a stage and the share of it that is done, 0..1. Return false to cancel: the call that works
 /// then throws Cancelled. Calls never overlap, but come from whichever thread has something to tell.
 using ProgressCallback = std::function<bool(Stage, double)>;
+
+/// Tells one callback of several like pieces of work that are done at the same time as if they were one.
+class JointProgress {
+ public:
+  /// Keeps a reference to the callback.
+  JointProgress(const ProgressCallback& callback, std::size_t pieces) : callback_(callback), share_(pieces, 0.0) {}
+
+  /// What a piece of the work is to call. Empty if the callback is.
+  ProgressCallback of(std::size_t piece);
+
+ private:
+  const ProgressCallback& callback_;
+  std::vector<double> share_;  // that is done of each piece
+  std::mutex mutex_;
+};
 
 /// Carries one stage's progress from many threads to one callback.
 class Progress {
