@@ -76,6 +76,36 @@ TEST_CASE("closest: many points at once have the answers of one by one, for any 
   CHECK(worst < 1e-14);
 }
 
+TEST_CASE("closest: points on ways up from the surface have the answers of one by one", "[closest]") {
+  Surface surface = build_surface(scene::bumpy_sphere(1, 0.5, 2.5, 3, 4).view(), {});
+  place(surface, 0.05);
+  const ClosestQuery query(surface);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Vec3d> points;
+  std::vector<std::size_t> begin{0};
+  std::vector<std::uint32_t> hints;
+  for (std::uint32_t v = 0; v < surface.vertices.size(); v += 3) {
+    // Some go straight up, in any order; some anywhere, and into hollows where another part of the surface is closest.
+    const int count = 1 + static_cast<int>(random() % 5);
+    const Vec3d n = surface.vertex_normals[v].unit(), aside = Vec3d(unit(random), unit(random), unit(random)) * 0.3;
+    for (int i = 0; i < count; ++i)
+      points.push_back(surface.vertices[v] + n * unit(random) + (v % 2 ? aside * unit(random) : Vec3d(0.0)));
+    begin.push_back(points.size());
+    hints.push_back(v % 5 ? surface.triangles_around(v).front() : 0);
+  }
+  std::vector<Closest> answers(points.size());
+  query.answer_along_ways(points, begin, hints, answers);
+  double worst = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [distance, triangle, feature, point] = answers[i];
+    worst = std::max({worst, std::abs(distance - query(points[i], 0).distance),
+                      std::abs((points[i] - point).length() - distance),
+                      std::abs(std::sqrt(surface.closest_on(triangle, points[i]).squared_distance) - distance)});
+  }
+  CHECK(worst < 1e-14);
+}
+
 TEST_CASE("closest: a triangle without area is its edges", "[closest]") {
   Polygons mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.25, 0, 0}, {0, 1, 0}};

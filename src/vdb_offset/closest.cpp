@@ -329,6 +329,74 @@ void ClosestQuery::collect_together(std::span<const Ball> balls,
   if (!balls.empty()) Collector(*this, balls, take).collect(0, balls.size());
 }
 
+/// Points on ways up from the surface, whose closest points are looked for together.
+class ClosestQuery::Ways {
+ public:
+  Ways(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::size_t> begin,
+       std::span<const std::uint32_t> hints, std::span<Closest> answers)
+      : query_(query), points_(points), answers_(answers), walked_(points.size()) {
+    for (std::size_t way = 0; way + 1 < begin.size(); ++way) add_way(begin[way], begin[way + 1], hints[way]);
+  }
+
+  void answer() const {
+    query_.collect_together(balls_, [&](std::size_t i, const std::vector<Candidate>& near) {
+      for (std::size_t p = runs_[i].first; p < runs_[i].second; ++p) choose(p, balls_[i].centre, near);
+    });
+  }
+
+ private:
+  /// Nothing nearer to one of the points than what was found beside it lies outside of the ball around the farthest
+  /// that holds all their balls. If that is hardly larger than the largest of them, it serves for all.
+  void add_way(std::size_t first, std::size_t last, std::uint32_t hint) {
+    constexpr double kHardlyLarger = 1.05;
+    std::size_t farthest = first;
+    for (std::size_t p = first; p < last; ++p) {
+      std::uint32_t triangle = hint;
+      const TrianglePoint walked = query_.surface_.walk_to_closest(points_[p], triangle);
+      walked_[p] = {std::sqrt(walked.squared_distance), triangle, walked.feature, walked.point};
+      if (walked_[p].distance > walked_[farthest].distance) farthest = p;
+    }
+    const Vec3d& centre = points_[farthest];
+    double radius = 0;
+    for (std::size_t p = first; p < last; ++p)
+      radius = std::max(radius, (points_[p] - centre).length() + walked_[p].distance);
+    if (radius <= kHardlyLarger * walked_[farthest].distance) {
+      add_ball(first, last, {centre, radius});
+      return;
+    }
+    for (std::size_t p = first; p < last; ++p) add_ball(p, p + 1, {points_[p], walked_[p].distance});
+  }
+
+  void add_ball(std::size_t first, std::size_t last, const Ball& ball) {
+    balls_.push_back(ball);
+    runs_.emplace_back(first, last);
+  }
+
+  void choose(std::size_t p, const Vec3d& centre, const std::vector<Candidate>& near) const {
+    Closest best = walked_[p];
+    const double gone = (points_[p] - centre).length();
+    for (const auto& [triangle, least] : near) {
+      if (triangle == best.triangle || least - gone >= best.distance) continue;
+      const TrianglePoint candidate = query_.surface_.closest_on(triangle, points_[p]);
+      if (candidate.squared_distance >= best.distance * best.distance) continue;
+      best = {std::sqrt(candidate.squared_distance), triangle, candidate.feature, candidate.point};
+    }
+    answers_[p] = best;
+  }
+
+  const ClosestQuery& query_;
+  std::span<const Vec3d> points_;
+  std::span<Closest> answers_;
+  std::vector<Closest> walked_;  // what is close to each point, and next to the hint
+  std::vector<Ball> balls_;
+  std::vector<std::pair<std::size_t, std::size_t>> runs_;  // of points, one for each ball
+};
+
+void ClosestQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                                     std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
+  Ways(*this, points, begin, hints, answers).answer();
+}
+
 void ClosestQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                                    std::span<Closest> answers) const {
   for (std::size_t i = 0; i < points.size(); i += Group::kMost) {

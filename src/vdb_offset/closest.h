@@ -46,6 +46,12 @@ class ClosestQuery {
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
+  /// The same where some of the points lie on one way up from the surface, as the places of a vertex at several
+  /// distances do: what is close to one of them is looked for once. Way i has points begin[i] .. begin[i + 1] - 1, and
+  /// a hint. The answers depend only on the points together, the hints and the surface.
+  void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                         std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
+
   /// A triangle, and a distance that it is no nearer than, world units.
   struct Candidate {
     std::uint32_t triangle;
@@ -74,6 +80,7 @@ class ClosestQuery {
   class Search;
   class Group;
   class Collector;
+  class Ways;
   // More blocks of lowest boxes than this are too many to look through for each of some balls.
   static constexpr std::size_t kMostBlocks = 48;
   using Blocks = std::array<std::uint32_t, kMostBlocks>;

@@ -106,4 +106,10 @@ void CurveQuery::answer_together(std::span<const Vec3d> points, std::span<const 
   for (std::size_t i = 0; i < points.size(); ++i) answers[i] = (*this)(points[i], hints[i]);
 }
 
+void CurveQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                                   std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
+  for (std::size_t way = 0; way + 1 < begin.size(); ++way)
+    for (std::size_t i = begin[way]; i < begin[way + 1]; ++i) answers[i] = (*this)(points[i], hints[way]);
+}
+
 }  // namespace vdb_offset

@@ -28,6 +28,10 @@ class CurveQuery {
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
+  /// The same for points on ways up from the curves: see ClosestQuery.
+  void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                         std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
+
   const Polyline& surface() const { return line_; }
 
  private:

@@ -92,12 +92,12 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
     rim_->look(moved, touched, finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
 }
 
-/// Whether a vertex stands where its path ended, as good as: then what was found there holds here, phi being
+/// Whether a vertex stands where its path ended, rounded: then what was found there holds here to as much, phi being
 /// 1-Lipschitz.
 bool FaultFinder::is_known(std::uint32_t v, const Vec3d& x, const Paths& ends) const {
-  constexpr double kSamePlace = 1e-11;
-  const Vec3d end = surface_.vertices[v] + ends.displacement[v];
-  return ends.closest[v] != kNone && (x - end).length() <= kSamePlace * ends.achieved[v];
+  constexpr double kSamePlace = 1e-11, kLittle = 1e-2;
+  const double same = kSamePlace * ends.achieved[v] + std::min(2 * rounding(v), kLittle * ends.achieved[v]);
+  return ends.closest[v] != kNone && (x - surface_.vertices[v] - ends.displacement[v]).length() <= same;
 }
 
 void FaultFinder::measure(std::span<const std::uint32_t> vertices, const Paths* ends) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/traveller.h"
@@ -20,7 +21,7 @@ constexpr double kOnTheWay = 0.7;
 /// Returns, by component, whether all of its vertices have arrived that way.
 template <class Query>
 std::vector<std::uint8_t> go_straight(const Query& query, const DirectionField& directions, const Distances& distances,
-                                      std::vector<Vec3d>& arrival) {
+                                      std::vector<StraightEnd>& arrival) {
   const ShapeOf<Query>& surface = query.surface();
   // A flag only ever falls; who sees it late does work that is not used.
   std::vector<std::atomic<std::uint8_t>> straight(surface.facts.components);
@@ -108,13 +109,27 @@ class Marches {
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
     if (distance * side <= 0 || (again && (is_straight(set, v) || paths_[set].state[v] == VertexState::Reached)))
       return;
-    if (is_straight(set, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {straight_end(set, v)}});
-    else stops.push_back(stop);
+    if (!is_straight(set, v)) stops.push_back(stop);
+    else if (!end_straight(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {straight_end(set, v)}});
   }
 
   Vec3d straight_end(std::size_t set, std::size_t v) const {
-    const Vec3d& end = arrival_[set][v];
+    const Vec3d& end = arrival_[set][v].position;
     return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
+  }
+
+  /// At the end of a straight way nothing is left to judge, but where rounding moves it.
+  bool end_straight(const Stop& stop, std::size_t v) const {
+    const StraightEnd& end = arrival_[stop.set][v];
+    const Vec3d& start = surface_.vertices[v];
+    const double rounding = (start + surface_.origin).length() * std::numeric_limits<double>::epsilon();
+    if (rounding > kStopTolerance * stop.distance || straight_end(stop.set, v) != end.position) return false;
+    Paths& paths = paths_[stop.set];
+    paths.displacement[v] = round_way(end.position - start, stop.distance);
+    paths.achieved[v] = end.distance;
+    paths.closest[v] = end.triangle;
+    paths.state[v] = VertexState::Reached;
+    return true;
   }
 
   void march(DirectionSampler& sampler, std::size_t v, int side, Attempt attempt, std::vector<Stop>& stops,
@@ -138,16 +153,13 @@ class Marches {
   /// Tells how far the ends are from the surface, and what that makes of their vertices.
   void judge(const std::vector<End>& ends) const {
     std::vector<Vec3d> points;
-    std::vector<std::uint32_t> hints;
     for (const auto& [v, stop, end] : ends) {
       const Vec3d way = round_way(end.position - surface_.vertices[v], stop.distance);
       paths_[stop.set].displacement[v] = way;
       // Judged where the vertex will be: far from the origin its coordinates are rounded.
       points.push_back((surface_.vertices[v] + surface_.origin) + way - surface_.origin);
-      hints.push_back(surface_.triangles_around(v).front());
     }
-    std::vector<Closest> closest(points.size());
-    query_.answer_together(points, hints, closest);
+    const std::vector<Closest> closest = look(ends, points);
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const auto& [v, stop, end] = ends[i];
       paths_[stop.set].achieved[v] = closest[i].distance;
@@ -159,6 +171,23 @@ class Marches {
     }
   }
 
+  /// What is closest to the ends. Those of a vertex on one side stand next to each other.
+  std::vector<Closest> look(const std::vector<End>& ends, std::span<const Vec3d> points) const {
+    std::vector<Closest> closest(ends.size());
+    std::vector<std::uint32_t> hints;
+    std::vector<std::size_t> begin;
+    const auto is_inward = [&](const End& end) { return distances_[end.stop.set][end.vertex] < 0; };
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (i > 0 && ends[i].vertex == ends[i - 1].vertex && is_inward(ends[i]) == is_inward(ends[i - 1])) continue;
+      hints.push_back(surface_.triangles_around(ends[i].vertex).front());
+      begin.push_back(i);
+    }
+    begin.push_back(ends.size());
+    if (hints.size() == ends.size()) query_.answer_together(points, hints, closest);
+    else query_.answer_along_ways(points, begin, hints, closest);
+    return closest;
+  }
+
   const Query& query_;
   const ShapeOf<Query>& surface_;
   const DirectionField& directions_;
@@ -166,7 +195,7 @@ class Marches {
   const Obstacles* obstacles_;
   Traces traces_;
   std::vector<Paths>& paths_;
-  std::vector<std::vector<Vec3d>> arrival_;          // of each set, on straight paths
+  std::vector<std::vector<StraightEnd>> arrival_;    // of each set, on straight paths
   std::vector<std::vector<std::uint8_t>> straight_;  // of each set, by component
 };
 

@@ -49,10 +49,20 @@ inline Vec3d stop_at_obstacle(const Obstacles& obstacles, const Vec3d& from, con
 /// nearer to that than it believes.
 enum class Pace { Careful, Hasty };
 
+// A stop is solved far below the promised 1e-6, so that rounding on the way to a file does not use it up.
+inline constexpr double kStopTolerance = 1e-9;
+
 /// Where a vertex ended up on its way.
 struct Arrival {
   Vec3d position;
   bool outside_field = false;
+};
+
+/// Where a straight way ends: place, exact distance, and the closest triangle.
+struct StraightEnd {
+  Vec3d position;
+  double distance;
+  std::uint32_t triangle;
 };
 
 template <class Query>
@@ -83,16 +93,16 @@ class Traveller {
 
   /// The point at distance `target` on the line along the normal, if nothing but the faces around the vertex decides
   /// phi on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
-  std::optional<Vec3d> go_straight(double target) {
+  std::optional<StraightEnd> go_straight(double target) {
     target_ = target;
     if (slope_ < kLeastStraightSlope) return std::nullopt;
     const double longest = target_ / slope_ * (1 + kStraightTolerance);
     double t = target_, before = 0, phi_before = 0;
     for (int i = 0; i < 8; ++i) {
       const double phi = measure(origin_ + normal_ * t).phi;
+      const StraightEnd end{origin_ + normal_ * t, phi, hint_};
       if (arrived(phi))
-        return is_way_free(normal_, slope_, t - target_, kNothingLeft * target_) ? std::optional(origin_ + normal_ * t)
-                                                                                 : std::nullopt;
+        return is_way_free(normal_, slope_, t - target_, kNothingLeft * target_) ? std::optional(end) : std::nullopt;
       if (phi < slope_ * t * (1 - kStraightTolerance) || phi <= phi_before) return std::nullopt;
       const double next = t + (target_ - phi) * (t - before) / (phi - phi_before);
       if (!(next > before) || next > longest) return std::nullopt;
@@ -140,8 +150,6 @@ class Traveller {
   }
 
  private:
-  // The stop is solved far below the promised 1e-6, so that rounding on the way to a file does not use it up.
-  static constexpr double kStopTolerance = 1e-9;
   // How much longer than the faces around a vertex alone ask for a straight path may be.
   static constexpr double kStraightTolerance = 1e-3;
   // What remains of a straight way, in distances, when it has been followed back to the vertex.
