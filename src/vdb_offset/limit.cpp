@@ -29,7 +29,8 @@ constexpr Attempt kAttempts[] = {
 constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
 // Then what has collided is tried in these, with so many rings around.
-constexpr Attempt kFreeings[] = {{{1, 30, false}, 1}, {{1, 4, true}, 0}, {{1, 30, false}, 0}, {{0.01, 10, false}, 0}};
+constexpr Attempt kFreeings[] = {
+    {{1, 30, true}, 1}, {{1, 4, true}, 0}, {{1, 30, true}, 0}, {{1, 30, false}, 0}, {{0.01, 10, false}, 0}};
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.

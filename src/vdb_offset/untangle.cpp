@@ -345,7 +345,7 @@ class Patch {
   /// which no direction leads away from, may stand on the surface yet: it steps off.
   void return_to_distance(Point& p, const Vec3d& before) const {
     constexpr int kMostSteps = 40;
-    constexpr double kSettled = 1e-9, kLeastSlope = 0.1, kStepOff = 0.5;
+    constexpr double kSettled = 1e-9, kLeastSlope = 0.1, kStepOff = 0.02;
     const Vec3d away = p.normal * p.side;
     for (int i = 0; i < kMostSteps; ++i) {
       TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
