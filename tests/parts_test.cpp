@@ -318,6 +318,7 @@ TEST_CASE("selection: groups, objects, materials and files of faces", "[selectio
   const io::MeshFile mesh = io::parse_mesh("m.obj", io::Format::Obj, text);
   const auto marks = [&](const std::vector<std::string>& names) {
     std::vector<io::Selector> selectors;
+    selectors.reserve(names.size());
     for (const std::string& name : names) selectors.push_back(io::parse_selector(name));
     return io::select_faces(mesh, selectors);
   };

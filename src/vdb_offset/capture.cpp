@@ -395,6 +395,7 @@ void Capture::check_topology() {
   constexpr std::size_t kInteriorSamples = 10000;
   const std::vector<std::uint32_t> none(mesh.vertices.size(), kNone);  // of its vertices is one of the source's
   const Body body{result_.source->query, mesh, none, {}, {}};
+  const StageTimer timer(statistics.seconds, Stage::Measure);
   statistics.interior = measure_interior(body, mesh.vertices, Distances(level_->distance()), kInteriorSamples);
 }
 

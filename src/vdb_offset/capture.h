@@ -69,7 +69,8 @@ struct CaptureStatistics {
 };
 
 /// The stages that take time here: Rasterise makes the surface and phi, Capture the mesh, Limit mends it.
-inline constexpr Stage kCaptureStages[] = {Stage::Read, Stage::Rasterise, Stage::Capture, Stage::Limit, Stage::Write};
+inline constexpr Stage kCaptureStages[] = {Stage::Read,  Stage::Rasterise, Stage::Capture,
+                                           Stage::Limit, Stage::Measure,   Stage::Write};
 
 /// The captured surface, all triangles, outward as the source's faces are.
 struct CaptureResult {

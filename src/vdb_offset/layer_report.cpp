@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <tuple>
 
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/error.h"
@@ -151,7 +153,10 @@ struct Weighted {
 /// Of numbers that count by their weights; those without any weight count alike.
 Spread spread(std::vector<Weighted> values) {
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+  // By weights too, so that sums are the same for any number of threads.
+  tbb::parallel_sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
+    return std::tie(a.value, a.weight) < std::tie(b.value, b.weight);
+  });
   double whole = 0, sum = 0;
   for (const Weighted& v : values) whole += v.weight, sum += v.value * v.weight;
   if (!(whole > 0)) {
@@ -256,7 +261,7 @@ class Source {
       if (facts_.cells[f] > 0)
         for (const auto v : mesh_.face(f))
           if (layers_.share[v] == 1) vertices.push_back(v);
-    std::sort(vertices.begin(), vertices.end());
+    tbb::parallel_sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     figures.full_vertices = vertices.size();
     std::vector<float> errors;
@@ -279,8 +284,9 @@ class Source {
       if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += layers_.count() * facts_.cells[f];
     }
     figures.cells = in_layer.size() * layers_.count();
+    const bool whole_layers = in_layer.size() == first_cell_.back();
     const auto number = [&](std::size_t i) {
-      return i / in_layer.size() * first_cell_.back() + in_layer[i % in_layer.size()];
+      return whole_layers ? i : i / in_layer.size() * first_cell_.back() + in_layer[i % in_layer.size()];
     };
     figures.inverted_cells = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, figures.cells, 65536), std::size_t{0},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <tbb/parallel_for.h>
 
@@ -199,8 +200,10 @@ class Limiter {
   /// What is wrong in a patch, the worse first.
   struct Wrong {
     std::size_t misplaced = 0, corners = 0, collided = 0;
-    auto operator<=>(const Wrong&) const = default;
     bool any_fault() const { return misplaced + corners > 0; }
+    bool is_less_than(const Wrong& other) const {
+      return std::tie(misplaced, corners, collided) < std::tie(other.misplaced, other.corners, other.collided);
+    }
   };
   std::vector<Wrong> wrong_by_patch(const std::vector<Indices>& patches) const {
     std::vector<Wrong> wrong(patches.size());
@@ -253,7 +256,7 @@ class Limiter {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const std::uint32_t v = chosen[i];
       const Wrong &was = before[patch_[v]], &is = after[patch_[v]];
-      if (was.any_fault() ? is <= was : is < was) continue;
+      if (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was)) continue;
       whole_way_[v] = old_way[i];
       undone.push_back(v);
     }

@@ -15,6 +15,7 @@
 #include "vdb_offset/layer_block.h"
 #include "vdb_offset/layer_report.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -23,31 +24,37 @@ bool is_volume(const std::string& path) {
   return io::volume_format_of(path).has_value() || io::structured_format_of(path).has_value();
 }
 
-/// Cells are measured whatever is written.
+/// Cells are made and measured whatever is written.
 struct Grown {
   LayersResult layers;
   VolumeMesh volume;
   LayerReport report;
 };
 
-Grown grow_on_curves(const Arguments& args, CurvesView curves, std::span<const Distances> heights) {
-  Grown grown;
-  grown.layers = grow_curve_layers(curves, heights, args.options);
+void measure_on_curves(CurvesView curves, Grown& grown) {
+  const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   CurveCells cells = make_curve_cells(curves, grown.layers);
   grown.report = report_layers(cells.segments.view(), grown.layers, {}, cells.mesh, cells.facts);
   grown.volume = std::move(cells.mesh);
-  return grown;
+}
+
+void measure(const Arguments& args, const Source& source, Grown& grown) {
+  const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
+  const WallNames names = source.file ? io::wall_names(*source.file) : WallNames{};
+  LayerCellFacts facts;
+  grown.volume = make_cells(source.view(), grown.layers, args.options.weld, names, &facts);
+  grown.report = report_layers(source.view(), grown.layers, names, grown.volume, facts);
 }
 
 Grown grow(const Arguments& args, const Source& source, std::span<const Distances> heights) {
-  const PolygonView mesh = source.view();
-  if (source.curves) return grow_on_curves(args, mesh, heights);
-  const WallNames names = source.file ? io::wall_names(*source.file) : WallNames{};
   Grown grown;
-  grown.layers = grow_layers(mesh, heights, args.options);
-  LayerCellFacts facts;
-  grown.volume = make_cells(mesh, grown.layers, args.options.weld, names, &facts);
-  grown.report = report_layers(mesh, grown.layers, names, grown.volume, facts);
+  if (source.curves) {
+    grown.layers = grow_curve_layers(source.view(), heights, args.options);
+    measure_on_curves(source.view(), grown);
+  } else {
+    grown.layers = grow_layers(source.view(), heights, args.options);
+    measure(args, source, grown);
+  }
   return grown;
 }
 
