@@ -29,9 +29,11 @@ constexpr Attempt kAttempts[] = {
     {{1, 4, true}, 16}, {{0.1, 10, true}, kFewRings}, {{1, 30, false}, 16}, {{0.01, 10, false}, kFewRings}};
 constexpr int kRings[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
-// Then what has collided is tried in these, with so many rings around.
+// Then what has collided is tried in these, with so many rings around. If it is much, and one of them leaves more than
+// this share of it where it is, fronts have met, and there is no way out.
 constexpr Attempt kFreeings[] = {
     {{1, 30, true}, 1}, {{1, 4, true}, 0}, {{1, 30, true}, 0}, {{1, 30, false}, 0}, {{0.01, 10, false}, 0}};
+constexpr double kHopeless = 0.99;
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
@@ -71,7 +73,7 @@ class Limiter {
     statistics_.before = faults_.count();
     for (const Attempt& attempt : kAttempts)
       if (!untangle_with(attempt, progress)) break;
-    for (const Attempt& freeing : kFreeings) free_collided(freeing);
+    free_collided();
   }
 
   void pull_back_and_release(Progress& progress) {
@@ -132,14 +134,20 @@ class Limiter {
   }
 
   /// Lets what has collided slide to where it has its distance.
-  void free_collided(const Attempt& freeing) {
-    Indices chosen;
+  void free_collided() {
+    Indices open;
     for (std::uint32_t v = 0; v < source_.size(); ++v)
-      if (may_slide(v) && is_short(v)) chosen.push_back(v);
-    if (chosen.empty()) return;
-    chosen = with_rings(std::move(chosen), freeing.rings);
-    std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
-    untangle(chosen, freeing.options);
+      if (may_slide(v) && is_short(v)) open.push_back(v);
+    for (const auto& [options, rings] : kFreeings) {
+      const std::size_t before = open.size();
+      const bool many = before > kManyFaults;
+      if (many && rings > 0) continue;
+      Indices chosen = with_rings(open, rings);
+      std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
+      untangle(chosen, options);
+      std::erase_if(open, [&](std::uint32_t v) { return !is_short(v); });
+      if (open.empty() || (many && static_cast<double>(open.size()) > kHopeless * static_cast<double>(before))) return;
+    }
   }
 
   bool is_short(std::uint32_t v) const {
