@@ -424,6 +424,7 @@ TEST_CASE("command: layers go to volume files, or to a surface each", "[command]
     CHECK(shell.has(name));
     const auto report = nlohmann::json::parse(shell.slurp(shell.file("report.json")));
     CHECK(report["layers"]["cells"] == 5120);
+    CHECK(report["seconds"]["measure"].get<double>() > 0);
     CHECK(report["layers"]["coverage"].get<double>() == Approx(1));
     CHECK(report["options"]["growth"] == "1.5");
   }

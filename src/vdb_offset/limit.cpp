@@ -73,7 +73,7 @@ class Limiter {
     statistics_.before = faults_.count();
     for (const Attempt& attempt : kAttempts)
       if (!untangle_with(attempt, progress)) break;
-    free_collided();
+    free_collided(progress);
   }
 
   void pull_back_and_release(Progress& progress) {
@@ -134,19 +134,22 @@ class Limiter {
   }
 
   /// Lets what has collided slide to where it has its distance.
-  void free_collided() {
+  void free_collided(Progress& progress) {
     Indices open;
     for (std::uint32_t v = 0; v < source_.size(); ++v)
       if (may_slide(v) && is_short(v)) open.push_back(v);
     for (const auto& [options, rings] : kFreeings) {
+      if (open.empty()) return;
       const std::size_t before = open.size();
       const bool many = before > kManyFaults;
       if (many && rings > 0) continue;
       Indices chosen = with_rings(open, rings);
       std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
       untangle(chosen, options);
+      ++statistics_.untanglings;
+      progress.advance(1);
       std::erase_if(open, [&](std::uint32_t v) { return !is_short(v); });
-      if (open.empty() || (many && static_cast<double>(open.size()) > kHopeless * static_cast<double>(before))) return;
+      if (many && static_cast<double>(open.size()) > kHopeless * static_cast<double>(before)) return;
     }
   }
 

@@ -293,8 +293,10 @@ class Pipeline {
     result.distances = distances_of_input(surface, distances);
     std::vector<Vec3d> places = source;
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += paths.displacement[w];
-    const StageTimer timer(result.statistics.seconds, Stage::Measure);
-    result.statistics.interior = measure_interior(body, places, distances, kInteriorTriangles);
+    {
+      const StageTimer timer(result.statistics.seconds, Stage::Measure);
+      result.statistics.interior = measure_interior(body, places, distances, kInteriorTriangles);
+    }
     return result;
   }
 

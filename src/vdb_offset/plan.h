@@ -62,7 +62,7 @@ std::size_t surface_bytes(const Surface& surface);
 /// Bytes of so many layers of cells on a mesh.
 std::size_t layers_bytes(PolygonView mesh, std::size_t layers);
 
-// So many results are made valid at the same time; each takes memory.
+/// So many results are made valid at the same time; each takes memory.
 inline constexpr std::size_t kResultsTogether = 4;
 
 /// Bytes of results beside the first.
