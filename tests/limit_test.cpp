@@ -10,6 +10,7 @@
 #include "random_scenes.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/crossings.h"
+#include "vdb_offset/faults.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;
@@ -86,6 +87,49 @@ TEST_CASE("crossings: faces at one vertex that run through each other, and faces
   CHECK(crossings(hinge, hinge.positions) == 1);
   hinge.positions[3] = {0.25, 1, 1e-300};
   CHECK(crossings(hinge, hinge.positions) == 0);
+}
+
+TEST_CASE("crossings: as vertices move, those around them are found, or one of each triangle's", "[crossings]") {
+  const Surface surface = build_surface(scene::torus(1, 0.4, 24, 12).view(), {});
+  std::vector<Vec3d> places = surface.vertices;
+  CrossingFinder finder(surface, places);
+  std::mt19937 engine(3);
+  std::size_t pairs = 0, fewer = 0;
+  for (int round = 0; round < 60; ++round) {
+    INFO(round);
+    const double size = 0.04 * (1 + round % 20);
+    std::vector<std::uint32_t> touched;
+    for (std::uint32_t v = 0; v < places.size(); ++v) {
+      if (engine() % 8 != 0) continue;
+      for (int k = 0; k < 3; ++k) places[v][k] = surface.vertices[v][k] + size * (engine() / 4294967296.0 - 0.5);
+      const auto around = surface.triangles_around(v);
+      touched.insert(touched.end(), around.begin(), around.end());
+    }
+    sort_unique(touched);
+    finder.update(touched);
+    const auto has_moved = [&](std::uint32_t t) { return std::binary_search(touched.begin(), touched.end(), t); };
+    const auto moved_of = [&](const std::vector<TrianglePair>& found) {
+      Indices members;
+      for (const auto& [s, t] : found)
+        for (const auto member : {s, t})
+          if (has_moved(member)) members.push_back(member);
+      sort_unique(members);
+      return members;
+    };
+    std::vector<TrianglePair> expected = finder.all();
+    std::erase_if(expected,
+                  [&](const TrianglePair& pair) { return !has_moved(pair.first) && !has_moved(pair.second); });
+    CHECK(finder.of_updated() == expected);
+    const auto counts = [](const TrianglePair& pair) { return (pair.first + pair.second) % 3 != 0; };
+    std::erase_if(expected, [&](const TrianglePair& pair) { return !counts(pair); });
+    const std::vector<TrianglePair> some = finder.one_of_each_updated(counts);
+    CHECK(std::includes(expected.begin(), expected.end(), some.begin(), some.end()));
+    CHECK(moved_of(some) == moved_of(expected));
+    pairs += expected.size();
+    fewer += expected.size() - some.size();
+  }
+  CHECK(pairs > 1000);
+  CHECK(fewer > 100);
 }
 
 TEST_CASE("limit: what propagation folds and crosses is valid afterwards", "[limit]") {

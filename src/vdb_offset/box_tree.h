@@ -44,6 +44,9 @@ class BoxTree {
   /// l > 0 is around the block levels()[l - 1][i].
   template <class Visit>
   void for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t of_level = 0) const;
+  /// The same until one is what is looked for; whether one is.
+  template <class IsIt>
+  bool any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level = 0) const;
 
   /// Which of eight siblings meet a box, as bits.
   static unsigned overlaps(const Siblings& siblings, const FloatBox& box);
@@ -73,6 +76,17 @@ inline FloatBox BoxTree::box(const Siblings& siblings, int i) {
 
 template <class Visit>
 void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t of_level) const {
+  any_overlap(
+      box,
+      [&](std::size_t i) {
+        visit(i);
+        return false;
+      },
+      of_level);
+}
+
+template <class IsIt>
+bool BoxTree::any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level) const {
   struct Node {
     std::uint32_t level, node;
   };
@@ -83,10 +97,11 @@ void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t o
     const auto [level, node] = stack[--depth];
     for (unsigned meets = overlaps(levels_[level][node], box); meets != 0; meets &= meets - 1) {
       const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
-      if (level == of_level) visit(std::size_t{child});
-      else stack[depth++] = {level - 1, child};
+      if (level != of_level) stack[depth++] = {level - 1, child};
+      else if (is_it(std::size_t{child})) return true;
     }
   }
+  return false;
 }
 
 }  // namespace vdb_offset

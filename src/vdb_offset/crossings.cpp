@@ -7,6 +7,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -63,18 +64,42 @@ struct Couple {
 // sum of such differences, is off by far less than this share of the product of lengths.
 constexpr double kRounding = 1e-14;
 
+/// No less than a vector's length, and found faster.
+double no_shorter(const Vec3d& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
+
+/// A triangle's plane, which tells most of what does not meet the triangle.
+class Plane {
+ public:
+  explicit Plane(const std::array<Vec3d, 3>& triangle) : point_(triangle[0]) {
+    const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    normal_ = ab.cross(ac);
+    size_ = kRounding * no_shorter(ab) * no_shorter(ac);
+  }
+
+  /// 1 for what is clearly above, -1 for what is clearly below.
+  int side(const Vec3d& x) const {
+    const Vec3d to = x - point_;
+    const double height = normal_.dot(to), margin = size_ * no_shorter(to);
+    return static_cast<int>(height > margin) - static_cast<int>(height < -margin);
+  }
+
+ private:
+  Vec3d point_, normal_;
+  double size_;
+};
+
+/// True if a triangle, with no corner in the plane, lies clearly on one side of it.
+bool misses(const Plane& plane, const std::array<Vec3d, 3>& triangle) {
+  const int side = plane.side(triangle[0]);
+  return side != 0 && plane.side(triangle[1]) == side && plane.side(triangle[2]) == side;
+}
+
 /// True if the corners of `b` that are not shared lie clearly on one side of the plane of `a`.
 bool on_one_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b, int shared) {
-  const Vec3d ab = a[1] - a[0], ac = a[2] - a[0], normal = ab.cross(ac);
-  const double size = kRounding * std::sqrt(ab.lengthSqr() * ac.lengthSqr());
-  bool above = true, below = true;
-  for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) {
-    const Vec3d to = b[k] - a[0];
-    const double height = normal.dot(to), margin = size * to.length();
-    above = above && height > margin;
-    below = below && height < -margin;
-  }
-  return above || below;
+  const Plane plane(a);
+  int sum = 0;
+  for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) sum += plane.side(b[k]);
+  return std::abs(sum) == 3 - shared;
 }
 
 /// True if the triangles, which share their first corner, clearly lie to either side of a plane through it: one at
@@ -129,7 +154,7 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
   });
   std::vector<TrianglePair> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
-  std::sort(all.begin(), all.end());
+  tbb::parallel_sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
@@ -137,11 +162,14 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
 }  // namespace
 
 CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
-    : surface_(surface), positions_(positions) {
+    : surface_(surface), positions_(positions), is_updated_(surface.triangles.size(), 0) {
   tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(corners(t, positions_)); });
 }
 
 void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
+  for (const auto t : updated_) is_updated_[t] = 0;
+  updated_.assign(triangles.begin(), triangles.end());
+  for (const auto t : updated_) is_updated_[t] = 1;
   tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
 }
 
@@ -188,23 +216,62 @@ std::vector<TrianglePair> CrossingFinder::all() const {
   });
 }
 
-std::vector<TrianglePair> CrossingFinder::of(std::span<const std::uint32_t> triangles) const {
-  return find_in_parallel(triangles.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
-    const std::uint32_t t = triangles[i];
+std::vector<TrianglePair> CrossingFinder::of_updated() const {
+  return find_in_parallel(updated_.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
+    const std::uint32_t t = updated_[i];
+    const Plane plane(corners(t, positions_));
     tree_.for_each_overlap(box_of(corners(t, positions_)), [&](std::size_t child) {
       const auto other = static_cast<std::uint32_t>(child);
-      if (other == t || (other < t && std::binary_search(triangles.begin(), triangles.end(), other))) return;
+      if (other == t || (other < t && is_updated_[other]) || misses(plane, corners(other, positions_))) return;
       const TrianglePair pair = std::minmax(t, other);
       if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
     });
   });
 }
 
+/// First each looks at those that are not to look at it; then who has found none, and has been found by none, looks at
+/// those that would have, had they not stopped before.
+std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
+    const std::function<bool(const TrianglePair&)>& counts) const {
+  const auto find_one = [&](std::uint32_t t, auto&& may_meet, std::vector<TrianglePair>& found) {
+    const Plane plane(corners(t, positions_));
+    tree_.any_overlap(box_of(corners(t, positions_)), [&](std::size_t child) {
+      const auto other = static_cast<std::uint32_t>(child);
+      if (other == t || !may_meet(other) || misses(plane, corners(other, positions_))) return false;
+      const TrianglePair pair = std::minmax(t, other);
+      if (!meet(surface_, positions_, pair.first, pair.second) || !counts(pair)) return false;
+      found.push_back(pair);
+      return true;
+    });
+  };
+  std::vector<TrianglePair> pairs =
+      find_in_parallel(updated_.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
+        const std::uint32_t t = updated_[i];
+        find_one(
+            t, [&](std::uint32_t other) { return other > t || !is_updated_[other]; }, found);
+      });
+  if (pairs.empty()) return pairs;
+  std::vector<std::uint8_t> meets(is_updated_.size(), 0);
+  for (const auto& [s, t] : pairs) meets[s] = meets[t] = 1;
+  const std::vector<TrianglePair> more =
+      find_in_parallel(updated_.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
+        const std::uint32_t t = updated_[i];
+        if (!meets[t])
+          find_one(
+              t, [&](std::uint32_t other) { return other < t && is_updated_[other] && meets[other]; }, found);
+      });
+  pairs.insert(pairs.end(), more.begin(), more.end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
   std::vector<std::uint32_t> met;
+  const Plane plane(corners(triangle, places));
   tree_.for_each_overlap(box_of(corners(triangle, places)), [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
-    if (meet(Couple(surface_, places, triangle, positions_, other))) met.push_back(other);
+    if (!misses(plane, corners(other, positions_)) && meet(Couple(surface_, places, triangle, positions_, other)))
+      met.push_back(other);
   });
   return met;
 }
@@ -213,9 +280,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> CrossingFinder::met_by(
     std::span<const std::uint32_t> others, const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const {
   return find_in_parallel(others.size(), 64, [&](std::size_t i, std::vector<TrianglePair>& found) {
     const std::array<Vec3d, 3> other = corners_of(others[i]);
+    const Plane plane(other);
     tree_.for_each_overlap(box_of(other), [&](std::size_t child) {
       const auto t = static_cast<std::uint32_t>(child);
-      if (meet(Couple(other, corners(t, positions_)))) found.emplace_back(others[i], t);
+      const std::array<Vec3d, 3> here = corners(t, positions_);
+      if (!misses(plane, here) && meet(Couple(other, here))) found.emplace_back(others[i], t);
     });
   });
 }

@@ -17,7 +17,7 @@ using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Finds the pairs of a surface's triangles that meet elsewhere than in the corners and edges they share: decided with
 /// exact predicates (CGAL's kernel), without a tolerance. Neighbours across an edge meet if they are folded flat onto
-/// each other. Triangles without area meet nothing. Memory: 28 bytes a triangle.
+/// each other. Triangles without area meet nothing. Memory: 29 bytes a triangle.
 class CrossingFinder {
  public:
   /// `positions` of the surface's vertices may lie anywhere. Keeps references to both.
@@ -25,11 +25,15 @@ class CrossingFinder {
 
   /// To be told of triangles whose corners have moved; sorted, no two the same.
   void update(std::span<const std::uint32_t> triangles);
+  /// Whether a triangle was among those of the last update.
+  bool is_updated(std::uint32_t triangle) const { return is_updated_[triangle]; }
 
   /// All pairs, sorted; the same for any number of threads.
   std::vector<TrianglePair> all() const;
-  /// The pairs that one of these triangles is part of, or two; they are sorted, and so is the answer.
-  std::vector<TrianglePair> of(std::span<const std::uint32_t> triangles) const;
+  /// The pairs that a triangle of the last update is part of, or two; sorted.
+  std::vector<TrianglePair> of_updated() const;
+  /// Of each triangle of the last update one pair that counts, if there are any; sorted.
+  std::vector<TrianglePair> one_of_each_updated(const std::function<bool(const TrianglePair&)>& counts) const;
 
   /// The surface's triangles, as they stand here, that one meets with its corners at `places`, elsewhere than in
   /// corners that are at one place. In no particular order.
@@ -48,6 +52,8 @@ class CrossingFinder {
   const Surface& surface_;
   std::span<const Vec3d> positions_;
   BoxTree tree_;
+  std::vector<std::uint32_t> updated_;
+  std::vector<std::uint8_t> is_updated_;  // of each triangle
 };
 
 }  // namespace vdb_offset

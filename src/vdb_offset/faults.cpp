@@ -74,19 +74,29 @@ Indices FaultFinder::triangles_around(const Indices& vertices) const {
   return triangles;
 }
 
-void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touched) {
+/// Whether a pair that meets is not to.
+bool FaultFinder::is_fault(const TrianglePair& pair) const {
+  return !goes_along(pair.first, pair.second) && !goes_along(pair.second, pair.first) &&
+         !std::binary_search(source_crossings().begin(), source_crossings().end(), pair);
+}
+
+void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings) {
   finder_.update(touched);
-  const auto has_moved = [&](std::uint32_t t) { return std::binary_search(touched.begin(), touched.end(), t); };
   const bool first = touched.size() == surface_.triangles.size();
   // Pairs that have not moved meet as before.
-  std::erase_if(crossings_, [&](const TrianglePair& pair) { return has_moved(pair.first) || has_moved(pair.second); });
-  for (const TrianglePair& pair : first ? finder_.all() : finder_.of(touched)) {
-    if (goes_along(pair.first, pair.second) || goes_along(pair.second, pair.first) ||
-        std::binary_search(source_crossings().begin(), source_crossings().end(), pair))
-      continue;
-    if (source_crossings_->is_near(pair.first) || source_crossings_->is_near(pair.second))
-      crossings_near_source_ += first;
-    else crossings_.push_back(pair);
+  std::erase_if(crossings_, [&](const TrianglePair& pair) {
+    return finder_.is_updated(pair.first) || finder_.is_updated(pair.second);
+  });
+  const auto is_near_source = [&](const TrianglePair& pair) {
+    return source_crossings_->is_near(pair.first) || source_crossings_->is_near(pair.second);
+  };
+  const auto counts = [&](const TrianglePair& pair) { return !is_near_source(pair) && is_fault(pair); };
+  if (crossings == Crossings::OneOfEach) {
+    for (const TrianglePair& pair : finder_.one_of_each_updated(counts)) crossings_.push_back(pair);
+  } else {
+    for (const TrianglePair& pair : first ? finder_.all() : finder_.of_updated())
+      if (counts(pair)) crossings_.push_back(pair);
+      else crossings_near_source_ += first && is_fault(pair);
   }
   if (rim_)
     rim_->look(moved, touched, finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
@@ -241,14 +251,19 @@ void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& pla
   Indices everything(source_.size());
   std::iota(everything.begin(), everything.end(), 0u);
   crossings_near_source_ = 0;
-  look(everything, place_of, ends);
+  look(everything, place_of, ends, Crossings::All);
 }
 
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
-  look(moved, place_of, nullptr);
+  look(moved, place_of, nullptr, Crossings::All);
 }
 
-void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
+void FaultFinder::glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
+  look(moved, place_of, nullptr, Crossings::OneOfEach);
+}
+
+void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
+                       Crossings crossings) {
   constexpr std::size_t kBlock = 64;
   const auto put = [&](std::size_t block) {
     const auto some = std::span(moved).subspan(block * kBlock, std::min(kBlock, moved.size() - block * kBlock));
@@ -264,7 +279,7 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
       touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, moved, [&](std::uint32_t v) { return is_misplaced(v); });
-  look_for_crossings(moved, touched);
+  look_for_crossings(moved, touched, crossings);
 }
 
 bool FaultFinder::is_misplaced(std::uint32_t v) const {

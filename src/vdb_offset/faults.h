@@ -53,6 +53,9 @@ class FaultFinder {
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them.
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
+  /// The same, but of the crossings of each face around them at least one is found, not all: enough to tell which of
+  /// these vertices have to go back. Those are to be looked at again, so that none is missed in the end.
+  void glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
   /// The same for all vertices. Where they stand at the ends of paths, what is known of those need not be found again.
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
 
@@ -86,7 +89,9 @@ class FaultFinder {
 
   void find_folded();
   Indices triangles_around(const Indices& vertices) const;
-  void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends);
+  enum class Crossings { All, OneOfEach };
+  void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
+            Crossings crossings);
   void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest);
@@ -99,7 +104,8 @@ class FaultFinder {
   bool meets_source(std::uint32_t triangle) const;
   bool meets_other_skin(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
-  void look_for_crossings(const Indices& moved, const Indices& touched);
+  bool is_fault(const TrianglePair& pair) const;
+  void look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings);
 
   const Body& body_;
   const Surface& surface_;

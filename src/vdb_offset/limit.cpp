@@ -68,7 +68,7 @@ class Limiter {
   }
 
   void untangle(Progress& progress) {
-    faults_.look_everywhere([&](std::uint32_t v) { return source_[v] + way(v); }, &paths_);
+    faults_.look_everywhere([&](std::uint32_t v) { return place_of(v); }, &paths_);
     statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
     for (const Attempt& attempt : kAttempts)
@@ -172,8 +172,10 @@ class Limiter {
     return (whole * (u * u) + start * (whole.length() * u * (1 - u))) * kBent;
   }
 
+  Vec3d place_of(std::uint32_t v) const { return source_[v] + way(v); }
+
   void look(const Indices& moved) {
-    faults_.look(moved, [&](std::uint32_t v) { return source_[v] + way(v); });
+    faults_.look(moved, [&](std::uint32_t v) { return place_of(v); });
   }
 
   Indices with_rings(Indices vertices, int rings) const {
@@ -245,9 +247,12 @@ class Limiter {
 
   /// The vertices that may slide, so many rings around what is wrong.
   Indices patch_vertices(int rings) const {
+    // Corners are wrong many times over where fronts have run through each other.
+    std::vector<std::uint8_t> is_wrong(source_.size(), 0);
+    faults_.for_each_wrong_corner([&](std::uint32_t v) { is_wrong[v] = 1; });
     Indices chosen;
-    faults_.for_each_wrong_corner([&](std::uint32_t v) { chosen.push_back(v); });
-    sort_unique(chosen);
+    for (std::uint32_t v = 0; v < source_.size(); ++v)
+      if (is_wrong[v]) chosen.push_back(v);
     chosen = with_rings(std::move(chosen), rings);
     std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
     return chosen;
@@ -351,20 +356,28 @@ class Limiter {
   /// Gives what is wrong, now that these vertices have moved, its old share again, for as long as anything is. Returns
   /// how many have kept their new one.
   std::size_t keep_valid(const OldShares& before) {
+    if (before.empty()) return 0;
     Indices moved;
     for (const auto& [v, share] : before) moved.push_back(v);
+    faults_.glance(moved, [&](std::uint32_t v) { return place_of(v); });
     for (std::size_t kept = before.size();; kept -= moved.size()) {
+      ++statistics_.rounds;
+      moved = take_back_wrong(before);
       if (moved.empty()) return kept;
       look(moved);
-      ++statistics_.rounds;
-      moved = faults_.wrong_vertices();
-      std::erase_if(moved, [&](std::uint32_t v) {
-        const auto at = std::lower_bound(before.begin(), before.end(), std::pair(v, 0.0));
-        if (at == before.end() || at->first != v || at->second == share_[v]) return true;
-        share_[v] = at->second;
-        return false;
-      });
     }
+  }
+
+  /// Gives those that something is wrong with their old share, if they have another. Returns them.
+  Indices take_back_wrong(const OldShares& before) {
+    Indices wrong = faults_.wrong_vertices();
+    std::erase_if(wrong, [&](std::uint32_t v) {
+      const auto at = std::lower_bound(before.begin(), before.end(), std::pair(v, 0.0));
+      if (at == before.end() || at->first != v || at->second == share_[v]) return true;
+      share_[v] = at->second;
+      return false;
+    });
+    return wrong;
   }
 
   Body body_;

@@ -74,7 +74,7 @@ class MendingRound {
   /// Faults that triangles, sorted, take part in as they stand now.
   MeshFaults look_at(const TriangleList& changed) {
     finder_.update(changed);
-    found_ = finder_.of(changed);
+    found_ = finder_.of_updated();
     const auto needles =
         std::count_if(changed.begin(), changed.end(), [&](std::uint32_t t) { return stands_as_needle(t); });
     return {found_.size(), static_cast<std::size_t>(needles)};

@@ -71,8 +71,7 @@ void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const st
     if (std::binary_search(moved.begin(), moved.end(), vertices_[i])) put(i);
   const std::vector<std::uint32_t> rim = triangles_at(moved);
   finder_->update(rim);
-  const auto rim_has_moved = [&](std::uint32_t t) { return std::binary_search(rim.begin(), rim.end(), t); };
-  const auto has_moved = [&](std::uint32_t t) { return std::binary_search(touched.begin(), touched.end(), t); };
+  const auto rim_has_moved = [&](std::uint32_t t) { return finder_->is_updated(t); };
   const auto may_meet = [&](std::uint32_t rim_triangle, std::uint32_t triangle) {
     const auto& [from, to, at_border] = edge(rim_triangle);
     return (source_crossings.is_vertex_near(from) || source_crossings.is_vertex_near(to)) &&
@@ -84,7 +83,8 @@ void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const st
     return {places_[a], places_[b], places_[c]};
   };
 
-  std::erase_if(with_skin_, [&](const auto& pair) { return rim_has_moved(pair.first) || has_moved(pair.second); });
+  std::erase_if(with_skin_,
+                [&](const auto& pair) { return rim_has_moved(pair.first) || skin.is_updated(pair.second); });
   for (const auto& [r, t] : skin.met_by(rim, rim_corners))
     if (!may_meet(r, t)) with_skin_.emplace_back(r, t);
   for (const auto& [t, r] : finder_->met_by(touched, skin_corners))
@@ -96,7 +96,7 @@ void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const st
     if (body_.is_front(t) && !may_meet(r, t)) with_other_.emplace_back(r, t);
 
   std::erase_if(with_rim_, [&](const auto& pair) { return rim_has_moved(pair.first) || rim_has_moved(pair.second); });
-  for (const auto& [r, s] : finder_->of(rim))
+  for (const auto& [r, s] : finder_->of_updated())
     if (!may_meet(r, edge(s).triangle)) with_rim_.emplace_back(r, s);
 }
 
