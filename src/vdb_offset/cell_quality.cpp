@@ -8,7 +8,6 @@
 
 #include "vdb_offset/cell_faces.h"
 #include "vdb_offset/parallel.h"
-#include "vdb_offset/point_triangle.h"
 
 namespace vdb_offset {
 namespace {
@@ -62,34 +61,44 @@ struct EdgeLengths {
   double ratio() const { return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity(); }
 };
 
-using detail::Components;
+/// Two numbers that are worked on at once: of a prism's base, and of its top.
+using Pair = double __attribute__((vector_size(16)));
 
-/// From one point to another, of length 1 or 0.
-Components direction(const Vec3d& from, const Vec3d& to, EdgeLengths& lengths) {
-  const Components way = Components::of(to) - Components::of(from);
-  const double squared = way.dot(way), scale = squared > 0 ? 1 / std::sqrt(squared) : 0;
-  lengths.add(squared);
-  return {way.x * scale, way.y * scale, way.z * scale};
+struct PairOfWays {
+  Pair x, y, z;
+
+  Pair dot(const PairOfWays& o) const { return x * o.x + y * o.y + z * o.z; }
+  PairOfWays cross(const PairOfWays& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
+};
+
+PairOfWays ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
+  return {Pair{to[0] - from[0], other_to[0] - other_from[0]}, Pair{to[1] - from[1], other_to[1] - other_from[1]},
+          Pair{to[2] - from[2], other_to[2] - other_from[2]}};
 }
-double triple(const Components& a, const Components& b, const Components& c) { return a.cross(b).dot(c); }
 
-/// Of a prism over a polygon of N corners: k below, N + k above. Each edge serves two corners.
+/// Of a prism over a polygon of N corners: k below, N + k above. A corner's triple product of unit vectors is that of
+/// its edges by the root of their squared lengths' product; of its square, with its sign, the least is found first.
 template <std::size_t N>
 Quality ring_quality(const CellPoints& x) {
   EdgeLengths lengths;
-  Components below[N], above[N], up[N];
+  PairOfWays along[N], up[N];
+  Pair along2[N], up2[N];
   for (std::size_t k = 0; k < N; ++k) {
     const std::size_t next = (k + 1) % N;
-    below[k] = direction(x[k], x[next], lengths);
-    above[k] = direction(x[N + k], x[N + next], lengths);
-    up[k] = direction(x[k], x[N + k], lengths);
+    along[k] = ways(x[k], x[next], x[N + k], x[N + next]);
+    up[k] = ways(x[k], x[N + k], x[k], x[N + k]);
+    along2[k] = along[k].dot(along[k]);
+    up2[k] = up[k].dot(up[k]);
+    for (const double squared : {along2[k][0], along2[k][1], up2[k][0]}) lengths.add(squared);
   }
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < N; ++k) {
     const std::size_t previous = (k + N - 1) % N;
-    least = std::min({least, triple(below[previous], below[k], up[k]), triple(above[previous], above[k], up[k])});
+    const Pair triple = along[previous].cross(along[k]).dot(up[k]), product = along2[previous] * along2[k] * up2[k];
+    const Pair square = triple * (triple < 0 ? -triple : triple) / (product > 0 ? product : Pair{1, 1});
+    least = std::min({least, square[0], square[1]});
   }
-  return {least, lengths.ratio()};
+  return {std::copysign(std::sqrt(std::abs(least)), least), lengths.ratio()};
 }
 
 Quality prism_quality(const CellPoints& x) {

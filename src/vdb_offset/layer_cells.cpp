@@ -161,16 +161,18 @@ void add_sides(const LayerPoints& points, const LayerColumns& columns, std::size
   VolumePatch patch;
   patch.name = "sides";
   patch.kind = VolumePatch::Kind::Side;
+  std::vector<std::pair<std::size_t, Index>> open;  // columns, and their sides
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    for (Index k = 0; k < columns.ring(c).size(); ++k)
+      if (columns.open[columns.begin[c] + k] != 0) open.emplace_back(c, k);
   for (std::size_t layer = 0; layer < layers; ++layer)
-    for (std::size_t c = 0; c < columns.count(); ++c)
-      for (Index k = 0; k < columns.ring(c).size(); ++k) {
-        if (columns.open[columns.begin[c] + k] == 0) continue;
-        const CellStack stack(points, columns.ring(c), layer);
-        std::array<Index, 4> face;
-        const Index size = stack.side(k, face);
-        add_face(std::span(face).first(size), layer * columns.cells.back() + columns.cells[c] + stack.cell_at_side(k),
-                 patch);
-      }
+    for (const auto& [c, k] : open) {
+      const CellStack stack(points, columns.ring(c), layer);
+      std::array<Index, 4> face;
+      const Index size = stack.side(k, face);
+      add_face(std::span(face).first(size), layer * columns.cells.back() + columns.cells[c] + stack.cell_at_side(k),
+               patch);
+    }
   if (patch.face_count() > 0) volume.patches.push_back(std::move(patch));
 }
 

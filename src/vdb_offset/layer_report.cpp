@@ -153,10 +153,12 @@ struct Weighted {
 /// Of numbers that count by their weights; those without any weight count alike.
 Spread spread(std::vector<Weighted> values) {
   if (values.empty()) return {};
+  const auto is_less = [](const Weighted& a, const Weighted& b) { return a.value < b.value; };
   // By weights too, so that sums are the same for any number of threads.
-  tbb::parallel_sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
-    return std::tie(a.value, a.weight) < std::tie(b.value, b.weight);
-  });
+  if (!std::is_sorted(values.begin(), values.end(), is_less))
+    tbb::parallel_sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
+      return std::tie(a.value, a.weight) < std::tie(b.value, b.weight);
+    });
   double whole = 0, sum = 0;
   for (const Weighted& v : values) whole += v.weight, sum += v.value * v.weight;
   if (!(whole > 0)) {
@@ -226,26 +228,43 @@ class Source {
  private:
   bool full(std::uint32_t v) const { return layers_.share[v] == 1 && layers_.states[v] == VertexState::Reached; }
 
+  /// Means over a face's corners.
+  struct OnFace {
+    double area, to_reach, achieved, share;
+    bool full;
+  };
+  OnFace means(std::uint32_t f) const {
+    const auto face = mesh_.face(f);
+    const double each = 1 / static_cast<double>(face.size());
+    OnFace of{area_of(mesh_.positions, face), 0, 0, 0, true};
+    for (const auto v : face) {
+      of.to_reach += each * std::abs(layers_.heights.back()[v]);
+      of.achieved += each * layers_.achieved[v];
+      of.share += each * layers_.share[v];
+      of.full = of.full && full(v);
+    }
+    return of;
+  }
+
   /// Of faces that were to carry layers and can: those that repeat others, or are none, have no area of their own.
   void add_thickness(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    std::vector<Weighted> asked, reached;
-    double kept = 0, covered = 0;
+    std::vector<std::uint32_t> asked_of;
     for (const auto f : faces) {
       const FaceRole role = facts_.role[f];
-      if (role != FaceRole::Full && role != FaceRole::Transition && role != FaceRole::Flat) continue;
-      const auto face = mesh_.face(f);
-      const double area = area_of(mesh_.positions, face), each = 1 / static_cast<double>(face.size());
-      double to_reach = 0, achieved = 0, share = 0;
-      for (const auto v : face) {
-        to_reach += each * std::abs(layers_.heights.back()[v]);
-        achieved += each * layers_.achieved[v];
-        share += each * layers_.share[v];
-      }
-      asked.push_back({to_reach, area});
-      reached.push_back({achieved, area});
-      figures.area += area;
-      kept += area * share;
-      if (std::all_of(face.begin(), face.end(), [&](std::uint32_t v) { return full(v); })) covered += area;
+      if (role == FaceRole::Full || role == FaceRole::Transition || role == FaceRole::Flat) asked_of.push_back(f);
+    }
+    std::vector<OnFace> of(asked_of.size());
+    std::vector<Weighted> asked(of.size()), reached(of.size());
+    for_each_index(of.size(), [&](std::size_t i) {
+      of[i] = means(asked_of[i]);
+      asked[i] = {of[i].to_reach, of[i].area};
+      reached[i] = {of[i].achieved, of[i].area};
+    });
+    double kept = 0, covered = 0;
+    for (const OnFace& face : of) {
+      figures.area += face.area;
+      kept += face.area * face.share;
+      if (face.full) covered += face.area;
     }
     if (figures.area > 0) {
       figures.layers_reached = static_cast<double>(layers_.count()) * kept / figures.area;
@@ -256,22 +275,28 @@ class Source {
   }
 
   void add_first_heights(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    std::vector<std::uint32_t> vertices;
-    for (const auto f : faces)
-      if (facts_.cells[f] > 0)
-        for (const auto v : mesh_.face(f))
-          if (layers_.share[v] == 1) vertices.push_back(v);
-    tbb::parallel_sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    figures.full_vertices = vertices.size();
+    std::uint32_t first = kNone, end = 0;
+    for_each_vertex_with_cells(faces, [&](std::uint32_t v) { first = std::min(first, v), end = std::max(end, v + 1); });
+    if (end == 0) return;
+    std::vector<std::uint8_t> is_full(end - first, 0);
+    for_each_vertex_with_cells(faces, [&](std::uint32_t v) { is_full[v - first] = layers_.share[v] == 1; });
     std::vector<float> errors;
-    for (const auto v : vertices) {
+    errors.reserve(is_full.size());
+    for (std::uint32_t v = first; v < end; ++v) {
+      if (is_full[v - first] == 0) continue;
+      ++figures.full_vertices;
       const double height = std::abs(layers_.heights.front()[v]);
       if (height > 0) errors.push_back(static_cast<float>(std::abs(layers_.first_achieved[v] - height) / height));
     }
     const Spread error = spread_of(errors.size(), [&](std::size_t i) { return errors[i]; });
     figures.first_error = error.most;
     figures.first_error_99 = error.quantile_99;
+  }
+  template <class Visit>
+  void for_each_vertex_with_cells(std::span<const std::uint32_t> faces, Visit&& visit) const {
+    for (const auto f : faces)
+      if (facts_.cells[f] > 0)
+        for (const auto v : mesh_.face(f)) visit(v);
   }
 
   void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
