@@ -80,19 +80,8 @@ TEST_CASE("offset: the paper's cube, inward", "[offset]") {
   const Polygons cube = scene::box(Vec3d(0.5), 83, true);
   for (const double h : {0.05, 0.025, 0.0125}) {
     const OffsetResult result = offset(cube.view(), merged(by(-0.1, h)));
-    CHECK(share(result, VertexState::Reached) > 0.99);
-    double off_cube = 0;
-    for (std::size_t v = 0; v < result.positions.size(); ++v)
-      if (result.states[v] == VertexState::Reached) {
-        const Vec3d& p = result.positions[v];
-        off_cube = std::max(off_cube, std::abs(std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - 0.15));
-      }
-    CHECK(off_cube < 1e-7);
-    const auto errors = position_errors(cube.view(), result, [](const Vec3d& x) { return clamp_to_cube(x, 0.15); });
-    if (h == 0.0125) {
-      CHECK(errors.worst <= 5e-3);
-      CHECK(errors.rms <= 1e-3);
-    }
+    CHECK(share(result, VertexState::Reached) == 1);
+    CHECK(position_errors(cube.view(), result, [](const Vec3d& x) { return clamp_to_cube(x, 0.15); }).worst <= 1e-9);
     check_guarantee(cube.view(), result, -0.1, 2003);
   }
 }
@@ -119,7 +108,8 @@ TEST_CASE("offset: paths lead from where vertices stood to where they are, and r
       long_ones += path.size() > 4;
       for (std::size_t i = 1; merge && i < path.size(); ++i) CHECK(depth(path[i]) > depth(path[i - 1]));
     }
-    CHECK(long_ones > result.paths.size() / 2);
+    // Along ridges between planes corners alone are kept.
+    CHECK(long_ones > result.paths.size() / (merge ? 10 : 2));
   }
 }
 

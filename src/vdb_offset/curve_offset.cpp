@@ -62,7 +62,7 @@ class CurvePipeline {
     make_field();
     draw_line();
     for (const Distances& d : wanted) distances_.push_back(on_line(d));
-    std::vector<Paths> paths = march();
+    std::vector<Paths> paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
     for (std::size_t i = 0; i < wanted.size(); ++i) results.push_back(finish(wanted[i], distances_[i], paths[i]));
     if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
     return results;
@@ -75,7 +75,7 @@ class CurvePipeline {
     std::vector<Distances> on_points;
     for (const Distances& each : heights) on_points.push_back(on_line(each));
     distances_.push_back(on_points.back());
-    std::vector<Paths> paths = march();
+    std::vector<Paths> paths = march(Ridges::Smooth);
     OffsetStatistics statistics = shared_;
     limit(on_points.back(), paths.front(), statistics);
     LayerStack stack;
@@ -183,12 +183,18 @@ class CurvePipeline {
     field_ = sweep(std::move(front), ribbon_, {options_.solver, shared_.plan.reach}, options_.progress);
   }
 
-  std::vector<Paths> march() {
-    const StageTimer timer(shared_.seconds, Stage::Propagate);
-    const DirectionField directions = make_directions(field_, !ribbon_.facts.closed() || !ribbon_.facts.oriented());
+  DirectionField find_directions() {
+    const StageTimer timer(shared_.seconds, Stage::Gradient);
+    DirectionField directions = make_directions(field_, !ribbon_.facts.closed() || !ribbon_.facts.oriented());
     describe_field(field_, directions, shared_);
+    return directions;
+  }
+
+  std::vector<Paths> march(Ridges ridges) {
+    const DirectionField directions = find_directions();
+    const StageTimer timer(shared_.seconds, Stage::Propagate);
     std::vector<Paths> paths = propagate(*query_, directions, distances_, options_.progress,
-                                         options_.keep_paths ? Traces::Keep : Traces::Drop);
+                                         {options_.keep_paths ? Traces::Keep : Traces::Drop, ridges});
     for (Paths& each : paths) end_traces(each);
     return paths;
   }

@@ -168,7 +168,7 @@ class Pipeline {
     // The body is complete by now, obstacles and all.
     for (const Distances& distances : wanted) distances_.push_back(on_body(distances));
     std::vector<Paths> paths(wanted.size());
-    if (goes_anywhere(farthest)) paths = march();
+    if (goes_anywhere(farthest)) paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
     std::vector<OffsetResult> results;
     results.resize(wanted.size());
     const auto make = [&](std::size_t i, const ProgressCallback& progress) {
@@ -197,7 +197,7 @@ class Pipeline {
     std::vector<Distances> on_vertices;
     for (const Distances& each : heights) on_vertices.push_back(on_body(each));
     distances_.push_back(on_vertices.back());
-    std::vector<Paths> paths = march();
+    std::vector<Paths> paths = march(Ridges::Smooth);
     OffsetStatistics statistics = shared_;
     const Body body = work_.body(*query_, keep_away(), true, slides_ ? mesh_.face_count() : 0);
     const std::vector<Vec3d> source = work_.source(mesh_);
@@ -246,19 +246,25 @@ class Pipeline {
     field_ = sweep(std::move(front), work_.front, {options_.solver, shared_.plan.reach}, options_.progress);
   }
 
-  /// One march for all distances.
-  std::vector<Paths> march() {
-    const StageTimer timer(shared_.seconds, Stage::Propagate);
+  DirectionField find_directions() {
+    const StageTimer timer(shared_.seconds, Stage::Gradient);
     const MeshFacts& facts = work_.front.facts;
-    const DirectionField directions = make_directions(field_, !facts.closed() || !facts.oriented());
+    DirectionField directions = make_directions(field_, !facts.closed() || !facts.oriented());
     describe_field(field_, directions, shared_);
+    return directions;
+  }
+
+  /// One march for all distances.
+  std::vector<Paths> march(Ridges ridges) {
+    const DirectionField directions = find_directions();
+    const StageTimer timer(shared_.seconds, Stage::Propagate);
     query_.emplace(work_.front);
     if (work_.obstacles) obstacles_.emplace(*work_.obstacles);
     if (obstacles_) keep_away_.emplace(Obstacles{*obstacles_, options_.clearance});
     std::vector<Distances> on_front;
     for (const Distances& distances : distances_) on_front.push_back(distances_on_front(work_, distances));
     std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress,
-                                         options_.keep_paths ? Traces::Keep : Traces::Drop);
+                                         {options_.keep_paths ? Traces::Keep : Traces::Drop, ridges});
     if (options_.border == Border::Slide && work_.rest) slides_.emplace(work_, *query_);
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (slides_) slide_borders(work_, *slides_, *query_, on_front[i], paths[i]);

@@ -9,8 +9,8 @@
 namespace vdb_offset {
 
 /// The stages of a run, in the order in which they happen.
-enum class Stage { Read, Rasterise, Sweep, Propagate, Capture, Limit, Layers, Measure, Write };
-inline constexpr std::size_t kStageCount = 9;
+enum class Stage { Read, Rasterise, Sweep, Gradient, Propagate, Capture, Limit, Layers, Measure, Write };
+inline constexpr std::size_t kStageCount = 10;
 
 /// Name of a stage as reports and progress bars spell it.
 const char* name(Stage stage);

@@ -17,28 +17,29 @@ namespace {
 // Who has come so near to a stop in haste, as a share of its distance, goes on from there.
 constexpr double kOnTheWay = 0.7;
 
-/// Tries the straight paths of all vertices; a component of which one vertex has none has none at all.
-/// Returns, by component, whether all of its vertices have arrived that way.
-template <class Query>
-std::vector<std::uint8_t> go_straight(const Query& query, const DirectionField& directions, const Distances& distances,
-                                      std::vector<StraightEnd>& arrival) {
+/// Components, as flags.
+using Components = std::vector<std::uint8_t>;
+
+/// Tries ways that need no field, find(traveller, vertex) each, for the vertices of some components; a component of
+/// which one vertex has none has none at all. Returns, by component, whether all of its vertices have arrived that way.
+template <class Query, class Find>
+Components find_ways(const Query& query, const DirectionField& directions, const Distances& distances,
+                     const Components& wanted, std::vector<KnownEnd>& arrival, Find&& find) {
   const ShapeOf<Query>& surface = query.surface();
   // A flag only ever falls; who sees it late does work that is not used.
-  std::vector<std::atomic<std::uint8_t>> straight(surface.facts.components);
-  for (auto& flag : straight) flag = 1;
+  std::vector<std::atomic<std::uint8_t>> found(wanted.begin(), wanted.end());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.vertices.size(), 256), [&](const auto& range) {
     DirectionSampler sampler(directions);
     for (std::size_t v = range.begin(); v != range.end(); ++v) {
-      auto& flag = straight[surface.component[v]];
+      auto& flag = found[surface.component[v]];
       if (!flag.load(std::memory_order_relaxed) || distances[v] == 0) continue;
       const int side = distances[v] < 0 ? -1 : 1;
-      const auto end = Traveller<Query>(query, directions, sampler, side, static_cast<std::uint32_t>(v), Pace::Careful)
-                           .go_straight(std::abs(distances[v]));
-      if (end) arrival[v] = *end;
+      Traveller<Query> traveller(query, directions, sampler, side, static_cast<std::uint32_t>(v), Pace::Careful);
+      if (const auto end = find(traveller, v)) arrival[v] = *end;
       else flag.store(0, std::memory_order_relaxed);
     }
   });
-  return {straight.begin(), straight.end()};
+  return {found.begin(), found.end()};
 }
 
 /// The marches of a run: all vertices, for all sets of distances.
@@ -46,13 +47,13 @@ template <class Query>
 class Marches {
  public:
   Marches(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
-          const Obstacles* obstacles, Traces traces, std::vector<Paths>& paths)
+          const Obstacles* obstacles, const WayOptions& options, std::vector<Paths>& paths)
       : query_(query),
         surface_(query.surface()),
         directions_(directions),
         distances_(distances),
         obstacles_(obstacles),
-        traces_(traces),
+        options_(options),
         paths_(paths) {
     const std::size_t count = surface_.vertices.size();
     for (std::size_t set = 0; set < distances.size(); ++set) {
@@ -60,10 +61,12 @@ class Marches {
       paths[set].achieved.resize(count);
       paths[set].state.resize(count);
       paths[set].closest.resize(count, kNone);
-      if (traces == Traces::Keep) paths[set].trace.resize(count);
+      if (options.traces == Traces::Keep) paths[set].trace.resize(count);
       arrival_.emplace_back(count);
-      straight_.push_back(go_straight(query, directions, distances[set], arrival_.back()));
-      for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_straight(set, v);
+      known_.push_back(go_straight(set));
+      for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_known(set, v);
+      // Other ways bend, and obstacles and borders with them.
+      if (options.ridges == Ridges::Sharp && !obstacles && surface_.conormals.empty()) go_along_ridges(set);
     }
   }
 
@@ -98,7 +101,31 @@ class Marches {
     Arrival arrival;
   };
 
-  bool is_straight(std::size_t set, std::size_t v) const { return straight_[set][surface_.component[v]]; }
+  bool is_known(std::size_t set, std::size_t v) const { return known_[set][surface_.component[v]]; }
+
+  Components go_straight(std::size_t set) {
+    const Distances& distances = distances_[set];
+    return find_ways(
+        query_, directions_, distances, Components(surface_.facts.components, 1), arrival_[set],
+        [&](Traveller<Query>& traveller, std::size_t v) { return traveller.go_straight(std::abs(distances[v])); });
+  }
+
+  /// Those of the components that have no straight ways.
+  void go_along_ridges(std::size_t set) {
+    const Distances& distances = distances_[set];
+    Components& known = known_[set];
+    Components wanted(known.size());
+    for (std::size_t c = 0; c < known.size(); ++c) wanted[c] = !known[c];
+    std::vector<std::vector<Vec3d>>& trace = paths_[set].trace;
+    const Components found = find_ways(query_, directions_, distances, wanted, arrival_[set],
+                                       [&](Traveller<Query>& traveller, std::size_t v) {
+                                         if (options_.traces == Traces::Keep) traveller.keep_trace({});
+                                         const auto end = traveller.go_along_ridges(std::abs(distances[v]));
+                                         if (options_.traces == Traces::Keep) trace[v] = traveller.trace();
+                                         return end;
+                                       });
+    for (std::size_t c = 0; c < known.size(); ++c) known[c] |= found[c];
+  }
 
   /// Where vertex v has to march to for one set, if it goes to this side at all and has not arrived.
   void add_stop(std::size_t set, std::size_t v, int side, Attempt attempt, std::vector<Stop>& stops,
@@ -107,23 +134,22 @@ class Marches {
     const double distance = distances_[set][v];
     const Stop stop{std::abs(distance), set};
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
-    if (distance * side <= 0 || (again && (is_straight(set, v) || paths_[set].state[v] == VertexState::Reached)))
-      return;
-    if (!is_straight(set, v)) stops.push_back(stop);
-    else if (!end_straight(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {straight_end(set, v)}});
+    if (distance * side <= 0 || (again && (is_known(set, v) || paths_[set].state[v] == VertexState::Reached))) return;
+    if (!is_known(set, v)) stops.push_back(stop);
+    else if (!end_known(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v)}});
   }
 
-  Vec3d straight_end(std::size_t set, std::size_t v) const {
+  Vec3d known_end(std::size_t set, std::size_t v) const {
     const Vec3d& end = arrival_[set][v].position;
     return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
   }
 
-  /// At the end of a straight way nothing is left to judge, but where rounding moves it.
-  bool end_straight(const Stop& stop, std::size_t v) const {
-    const StraightEnd& end = arrival_[stop.set][v];
+  /// At the end of a known way nothing is left to judge, but where rounding moves it.
+  bool end_known(const Stop& stop, std::size_t v) const {
+    const KnownEnd& end = arrival_[stop.set][v];
     const Vec3d& start = surface_.vertices[v];
     const double rounding = (start + surface_.origin).length() * std::numeric_limits<double>::epsilon();
-    if (rounding > kStopTolerance * stop.distance || straight_end(stop.set, v) != end.position) return false;
+    if (rounding > kStopTolerance * stop.distance || known_end(stop.set, v) != end.position) return false;
     Paths& paths = paths_[stop.set];
     paths.displacement[v] = round_way(end.position - start, stop.distance);
     paths.achieved[v] = end.distance;
@@ -139,7 +165,7 @@ class Marches {
     const auto pace = attempt == Attempt::InHaste ? Pace::Hasty : Pace::Careful;
     Traveller<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
     const Paths& nearest = paths_[stops.front().set];
-    const bool keep = traces_ == Traces::Keep, anew = attempt != Attempt::FromThere;
+    const bool keep = options_.traces == Traces::Keep, anew = attempt != Attempt::FromThere;
     if (keep) traveller.keep_trace(anew ? std::vector<Vec3d>() : nearest.trace[v]);
     const auto tell = [&](const Stop& stop, const Arrival& end) {
       ends.push_back({vertex, stop, end});
@@ -193,20 +219,20 @@ class Marches {
   const DirectionField& directions_;
   std::span<const Distances> distances_;
   const Obstacles* obstacles_;
-  Traces traces_;
+  WayOptions options_;
   std::vector<Paths>& paths_;
-  std::vector<std::vector<StraightEnd>> arrival_;    // of each set, on straight paths
-  std::vector<std::vector<std::uint8_t>> straight_;  // of each set, by component
+  std::vector<std::vector<KnownEnd>> arrival_;  // of each set, on ways that need no field
+  std::vector<Components> known_;               // of each set, those that have such ways
 };
 
 template <class Query>
 std::vector<Paths> march_all(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
-                             const Obstacles* obstacles, const ProgressCallback& callback, Traces traces) {
+                             const Obstacles* obstacles, const ProgressCallback& callback, const WayOptions& options) {
   const std::size_t count = query.surface().vertices.size();
   Progress progress(callback, Stage::Propagate, count);
   std::vector<Paths> paths(distances.size());
   using All = Marches<Query>;
-  const All marches(query, directions, distances, obstacles, traces, paths);
+  const All marches(query, directions, distances, obstacles, options, paths);
   for_each_index((count + All::kBlock - 1) / All::kBlock,
                  [&](std::size_t block) {
                    marches(block);
@@ -254,13 +280,14 @@ std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> tra
 
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles,
-                             const ProgressCallback& progress, Traces traces) {
-  return march_all(query, directions, distances, obstacles, progress, traces);
+                             const ProgressCallback& progress, const WayOptions& options) {
+  return march_all(query, directions, distances, obstacles, progress, options);
 }
 
 std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
-                             std::span<const Distances> distances, const ProgressCallback& progress, Traces traces) {
-  return march_all(query, directions, distances, nullptr, progress, traces);
+                             std::span<const Distances> distances, const ProgressCallback& progress,
+                             const WayOptions& options) {
+  return march_all(query, directions, distances, nullptr, progress, options);
 }
 
 }  // namespace vdb_offset

@@ -41,6 +41,15 @@ struct Paths {
 /// Whether the places are kept that vertices come by: about ten of 24 bytes each.
 enum class Traces : bool { Drop, Keep };
 
+/// What becomes of a component that lies between planes at an angle, where its parts meet: Smooth, as all others, its
+/// vertices are spread along the ridge. Sharp: they follow it where the distance rises fastest, and merge there.
+enum class Ridges : bool { Smooth, Sharp };
+
+struct WayOptions {
+  Traces traces = Traces::Drop;
+  Ridges ridges = Ridges::Smooth;
+};
+
 /// The unit direction in which a vertex sets out, outward: its normal, weighted by angles; where faces turn away from
 /// that, one that more of them face. Zero for a vertex without any.
 Vec3d start_direction(const Surface& surface, std::uint32_t vertex);
@@ -72,11 +81,11 @@ std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> tra
 /// depend on the number of threads.
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
-                             const ProgressCallback& progress = {}, Traces traces = Traces::Drop);
+                             const ProgressCallback& progress = {}, const WayOptions& options = {});
 
 /// The same for the vertices of plane curves, in directions from the field of their ribbon (see ribbon.h).
 std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const ProgressCallback& progress = {},
-                             Traces traces = Traces::Drop);
+                             const WayOptions& options = {});
 
 }  // namespace vdb_offset

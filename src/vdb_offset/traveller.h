@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_offset/propagate.h"
+#include "vdb_offset/ridge_way.h"
 #include "vdb_offset/start.h"
 
 /// How one vertex finds its way: of a Surface, by its ClosestQuery, and of a Polyline, by its CurveQuery, alike.
@@ -58,8 +59,8 @@ struct Arrival {
   bool outside_field = false;
 };
 
-/// Where a straight way ends: place, exact distance, and the closest triangle.
-struct StraightEnd {
+/// Where a way ends that is known without the field: place, exact distance, and the closest triangle.
+struct KnownEnd {
   Vec3d position;
   double distance;
   std::uint32_t triangle;
@@ -93,14 +94,14 @@ class Traveller {
 
   /// The point at distance `target` on the line along the normal, if nothing but the faces around the vertex decides
   /// phi on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
-  std::optional<StraightEnd> go_straight(double target) {
+  std::optional<KnownEnd> go_straight(double target) {
     target_ = target;
     if (slope_ < kLeastStraightSlope) return std::nullopt;
     const double longest = target_ / slope_ * (1 + kStraightTolerance);
     double t = target_, before = 0, phi_before = 0;
     for (int i = 0; i < 8; ++i) {
       const double phi = measure(origin_ + normal_ * t).phi;
-      const StraightEnd end{origin_ + normal_ * t, phi, hint_};
+      const KnownEnd end{origin_ + normal_ * t, phi, hint_};
       if (arrived(phi))
         return is_way_free(normal_, slope_, t - target_, kNothingLeft * target_) ? std::optional(end) : std::nullopt;
       if (phi < slope_ * t * (1 - kStraightTolerance) || phi <= phi_before) return std::nullopt;
@@ -111,6 +112,21 @@ class Traveller {
       t = next;
     }
     return std::nullopt;
+  }
+
+  /// The point at distance `target` where the distance rises fastest on the way, if planes decide it all along.
+  std::optional<KnownEnd> go_along_ridges(double target) {
+    target_ = target;
+    const auto first = leave_surface();
+    if (!first) return std::nullopt;
+    const RidgeWay way = RidgeFollower<Query>(query_, target, kStopTolerance * target)(
+        first->x, {first->phi, hint_, feature_, first->x - first->away});
+    if (way.count == 0) return std::nullopt;
+    if (trace_) {
+      trace_->push_back(first->x - origin_);
+      for (std::size_t i = 0; i + 1 < way.count; ++i) trace_->push_back(way.corners[i] - origin_);
+    }
+    return KnownEnd{way.corners[way.count - 1], way.end.distance, way.end.triangle};
   }
 
   /// Where the smooth directions lead: tell(stop, arrival) for each of the stops, which are at rising distances.

@@ -134,6 +134,7 @@ Row our_row(const OffsetResult& result, std::span<const Vec3d> points, const Ans
   const auto seconds = [&](Stage stage) { return result.statistics.seconds[static_cast<std::size_t>(stage)]; };
   row.initialise = seconds(Stage::Rasterise);
   row.sweep = seconds(Stage::Sweep);
+  row.gradient = seconds(Stage::Gradient);
   row.propagate = seconds(Stage::Propagate);
   row.nodes = result.statistics.active_voxels / per_node;
   row.capture = capture_seconds(*result.field->phi);
