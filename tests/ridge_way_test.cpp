@@ -132,11 +132,20 @@ TEST_CASE("ridges: a component beside it that is curved goes its own way", "[rid
   CHECK(test::judge(both.view(), result, -0.1, 17, true).worst_reached <= 1e-6);
 }
 
-TEST_CASE("ridges: fronts that meet head on end there, as along the field", "[ridges]") {
-  const Polygons slab = scene::box(Vec3d(1, 1, 0.1), 10, true);
-  const OffsetResult result = merged(slab.view(), -0.08, 0.02);
-  CHECK(test::share(result, VertexState::Collision) == 1);
-  for (std::size_t v = 0; v < slab.positions.size(); ++v) CHECK(std::abs(result.positions[v][2]) < 0.01);
+TEST_CASE("ridges: where the distance rises no further ways end, whatever the grid", "[ridges]") {
+  const Polygons slab = scene::box(Vec3d(1, 1, 0.1), 10, true), cube = scene::box(Vec3d(0.5), 10, true);
+  for (const double h : {0.08, 0.02}) {
+    const OffsetResult flat = merged(slab.view(), -0.08, h);
+    CHECK(test::share(flat, VertexState::Collision) == 1);
+    for (std::size_t v = 0; v < slab.positions.size(); ++v) {
+      const Vec3d in = clamped(slab.positions[v], 0.45);
+      CHECK((flat.positions[v] - Vec3d(in[0], in[1], 0)).length() < 1e-11);
+      CHECK(flat.achieved[v] == Approx(0.05).epsilon(1e-9));
+    }
+    const OffsetResult point = merged(cube.view(), -0.3, h);
+    CHECK(test::share(point, VertexState::Collision) == 1);
+    for (const Vec3d& p : point.positions) CHECK(p.length() < 1e-11);
+  }
 }
 
 TEST_CASE("ridges: obstacles and borders are met as on any way", "[ridges]") {

@@ -139,6 +139,11 @@ class Marches {
     else if (!end_known(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v)}});
   }
 
+  static VertexState state_at(double distance, const Stop& stop) {
+    return std::abs(distance - stop.distance) <= kReachedTolerance * stop.distance ? VertexState::Reached
+                                                                                   : VertexState::Collision;
+  }
+
   Vec3d known_end(std::size_t set, std::size_t v) const {
     const Vec3d& end = arrival_[set][v].position;
     return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
@@ -154,7 +159,7 @@ class Marches {
     paths.displacement[v] = round_way(end.position - start, stop.distance);
     paths.achieved[v] = end.distance;
     paths.closest[v] = end.triangle;
-    paths.state[v] = VertexState::Reached;
+    paths.state[v] = state_at(end.distance, stop);
     return true;
   }
 
@@ -190,10 +195,9 @@ class Marches {
       const auto& [v, stop, end] = ends[i];
       paths_[stop.set].achieved[v] = closest[i].distance;
       paths_[stop.set].closest[v] = closest[i].triangle;
-      paths_[stop.set].state[v] = std::abs(closest[i].distance - stop.distance) <= kReachedTolerance * stop.distance
-                                      ? VertexState::Reached
-                                  : end.outside_field ? VertexState::OutsideField
-                                                      : VertexState::Collision;
+      const VertexState state = state_at(closest[i].distance, stop);
+      const bool left = end.outside_field && state == VertexState::Collision;
+      paths_[stop.set].state[v] = left ? VertexState::OutsideField : state;
     }
   }
 

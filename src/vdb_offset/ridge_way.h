@@ -13,69 +13,76 @@
 /// straight, on one of them, then along the ridge between two or three, and so known in a few steps of any length.
 namespace vdb_offset {
 
-/// The corners of a way, the last at the distance asked for, and what is closest there.
+/// A way's corners, the last where it ends, and what is closest there.
 struct RidgeWay {
-  static constexpr std::size_t kMostLegs = 4;
-  std::array<Vec3d, kMostLegs> corners;
+  static constexpr std::size_t kMostCorners = 6;
+  bool found = false;
+  std::array<Vec3d, kMostCorners> corners;
   std::size_t count = 0;
   Closest end;
 };
 
 namespace detail {
 
-/// Directions away from what is closest, all of them on one ridge, and the way along it.
+/// Directions away from what is closest, all of them as near, and the way on which the distance rises fastest.
 class Ridge {
  public:
+  enum class Rise : std::uint8_t { Onward, Top, Unclear };
+
   explicit Ridge(const Vec3d& away) : way_(away), slope_(1) { away_[count_++] = away; }
 
   const Vec3d& way() const { return way_; }
   /// How much the distance rises by length.
   double slope() const { return slope_; }
 
-  /// Something else has come as near. False if the distance rises no further, or along no line; and between faces
-  /// almost in a plane: on the many ridges of what stands for a curved surface, neighbours would lose their order.
-  bool add(const Vec3d& away) {
-    if (count_ == away_.size()) return false;
+  /// Something else has come as near. Unclear between faces almost in a plane: on the many ridges of what stands for a
+  /// curved surface, neighbours would lose their order.
+  Rise add(const Vec3d& away) {
     for (std::size_t i = 0; i < count_; ++i)
-      if (away.dot(away_[i]) > kBlunt) return false;
+      if (away.dot(away_[i]) > kBlunt) return Rise::Unclear;
     away_[count_++] = away;
-    // Two leave the others behind, or all three rise alike.
+    // Two of them leave the others behind, or three; else there is no way up.
     for (std::size_t i = 0; i < count_; ++i)
       for (std::size_t k = i + 1; k < count_; ++k)
-        if (rises_between(away_[i], away_[k])) {
-          away_ = {away_[i], away_[k], {}};
-          count_ = 2;
-          return true;
-        }
-    return count_ == 3 && rises_between_all();
+        if (rises_between(away_[i], away_[k])) return keep({away_[i], away_[k], {}, {}}, 2);
+    for (std::size_t i = 0; i < count_; ++i)
+      for (std::size_t k = i + 1; k < count_; ++k)
+        for (std::size_t l = k + 1; l < count_; ++l)
+          if (rises_between(away_[i], away_[k], away_[l])) return keep({away_[i], away_[k], away_[l], {}}, 3);
+    return Rise::Top;
   }
 
  private:
-  // Below this fronts all but meet.
-  static constexpr double kLeastSlope = 0.05;
+  // Below this fronts have all but met.
+  static constexpr double kLeastSlope = 0.01;
   // Cosine between the normals on both sides.
   static constexpr double kBlunt = 0.9;
   static constexpr double kAlike = 1e-9;
 
-  bool set_way(const Vec3d& way, const Vec3d& away) {
+  Rise keep(const std::array<Vec3d, 4>& away, std::size_t count) {
+    away_ = away;
+    count_ = count;
+    return Rise::Onward;
+  }
+  /// Whether the distance from all rises that way no less than from one.
+  bool rises(const Vec3d& way, const Vec3d& one) {
     const double length = way.length();
     if (!(length > kAlike)) return false;
     way_ = way / length;
-    slope_ = way_.dot(away);
-    return slope_ > kLeastSlope;
+    slope_ = way_.dot(one);
+    return slope_ > kLeastSlope && std::all_of(away_.begin(), away_.begin() + static_cast<std::ptrdiff_t>(count_),
+                                               [&](const Vec3d& other) { return way_.dot(other) >= slope_ - kAlike; });
   }
-  bool rises_between(const Vec3d& a, const Vec3d& b) {
-    if (!set_way(a + b, a)) return false;
-    return std::all_of(away_.begin(), away_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&](const Vec3d& c) { return way_.dot(c) >= slope_ - kAlike; });
-  }
-  bool rises_between_all() {
-    const auto& [a, b, c] = away_;
+  bool rises_between(const Vec3d& a, const Vec3d& b) { return rises(a + b, a); }
+  /// The plane through their ends is nearest within their triangle.
+  bool rises_between(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Vec3d across = (b - a).cross(c - a);
-    return set_way(across.dot(a) < 0 ? -across : across, a);
+    for (const Vec3d& opposite : {b.cross(c), c.cross(a), a.cross(b)})
+      if (across.dot(opposite) < -kAlike) return false;
+    return rises(across.dot(a) < 0 ? -across : across, a);
   }
 
-  std::array<Vec3d, 3> away_;
+  std::array<Vec3d, 4> away_;
   std::size_t count_ = 0;
   Vec3d way_;
   double slope_;
@@ -83,10 +90,10 @@ class Ridge {
 
 }  // namespace detail
 
-/// The way of steepest ascent of the distance from x to where it is `target` (Lieutier, Any open bounded subset of R^n
-/// has the same homotopy type as its medial axis, 2004: away from the point in the hull of the closest ones that is
-/// nearest), if planes decide the distance all along: else there are no corners. The exact distance is as predicted at
-/// the corners and wherever that shows that nothing lies in the way.
+/// The way of steepest ascent of the distance from x to where it is `target`, or rises no further (Lieutier, Any open
+/// bounded subset of R^n has the same homotopy type as its medial axis, 2004: away from the point in the hull of the
+/// closest ones that is nearest), if planes decide the distance all along: else none is found. The exact distance is as
+/// predicted at the corners and wherever that shows that nothing lies in the way.
 template <class Query>
 class RidgeFollower {
  public:
@@ -94,21 +101,25 @@ class RidgeFollower {
       : query_(query), target_(target), tolerance_(tolerance) {}
 
   /// From x, what is closest to which is known, and not at x itself.
-  RidgeWay operator()(const Vec3d& x, Closest here) const {
+  RidgeWay operator()(const Vec3d& x, const Closest& closest) const {
+    using Rise = detail::Ridge::Rise;
     RidgeWay way;
+    way.end = closest;
     Vec3d from = x;
-    detail::Ridge ridge((x - here.point) / here.distance);
-    for (int turn = 0; turn < kMostTurns && way.count < RidgeWay::kMostLegs; ++turn) {
-      const Leg leg = next_leg(from, here, ridge);
-      if (leg.ends == Ends::Nowhere) return {};
+    detail::Ridge ridge((x - closest.point) / closest.distance);
+    for (int turn = 0; turn < kMostTurns && way.count < RidgeWay::kMostCorners; ++turn) {
+      const Leg leg = next_leg(from, way.end, ridge);
+      if (leg.ends == Ends::Nowhere) break;
       from += ridge.way() * leg.length;
-      way.end = here = leg.end;
+      way.end = leg.end;
       if (leg.ends == Ends::OnTheWay) continue;
-      if (leg.length > tolerance_) way.corners[way.count++] = from;
-      if (leg.ends == Ends::AtTarget) return way;
-      if (!ridge.add(leg.away_from_other)) return {};
+      const Rise rise = leg.ends == Ends::AtOther ? ridge.add(leg.away_from_other) : Rise::Top;
+      if (rise == Rise::Unclear) break;
+      way.found = rise == Rise::Top;
+      if (leg.length > tolerance_ || way.found) way.corners[way.count++] = from;
+      if (way.found) break;
     }
-    return {};
+    return way;
   }
 
  private:
@@ -121,18 +132,23 @@ class RidgeFollower {
     Ends ends = Ends::Nowhere;
     double length = 0;
     Closest end;
+    double other_at = 0;  // a length where the other is nearest
     Vec3d away_from_other;
   };
 
   Leg next_leg(const Vec3d& from, const Closest& here, const detail::Ridge& ridge) const {
     constexpr int kMostParts = 16;
-    Leg leg{Ends::AtTarget, (target_ - here.distance) / ridge.slope(), {}, Vec3d(0.0)};
+    Leg leg{Ends::AtTarget, (target_ - here.distance) / ridge.slope(), {}, 0, Vec3d(0.0)};
     for (int part = 0; part < kMostParts; ++part) {
       const Vec3d end = from + ridge.way() * leg.length;
       leg.end = query_(end, here.triangle);
       const double short_by = here.distance + ridge.slope() * leg.length - leg.end.distance;
       if (!(leg.end.distance > 0)) return {};
-      if (std::abs(short_by) <= tolerance_) return is_free(from, here, ridge, leg) ? leg : Leg{};
+      if (std::abs(short_by) <= tolerance_) {
+        const bool found = is_free(from, here, ridge, leg) && (leg.ends != Ends::AtOther || is_plane(from, ridge, leg));
+        return found ? leg : Leg{};
+      }
+      leg.other_at = leg.length;
       leg.away_from_other = (end - leg.end.point) / leg.end.distance;
       const double rise = leg.away_from_other.dot(ridge.way()), back = short_by / (ridge.slope() - rise);
       if (short_by > 0 && rise < ridge.slope() && back < leg.length + tolerance_) {
@@ -145,6 +161,17 @@ class RidgeFollower {
       }
     }
     return {};
+  }
+
+  /// Whether the other is as near at the leg's end as it would be if it were a plane: just beyond, where it is nearest.
+  bool is_plane(const Vec3d& from, const detail::Ridge& ridge, Leg& leg) const {
+    constexpr double kBeyond = 1e-3;
+    const double beyond = kBeyond * (leg.other_at - leg.length);
+    const Vec3d x = from + ridge.way() * (leg.length + beyond);
+    const Closest other = query_(x, leg.end.triangle);
+    const double expected = leg.end.distance + leg.away_from_other.dot(ridge.way()) * beyond;
+    leg.away_from_other = (x - other.point) / other.distance;
+    return std::abs(other.distance - expected) <= tolerance_;
   }
 
   /// Covers the leg, from its end, with balls that hold nothing.

@@ -114,14 +114,15 @@ class Traveller {
     return std::nullopt;
   }
 
-  /// The point at distance `target` where the distance rises fastest on the way, if planes decide it all along.
+  /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
+  /// decide it all along.
   std::optional<KnownEnd> go_along_ridges(double target) {
     target_ = target;
     const auto first = leave_surface();
     if (!first) return std::nullopt;
     const RidgeWay way = RidgeFollower<Query>(query_, target, kStopTolerance * target)(
         first->x, {first->phi, hint_, feature_, first->x - first->away});
-    if (way.count == 0) return std::nullopt;
+    if (!way.found) return std::nullopt;
     if (trace_) {
       trace_->push_back(first->x - origin_);
       for (std::size_t i = 0; i + 1 < way.count; ++i) trace_->push_back(way.corners[i] - origin_);
