@@ -150,10 +150,10 @@ class RidgeFollower {
       }
       leg.other_at = leg.length;
       leg.away_from_other = (end - leg.end.point) / leg.end.distance;
-      const double rise = leg.away_from_other.dot(ridge.way()), back = short_by / (ridge.slope() - rise);
-      if (short_by > 0 && rise < ridge.slope() && back < leg.length + tolerance_) {
-        // As far as both are as near, were that other a plane.
-        leg.length = std::max(leg.length - back, 0.0);
+      const double gain = ridge.slope() - leg.away_from_other.dot(ridge.way());
+      if (short_by > 0 && short_by < gain * (leg.length + tolerance_)) {
+        // Back to where both are as near, were that other a plane.
+        leg.length = std::max(leg.length - short_by / gain, 0.0);
         leg.ends = Ends::AtOther;
       } else {  // it has been passed altogether
         leg.length /= 2;
@@ -170,6 +170,7 @@ class RidgeFollower {
     const Vec3d x = from + ridge.way() * (leg.length + beyond);
     const Closest other = query_(x, leg.end.triangle);
     const double expected = leg.end.distance + leg.away_from_other.dot(ridge.way()) * beyond;
+    if (!(other.distance > 0)) return false;
     leg.away_from_other = (x - other.point) / other.distance;
     return std::abs(other.distance - expected) <= tolerance_;
   }
