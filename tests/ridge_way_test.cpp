@@ -148,6 +148,29 @@ TEST_CASE("ridges: where the distance rises no further ways end, whatever the gr
   }
 }
 
+TEST_CASE("ridges: what is told of solids with plane faces is so, however they lie", "[ridges][property]") {
+  const Polygons solids[] = {
+      scene::hollow_box(1, 0.15, 8), scene::gear(7, 0.3, 0.5, 0.1, 0.2, 3), scene::box(Vec3d(1, 0.4, 0.2), 9, true),
+      scene::box(Vec3d(0.3, 0.7, 1.1), 7, false),
+      Tetrahedron{{Vec3d(0, 0, 0), Vec3d(1, 0, 0.1), Vec3d(0.3, 0.2, 0.9), Vec3d(0.2, 1, 0)}}.mesh(9)};
+  const Vec3d axis = Vec3d(1, 2, 3).unit();
+  const auto turned = [&](const Vec3d& p) {  // by half a radian
+    return p * std::cos(0.5) + axis.cross(p) * std::sin(0.5) + axis * (axis.dot(p) * (1 - std::cos(0.5)));
+  };
+  for (const Polygons& solid : solids)
+    for (const double distance : {-0.02, -0.06, -0.14, 0.03, 0.2}) {
+      INFO(solid.positions.size() << " points, " << distance);
+      Polygons mesh = solid;
+      for (Vec3d& p : mesh.positions) p = turned(p);
+      const OffsetResult result = merged(mesh.view(), distance, 0.04);
+      const auto errors = test::judge(mesh.view(), result, distance, 3, true);
+      CHECK(errors.worst_reached <= 1e-6);
+      CHECK(errors.worst_beyond <= 1e-6);
+      CHECK(errors.worst_told <= 1e-9);
+      CHECK(errors.wrong_side == 0);
+    }
+}
+
 TEST_CASE("ridges: obstacles and borders are met as on any way", "[ridges]") {
   const Polygons cube = scene::box(Vec3d(0.5), 10, true);
   const Polygons inside = scene::icosphere(0.2, 3);
