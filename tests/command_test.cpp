@@ -374,7 +374,7 @@ TEST_CASE("command: the report has the keys that scripts rely on", "[command]") 
   CHECK(report["distance"].get<double>() == Approx(0.05 * report["mesh"]["diagonal"].get<double>()));
   CHECK(report["voxel_size"].get<double>() > 0);
   CHECK(report["threads"].get<int>() >= 1);
-  for (const char* stage : {"read", "rasterise", "sweep", "propagate", "limit", "write", "total"})
+  for (const char* stage : {"read", "rasterise", "sweep", "gradient", "propagate", "limit", "write", "total"})
     CHECK(report["seconds"][stage].get<double>() >= 0);
   for (const char* state : {"reached", "collision", "limited", "outside_field", "unused"})
     CHECK(report["vertices_by_state"].contains(state));

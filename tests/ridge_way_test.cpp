@@ -116,6 +116,49 @@ TEST_CASE("ridges: a tetrahedron's corners and edges arrive on those of the smal
   CHECK(worst_apart(result.positions, merged(mesh.view(), -kDistance, 0.1).positions) < 1e-11);
 }
 
+TEST_CASE("ridges: from a corner whose third face falls behind, the way goes along the other two", "[ridges]") {
+  const std::array<Vec3d, 3> inward{Vec3d(std::sqrt(0.75), 0.5, 0), Vec3d(-std::sqrt(0.75), 0.5, 0),
+                                    Vec3d(0, 0.684, 0.729).unit()};
+  Tetrahedron solid{{Vec3d(0.0)}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d along = inward[(k + 1) % 3].cross(inward[(k + 2) % 3]).unit();
+    solid.corner[k + 1] = along.dot(inward[k]) < 0 ? -along : along;
+  }
+  const Polygons mesh = solid.mesh(6);
+  for (const double h : {0.1, 0.02, 0.005}) {
+    const OffsetResult result = merged(mesh.view(), -0.02, h);
+    int corners = 0;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      if (mesh.positions[v].length() > 1e-12) continue;
+      ++corners;
+      CHECK((result.positions[v] - Vec3d(0, 0.04, 0)).length() < 1e-11);
+    }
+    CHECK(corners == 3);
+  }
+}
+
+TEST_CASE("ridges: planes may be as rough as seven digits leave them", "[ridges]") {
+  const Polygons cube = scene::box(Vec3d(0.5), 10, true);
+  const Vec3d axis = Vec3d(1, 2, 3).unit();
+  const auto turned = [&](const Vec3d& p, double angle) {
+    return p * std::cos(angle) + axis.cross(p) * std::sin(angle) + axis * (axis.dot(p) * (1 - std::cos(angle)));
+  };
+  for (const double distance : {-0.1, -0.02, -0.3})
+    for (const double h : {0.05, 0.0125}) {
+      Polygons rough = cube;
+      for (Vec3d& p : rough.positions) {
+        p = turned(p, 0.5);
+        for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(p[k]);
+      }
+      const OffsetResult result = merged(rough.view(), distance, h);
+      const double inner = std::max(0.0, 0.25 + distance);
+      for (std::size_t v = 0; v < cube.positions.size(); ++v)
+        CHECK((turned(result.positions[v], -0.5) - clamped(cube.positions[v], inner)).length() < 1e-6);
+      CHECK(test::share(result, inner > 0 ? VertexState::Reached : VertexState::Collision) == 1);
+      CHECK(test::judge(rough.view(), result, distance, 7, true).worst_reached <= 1e-6);
+    }
+}
+
 TEST_CASE("ridges: a component beside it that is curved goes its own way", "[ridges]") {
   const Polygons cube = scene::box(Vec3d(0.5), 10, true), sphere = scene::bumpy_sphere(0.5, 0.2, 2, 3, 3);
   Polygons both = cube;
@@ -171,7 +214,7 @@ TEST_CASE("ridges: what is told of solids with plane faces is so, however they l
     }
 }
 
-TEST_CASE("ridges: obstacles and borders are met as on any way", "[ridges]") {
+TEST_CASE("ridges: obstacles are met as on any way", "[ridges]") {
   const Polygons cube = scene::box(Vec3d(0.5), 10, true);
   const Polygons inside = scene::icosphere(0.2, 3);
   OffsetOptions options;

@@ -17,6 +17,10 @@ namespace {
 // Who has come so near to a stop in haste, as a share of its distance, goes on from there.
 constexpr double kOnTheWay = 0.7;
 
+// Planes through points of which a file has kept seven digits are off by a few of the last, by these shares of the
+// largest coordinate.
+constexpr double kRoughPlanes = 5e-7;
+
 /// Components, as flags.
 using Components = std::vector<std::uint8_t>;
 
@@ -56,6 +60,7 @@ class Marches {
         options_(options),
         paths_(paths) {
     const std::size_t count = surface_.vertices.size();
+    roughness_ = kRoughPlanes * largest_coordinate();
     for (std::size_t set = 0; set < distances.size(); ++set) {
       paths[set].displacement.resize(count);
       paths[set].achieved.resize(count);
@@ -103,6 +108,13 @@ class Marches {
 
   bool is_known(std::size_t set, std::size_t v) const { return known_[set][surface_.component[v]]; }
 
+  double largest_coordinate() const {
+    double largest = 0;
+    for (const Vec3d& vertex : surface_.vertices)
+      for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(vertex[k] + surface_.origin[k]));
+    return largest;
+  }
+
   Components go_straight(std::size_t set) {
     const Distances& distances = distances_[set];
     return find_ways(
@@ -120,7 +132,7 @@ class Marches {
     const Components found = find_ways(query_, directions_, distances, wanted, arrival_[set],
                                        [&](Traveller<Query>& traveller, std::size_t v) {
                                          if (options_.traces == Traces::Keep) traveller.keep_trace({});
-                                         const auto end = traveller.go_along_ridges(std::abs(distances[v]));
+                                         const auto end = traveller.go_along_ridges(std::abs(distances[v]), roughness_);
                                          if (options_.traces == Traces::Keep) trace[v] = traveller.trace();
                                          return end;
                                        });
@@ -224,6 +236,7 @@ class Marches {
   std::span<const Distances> distances_;
   const Obstacles* obstacles_;
   WayOptions options_;
+  double roughness_ = 0;  // of planes
   std::vector<Paths>& paths_;
   std::vector<std::vector<KnownEnd>> arrival_;  // of each set, on ways that need no field
   std::vector<Components> known_;               // of each set, those that have such ways

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "vdb_offset/closest.h"
 
@@ -27,7 +28,7 @@ namespace detail {
 /// Directions away from what is closest, all of them as near, and the way on which the distance rises fastest.
 class Ridge {
  public:
-  enum class Rise : std::uint8_t { Onward, Top, Unclear };
+  enum class Rise : std::uint8_t { Onward, Top, Unclear, Same };
 
   explicit Ridge(const Vec3d& away) : way_(away), slope_(1) { away_[count_++] = away; }
 
@@ -38,8 +39,10 @@ class Ridge {
   /// Something else has come as near. Unclear between faces almost in a plane: on the many ridges of what stands for a
   /// curved surface, neighbours would lose their order.
   Rise add(const Vec3d& away) {
-    for (std::size_t i = 0; i < count_; ++i)
+    for (std::size_t i = 0; i < count_; ++i) {
+      if ((away - away_[i]).lengthSqr() < kSame * kSame) return Rise::Same;
       if (away.dot(away_[i]) > kBlunt) return Rise::Unclear;
+    }
     away_[count_++] = away;
     // Two of them leave the others behind, or three; else there is no way up.
     for (std::size_t i = 0; i < count_; ++i)
@@ -52,11 +55,19 @@ class Ridge {
     return Rise::Top;
   }
 
+  /// The same where all start. False unless the distance rises onward.
+  bool is_risen_by(const Vec3d& away) {
+    const Rise rise = add(away);
+    return rise == Rise::Onward || rise == Rise::Same;
+  }
+
  private:
   // Below this fronts have all but met.
   static constexpr double kLeastSlope = 0.01;
   // Cosine between the normals on both sides.
   static constexpr double kBlunt = 0.9;
+  // By so little differ the normals of a plane whose corners have seven digits.
+  static constexpr double kSame = 1e-4;
   static constexpr double kAlike = 1e-9;
 
   Rise keep(const std::array<Vec3d, 4>& away, std::size_t count) {
@@ -97,8 +108,9 @@ class Ridge {
 template <class Query>
 class RidgeFollower {
  public:
-  RidgeFollower(const Query& query, double target, double tolerance)
-      : query_(query), target_(target), tolerance_(tolerance) {}
+  /// `tolerance` is what planes may be off by; the way ends at the target to `end_tolerance`.
+  RidgeFollower(const Query& query, double target, double tolerance, double end_tolerance)
+      : query_(query), target_(target), tolerance_(tolerance), end_tolerance_(end_tolerance) {}
 
   /// From x, what is closest to which is known, and not at x itself.
   RidgeWay operator()(const Vec3d& x, const Closest& closest) const {
@@ -108,12 +120,14 @@ class RidgeFollower {
     Vec3d from = x;
     detail::Ridge ridge((x - closest.point) / closest.distance);
     for (int turn = 0; turn < kMostTurns && way.count < RidgeWay::kMostCorners; ++turn) {
-      const Leg leg = next_leg(from, way.end, ridge);
+      Leg leg = next_leg(from, way.end, ridge);
+      if (leg.ends == Ends::AtTarget) settle(from, ridge, leg);
       if (leg.ends == Ends::Nowhere) break;
       from += ridge.way() * leg.length;
       way.end = leg.end;
       if (leg.ends == Ends::OnTheWay) continue;
       const Rise rise = leg.ends == Ends::AtOther ? ridge.add(leg.away_from_other) : Rise::Top;
+      if (rise == Rise::Same) continue;
       if (rise == Rise::Unclear) break;
       way.found = rise == Rise::Top;
       if (leg.length > tolerance_ || way.found) way.corners[way.count++] = from;
@@ -163,16 +177,31 @@ class RidgeFollower {
     return {};
   }
 
+  /// To the target itself, where planes are not quite what they should be; or to what is in the way just there.
+  void settle(const Vec3d& from, const detail::Ridge& ridge, Leg& leg) const {
+    constexpr int kMostSteps = 5;
+    double left = target_ - leg.end.distance;
+    for (int i = 0; i < kMostSteps && std::abs(left) > end_tolerance_; ++i) {
+      leg.length += left / ridge.slope();
+      const Vec3d end = from + ridge.way() * leg.length;
+      leg.end = query_(end, leg.end.triangle);
+      leg.away_from_other = (end - leg.end.point) / leg.end.distance;
+      const double before = std::exchange(left, target_ - leg.end.distance);
+      if (std::abs(left) > std::abs(before) / 2) break;
+    }
+    if (std::abs(left) > end_tolerance_) leg.ends = Ends::AtOther;
+  }
+
   /// Whether the other is as near at the leg's end as it would be if it were a plane: just beyond, where it is nearest.
   bool is_plane(const Vec3d& from, const detail::Ridge& ridge, Leg& leg) const {
-    constexpr double kBeyond = 1e-3;
+    constexpr double kBeyond = 0.1, kRougher = 4;  // where several others are about as near
     const double beyond = kBeyond * (leg.other_at - leg.length);
     const Vec3d x = from + ridge.way() * (leg.length + beyond);
     const Closest other = query_(x, leg.end.triangle);
     const double expected = leg.end.distance + leg.away_from_other.dot(ridge.way()) * beyond;
     if (!(other.distance > 0)) return false;
     leg.away_from_other = (x - other.point) / other.distance;
-    return std::abs(other.distance - expected) <= tolerance_;
+    return std::abs(other.distance - expected) <= kRougher * tolerance_;
   }
 
   /// Covers the leg, from its end, with balls that hold nothing.
@@ -187,7 +216,7 @@ class RidgeFollower {
   }
 
   const Query& query_;
-  double target_, tolerance_;
+  double target_, tolerance_, end_tolerance_;
 };
 
 }  // namespace vdb_offset

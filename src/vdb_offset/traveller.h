@@ -116,11 +116,13 @@ class Traveller {
 
   /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
   /// decide it all along.
-  std::optional<KnownEnd> go_along_ridges(double target) {
+  /// They may be as far from that as `roughness`.
+  std::optional<KnownEnd> go_along_ridges(double target, double roughness) {
     target_ = target;
-    const auto first = leave_surface();
+    const double tolerance = std::clamp(roughness, kStopTolerance * target, kRoughest * target);
+    const auto first = leave_along_ridge(tolerance);
     if (!first) return std::nullopt;
-    const RidgeWay way = RidgeFollower<Query>(query_, target, kStopTolerance * target)(
+    const RidgeWay way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
         first->x, {first->phi, hint_, feature_, first->x - first->away});
     if (!way.found) return std::nullopt;
     if (trace_) {
@@ -134,7 +136,7 @@ class Traveller {
   template <class Tell>
   void march(std::span<const Stop> stops, Tell&& tell) {
     target_ = stops.front().distance;
-    const auto first = leave_surface();
+    const auto first = leave_surface(first_step());
     if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
       for (const Stop& stop : stops) tell(stop, Arrival{origin_});
       return;
@@ -186,6 +188,8 @@ class Traveller {
   static constexpr double kSlowest = 0.01;
   // How much the distance must rise the way at a place to march on from, per length.
   static constexpr double kStillRising = 0.5;
+  // How far from planes faces may be to count as such, in distances.
+  static constexpr double kRoughest = 1e-4;
   // Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.
   static constexpr int kRidgeSteps = 14;
   // Below this length the interpolated gradient is the rest of opposite ones and says nothing.
@@ -284,14 +288,33 @@ class Traveller {
   }
 
   /// The first point off the surface, on the side asked for.
-  std::optional<Sample> leave_surface() {
-    for (double step = first_step(); step > 1e-7 * target_; step *= 0.25) {
+  std::optional<Sample> leave_surface(double longest) {
+    for (double step = longest; step > 1e-7 * target_; step *= 0.25) {
       const Sample sample = measure(origin_ + normal_ * step);
       const bool free = sample.phi > kFreeShare * std::max(slope_, 0.02) * step;
       const bool right = !sided_ || side_ * surface_.pseudonormal(hint_, feature_).dot(sample.away) > 0;
       if (free && right) return sample;
     }
     return std::nullopt;
+  }
+
+  /// The same where the distance rises fastest, if the faces around the vertex tell that.
+  std::optional<Sample> leave_along_ridge(double tolerance) {
+    constexpr double kStep = 1e-3, kShortStep = 1e-5, kClear = 30;
+    std::optional<detail::Ridge> ridge;
+    bool clear = true;
+    for (const auto t : surface_.triangles_around(vertex_)) {
+      const Vec3d away = surface_.triangle_normals[t] * side_;
+      if (away.lengthSqr() == 0) continue;
+      if (!ridge) ridge.emplace(away);
+      else clear = clear && ridge->is_risen_by(away);
+    }
+    if (ridge && clear) {
+      const double step = std::max(kStep * target_, kClear * tolerance / ridge->slope());
+      const Sample sample = measure(origin_ + ridge->way() * step);
+      if (std::abs(sample.phi - ridge->slope() * step) <= tolerance) return sample;
+    }
+    return leave_surface(std::max(kShortStep * target_, kClear * tolerance));
   }
 
   static double smooth_step(double x, double from, double to) {
