@@ -60,7 +60,9 @@ class Marches {
         options_(options),
         paths_(paths) {
     const std::size_t count = surface_.vertices.size();
-    roughness_ = kRoughPlanes * largest_coordinate();
+    // What bends is not followed to obstacles, nor along borders.
+    const bool along_ridges = options.ridges == Ridges::Sharp && !obstacles && surface_.conormals.empty();
+    if (along_ridges) roughness_ = kRoughPlanes * largest_coordinate();
     for (std::size_t set = 0; set < distances.size(); ++set) {
       paths[set].displacement.resize(count);
       paths[set].achieved.resize(count);
@@ -70,8 +72,7 @@ class Marches {
       arrival_.emplace_back(count);
       known_.push_back(go_straight(set));
       for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_known(set, v);
-      // Other ways bend, and obstacles and borders with them.
-      if (options.ridges == Ridges::Sharp && !obstacles && surface_.conormals.empty()) go_along_ridges(set);
+      if (along_ridges) go_along_ridges(set);
     }
   }
 

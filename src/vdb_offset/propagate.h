@@ -74,12 +74,12 @@ std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> tra
 ///
 /// Where the straight paths along the normals of all vertices of a component are characteristics of the faces around
 /// them, they are the exact offset: one or two exact distances a vertex prove it, phi being 1-Lipschitz. With
-/// Ridges::Sharp, the vertices of a component that lies between planes at an angle follow the ridges between those (see
-/// ridge_way.h), unless there are obstacles or borders. The vertices of any other component all march by RK4 along the
-/// smooth directions, since neighbours of which one goes straight and one follows the field lose their order. Steps are
-/// no longer than the exact distance, so that no path can cross the surface; the last is cut where the exact distance
-/// is d; where the distance falls and does not recover, the path ends at its largest. Where it comes as near to an
-/// obstacle as may be, it ends, too. The result does not depend on the number of threads.
+/// Ridges::Sharp, the vertices of another component that lies between planes at an angle follow the ridges of those
+/// (see ridge_way.h), unless there are obstacles or borders. The vertices of any other component all march by RK4 along
+/// the smooth directions, since neighbours of which one goes straight and one follows the field lose their order. Steps
+/// are no longer than the exact distance, so that no path can cross the surface; the last is cut where the exact
+/// distance is d; where the distance falls and does not recover, the path ends at its largest. Where it comes as near
+/// to an obstacle as may be, it ends, too. The result does not depend on the number of threads.
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
                              const ProgressCallback& progress = {}, const WayOptions& options = {});

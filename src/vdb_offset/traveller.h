@@ -115,8 +115,7 @@ class Traveller {
   }
 
   /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
-  /// decide it all along.
-  /// They may be as far from that as `roughness`.
+  /// decide it all along, or what is off them by no more than `roughness`.
   std::optional<KnownEnd> go_along_ridges(double target, double roughness) {
     target_ = target;
     const double tolerance = std::clamp(roughness, kStopTolerance * target, kRoughest * target);
