@@ -1,8 +1,5 @@
 #include "vdb_offset/propagate.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -21,30 +18,9 @@ constexpr double kOnTheWay = 0.7;
 // largest coordinate.
 constexpr double kRoughPlanes = 5e-7;
 
-/// Components, as flags.
+/// Components, as flags; and some that only ever fall, so that who sees one late does work that is not used.
 using Components = std::vector<std::uint8_t>;
-
-/// Tries ways that need no field, find(traveller, vertex) each, for the vertices of some components; a component of
-/// which one vertex has none has none at all. Returns, by component, whether all of its vertices have arrived that way.
-template <class Query, class Find>
-Components find_ways(const Query& query, const DirectionField& directions, const Distances& distances,
-                     const Components& wanted, std::vector<KnownEnd>& arrival, Find&& find) {
-  const ShapeOf<Query>& surface = query.surface();
-  // A flag only ever falls; who sees it late does work that is not used.
-  std::vector<std::atomic<std::uint8_t>> found(wanted.begin(), wanted.end());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.vertices.size(), 256), [&](const auto& range) {
-    DirectionSampler sampler(directions);
-    for (std::size_t v = range.begin(); v != range.end(); ++v) {
-      auto& flag = found[surface.component[v]];
-      if (!flag.load(std::memory_order_relaxed) || distances[v] == 0) continue;
-      const int side = distances[v] < 0 ? -1 : 1;
-      Traveller<Query> traveller(query, directions, sampler, side, static_cast<std::uint32_t>(v), Pace::Careful);
-      if (const auto end = find(traveller, v)) arrival[v] = *end;
-      else flag.store(0, std::memory_order_relaxed);
-    }
-  });
-  return {found.begin(), found.end()};
-}
+using FallingFlags = std::vector<std::atomic<std::uint8_t>>;
 
 /// The marches of a run: all vertices, for all sets of distances.
 template <class Query>
@@ -70,25 +46,27 @@ class Marches {
       paths[set].closest.resize(count, kNone);
       if (options.traces == Traces::Keep) paths[set].trace.resize(count);
       arrival_.emplace_back(count);
-      known_.push_back(go_straight(set));
+    }
+    go_straight();
+    for (std::size_t set = 0; set < distances.size(); ++set) {
       for (std::size_t v = 0; v < count; ++v) paths[set].straight += is_known(set, v);
       if (along_ridges) go_along_ridges(set);
     }
   }
 
-  /// Vertices are moved in blocks of so many.
-  static constexpr std::size_t kBlock = 128;
+  std::size_t block_count() const { return (surface_.vertices.size() + kBlock - 1) / kBlock; }
+  static std::size_t begin_of(std::size_t block) { return block * kBlock; }
+  std::size_t end_of(std::size_t block) const { return std::min((block + 1) * kBlock, surface_.vertices.size()); }
 
   /// Moves the vertices of a block: all in haste, then those that did not arrive by that carefully, first from where
   /// haste has brought them, which is a place on the way if the surface is only a little nearer than believed.
   void operator()(std::size_t block) const {
     DirectionSampler sampler(directions_);
-    const std::size_t first = block * kBlock, last = std::min(first + kBlock, surface_.vertices.size());
     std::vector<Stop> stops;
     std::vector<End> ends;
     for (const auto attempt : {Attempt::InHaste, Attempt::FromThere, Attempt::Anew}) {
       ends.clear();
-      for (std::size_t v = first; v < last; ++v)
+      for (std::size_t v = begin_of(block); v < end_of(block); ++v)
         for (const int side : {1, -1}) {
           stops.clear();
           for (std::size_t set = 0; set < distances_.size(); ++set) add_stop(set, v, side, attempt, stops, ends);
@@ -99,6 +77,9 @@ class Marches {
   }
 
  private:
+  // Vertices are moved in blocks of so many.
+  static constexpr std::size_t kBlock = 128;
+
   enum class Attempt { InHaste, FromThere, Anew };
   /// Where a vertex ended up on its way to a stop.
   struct End {
@@ -116,28 +97,60 @@ class Marches {
     return largest;
   }
 
-  Components go_straight(std::size_t set) {
-    const Distances& distances = distances_[set];
-    return find_ways(
-        query_, directions_, distances, Components(surface_.facts.components, 1), arrival_[set],
-        [&](Traveller<Query>& traveller, std::size_t v) { return traveller.go_straight(std::abs(distances[v])); });
+  /// Tries straight ways for all sets at once; a component of which one vertex has none has none at all in that set.
+  void go_straight() {
+    const Components all(surface_.facts.components, 1);
+    std::vector<FallingFlags> straight;
+    for (std::size_t set = 0; set < distances_.size(); ++set) straight.emplace_back(all.begin(), all.end());
+    for_each_index(
+        block_count(), [&](std::size_t block) { go_straight(block, straight); }, 1);
+    for (const FallingFlags& flags : straight) known_.emplace_back(flags.begin(), flags.end());
   }
 
-  /// Those of the components that have no straight ways.
+  void go_straight(std::size_t block, std::vector<FallingFlags>& straight) {
+    std::vector<StraightTry> tries;
+    std::vector<std::size_t> set_of;
+    const auto flag = [&](std::size_t set, std::size_t v) -> auto& { return straight[set][surface_.component[v]]; };
+    for (std::size_t v = begin_of(block); v < end_of(block); ++v)
+      for (const int side : {1, -1})
+        for (std::size_t set = 0; set < distances_.size(); ++set) {
+          const double distance = distances_[set][v];
+          if (!(distance * side > 0) || !flag(set, v).load(std::memory_order_relaxed)) continue;
+          tries.push_back({static_cast<std::uint32_t>(v), side, std::abs(distance)});
+          set_of.push_back(set);
+        }
+    const auto ends = StraightWays<Query>(query_, tries)();
+    for (std::size_t i = 0; i < tries.size(); ++i) {
+      const std::uint32_t v = tries[i].vertex;
+      if (ends[i]) arrival_[set_of[i]][v] = *ends[i];
+      else flag(set_of[i], v).store(0, std::memory_order_relaxed);
+    }
+  }
+
+  /// Those of the components that have no straight ways; again all of their vertices, or none.
   void go_along_ridges(std::size_t set) {
-    const Distances& distances = distances_[set];
     Components& known = known_[set];
-    Components wanted(known.size());
-    for (std::size_t c = 0; c < known.size(); ++c) wanted[c] = !known[c];
-    std::vector<std::vector<Vec3d>>& trace = paths_[set].trace;
-    const Components found = find_ways(query_, directions_, distances, wanted, arrival_[set],
-                                       [&](Traveller<Query>& traveller, std::size_t v) {
-                                         if (options_.traces == Traces::Keep) traveller.keep_trace({});
-                                         const auto end = traveller.go_along_ridges(std::abs(distances[v]), roughness_);
-                                         if (options_.traces == Traces::Keep) trace[v] = traveller.trace();
-                                         return end;
-                                       });
+    FallingFlags found(known.size());
+    for (std::size_t c = 0; c < known.size(); ++c) found[c] = !known[c];
+    for_each_index(
+        block_count(), [&](std::size_t block) { go_along_ridges(block, set, found); }, 1);
     for (std::size_t c = 0; c < known.size(); ++c) known[c] |= found[c];
+  }
+
+  void go_along_ridges(std::size_t block, std::size_t set, FallingFlags& found) {
+    DirectionSampler sampler(directions_);
+    for (std::size_t v = begin_of(block); v < end_of(block); ++v) {
+      auto& flag = found[surface_.component[v]];
+      const double distance = distances_[set][v];
+      if (!flag.load(std::memory_order_relaxed) || distance == 0) continue;
+      Traveller<Query> traveller(query_, directions_, sampler, distance < 0 ? -1 : 1, static_cast<std::uint32_t>(v),
+                                 Pace::Careful);
+      if (options_.traces == Traces::Keep) traveller.keep_trace({});
+      const auto end = traveller.go_along_ridges(std::abs(distance), roughness_);
+      if (options_.traces == Traces::Keep) paths_[set].trace[v] = traveller.trace();
+      if (end) arrival_[set][v] = *end;
+      else flag.store(0, std::memory_order_relaxed);
+    }
   }
 
   /// Where vertex v has to march to for one set, if it goes to this side at all and has not arrived.
@@ -251,12 +264,13 @@ std::vector<Paths> march_all(const Query& query, const DirectionField& direction
   std::vector<Paths> paths(distances.size());
   using All = Marches<Query>;
   const All marches(query, directions, distances, obstacles, options, paths);
-  for_each_index((count + All::kBlock - 1) / All::kBlock,
-                 [&](std::size_t block) {
-                   marches(block);
-                   progress.advance(std::min(All::kBlock, count - block * All::kBlock));
-                 },
-                 1);
+  for_each_index(
+      marches.block_count(),
+      [&](std::size_t block) {
+        marches(block);
+        progress.advance(marches.end_of(block) - marches.begin_of(block));
+      },
+      1);
   return paths;
 }
 

@@ -12,6 +12,7 @@
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/ridge_way.h"
 #include "vdb_offset/start.h"
+#include "vdb_offset/straight_way.h"
 
 /// How one vertex finds its way: of a Surface, by its ClosestQuery, and of a Polyline, by its CurveQuery, alike.
 namespace vdb_offset {
@@ -50,20 +51,10 @@ inline Vec3d stop_at_obstacle(const Obstacles& obstacles, const Vec3d& from, con
 /// nearer to that than it believes.
 enum class Pace { Careful, Hasty };
 
-// A stop is solved far below the promised 1e-6, so that rounding on the way to a file does not use it up.
-inline constexpr double kStopTolerance = 1e-9;
-
 /// Where a vertex ended up on its way.
 struct Arrival {
   Vec3d position;
   bool outside_field = false;
-};
-
-/// Where a way ends that is known without the field: place, exact distance, and the closest triangle.
-struct KnownEnd {
-  Vec3d position;
-  double distance;
-  std::uint32_t triangle;
 };
 
 template <class Query>
@@ -90,28 +81,6 @@ class Traveller {
     const Start start = start_of(surface_, vertex);
     normal_ = start.direction * side_;
     slope_ = start.slope;
-  }
-
-  /// The point at distance `target` on the line along the normal, if nothing but the faces around the vertex decides
-  /// phi on the way there: then that line is a characteristic, or runs along the ridge that those faces make.
-  std::optional<KnownEnd> go_straight(double target) {
-    target_ = target;
-    if (slope_ < kLeastStraightSlope) return std::nullopt;
-    const double longest = target_ / slope_ * (1 + kStraightTolerance);
-    double t = target_, before = 0, phi_before = 0;
-    for (int i = 0; i < 8; ++i) {
-      const double phi = measure(origin_ + normal_ * t).phi;
-      const KnownEnd end{origin_ + normal_ * t, phi, hint_};
-      if (arrived(phi))
-        return is_way_free(normal_, slope_, t - target_, kNothingLeft * target_) ? std::optional(end) : std::nullopt;
-      if (phi < slope_ * t * (1 - kStraightTolerance) || phi <= phi_before) return std::nullopt;
-      const double next = t + (target_ - phi) * (t - before) / (phi - phi_before);
-      if (!(next > before) || next > longest) return std::nullopt;
-      before = t;
-      phi_before = phi;
-      t = next;
-    }
-    return std::nullopt;
   }
 
   /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
@@ -168,10 +137,6 @@ class Traveller {
   }
 
  private:
-  // How much longer than the faces around a vertex alone ask for a straight path may be.
-  static constexpr double kStraightTolerance = 1e-3;
-  // What remains of a straight way, in distances, when it has been followed back to the vertex.
-  static constexpr double kNothingLeft = 1e-9;
   // Below this the faces around a vertex turn away from its normal so far that a straight path says little.
   static constexpr double kLeastStraightSlope = 0.2;
   // Longest step, in voxels; and in distances, where the way is straight (cosine between its ends) on a finer grid.
