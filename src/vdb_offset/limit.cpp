@@ -17,18 +17,25 @@ namespace {
 // small, as the skins of a shell touch where a vertex has not moved at all.
 constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
-// Patches are tried in these ways, with ever more rings around what is wrong. What frees one patch fails in the next;
-// borders leave their planes only for what else does not free. Of 23,000 patches of fifteen models, those with more
-// vertices than are allowed here took more than half of the time, and hardly any of them was freed.
-constexpr std::size_t kAny = kNone;
+// Patches are tried in these ways, with ever more rings around what is wrong, but not those of more vertices than so
+// many: of 23,000 patches of fifteen models such large ones took half of the time, and hardly any of them was freed.
+// What frees one patch fails in the next; borders leave their planes only for what else does not free.
+// Larger meshes than all of those, of more vertices than kManyVertices, may have patches larger in proportion.
+struct Growth {
+  int rings;
+  std::size_t most_vertices;
+};
 struct Attempt {
   Untangler::Options options;
-  std::size_t most_vertices, most_with_many_rings;
+  std::span<const Growth> growths;
 };
+constexpr std::size_t kAny = kNone, kManyVertices = 200000;
+constexpr Growth kFar[] = {{1, kAny}, {2, 5000}, {3, 5000}, {4, 3000}, {6, 3000}, {8, 3000}, {12, 3000}, {16, 3000}};
+constexpr Growth kLess[] = {{1, 1000}, {2, 1000}, {3, 1000}, {4, 1000}, {6, 1000}, {8, 1000}};
+constexpr Growth kNear[] = {{1, 1000}, {2, 1000}, {3, 1000}};
+constexpr Growth kNearest[] = {{1, 300}, {2, 300}, {3, 300}};
 constexpr Attempt kAttempts[] = {
-    {{1, 4, true}, 2000, 2000}, {{0.1, 10, true}, 1000, 0}, {{1, 30, false}, 1000, 1000}, {{0.01, 10, false}, 300, 0}};
-constexpr int kFewRings = 3;
-constexpr int kRings[] = {1, 2, 3, 4, 6, 8};
+    {{1, 4, true}, kFar}, {{0.1, 10, true}, kNear}, {{1, 30, false}, kLess}, {{0.01, 10, false}, kNearest}};
 
 // Then what has collided is tried in these, with so many rings around. If it is much, and one of them leaves more than
 // this share of it where it is, fronts have met, and there is no way out.
@@ -46,6 +53,7 @@ constexpr double kHopeless = 0.99;
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
+constexpr int kFewRings = 3;
 constexpr std::size_t kManyFaults = 2000;
 constexpr double kWorthwhile = 0.8;
 
@@ -128,15 +136,14 @@ class Limiter {
   /// while to try another way.
   bool untangle_with(const Attempt& attempt, Progress& progress) {
     const std::size_t before = fault_count();
+    const std::size_t times = 1 + source_.size() / kManyVertices;
     Indices last;
-    for (const int rings : kRings) {
+    for (const auto& [rings, most_vertices] : attempt.growths) {
       if (!faults_.any()) return false;
-      const bool few = rings <= kFewRings;
-      const std::size_t most = few ? attempt.most_vertices : attempt.most_with_many_rings;
-      if (most == 0 || (!few && fault_count() > kManyFaults)) break;
+      if (rings > kFewRings && fault_count() > kManyFaults) break;
       Indices chosen = patch_vertices(rings);
       if (chosen == last) break;
-      untangle(chosen, attempt.options, rings == 1 && &attempt == kAttempts ? kAny : most);
+      untangle(chosen, attempt.options, times * most_vertices);
       ++statistics_.untanglings;
       progress.advance(1);
       last = std::move(chosen);
