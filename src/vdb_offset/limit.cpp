@@ -17,21 +17,23 @@ namespace {
 // small, as the skins of a shell touch where a vertex has not moved at all.
 constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
-// Patches are tried in these ways, with ever more rings around what is wrong, but not those of more vertices than so
-// many: of 23,000 patches of fifteen models such large ones took half of the time, and hardly any of them was freed.
-// What frees one patch fails in the next; borders leave their planes only for what else does not free.
-// Larger meshes than all of those, of more vertices than kManyVertices, may have patches larger in proportion.
+// Patches are tried in these ways, with ever more rings around what is wrong. What frees one patch fails in the next;
+// borders leave their planes only for what else does not free. Patches of more vertices than so many, or in which more
+// have collided, are left out: of 23,000 patches of fifteen models these took more than half of the time, and hardly
+// any of them was freed. Larger meshes than all of those, of more than kManyVertices, may have patches larger in
+// proportion.
+constexpr std::size_t kAny = kNone, kManyVertices = 200000;
 struct Growth {
   int rings;
-  std::size_t most_vertices;
+  std::size_t most_vertices, most_collided = kAny;
 };
 struct Attempt {
   Untangler::Options options;
   std::span<const Growth> growths;
 };
-constexpr std::size_t kAny = kNone, kManyVertices = 200000;
-constexpr Growth kFar[] = {{1, kAny}, {2, 5000}, {3, 5000}, {4, 3000}, {6, 3000}, {8, 3000}, {12, 3000}, {16, 3000}};
-constexpr Growth kLess[] = {{1, 1000}, {2, 1000}, {3, 1000}, {4, 1000}, {6, 1000}, {8, 1000}};
+constexpr Growth kFar[] = {{1, kAny},     {2, 5000},     {3, 5000},      {4, 3000, 40},
+                           {6, 3000, 40}, {8, 3000, 40}, {12, 3000, 40}, {16, 3000, 40}};
+constexpr Growth kLess[] = {{1, 1000}, {2, 1000}, {3, 1000}, {4, 1000, 40}, {6, 1000, 40}, {8, 1000, 40}};
 constexpr Growth kNear[] = {{1, 1000}, {2, 1000}, {3, 1000}};
 constexpr Growth kNearest[] = {{1, 300}, {2, 300}, {3, 300}};
 constexpr Attempt kAttempts[] = {
@@ -41,14 +43,13 @@ constexpr Attempt kAttempts[] = {
 // this share of it where it is, fronts have met, and there is no way out.
 struct Freeing {
   Untangler::Options options;
-  int rings;
-  std::size_t most_vertices;
+  Growth growth;
 };
-constexpr Freeing kFreeings[] = {{{1, 30, true}, 1, kAny},
-                                 {{1, 4, true}, 0, kAny},
-                                 {{1, 30, true}, 0, kAny},
-                                 {{1, 30, false}, 0, 300},
-                                 {{0.01, 10, false}, 0, 300}};
+constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAny}},
+                                 {{1, 4, true}, {0, kAny}},
+                                 {{1, 30, true}, {0, kAny}},
+                                 {{1, 30, false}, {0, 300}},
+                                 {{0.01, 10, false}, {0, 300}}};
 constexpr double kHopeless = 0.99;
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
@@ -136,14 +137,13 @@ class Limiter {
   /// while to try another way.
   bool untangle_with(const Attempt& attempt, Progress& progress) {
     const std::size_t before = fault_count();
-    const std::size_t times = 1 + source_.size() / kManyVertices;
     Indices last;
-    for (const auto& [rings, most_vertices] : attempt.growths) {
+    for (const Growth& growth : attempt.growths) {
       if (!faults_.any()) return false;
-      if (rings > kFewRings && fault_count() > kManyFaults) break;
-      Indices chosen = patch_vertices(rings);
+      if (growth.rings > kFewRings && fault_count() > kManyFaults) break;
+      Indices chosen = patch_vertices(growth.rings);
       if (chosen == last) break;
-      untangle(chosen, attempt.options, times * most_vertices);
+      untangle(chosen, attempt.options, growth);
       ++statistics_.untanglings;
       progress.advance(1);
       last = std::move(chosen);
@@ -156,14 +156,14 @@ class Limiter {
     Indices open;
     for (std::uint32_t v = 0; v < source_.size(); ++v)
       if (may_slide(v) && is_short(v)) open.push_back(v);
-    for (const auto& [options, rings, most] : kFreeings) {
+    for (const auto& [options, growth] : kFreeings) {
       if (open.empty()) return;
       const std::size_t before = open.size();
       const bool many = before > kManyFaults;
-      if (many && rings > 0) continue;
-      Indices chosen = with_rings(open, rings);
+      if (many && growth.rings > 0) continue;
+      Indices chosen = with_rings(open, growth.rings);
       std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
-      untangle(chosen, options, most);
+      untangle(chosen, options, growth);
       ++statistics_.untanglings;
       progress.advance(1);
       std::erase_if(open, [&](std::uint32_t v) { return !is_short(v); });
@@ -243,9 +243,7 @@ class Limiter {
     });
     for (const auto v : faults_.misplaced())
       if (patch_[v] != kNone) ++wrong[patch_[v]].misplaced;
-    for (std::size_t i = 0; i < patches.size(); ++i)
-      wrong[i].collided = static_cast<std::size_t>(
-          std::count_if(patches[i].begin(), patches[i].end(), [&](std::uint32_t v) { return is_short(v); }));
+    for (std::size_t i = 0; i < patches.size(); ++i) wrong[i].collided = count_collided(patches[i]);
     return wrong;
   }
 
@@ -276,23 +274,30 @@ class Limiter {
     return chosen;
   }
 
-  /// Drops patches of more than so many vertices.
-  void leave_out(std::vector<Indices>& patches, Indices& chosen, std::size_t most_vertices) {
-    std::erase_if(chosen, [&](std::uint32_t v) {
-      if (patches[patch_[v]].size() <= most_vertices) return false;
-      patch_[v] = kNone;
-      return true;
-    });
-    std::erase_if(patches, [&](const Indices& patch) { return patch.size() > most_vertices; });
+  /// Drops the patches that are not worth while.
+  void leave_out(std::vector<Indices>& patches, Indices& chosen, const Growth& growth) {
+    const std::size_t most = growth.most_vertices * (1 + source_.size() / kManyVertices);
+    const auto is_hopeless = [&](const Indices& patch) {
+      return patch.size() > most || count_collided(patch) > growth.most_collided;
+    };
+    for (const Indices& patch : patches)
+      if (is_hopeless(patch))
+        for (const auto v : patch) patch_[v] = kNone;
+    std::erase_if(patches, [&](const Indices& patch) { return patch_[patch.front()] == kNone; });
+    std::erase_if(chosen, [&](std::uint32_t v) { return patch_[v] == kNone; });
     for (std::uint32_t i = 0; i < patches.size(); ++i)
       for (const auto v : patches[i]) patch_[v] = i;
   }
 
-  /// Untangles patches of vertices, all at their distance, of so many at most, and keeps those where that makes nothing
-  /// worse.
-  void untangle(Indices chosen, const Untangler::Options& options, std::size_t most_vertices) {
+  std::size_t count_collided(const Indices& patch) const {
+    return static_cast<std::size_t>(
+        std::count_if(patch.begin(), patch.end(), [&](std::uint32_t v) { return is_short(v); }));
+  }
+
+  /// Untangles patches of vertices, all at their distance, and keeps those where that makes nothing worse.
+  void untangle(Indices chosen, const Untangler::Options& options, const Growth& growth) {
     std::vector<Indices> patches = find_patches(chosen);
-    leave_out(patches, chosen, most_vertices);
+    leave_out(patches, chosen, growth);
     const std::vector<Wrong> before = wrong_by_patch(patches);
     std::vector<Vec3d> old_way(chosen.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
