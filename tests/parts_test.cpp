@@ -132,9 +132,14 @@ TEST_CASE("several: one march serves all distances", "[several][oracle]") {
   CHECK(results[3].positions == mesh.positions);
   // Where paths are straight, the field's voxel size does not matter.
   const Polygons sphere = scene::icosphere(1, 3);
-  OffsetOptions alone;
-  alone.distance = 0.05;
-  CHECK(offset_several(sphere.view(), distances, options)[0].positions == offset(sphere.view(), alone).positions);
+  const std::vector<OffsetResult> of_sphere = offset_several(sphere.view(), distances, options);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    INFO(i);
+    OffsetOptions alone;
+    alone.distance = distances[i];
+    CHECK(of_sphere[i].positions == offset(sphere.view(), alone).positions);
+    if (i < 3) CHECK(of_sphere[i].statistics.straight_vertices == sphere.positions.size());
+  }
 }
 
 TEST_CASE("several: the same bits for any number of threads, told as one run, cancelled as one",
