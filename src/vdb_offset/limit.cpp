@@ -22,22 +22,24 @@ constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 // have collided, are left out: of 23,000 patches of fifteen models these took more than half of the time, and hardly
 // any of them was freed. Larger meshes than all of those, of more than kManyVertices, may have patches larger in
 // proportion.
-constexpr std::size_t kAny = kNone, kManyVertices = 200000;
+constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
 struct Growth {
   int rings;
-  std::size_t most_vertices, most_collided = kAny;
+  std::size_t most_vertices, most_collided = kAnyNumber;
 };
 struct Attempt {
   Untangler::Options options;
   std::span<const Growth> growths;
 };
-constexpr Growth kFar[] = {{1, kAny},     {2, 5000},     {3, 5000},      {4, 3000, 40},
-                           {6, 3000, 40}, {8, 3000, 40}, {12, 3000, 40}, {16, 3000, 40}};
-constexpr Growth kLess[] = {{1, 1000}, {2, 1000}, {3, 1000}, {4, 1000, 40}, {6, 1000, 40}, {8, 1000, 40}};
-constexpr Growth kNear[] = {{1, 1000}, {2, 1000}, {3, 1000}};
-constexpr Growth kNearest[] = {{1, 300}, {2, 300}, {3, 300}};
-constexpr Attempt kAttempts[] = {
-    {{1, 4, true}, kFar}, {{0.1, 10, true}, kNear}, {{1, 30, false}, kLess}, {{0.01, 10, false}, kNearest}};
+constexpr Growth kFarGrowths[] = {{1, kAnyNumber}, {2, 5000},     {3, 5000},      {4, 3000, 40},
+                                  {6, 3000, 40},   {8, 3000, 40}, {12, 3000, 40}, {16, 3000, 40}};
+constexpr Growth kLessGrowths[] = {{1, 1000}, {2, 1000}, {3, 1000}, {4, 1000, 40}, {6, 1000, 40}, {8, 1000, 40}};
+constexpr Growth kNearGrowths[] = {{1, 1000}, {2, 1000}, {3, 1000}};
+constexpr Growth kNearestGrowths[] = {{1, 300}, {2, 300}, {3, 300}};
+constexpr Attempt kAttempts[] = {{{1, 4, true}, kFarGrowths},
+                                 {{0.1, 10, true}, kNearGrowths},
+                                 {{1, 30, false}, kLessGrowths},
+                                 {{0.01, 10, false}, kNearestGrowths}};
 
 // Then what has collided is tried in these, with so many rings around. If it is much, and one of them leaves more than
 // this share of it where it is, fronts have met, and there is no way out.
@@ -45,9 +47,9 @@ struct Freeing {
   Untangler::Options options;
   Growth growth;
 };
-constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAny}},
-                                 {{1, 4, true}, {0, kAny}},
-                                 {{1, 30, true}, {0, kAny}},
+constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAnyNumber}},
+                                 {{1, 4, true}, {0, kAnyNumber}},
+                                 {{1, 30, true}, {0, kAnyNumber}},
                                  {{1, 30, false}, {0, 300}},
                                  {{0.01, 10, false}, {0, 300}}};
 constexpr double kHopeless = 0.99;
