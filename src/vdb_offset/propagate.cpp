@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/traveller.h"
@@ -97,7 +98,7 @@ class Marches {
     return largest;
   }
 
-  /// Tries straight ways for all sets at once; a component of which one vertex has none has none at all in that set.
+  /// Tries straight ways for all sets; a component of which one vertex has none has none at all in that set.
   void go_straight() {
     const Components all(surface_.facts.components, 1);
     std::vector<FallingFlags> straight;
@@ -107,24 +108,35 @@ class Marches {
     for (const FallingFlags& flags : straight) known_.emplace_back(flags.begin(), flags.end());
   }
 
+  /// One set and one component at a time, so that a flag that falls changes nothing for those that stay up.
   void go_straight(std::size_t block, std::vector<FallingFlags>& straight) {
+    std::vector<std::uint32_t> vertices(end_of(block) - begin_of(block));
+    std::iota(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(begin_of(block)));
+    const auto component_of = [&](std::uint32_t v) { return surface_.component[v]; };
+    std::stable_sort(vertices.begin(), vertices.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return component_of(a) < component_of(b); });
+    for (std::size_t first = 0, last = 0; first < vertices.size(); first = last) {
+      const std::uint32_t component = component_of(vertices[first]);
+      while (last < vertices.size() && component_of(vertices[last]) == component) ++last;
+      for (std::size_t set = 0; set < distances_.size(); ++set)
+        if (auto& flag = straight[set][component]; flag.load(std::memory_order_relaxed))
+          if (!go_straight(set, std::span(vertices).subspan(first, last - first)))
+            flag.store(0, std::memory_order_relaxed);
+    }
+  }
+
+  /// Whether all of these vertices have a straight way.
+  bool go_straight(std::size_t set, std::span<const std::uint32_t> vertices) {
     std::vector<StraightTry> tries;
-    std::vector<std::size_t> set_of;
-    const auto flag = [&](std::size_t set, std::size_t v) -> auto& { return straight[set][surface_.component[v]]; };
-    for (std::size_t v = begin_of(block); v < end_of(block); ++v)
-      for (const int side : {1, -1})
-        for (std::size_t set = 0; set < distances_.size(); ++set) {
-          const double distance = distances_[set][v];
-          if (!(distance * side > 0) || !flag(set, v).load(std::memory_order_relaxed)) continue;
-          tries.push_back({static_cast<std::uint32_t>(v), side, std::abs(distance)});
-          set_of.push_back(set);
-        }
+    for (const auto v : vertices)
+      if (const double distance = distances_[set][v]; distance != 0)
+        tries.push_back({v, distance < 0 ? -1 : 1, std::abs(distance)});
     const auto ends = StraightWays<Query>(query_, tries)();
     for (std::size_t i = 0; i < tries.size(); ++i) {
-      const std::uint32_t v = tries[i].vertex;
-      if (ends[i]) arrival_[set_of[i]][v] = *ends[i];
-      else flag(set_of[i], v).store(0, std::memory_order_relaxed);
+      if (!ends[i]) return false;
+      arrival_[set][tries[i].vertex] = *ends[i];
     }
+    return true;
   }
 
   /// Those of the components that have no straight ways; again all of their vertices, or none.

@@ -38,7 +38,7 @@ struct StraightTry {
 template <class Query>
 class StraightWays {
  public:
-  /// Tries of one vertex and side stand together; they are best of vertices near each other.
+  /// Tries are best of vertices near each other. The ends depend only on the tries together.
   StraightWays(const Query& query, std::span<const StraightTry> tries) : query_(query), tries_(tries) {
     const auto& surface = query.surface();
     for (const StraightTry& one : tries) {
@@ -77,31 +77,18 @@ class StraightWays {
 
   Vec3d point_of(const Place& place) const { return lines_[place.at].origin + lines_[place.at].normal * place.t; }
 
-  /// What is closest to some places, those of one vertex and side next to each other.
+  /// What is closest to some places.
   std::span<const Closest> look(std::span<const Place> places) {
     points_.clear();
-    begin_.clear();
-    way_hints_.clear();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const std::size_t at = places[i].at;
-      points_.push_back(point_of(places[i]));
-      if (i > 0 && is_same_way(places[i - 1].at, at)) continue;
-      begin_.push_back(i);
-      way_hints_.push_back(hints_[at]);
+    place_hints_.clear();
+    for (const Place& place : places) {
+      points_.push_back(point_of(place));
+      place_hints_.push_back(hints_[place.at]);
     }
     closest_.resize(places.size());
-    if (way_hints_.size() == places.size()) {
-      query_.answer_together(points_, way_hints_, closest_);
-    } else {
-      begin_.push_back(places.size());
-      query_.answer_along_ways(points_, begin_, way_hints_, closest_);
-    }
+    query_.answer_together(points_, place_hints_, closest_);
     for (std::size_t i = 0; i < places.size(); ++i) hints_[places[i].at] = closest_[i].triangle;
     return closest_;
-  }
-
-  bool is_same_way(std::size_t a, std::size_t b) const {
-    return tries_[a].vertex == tries_[b].vertex && tries_[a].side == tries_[b].side;
   }
 
   /// Secants on phi along the lines, for as long as it rises as the faces around the vertex ask for.
@@ -164,8 +151,7 @@ class StraightWays {
   std::vector<Place> reached_;        // where phi is the distance that was asked for
   // What is asked in a round.
   std::vector<Vec3d> points_;
-  std::vector<std::size_t> begin_;
-  std::vector<std::uint32_t> way_hints_;
+  std::vector<std::uint32_t> place_hints_;
   std::vector<Closest> closest_;
 };
 
