@@ -20,8 +20,8 @@ constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 // Patches are tried in these ways, with ever more rings around what is wrong. What frees one patch fails in the next;
 // borders leave their planes only for what else does not free. Patches of more vertices than so many, or in which more
 // have collided, are left out: of 23,000 patches of fifteen models these took more than half of the time, and hardly
-// any of them was freed. Larger meshes than all of those, of more than kManyVertices, may have patches larger in
-// proportion.
+// any of them was freed. Larger meshes than all of those may have patches as many times larger as they have
+// kManyVertices, rounded up.
 constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
 struct Growth {
   int rings;
