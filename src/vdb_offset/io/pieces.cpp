@@ -4,6 +4,8 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/compression.h"
@@ -14,18 +16,24 @@ namespace {
 // Items of a section in a piece of a file.
 constexpr std::size_t kPerPiece = 1 << 15;
 
+/// Pieces under way stand in slots of their own: what a pipeline that is broken off holds itself is lost. They leave in
+/// order, so that who comes as many later finds the slot free.
 void produce(const Pieces& pieces, Compression compression, const Sink& sink) {
+  const auto under_way = static_cast<std::size_t>(2 * tbb::info::default_concurrency());
+  std::vector<std::string> made(under_way);
   std::size_t next = 0;
   const auto number =
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& at) {
         if (next == pieces.count) at.stop();
         return next++;
       });
-  const auto make = tbb::make_filter<std::size_t, std::string>(
-      tbb::filter_mode::parallel, [&](std::size_t i) { return compress(compression, pieces.make(i)); });
-  const auto write = tbb::make_filter<std::string, void>(tbb::filter_mode::serial_in_order,
-                                                         [&](const std::string& piece) { sink(piece); });
-  tbb::parallel_pipeline(static_cast<std::size_t>(2 * tbb::info::default_concurrency()), number & make & write);
+  const auto make = tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, [&](std::size_t i) {
+    made[i % under_way] = compress(compression, pieces.make(i));
+    return i;
+  });
+  const auto write = tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order,
+                                                         [&](std::size_t i) { sink(made[i % under_way]); });
+  tbb::parallel_pipeline(under_way, number & make & write);
 }
 
 }  // namespace
