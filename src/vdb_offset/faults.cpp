@@ -21,11 +21,6 @@ void replace(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
 
 }  // namespace
 
-void sort_unique(Indices& indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-}
-
 FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
                          Precision precision, std::optional<std::vector<TrianglePair>> source_crossings)
     : body_(body),
@@ -39,6 +34,8 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       distance_(source.size()),
       right_side_(source.size(), 1),
       fault_(surface_.triangles.size(), Fault::None),
+      touched_(surface_.triangles.size()),
+      wrong_(source.size()),
       finder_(surface_, place_) {
   if (body.off_source) {
     source_finder_.emplace(surface_, source_);
@@ -59,19 +56,15 @@ void FaultFinder::find_folded() {
   });
 }
 
-Indices FaultFinder::triangles_around(const Indices& vertices) const {
-  Indices triangles;
+Indices FaultFinder::triangles_around(const Indices& vertices) {
   if (vertices.size() == source_.size()) {
-    triangles.resize(surface_.triangles.size());
+    Indices triangles(surface_.triangles.size());
     std::iota(triangles.begin(), triangles.end(), 0u);
     return triangles;
   }
-  for (const auto v : vertices) {
-    const auto around = surface_.triangles_around(v);
-    triangles.insert(triangles.end(), around.begin(), around.end());
-  }
-  sort_unique(triangles);
-  return triangles;
+  for (const auto v : vertices)
+    for (const auto t : surface_.triangles_around(v)) touched_.add(t);
+  return touched_.take();
 }
 
 /// Whether a pair that meets is not to.
@@ -296,11 +289,10 @@ FaultCounts FaultFinder::count() const {
   return counts;
 }
 
-Indices FaultFinder::wrong_vertices() const {
-  Indices wrong = misplaced_;
-  for_each_wrong_corner([&](std::uint32_t v) { wrong.push_back(v); });
-  sort_unique(wrong);
-  return wrong;
+Indices FaultFinder::wrong_vertices() {
+  for (const auto v : misplaced_) wrong_.add(v);
+  for_each_wrong_corner([&](std::uint32_t v) { wrong_.add(v); });
+  return wrong_.take();
 }
 
 }  // namespace vdb_offset

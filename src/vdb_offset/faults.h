@@ -11,6 +11,7 @@
 #include "vdb_offset/clearance.h"
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/indices.h"
 #include "vdb_offset/near_crossings.h"
 #include "vdb_offset/precision.h"
 #include "vdb_offset/rim_crossings.h"
@@ -27,10 +28,6 @@ struct FaultCounts {
 
   std::size_t total() const { return inverted + collapsed + crowded + crossings; }
 };
-
-/// Indices of vertices or triangles: sorted, no two the same.
-using Indices = std::vector<std::uint32_t>;
-void sort_unique(Indices& indices);
 
 /// What is wrong with an offset of a surface, as its vertices are moved about.
 ///
@@ -71,7 +68,7 @@ class FaultFinder {
   /// Folded vertices (see is_folded()) whose faces meet the source around them, which only ends where they stay on it.
   Indices caught() const;
   /// All vertices that something is wrong with.
-  Indices wrong_vertices() const;
+  Indices wrong_vertices();
 
   /// Exact distance of a vertex as it was last looked at.
   double distance_of(std::uint32_t vertex) const { return distance_[vertex]; }
@@ -88,7 +85,7 @@ class FaultFinder {
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
   void find_folded();
-  Indices triangles_around(const Indices& vertices) const;
+  Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
             Crossings crossings);
@@ -118,6 +115,8 @@ class FaultFinder {
   std::vector<std::uint8_t> right_side_;
   std::vector<std::uint8_t> folded_;  // of each vertex; empty but where the source must not be met
   std::vector<Fault> fault_;          // of each triangle
+  IndexGatherer touched_;             // triangles
+  IndexGatherer wrong_;               // vertices
   Indices faces_, misplaced_;
   std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;

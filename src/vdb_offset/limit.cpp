@@ -83,6 +83,7 @@ class Limiter {
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
         patch_(source.size(), kNone),
+        gathered_(source.size()),
         faults_(faults) {
     statistics_.source_crossings = faults_.source_crossings().size();
   }
@@ -198,14 +199,13 @@ class Limiter {
     faults_.look(moved, [&](std::uint32_t v) { return place_of(v); });
   }
 
-  Indices with_rings(Indices vertices, int rings) const {
-    for (; rings > 0; --rings) {
-      for (std::size_t i = 0, inner = vertices.size(); i < inner; ++i)
-        for (const auto t : surface_.triangles_around(vertices[i]))
-          for (const auto v : surface_.triangles[t]) vertices.push_back(v);
-      sort_unique(vertices);
-    }
-    return vertices;
+  Indices with_rings(const Indices& vertices, int rings) {
+    for (const auto v : vertices) gathered_.add(v);
+    for (std::size_t i = 0; rings > 0; --rings)
+      for (const std::size_t inner = gathered_.so_far().size(); i < inner; ++i)
+        for (const auto t : surface_.triangles_around(gathered_.so_far()[i]))
+          for (const auto v : surface_.triangles[t]) gathered_.add(v);
+    return gathered_.take();
   }
 
   /// Splits vertices into patches that share no face; patch_ tells the patch of each.
@@ -264,14 +264,10 @@ class Limiter {
   }
 
   /// The vertices that may slide, so many rings around what is wrong.
-  Indices patch_vertices(int rings) const {
+  Indices patch_vertices(int rings) {
     // Corners are wrong many times over where fronts have run through each other.
-    std::vector<std::uint8_t> is_wrong(source_.size(), 0);
-    faults_.for_each_wrong_corner([&](std::uint32_t v) { is_wrong[v] = 1; });
-    Indices chosen;
-    for (std::uint32_t v = 0; v < source_.size(); ++v)
-      if (is_wrong[v]) chosen.push_back(v);
-    chosen = with_rings(std::move(chosen), rings);
+    faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); });
+    Indices chosen = with_rings(gathered_.take(), rings);
     std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
     return chosen;
   }
@@ -428,6 +424,7 @@ class Limiter {
   std::vector<double> share_;  // of the way that a vertex goes
   Indices pulled_;             // vertices that have been pulled back at some time
   Indices patch_;              // of each vertex while patches are being untangled, else kNone
+  IndexGatherer gathered_;     // vertices
   FaultFinder& faults_;        // as things stand
   LimitStatistics statistics_;
 };

@@ -33,16 +33,15 @@ std::array<Vec3d, 2> plane_of(const Vec3d& n) {
   return {u, n.cross(u)};
 }
 
+/// Four sums at a time: one would wait for each addition before the next.
 double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// chi of the paper: about det for det > 0, small and positive below.
-double chi(double det, double epsilon) {
-  const double root = std::sqrt(epsilon * epsilon + det * det);
-  return det > 0 ? (det + root) / 2 : epsilon * epsilon / (2 * (root - det));
+  constexpr std::size_t kSums = 4;
+  std::array<double, kSums> sum{};
+  std::size_t i = 0;
+  for (; i + kSums <= a.size(); i += kSums)
+    for (std::size_t k = 0; k < kSums; ++k) sum[k] += a[i + k] * b[i + k];
+  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /// L-BFGS: what the last steps tell of the energy's curvature (Nocedal and Wright, Numerical Optimization, 2006,
@@ -141,7 +140,7 @@ class Patch {
     double inverse[3];  // of the source's edges (a, b; 0, c) in the plane: 1/a, -b/(a c), 1/c
     double area;
     double edge[2][2];    // from the first corner to the others, in the face's plane
-    double map[3][2][2];  // how a slide of each corner shows in that plane
+    double map[3][2][2];  // how a slide of each corner along each of its tangents shows in that plane
   };
 
   void add_point(std::uint32_t v, std::span<const Vec3d> way) {
@@ -201,12 +200,11 @@ class Patch {
       for (std::size_t row = 0; row < 2; ++row) {
         for (std::size_t k = 0; k < 3; ++k)
           for (std::size_t axis = 0; axis < 2; ++axis)
-            face.map[k][row][axis] = plane[row].dot(points_[face.point[k]].tangent[axis]);
+            face.map[k][axis][row] = plane[row].dot(points_[face.point[k]].tangent[axis]);
         for (std::size_t k = 0; k < 2; ++k)
           face.edge[k][row] = plane[row].dot(points_[face.point[k + 1]].x - points_[face.point[0]].x);
       }
-      double jacobian[4];
-      const double det = jacobian_of(face, {}, jacobian);
+      const double det = jacobian_of(face, face.edge).det();
       least_det_ = std::min(least_det_, det);
       folded_ += det <= 0;
     }
@@ -242,60 +240,63 @@ class Patch {
     return x;
   }
 
-  /// Returns the determinant. `slide` holds two numbers for each free point, and may be empty.
-  double jacobian_of(const Face& face, std::span<const double> slide, double (&j)[4]) const {
-    double edge[2][2] = {{face.edge[0][0], face.edge[0][1]}, {face.edge[1][0], face.edge[1][1]}};
-    if (!slide.empty())
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (face.point[k] >= free_) continue;
-        const double u = slide[2 * face.point[k]], v = slide[2 * face.point[k] + 1];
-        for (std::size_t row = 0; row < 2; ++row) {
-          const double moved = face.map[k][row][0] * u + face.map[k][row][1] * v;
-          if (k != 2) edge[0][row] += k == 0 ? -moved : moved;
-          if (k != 1) edge[1][row] += k == 0 ? -moved : moved;
-        }
-      }
+  /// How a face is mapped, by rows (0, 1; 2, 3), where its edges in the plane lead from the first corner to the others.
+  struct Jacobian {
+    double j[4];
+    double det() const { return j[0] * j[3] - j[1] * j[2]; }
+  };
+  static Jacobian jacobian_of(const Face& face, const double (&edge)[2][2]) {
+    Jacobian map{};
     for (std::size_t row = 0; row < 2; ++row) {
-      j[2 * row] = edge[0][row] * face.inverse[0];
-      j[2 * row + 1] = edge[0][row] * face.inverse[1] + edge[1][row] * face.inverse[2];
+      map.j[2 * row] = edge[0][row] * face.inverse[0];
+      map.j[2 * row + 1] = edge[0][row] * face.inverse[1] + edge[1][row] * face.inverse[2];
     }
-    return j[0] * j[3] - j[1] * j[2];
+    return map;
   }
 
-  /// The energy, and its derivative by the slides.
+  /// The energy, and its derivative by the slides, two numbers for each point, which are 0 of those that stand still.
+  /// chi, by which the energy is divided, is about det for det > 0, small and
+  /// positive below.
   double energy(std::span<const double> slide, double epsilon, std::span<double> derivative) const {
     std::fill(derivative.begin(), derivative.end(), 0.0);
+    const double lambda = options_.area_weight;
     double sum = 0;
     for (const Face& face : faces_) {
-      double j[4];
-      const double det = jacobian_of(face, slide, j), x = chi(det, epsilon),
-                   x_slope = x / std::sqrt(epsilon * epsilon + det * det);
-      const double e =
-          (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + options_.area_weight * (det * det + 1)) / x;
+      double moved[3][2], edge[2][2];
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t row = 0; row < 2; ++row)
+          moved[k][row] =
+              face.map[k][0][row] * slide[2 * face.point[k]] + face.map[k][1][row] * slide[2 * face.point[k] + 1];
+      for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t row = 0; row < 2; ++row)
+          edge[k][row] = face.edge[k][row] + (moved[k + 1][row] - moved[0][row]);
+      const Jacobian map = jacobian_of(face, edge);
+      const auto& j = map.j;
+      const double det = map.det(), root = std::sqrt(epsilon * epsilon + det * det),
+                   by_chi = det > 0 ? 2 / (det + root) : 2 * (root - det) / (epsilon * epsilon);
+      const double e = (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + lambda * (det * det + 1)) * by_chi;
       sum += face.area * e;
-      const double by_det = (2 * options_.area_weight * det - e * x_slope) / x;
-      const double by_j[4] = {2 * j[0] / x + by_det * j[3], 2 * j[1] / x - by_det * j[2], 2 * j[2] / x - by_det * j[1],
-                              2 * j[3] / x + by_det * j[0]};
-      double by_edge[2][2];
+      const double by_det = (2 * lambda * det) * by_chi - e / root, twice = 2 * by_chi;
+      const double by_j[4] = {twice * j[0] + by_det * j[3], twice * j[1] - by_det * j[2], twice * j[2] - by_det * j[1],
+                              twice * j[3] + by_det * j[0]};
+      double by_place[3][2];
       for (std::size_t row = 0; row < 2; ++row) {
-        by_edge[0][row] = (by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1]) * face.area;
-        by_edge[1][row] = by_j[2 * row + 1] * face.inverse[2] * face.area;
+        by_place[1][row] = (by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1]) * face.area;
+        by_place[2][row] = by_j[2 * row + 1] * face.inverse[2] * face.area;
+        by_place[0][row] = -by_place[1][row] - by_place[2][row];
       }
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (face.point[k] >= free_) continue;
-        for (std::size_t row = 0; row < 2; ++row) {
-          const double by_x = k == 0 ? -by_edge[0][row] - by_edge[1][row] : by_edge[k - 1][row];
-          for (std::size_t axis = 0; axis < 2; ++axis)
-            derivative[2 * face.point[k] + axis] += face.map[k][row][axis] * by_x;
-        }
-      }
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t axis = 0; axis < 2; ++axis)
+          derivative[2 * face.point[k] + axis] +=
+              face.map[k][axis][0] * by_place[k][0] + face.map[k][axis][1] * by_place[k][1];
     }
+    std::fill(derivative.begin() + static_cast<std::ptrdiff_t>(2 * free_), derivative.end(), 0.0);
     return sum;
   }
 
   /// Lets the energy fall, with L-BFGS directions and halved steps, then puts the points where they have slid to.
   void slide() {
-    const std::size_t n = 2 * free_;
+    const std::size_t n = 2 * points_.size();
     const double folded = std::min(least_det_, 0.0), epsilon = std::sqrt(1e-12 + 0.04 * folded * folded);
     std::vector<double> x(n, 0.0), g(n), step(n), next(n), next_g(n);
     QuasiNewton model;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace vdb_offset {
+
+/// Indices of vertices or triangles: sorted, no two the same.
+using Indices = std::vector<std::uint32_t>;
+
+inline void sort_unique(Indices& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+/// Gathers indices that come many times over, as corners of neighbouring triangles do, by marks: these need not be
+/// sorted to be told apart.
+class IndexGatherer {
+ public:
+  /// For indices below `count`.
+  explicit IndexGatherer(std::size_t count) : has_(count, 0) {}
+
+  void add(std::uint32_t i) {
+    if (has_[i]) return;
+    has_[i] = 1;
+    gathered_.push_back(i);
+  }
+  /// In the order in which they came; grows by add().
+  const std::vector<std::uint32_t>& so_far() const { return gathered_; }
+  /// Hands them over, and begins anew.
+  Indices take() {
+    for (const auto i : gathered_) has_[i] = 0;
+    std::sort(gathered_.begin(), gathered_.end());
+    return std::exchange(gathered_, {});
+  }
+
+ private:
+  std::vector<std::uint8_t> has_;
+  std::vector<std::uint32_t> gathered_;
+};
+
+}  // namespace vdb_offset
