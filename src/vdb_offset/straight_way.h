@@ -16,6 +16,8 @@ namespace vdb_offset {
 
 // A stop is solved far below the promised 1e-6, so that rounding on the way to a file does not use it up.
 inline constexpr double kStopTolerance = 1e-9;
+// Below this the faces around a vertex turn away from its normal so far that a straight path says little.
+inline constexpr double kLeastStraightSlope = 0.2;
 
 /// Where a way ends that is known without the field: place, exact distance, and the closest triangle.
 struct KnownEnd {
@@ -59,8 +61,6 @@ class StraightWays {
  private:
   // How much longer than the faces around a vertex alone ask for a straight path may be.
   static constexpr double kStraightTolerance = 1e-3;
-  // Below this the faces around a vertex turn away from its normal so far that a straight path says little.
-  static constexpr double kLeastSlope = 0.2;
   // What remains of a straight way, in distances, when it has been followed back to the vertex.
   static constexpr double kNothingLeft = 1e-9;
   static constexpr int kMostRounds = 8;
@@ -96,7 +96,7 @@ class StraightWays {
     std::vector<Place> open, next;
     std::vector<std::pair<double, double>> before(tries_.size(), {0, 0});  // the last place, and phi there
     for (std::size_t i = 0; i < tries_.size(); ++i)
-      if (lines_[i].slope >= kLeastSlope) open.push_back({i, tries_[i].distance});
+      if (lines_[i].slope >= kLeastStraightSlope) open.push_back({i, tries_[i].distance});
     for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
       const std::span<const Closest> closest = look(open);
       next.clear();

@@ -137,8 +137,6 @@ class Traveller {
   }
 
  private:
-  // Below this the faces around a vertex turn away from its normal so far that a straight path says little.
-  static constexpr double kLeastStraightSlope = 0.2;
   // Longest step, in voxels; and in distances, where the way is straight (cosine between its ends) on a finer grid.
   static constexpr double kStepVoxels = 0.75, kStepShare = 0.125, kStraightCourse = 0.9995;
   // A path may run this far, in distances, without getting anywhere before it counts as stopped.
