@@ -222,8 +222,9 @@ double cell_volume(const VolumeMesh& mesh, std::size_t cell) {
 }
 
 std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
-  std::array<VolumeField, 2> fields{VolumeField{"scaled_jacobian", std::vector<float>(mesh.cell_count())},
-                                    VolumeField{"aspect_ratio", std::vector<float>(mesh.cell_count())}};
+  std::array<VolumeField, 2> fields{VolumeField{"scaled_jacobian", {}}, VolumeField{"aspect_ratio", {}}};
+  for_each_index(
+      fields.size(), [&](std::size_t i) { fields[i].values.resize(mesh.cell_count()); }, 1);
   for_each_index(mesh.cell_count(), [&](std::size_t c) {
     const CellType type = mesh.cell_types[c];
     const CellPoints x{mesh, mesh.cell(c)};

@@ -1,5 +1,7 @@
 #include "vdb_offset/layer_cells.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,9 +83,12 @@ double achieved(const LayersResult& layers, std::size_t layer, Index v) {
 
 void place_points(const LayersResult& layers, const LayerPoints& points, VolumeMesh& volume) {
   const std::size_t count = points.wall() + std::size_t{points.risen} * layers.count();
-  volume.points.resize(count);
   volume.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"achieved", {}}, {"state", {}}};
-  for (VolumeField& field : volume.point_fields) field.values.resize(count);
+  // The first touch of so much memory takes as long as filling it, on one thread.
+  tbb::parallel_invoke([&] { volume.points.resize(count); },
+                       [&] {
+                         for (VolumeField& field : volume.point_fields) field.values.resize(count);
+                       });
   for (std::size_t layer = 0; layer <= layers.count(); ++layer)
     for_each_index(points.wall(), [&](std::size_t p) {
       if (layer > 0 && points.flat(static_cast<Index>(p))) return;
@@ -101,11 +106,13 @@ void fill_cells(const LayerPoints& points, const LayerColumns& columns, const Wa
                 VolumeMesh& volume) {
   const std::size_t cells = columns.cells.back();
   const std::uint64_t size = columns.size.back();
-  volume.cell_types.resize(cells * layers);
-  volume.corners.resize(size * layers);
-  volume.cell_begin.resize(cells * layers + 1);
   volume.cell_fields = {{"layer", {}}, {"face", {}}, {"patch", {}}};
-  for (VolumeField& field : volume.cell_fields) field.values.resize(cells * layers);
+  tbb::parallel_invoke([&] { volume.corners.resize(size * layers); },
+                       [&] {
+                         volume.cell_types.resize(cells * layers);
+                         volume.cell_begin.resize(cells * layers + 1);
+                         for (VolumeField& field : volume.cell_fields) field.values.resize(cells * layers);
+                       });
   for (std::size_t layer = 0; layer < layers; ++layer)
     for_each_index(columns.count(), [&](std::size_t c) {
       std::size_t cell = layer * cells + columns.cells[c];
@@ -176,6 +183,13 @@ void add_sides(const LayerPoints& points, const LayerColumns& columns, std::size
   if (patch.face_count() > 0) volume.patches.push_back(std::move(patch));
 }
 
+void add_patches(const LayerPoints& points, const LayerColumns& columns, const WallNames& names, std::size_t layers,
+                 VolumeMesh& volume) {
+  add_walls(points, columns, names, volume);
+  add_outer(points, columns, layers, volume);
+  add_sides(points, columns, layers, volume);
+}
+
 }  // namespace
 
 const char* name(FaceRole role) {
@@ -199,12 +213,12 @@ VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOp
   VolumeMesh volume;
   place_points(layers, points, volume);
   fill_cells(points, columns, names, layers.count(), volume);
-  if (layers.count() > 0) {
-    add_walls(points, columns, names, volume);
-    add_outer(points, columns, layers.count(), volume);
-    add_sides(points, columns, layers.count(), volume);
-  }
-  for (VolumeField& field : quality_fields(volume)) volume.cell_fields.push_back(std::move(field));
+  std::array<VolumeField, 2> quality;
+  tbb::parallel_invoke([&] { quality = quality_fields(volume); },
+                       [&] {
+                         if (layers.count() > 0) add_patches(points, columns, names, layers.count(), volume);
+                       });
+  for (VolumeField& field : quality) volume.cell_fields.push_back(std::move(field));
   if (facts_out != nullptr) *facts_out = std::move(facts);
   return volume;
 }

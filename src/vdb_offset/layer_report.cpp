@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -210,18 +211,9 @@ class Source {
     figures.name = std::move(name);
     for (const auto f : faces) ++figures.faces_by_role[static_cast<std::size_t>(facts_.role[f])];
     if (layers_.count() == 0) return figures;
-    add_thickness(faces, figures);
-    add_first_heights(faces, figures);
-    add_cells(faces, figures);
-    std::vector<std::uint32_t> with_cells;
-    for (const auto f : faces)
-      if (facts_.cells[f] > 0) with_cells.push_back(f);
-    std::vector<float> angles(with_cells.size());
-    for_each_index(angles.size(), [&](std::size_t i) {
-      const auto face = mesh_.face(with_cells[i]);
-      angles[i] = static_cast<float>(wall_angle(layers_.positions[0], layers_.positions[1], face));
-    });
-    figures.wall_angle = spread_of(angles.size(), [&](std::size_t i) { return angles[i]; });
+    // Each has figures of its own to fill in, and a part that takes one thread.
+    tbb::parallel_invoke([&] { add_cells(faces, figures); }, [&] { add_thickness(faces, figures); },
+                         [&] { add_first_heights(faces, figures); }, [&] { add_wall_angles(faces, figures); });
     return figures;
   }
 
@@ -297,6 +289,18 @@ class Source {
     for (const auto f : faces)
       if (facts_.cells[f] > 0)
         for (const auto v : mesh_.face(f)) visit(v);
+  }
+
+  void add_wall_angles(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
+    std::vector<std::uint32_t> with_cells;
+    for (const auto f : faces)
+      if (facts_.cells[f] > 0) with_cells.push_back(f);
+    std::vector<float> angles(with_cells.size());
+    for_each_index(angles.size(), [&](std::size_t i) {
+      const auto face = mesh_.face(with_cells[i]);
+      angles[i] = static_cast<float>(wall_angle(layers_.positions[0], layers_.positions[1], face));
+    });
+    figures.wall_angle = spread_of(angles.size(), [&](std::size_t i) { return angles[i]; });
   }
 
   void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {

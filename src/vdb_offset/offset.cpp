@@ -201,20 +201,21 @@ class Pipeline {
     OffsetStatistics statistics = shared_;
     const Body body = work_.body(*query_, keep_away(), true, slides_ ? mesh_.face_count() : 0);
     const std::vector<Vec3d> source = work_.source(mesh_);
-    FaultFinder faults(body, source, distances_.front(), options_.precision);
+    std::optional<FaultFinder> faults;
     {
       const StageTimer timer(statistics.seconds, Stage::Limit);
-      statistics.limit = untangle(faults, body, source, distances_.front(), paths.front(), options_.progress);
+      faults.emplace(body, source, distances_.front(), options_.precision);
+      statistics.limit = untangle(*faults, body, source, distances_.front(), paths.front(), options_.progress);
     }
     std::optional<CellColumns> columns;
     LayerStack stack;
     {
       const StageTimer timer(statistics.seconds, Stage::Layers);
       columns.emplace(mesh_, body, source);
-      stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, faults, paths.front(),
+      stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, *faults, paths.front(),
                            options_.progress);
     }
-    statistics.limit.left = faults.count();
+    statistics.limit.left = faults->count();
     return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
   }
 
