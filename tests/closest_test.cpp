@@ -106,6 +106,75 @@ TEST_CASE("closest: points on ways up from the surface have the answers of one b
   CHECK(worst < 1e-14);
 }
 
+namespace {
+
+/// Whether collect_together() has all triangles that meet random balls near the mesh, and visit_nearer() all of those
+/// that are nearer than it is told, before and after planes have been moved; and how many it visits in vain, as a
+/// share.
+struct Planes {
+  std::size_t missed = 0, visited = 0, in_vain = 0;
+};
+Planes try_planes(const Polygons& mesh, double size) {
+  Surface surface = build_surface(mesh.view(), {});
+  place(surface, surface.facts.diagonal / 50);
+  const ClosestQuery query(surface);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> signed_unit(-1, 1);
+  const auto somewhere = [&] { return Vec3d(signed_unit(random), signed_unit(random), signed_unit(random)); };
+  const auto distance = [&](std::size_t t, const Vec3d& x) {
+    return std::sqrt(surface.closest_on(static_cast<std::uint32_t>(t), x).squared_distance);
+  };
+  std::vector<ClosestQuery::Ball> balls;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3d x = surface.vertices[random() % surface.vertices.size()] + somewhere() * size;
+    balls.push_back({x, query(x, 0).distance * (1.01 + std::abs(signed_unit(random)))});
+  }
+  Planes found;
+  query.collect_together(balls, [&](std::size_t i, NearTriangles& near) {
+    const auto& [centre, radius] = balls[i];
+    std::vector<std::uint8_t> held(surface.triangles.size(), 0);
+    for (std::size_t n = 0; n < near.size(); ++n) held[near.triangle(n)] = 1;
+    for (std::size_t t = 0; t < held.size(); ++t) found.missed += held[t] == 0 && distance(t, centre) < radius;
+    for (int k = 0; k < 12; ++k) {
+      const Vec3d x = centre + somewhere() * (0.4 * radius);
+      const double limit = query(x, 0).distance * (1 + 0.2 * std::abs(signed_unit(random)));
+      std::vector<std::uint8_t> visited(near.size(), 0);
+      near.visit_nearer(x, limit, [&](std::size_t n) {
+        visited[n] = 1;
+        return limit;
+      });
+      for (std::size_t n = 0; n < near.size(); ++n) {
+        const TrianglePoint point = surface.closest_on(near.triangle(n), x);
+        const double at = std::sqrt(point.squared_distance);
+        found.missed += visited[n] == 0 && at < limit;
+        found.visited += visited[n];
+        found.in_vain += visited[n] != 0 && at > 1.1 * limit;
+        if (random() % 3 == 0) near.hold_back(n, x, x - point.point, at);
+      }
+    }
+  });
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("closest: triangles near a ball stay behind their planes", "[closest]") {
+  for (const double scale : {1e-30, 1.0, 1e30}) {
+    const Planes found = try_planes(scene::icosphere(scale, 4), 0.1 * scale);
+    CHECK(found.missed == 0);
+    CHECK(found.visited > 1000);
+    CHECK(found.in_vain < found.visited / 2);
+  }
+  CHECK(try_planes(scene::bumpy_sphere(1, 0.3, 1.5, 3, 4), 0.3).missed == 0);
+  CHECK(try_planes(scene::plates(1, 0.01, 0.001, 20), 0.01).missed == 0);
+  CHECK(try_planes(scene::naca_wing("0012", 1, 1, 40, 10), 0.01).missed == 0);
+  CHECK(try_planes(scene::box(Vec3d(1, 100, 0.001), 1, true), 0.01).missed == 0);
+  CHECK(try_planes(scene::box(Vec3d(1), 1, true), 0.01).missed == 0);
+  Polygons far = scene::icosphere(1, 4);
+  for (Vec3d& p : far.positions) p += Vec3d(1e6, -2e6, 3e6);
+  CHECK(try_planes(far, 0.1).missed == 0);
+}
+
 TEST_CASE("closest: a triangle without area is its edges", "[closest]") {
   Polygons mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.25, 0, 0}, {0, 1, 0}};

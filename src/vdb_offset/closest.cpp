@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "vdb_offset/lanes.h"
 #include "vdb_offset/morton.h"
@@ -78,23 +79,72 @@ unsigned ClosestQuery::near_siblings(const BoxTree::Siblings& box, const float* 
   return near;
 }
 
+namespace {
+
+/// Some discs as a point sees them: how high it is over their planes, how far beside their centres, and how far beside
+/// their rims.
+struct DiscView {
+  Lanes away[3], normal[3], radius, height, lateral, beyond, squared;  // squared distance, no larger than it is
+};
+
+/// Discs i .. i + kLanes - 1 of some. A triangle is no nearer than its disc: with height h over the plane and lateral
+/// distance l from the centre, h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
+template <class Discs>
+DiscView look_at(const Discs& discs, int i, const float* local) {
+  DiscView view{};
+  Lanes squared{};
+  for (int k = 0; k < 3; ++k) {
+    view.away[k] = local[k] - load_lanes(discs.centre[k] + i);
+    view.normal[k] = load_lanes(discs.normal[k] + i);
+    squared += view.away[k] * view.away[k];
+    view.height += view.away[k] * view.normal[k];
+  }
+  const Lanes height2 = view.height * view.height;
+  view.radius = load_lanes(discs.radius + i);
+  view.lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{}));
+  view.beyond = max_lanes(view.lateral - view.radius, Lanes{});
+  view.squared = (height2 + view.beyond * view.beyond) * 0.999999f;
+  return view;
+}
+
+}  // namespace
+
 /// The triangles of a lowest box that may be nearer to a point, in the tree's units, than the root of `limit`, a bit
-/// for each; and how near they may be, squared. A triangle is no nearer than its disc: with height h over the plane and
-/// lateral distance l from the centre, h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
+/// for each; and how near they may be, squared.
 unsigned ClosestQuery::near_discs(const Discs& discs, const float* local, float limit, float* least_squared) {
   unsigned near = 0;
   for (int i = 0; i < kLeafSize; i += kLanes) {
-    Lanes squared{}, height{};
-    for (int k = 0; k < 3; ++k) {
-      const Lanes away = local[k] - load_lanes(discs.centre[k] + i);
-      squared += away * away;
-      height += away * load_lanes(discs.normal[k] + i);
-    }
-    const Lanes height2 = height * height, lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{})),
-                beyond = max_lanes(lateral - load_lanes(discs.radius + i), Lanes{});
-    const Lanes least = (height2 + beyond * beyond) * 0.999999f;
-    store_lanes(least_squared + i, least);
-    near |= lane_bits(least <= limit + Lanes{}) << i;
+    const DiscView view = look_at(discs, i, local);
+    store_lanes(least_squared + i, view.squared);
+    near |= lane_bits(view.squared <= limit + Lanes{}) << i;
+  }
+  return near;
+}
+
+/// Planes that face a point, at a distance, with a box's triangles behind them.
+struct ClosestQuery::Planes {
+  float normal[3][kLeafSize], distance[kLeafSize];
+};
+
+/// As near_discs(), with the planes in front of the discs. Those in front of the rims of discs that are larger than
+/// they are far away would not be exact enough: these have their own planes.
+unsigned ClosestQuery::planes_before(const Discs& discs, const float* local, float limit, Planes& planes) {
+  constexpr float kTiny = 1e-30f;
+  unsigned near = 0;
+  for (int i = 0; i < kLeafSize; i += kLanes) {
+    const DiscView view = look_at(discs, i, local);
+    const unsigned found = lane_bits(view.squared <= limit + Lanes{});
+    if (found == 0) continue;
+    near |= found << i;
+    const Lanes distance = sqrt_lanes(view.squared), one = Lanes{} + 1.0f;
+    const IntLanes before_rim = view.radius <= distance;
+    const Lanes aside = view.beyond / max_lanes(view.lateral, Lanes{} + kTiny),
+                each = one / max_lanes(distance, Lanes{} + kTiny), up = view.height < Lanes{} ? -one : one;
+    const Lanes along_normal = before_rim ? view.height * (one - aside) * each : up,
+                along_way = before_rim ? aside * each : Lanes{};
+    for (int k = 0; k < 3; ++k)
+      store_lanes(planes.normal[k] + i, view.normal[k] * along_normal + view.away[k] * along_way);
+    store_lanes(planes.distance + i, before_rim ? distance : view.height * up);
   }
   return near;
 }
@@ -257,7 +307,7 @@ class ClosestQuery::Group {
 class ClosestQuery::Collector {
  public:
   Collector(const ClosestQuery& query, std::span<const Ball> balls,
-            const std::function<void(std::size_t, std::vector<Candidate>&)>& take)
+            const std::function<void(std::size_t, NearTriangles&)>& take)
       : query_(query), balls_(balls), take_(take) {}
 
   /// Balls first .. last - 1: by halves, if they do not lie close together.
@@ -279,11 +329,13 @@ class ClosestQuery::Collector {
 
  private:
   void begin(const Ball& ball) {
-    near_.clear();
     for (int k = 0; k < 3; ++k) local_[k] = static_cast<float>(ball.centre[k] * query_.scale_);
     rounding_ = query_.slack_ + 4e-7f * std::max({std::abs(local_[0]), std::abs(local_[1]), std::abs(local_[2])});
-    const float reach = (static_cast<float>(ball.radius * query_.scale_) + rounding_) * 1.000001f;
+    const auto radius = static_cast<float>(ball.radius * query_.scale_), reach = (radius + rounding_) * 1.000001f;
     limit_ = reach * reach;
+    // A ball of no size, or next to none, is no unit.
+    unit_ = std::max({radius, rounding_, std::numeric_limits<float>::min()});
+    near_.begin(ball.centre, static_cast<double>(unit_) / query_.scale_);
   }
 
   void descend() {
@@ -309,23 +361,24 @@ class ClosestQuery::Collector {
   }
 
   void look_at_triangles(std::size_t leaf) {
-    float least[kLeafSize];
-    for (unsigned near = near_discs(query_.discs_[leaf], local_, limit_, least); near != 0; near &= near - 1) {
+    Planes planes;
+    for (unsigned near = planes_before(query_.discs_[leaf], local_, limit_, planes); near != 0; near &= near - 1) {
       const auto at = static_cast<std::size_t>(std::countr_zero(near));
-      near_.push_back({static_cast<std::uint32_t>(leaf * kLeafSize + at),
-                       static_cast<double>(std::sqrt(least[at]) * 0.999999f - rounding_) / query_.scale_});
+      near_.add(static_cast<std::uint32_t>(leaf * kLeafSize + at),
+                {planes.normal[0][at], planes.normal[1][at], planes.normal[2][at]},
+                (planes.distance[at] * 0.999999f - rounding_) / unit_);
     }
   }
 
   const ClosestQuery& query_;
   std::span<const Ball> balls_;
-  const std::function<void(std::size_t, std::vector<Candidate>&)>& take_;
-  std::vector<Candidate> near_;
-  float local_[3], rounding_ = 0, limit_ = 0;
+  const std::function<void(std::size_t, NearTriangles&)>& take_;
+  NearTriangles near_;
+  float local_[3], rounding_ = 0, limit_ = 0, unit_ = 1;
 };
 
 void ClosestQuery::collect_together(std::span<const Ball> balls,
-                                    const std::function<void(std::size_t, std::vector<Candidate>&)>& take) const {
+                                    const std::function<void(std::size_t, NearTriangles&)>& take) const {
   if (!balls.empty()) Collector(*this, balls, take).collect(0, balls.size());
 }
 
@@ -339,8 +392,8 @@ class ClosestQuery::Ways {
   }
 
   void answer() const {
-    query_.collect_together(balls_, [&](std::size_t i, const std::vector<Candidate>& near) {
-      for (std::size_t p = runs_[i].first; p < runs_[i].second; ++p) choose(p, balls_[i].centre, near);
+    query_.collect_together(balls_, [&](std::size_t i, const NearTriangles& near) {
+      for (std::size_t p = runs_[i].first; p < runs_[i].second; ++p) choose(p, near);
     });
   }
 
@@ -372,15 +425,16 @@ class ClosestQuery::Ways {
     runs_.emplace_back(first, last);
   }
 
-  void choose(std::size_t p, const Vec3d& centre, const std::vector<Candidate>& near) const {
+  void choose(std::size_t p, const NearTriangles& near) const {
     Closest best = walked_[p];
-    const double gone = (points_[p] - centre).length();
-    for (const auto& [triangle, least] : near) {
-      if (triangle == best.triangle || least - gone >= best.distance) continue;
+    near.visit_nearer(points_[p], best.distance, [&](std::size_t i) {
+      const std::uint32_t triangle = near.triangle(i);
+      if (triangle == best.triangle) return best.distance;
       const TrianglePoint candidate = query_.surface_.closest_on(triangle, points_[p]);
-      if (candidate.squared_distance >= best.distance * best.distance) continue;
-      best = {std::sqrt(candidate.squared_distance), triangle, candidate.feature, candidate.point};
-    }
+      if (candidate.squared_distance < best.distance * best.distance)
+        best = {std::sqrt(candidate.squared_distance), triangle, candidate.feature, candidate.point};
+      return best.distance;
+    });
     answers_[p] = best;
   }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdb_offset/box_tree.h"
+#include "vdb_offset/near_triangles.h"
 #include "vdb_offset/surface.h"
 
 namespace vdb_offset {
@@ -52,11 +53,6 @@ class ClosestQuery {
   void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
                          std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 
-  /// A triangle, and a distance that it is no nearer than, world units.
-  struct Candidate {
-    std::uint32_t triangle;
-    double least;
-  };
   struct Ball {
     Vec3d centre;
     double radius;  ///< World units.
@@ -65,7 +61,7 @@ class ClosestQuery {
   /// that meet ball i, and some that are hardly farther. It may be changed. The order of these depends on the balls
   /// together.
   void collect_together(std::span<const Ball> balls,
-                        const std::function<void(std::size_t, std::vector<Candidate>& near)>& take) const;
+                        const std::function<void(std::size_t, NearTriangles& near)>& take) const;
 
   const Surface& surface() const { return surface_; }
 
@@ -89,6 +85,8 @@ class ClosestQuery {
   std::size_t find_blocks(std::span<const Ball> balls, Blocks& blocks) const;
   static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);
   static unsigned near_discs(const Discs& discs, const float* local, float limit, float* squared);
+  struct Planes;
+  static unsigned planes_before(const Discs& discs, const float* local, float limit, Planes& planes);
 
   const Surface& surface_;
   std::vector<Discs> discs_;

@@ -13,7 +13,7 @@ namespace {
 // Vertices that a thread takes at a time.
 constexpr std::size_t kVertexBlock = 64;
 // Where more triangles than this may be the closest ones, a tree finds them sooner.
-constexpr std::size_t kMostNear = 200;
+constexpr std::size_t kMostNear = 2000;
 // How much longer than the way straight to the vertex the way along the rail may be.
 constexpr double kReachRoom = 1.01;
 
@@ -29,24 +29,6 @@ class SurfaceStacker final : public Stacker {
         faults_(faults) {}
 
  private:
-  /// Triangles near a rail: what they are no nearer than, and their planes, seen from the rail's end.
-  struct Near {
-    struct Plane {
-      Vec3d normal;
-      double height;
-    };
-    std::span<ClosestQuery::Candidate> triangles;
-    std::vector<Plane> planes;
-
-    void find_planes(const Surface& front, const Vec3d& end) {
-      planes.clear();
-      for (const auto& near : triangles) {
-        const Vec3d& n = front.triangle_normals[near.triangle];
-        planes.push_back({n, n.dot(front.vertices[front.triangles[near.triangle][0]] - end)});
-      }
-    }
-  };
-
   bool moves(std::uint32_t v) const override { return body_.on_front(v) && heights_.back()[v] != 0; }
   bool is_bound(std::uint32_t v) const override { return body_.is_bound(v); }
 
@@ -101,9 +83,7 @@ class SurfaceStacker final : public Stacker {
       open.push_back(v);
       balls.push_back({source_[v] - front_.origin + whole, std::max(whole.length(), paths_.achieved[v]) * kReachRoom});
     }
-    Near near;
-    body_.front.collect_together(balls, [&](std::size_t i, std::vector<ClosestQuery::Candidate>& triangles) {
-      near.triangles = triangles;
+    body_.front.collect_together(balls, [&](std::size_t i, NearTriangles& near) {
       if (!put_among_few(open[i], balls[i], near)) put_with_care(open[i]);
     });
   }
@@ -123,60 +103,43 @@ class SurfaceStacker final : public Stacker {
     return true;
   }
 
-  /// As CareField, where the closest triangle is one of a few. Who goes a length from one place to another comes nearer
-  /// to any of them by no more than that, so that few have to be looked at again: on the way down to the surface, what
-  /// was farther than the closest mostly stays so. Nor is a triangle nearer than its plane.
+  /// As CareField, where the closest triangle is one of a few.
   class FewField {
    public:
-    FewField(const Surface& front, const Vec3d& end, Near& near) : front_(front), near_(near), end_(end), place_(end) {
-      const auto less = [](const auto& a, const auto& b) { return a.least < b.least; };
-      triangle_ = std::min_element(near.triangles.begin(), near.triangles.end(), less)->triangle;
-    }
+    FewField(const Surface& front, NearTriangles& near) : front_(front), near_(near), believed_(near.foremost()) {}
 
-    Phi at(const Vec3d& x) const { return phi_of(front_.closest_on(triangle_, x), x); }
+    Phi at(const Vec3d& x) const { return phi_of(front_.closest_on(near_.triangle(believed_), x), x); }
     Phi find(const Vec3d& x) {
-      gone_ += (x - place_).length();
-      place_ = x;
-      const std::uint32_t believed = triangle_;
+      const std::size_t believed = believed_;
       Phi nearest = at(x);
-      const Vec3d from_end = x - end_;
-      for (std::size_t i = 0; i < near_.triangles.size(); ++i) {
-        auto& [triangle, least] = near_.triangles[i];
-        if (triangle == believed) {
-          least = nearest.value + gone_;
-          continue;
-        }
-        const auto& [normal, height] = near_.planes[i];
-        const double enough = nearest.value * (1 - kRounding);
-        if (least - gone_ >= enough || std::abs(normal.dot(from_end) - height) >= enough) continue;
-        const Phi other = phi_of(front_.closest_on(triangle, x), x);
-        least = other.value + gone_;
-        if (!(other.value < nearest.value)) continue;
+      const Phi of_believed = nearest;
+      near_.visit_nearer(x, nearest.value, [&](std::size_t i) {
+        if (i == believed) return nearest.value;
+        const Phi other = phi_of(front_.closest_on(near_.triangle(i), x), x);
+        near_.hold_back(i, x, other.away, other.value);
+        if (!(other.value < nearest.value)) return nearest.value;
         nearest = other;
-        triangle_ = triangle;
-      }
+        believed_ = i;
+        return nearest.value;
+      });
+      near_.hold_back(believed, x, of_believed.away, of_believed.value);
       return nearest;
     }
 
    private:
-    static constexpr double kRounding = 1e-9;
     const Surface& front_;
-    Near& near_;  // what triangles are no nearer than here has the way gone since added
-    Vec3d end_, place_;
-    double gone_ = 0;
-    std::uint32_t triangle_;
+    NearTriangles& near_;
+    std::size_t believed_;
   };
   /// What may be the closest triangle to some point of the rail is no farther from its end than that point's distance
   /// and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers. False if
   /// that was wrong of a layer, or does not lead to its height.
-  bool put_among_few(std::uint32_t v, const ClosestQuery::Ball& ball, Near& near) {
+  bool put_among_few(std::uint32_t v, const ClosestQuery::Ball& ball, NearTriangles& near) {
     const auto stack = stack_.stacks.of(v);
     const Vec3d& whole = paths_.displacement[v];
-    const Vec3d& end = ball.centre;
     const double reach = ball.radius;
-    if (near.triangles.empty() || near.triangles.size() > kMostNear) return false;
-    near.find_planes(front_, end);
-    return put_down(v, FewField(front_, end, near), [&](std::size_t k, double phi) {
+    if (near.size() == 0 || near.size() > kMostNear) return false;
+    return put_down(v, FewField(front_, near), [&](std::size_t k, double phi) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
       return std::abs(phi - height) <= kReachedTolerance * height &&
              (stack[k + 1] - source_[v] - whole).length() + phi <= reach;
