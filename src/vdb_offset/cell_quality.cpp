@@ -8,6 +8,7 @@
 
 #include "vdb_offset/cell_faces.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/prism_quality.h"
 
 namespace vdb_offset {
 namespace {
@@ -45,11 +46,6 @@ double pyramid_jacobian(const CellPoints& x) {
   return least < 1 ? least : 2 - least;
 }
 
-/// Scaled Jacobian and aspect ratio.
-struct Quality {
-  double jacobian, aspect;
-};
-
 /// The lengths of a cell's edges that have been looked at, squared.
 struct EdgeLengths {
   double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -61,57 +57,44 @@ struct EdgeLengths {
   double ratio() const { return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity(); }
 };
 
-/// Two numbers that are worked on at once: of a prism's base, and of its top.
-using Pair = double __attribute__((vector_size(16)));
+Way<double> way_to(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
-struct PairOfWays {
-  Pair x, y, z;
+CellQuality prism_quality(const CellPoints& x) {
+  const PrismLevel<double> below({way_to(x[0]), way_to(x[1]), way_to(x[2])}),
+      above({way_to(x[3]), way_to(x[4]), way_to(x[5])});
+  const auto [triple, shortest, longest] = prism_squares(below, above);
+  return prism_quality_of(triple, shortest, longest);
+}
 
-  Pair dot(const PairOfWays& o) const { return x * o.x + y * o.y + z * o.z; }
-  PairOfWays cross(const PairOfWays& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
-};
-
-PairOfWays ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
+Way<Pair> ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
   return {Pair{to[0] - from[0], other_to[0] - other_from[0]}, Pair{to[1] - from[1], other_to[1] - other_from[1]},
           Pair{to[2] - from[2], other_to[2] - other_from[2]}};
 }
 
-/// Of a prism over a polygon of N corners: k below, N + k above. A corner's triple product of unit vectors is that of
-/// its edges by the root of their squared lengths' product; of its square, with its sign, the least is found first.
-template <std::size_t N>
-Quality ring_quality(const CellPoints& x) {
+/// Of the base and of the top at once.
+CellQuality hexahedron_quality(const CellPoints& x) {
   EdgeLengths lengths;
-  PairOfWays along[N], up[N];
-  Pair along2[N], up2[N];
-  for (std::size_t k = 0; k < N; ++k) {
-    const std::size_t next = (k + 1) % N;
-    along[k] = ways(x[k], x[next], x[N + k], x[N + next]);
-    up[k] = ways(x[k], x[N + k], x[k], x[N + k]);
+  Way<Pair> along[4], up[4];
+  Pair along2[4], up2[4];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    along[k] = ways(x[k], x[next], x[4 + k], x[4 + next]);
+    up[k] = ways(x[k], x[4 + k], x[k], x[4 + k]);
     along2[k] = along[k].dot(along[k]);
     up2[k] = up[k].dot(up[k]);
     for (const double squared : {along2[k][0], along2[k][1], up2[k][0]}) lengths.add(squared);
   }
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < N; ++k) {
-    const std::size_t previous = (k + N - 1) % N;
-    const Pair triple = along[previous].cross(along[k]).dot(up[k]), product = along2[previous] * along2[k] * up2[k];
-    const Pair square = triple * (triple < 0 ? -triple : triple) / (product > 0 ? product : Pair{1, 1});
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t previous = (k + 3) % 4;
+    const Pair square = unit_square(along[previous].cross(along[k]).dot(up[k]), along2[previous] * along2[k] * up2[k]);
     least = std::min({least, square[0], square[1]});
   }
-  return {std::copysign(std::sqrt(std::abs(least)), least), lengths.ratio()};
-}
-
-Quality prism_quality(const CellPoints& x) {
-  const Quality quality = ring_quality<3>(x);
-  return {2 / std::numbers::sqrt3 * quality.jacobian, quality.aspect};
-}
-
-Quality hexahedron_quality(const CellPoints& x) {
   const Vec3d u = (x[1] - x[0]) + (x[2] - x[3]) + (x[5] - x[4]) + (x[6] - x[7]);
   const Vec3d v = (x[3] - x[0]) + (x[2] - x[1]) + (x[7] - x[4]) + (x[6] - x[5]);
   const Vec3d w = (x[4] - x[0]) + (x[5] - x[1]) + (x[6] - x[2]) + (x[7] - x[3]);
-  const Quality quality = ring_quality<4>(x);
-  return {std::min(unit_triple(u, v, w), quality.jacobian), quality.aspect};
+  const CellQuality corners = quality_of(least, lengths.least, lengths.most);
+  return {std::min(unit_triple(u, v, w), corners.jacobian), corners.aspect};
 }
 
 Vec3d twice_area(std::span<const Vec3d> points, std::span<const std::uint32_t> face) {
@@ -221,16 +204,20 @@ double cell_volume(const VolumeMesh& mesh, std::size_t cell) {
   return sum / (mesh.plane() ? 2 : 6);
 }
 
+CellQuality cell_quality(const VolumeMesh& mesh, std::size_t cell) {
+  const CellPoints x{mesh, mesh.cell(cell)};
+  const CellType type = mesh.cell_types[cell];
+  return type == CellType::Prism        ? prism_quality(x)
+         : type == CellType::Hexahedron ? hexahedron_quality(x)
+                                        : CellQuality{scaled_jacobian(mesh, cell), aspect_ratio(mesh, cell)};
+}
+
 std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
   std::array<VolumeField, 2> fields{VolumeField{"scaled_jacobian", {}}, VolumeField{"aspect_ratio", {}}};
   for_each_index(
       fields.size(), [&](std::size_t i) { fields[i].values.resize(mesh.cell_count()); }, 1);
   for_each_index(mesh.cell_count(), [&](std::size_t c) {
-    const CellType type = mesh.cell_types[c];
-    const CellPoints x{mesh, mesh.cell(c)};
-    const Quality quality = type == CellType::Prism        ? prism_quality(x)
-                            : type == CellType::Hexahedron ? hexahedron_quality(x)
-                                                           : Quality{scaled_jacobian(mesh, c), aspect_ratio(mesh, c)};
+    const CellQuality quality = cell_quality(mesh, c);
     fields[0].values[c] = static_cast<float>(quality.jacobian);
     fields[1].values[c] = static_cast<float>(quality.aspect);
   });

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/prism_quality.h"
 #include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
@@ -29,7 +30,10 @@ double cell_volume(const VolumeMesh& mesh, std::size_t cell);
 /// encloses.
 double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin);
 
-/// Both of all cells, as fields of these names: each edge of a prism or hexahedron is looked at once.
+/// Both: each edge of a prism or hexahedron is looked at once.
+CellQuality cell_quality(const VolumeMesh& mesh, std::size_t cell);
+
+/// Both of all cells, as fields of these names.
 std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh);
 
 /// What the boundary encloses, which is the sum of all cells' volumes; the same for any number of threads.

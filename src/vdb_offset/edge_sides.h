@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "vdb_offset/buckets.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/polygons.h"
 
@@ -17,11 +17,11 @@ struct EdgeSide {
   std::uint32_t corner;      ///< As an index into PolygonView::corners.
 };
 
-/// Calls visit(corner, from, to) for the sides of the faces that have an extent, in order: not for those between
-/// corners at one place, nor for faces that are no more than a line. `place` is of each vertex.
+/// Calls visit(corner, from, to) for the sides of the faces that have an extent: not for those between corners at one
+/// place, nor for faces that are no more than a line. In parallel. `place` is of each vertex.
 template <class Visit>
 void for_each_side(PolygonView mesh, std::span<const std::uint32_t> place, Visit&& visit) {
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+  for_each_index(mesh.face_count(), [&](std::size_t f) {
     const auto face = mesh.face(f);
     const auto from = [&](std::size_t k) { return place[face[k]]; };
     const auto to = [&](std::size_t k) { return place[face[k + 1 < face.size() ? k + 1 : 0]]; };
@@ -29,32 +29,50 @@ void for_each_side(PolygonView mesh, std::span<const std::uint32_t> place, Visit
     for (std::size_t k = 0; k < face.size(); ++k) sides += from(k) != to(k);
     for (std::size_t k = 0; sides > 2 && k < face.size(); ++k)
       if (from(k) != to(k)) visit(mesh.face_begin[f] + static_cast<std::uint32_t>(k), from(k), to(k));
-  }
+  });
 }
 
-/// Calls visit(smaller end, sides) for every edge, by place; its sides are in the order of the corners.
-template <class Visit>
-void visit_edges(PolygonView mesh, std::span<const std::uint32_t> place, Visit&& visit) {
-  std::vector<std::uint32_t> begin(place.size() + 2, 0);
-  for_each_side(mesh, place, [&](auto, std::uint32_t from, std::uint32_t to) { ++begin[std::min(from, to) + 2]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<EdgeSide> sides(begin.back());
-  for_each_side(mesh, place, [&](std::uint32_t corner, std::uint32_t from, std::uint32_t to) {
-    sides[begin[std::min(from, to) + 1]++] = {std::max(from, to), corner};
-  });
-  const auto around = [&](std::size_t v) { return std::span(sides).subspan(begin[v], begin[v + 1] - begin[v]); };
-  for_each_index(place.size(), [&](std::size_t v) {
-    std::sort(around(v).begin(), around(v).end(), [](const EdgeSide& a, const EdgeSide& b) {
-      return std::pair(a.larger_end, a.corner) < std::pair(b.larger_end, b.corner);
+/// The sides of all faces, by the edges that they run along.
+class EdgeSides {
+ public:
+  EdgeSides(PolygonView mesh, std::span<const std::uint32_t> place) {
+    Buckets buckets(place.size());
+    for_each_side(mesh, place, [&](auto, std::uint32_t from, std::uint32_t to) { buckets.count(std::min(from, to)); });
+    sides_.resize(buckets.close());
+    for_each_side(mesh, place, [&](std::uint32_t corner, std::uint32_t from, std::uint32_t to) {
+      sides_[buckets.next(std::min(from, to))] = {std::max(from, to), corner};
     });
-  });
-  for (std::size_t v = 0; v < place.size(); ++v)
-    for (auto rest = around(v); !rest.empty();) {
+    begin_ = buckets.take();
+    for_each_index(place.size(), [&](std::size_t v) {
+      const auto around = std::span(sides_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
+      std::sort(around.begin(), around.end(), [](const EdgeSide& a, const EdgeSide& b) {
+        return std::pair(a.larger_end, a.corner) < std::pair(b.larger_end, b.corner);
+      });
+    });
+  }
+
+  std::size_t places() const { return begin_.size() - 1; }
+  /// Calls visit(v, sides) for the edges from place v to larger ones; their sides are in the order of the corners.
+  template <class Visit>
+  void visit_from(std::size_t v, Visit&& visit) const {
+    for (auto rest = std::span(sides_).subspan(begin_[v], begin_[v + 1] - begin_[v]); !rest.empty();) {
       std::size_t size = 1;
       while (size < rest.size() && rest[size].larger_end == rest[0].larger_end) ++size;
       visit(static_cast<std::uint32_t>(v), std::span<const EdgeSide>(rest.first(size)));
       rest = rest.subspan(size);
     }
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_;
+  std::vector<EdgeSide> sides_;
+};
+
+/// Calls visit(smaller end, sides) for every edge, by place; its sides are in the order of the corners.
+template <class Visit>
+void visit_edges(PolygonView mesh, std::span<const std::uint32_t> place, Visit&& visit) {
+  const EdgeSides edges(mesh, place);
+  for (std::size_t v = 0; v < edges.places(); ++v) edges.visit_from(v, visit);
 }
 
 }  // namespace vdb_offset

@@ -132,6 +132,84 @@ void fill_cells(const LayerPoints& points, const LayerColumns& columns, const Wa
   volume.cell_begin.back() = size * layers;
 }
 
+/// The triangles of two columns at once, in the same layer.
+PrismLevel<Pair> level_of(const LayerPoints& points, std::span<const Index> ring, std::span<const Index> other,
+                          std::size_t layer, const VolumeMesh& volume) {
+  std::array<Way<Pair>, 3> corner;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d &x = volume.points[points.at(ring[k], layer)], &y = volume.points[points.at(other[k], layer)];
+    corner[k] = {Pair{x[0], y[0]}, Pair{x[1], y[1]}, Pair{x[2], y[2]}};
+  }
+  return PrismLevel<Pair>(corner);
+}
+
+/// The fields of all cells' quality: see cell_quality.h. Where prisms stand on each other, each triangle is looked at
+/// once for that above and that below it, in two columns at once.
+class ColumnQuality {
+ public:
+  ColumnQuality(const LayerPoints& points, const LayerColumns& columns, std::size_t layers, const VolumeMesh& volume)
+      : points_(points), columns_(columns), layers_(layers), volume_(volume) {}
+
+  std::array<VolumeField, 2> fields() {
+    for_each_index(
+        fields_.size(), [&](std::size_t i) { fields_[i].values.resize(volume_.cell_count()); }, 1);
+    for_each_index((columns_.count() + 1) / 2, [&](std::size_t i) {
+      const std::size_t c = 2 * i, other = std::min(c + 1, columns_.count() - 1);
+      prefetch(c + kAhead), prefetch(c + kAhead + 1);
+      if (is_of_prisms(c) && is_of_prisms(other)) return measure_prisms(c, other);
+      measure_cells(c);
+      if (other != c) measure_cells(other);
+    });
+    return std::move(fields_);
+  }
+
+ private:
+  // So many columns on, points that are far apart in memory are asked for.
+  static constexpr std::size_t kAhead = 4;
+  void prefetch(std::size_t c) const {
+    if (c >= columns_.count()) return;
+    for (const Index p : columns_.ring(c))
+      for (std::size_t layer = 0; layer <= layers_; ++layer) __builtin_prefetch(&volume_.points[points_.at(p, layer)]);
+  }
+
+  bool is_of_prisms(std::size_t c) const {
+    const auto ring = columns_.ring(c);
+    return ring.size() == 3 && std::none_of(ring.begin(), ring.end(), [&](Index p) { return points_.flat(p); });
+  }
+
+  void set(std::size_t layer, std::size_t cell, const CellQuality& quality) {
+    const std::size_t at = layer * columns_.cells.back() + cell;
+    fields_[0].values[at] = static_cast<float>(quality.jacobian);
+    fields_[1].values[at] = static_cast<float>(quality.aspect);
+  }
+
+  void measure_prisms(std::size_t c, std::size_t other) {
+    const auto level = [&](std::size_t layer) {
+      return level_of(points_, columns_.ring(c), columns_.ring(other), layer, volume_);
+    };
+    PrismLevel<Pair> below = level(0);
+    for (std::size_t layer = 0; layer < layers_; ++layer) {
+      const PrismLevel<Pair> above = level(layer + 1);
+      const auto [triple, shortest, longest] = prism_squares(below, above);
+      set(layer, columns_.cells[c], prism_quality_of(triple[0], shortest[0], longest[0]));
+      set(layer, columns_.cells[other], prism_quality_of(triple[1], shortest[1], longest[1]));
+      below = above;
+    }
+  }
+
+  void measure_cells(std::size_t c) {
+    for (std::size_t layer = 0; layer < layers_; ++layer)
+      for (std::size_t cell = columns_.cells[c]; cell < columns_.cells[c + 1]; ++cell)
+        set(layer, cell, cell_quality(volume_, layer * columns_.cells.back() + cell));
+  }
+
+  const LayerPoints& points_;
+  const LayerColumns& columns_;
+  std::size_t layers_;
+  const VolumeMesh& volume_;
+  std::array<VolumeField, 2> fields_{VolumeField{"scaled_jacobian", {}}, VolumeField{"aspect_ratio", {}}};
+};
+
 void add_face(std::span<const Index> face, std::size_t cell, VolumePatch& patch) {
   patch.corners.insert(patch.corners.end(), face.begin(), face.end());
   patch.face_begin.push_back(static_cast<Index>(patch.corners.size()));
@@ -214,7 +292,7 @@ VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOp
   place_points(layers, points, volume);
   fill_cells(points, columns, names, layers.count(), volume);
   std::array<VolumeField, 2> quality;
-  tbb::parallel_invoke([&] { quality = quality_fields(volume); },
+  tbb::parallel_invoke([&] { quality = ColumnQuality(points, columns, layers.count(), volume).fields(); },
                        [&] {
                          if (layers.count() > 0) add_patches(points, columns, names, layers.count(), volume);
                        });

@@ -1,7 +1,12 @@
 #include "vdb_offset/layer_columns.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "vdb_offset/edge_sides.h"
@@ -20,6 +25,7 @@ bool clean_ring(std::span<const Index> face, std::span<const Index> place, std::
   for (const Index v : face)
     if (ring.empty() || ring.back() != place[v]) ring.push_back(place[v]);
   while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
+  if (ring.size() <= 3) return ring.size() == 3;  // none of which is the next one
   sorted.assign(ring.begin(), ring.end());
   std::sort(sorted.begin(), sorted.end());
   return ring.size() > 2 && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
@@ -36,72 +42,100 @@ double rises(const LayersResult& layers, std::span<const Index> ring) {
   return normal.dot(rise);
 }
 
+/// A quad that carries two columns: the corner that its diagonal starts at; kNone of other faces.
+Index split_from(const LayersResult& layers, std::size_t f, std::size_t corners) {
+  return !layers.carries.empty() && layers.carries[f] > 1 && corners == 4 ? layers.carries[f] - 2u : kNone;
+}
+
 /// Faces that are polygons; facts know what became of the others.
 LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, std::span<const Index> place,
                            LayerCellFacts& facts) {
+  // Of each face how many columns and how many corners it has, and so what is before it.
+  std::vector<Index> columns_before(mesh.face_count() + 1, 0), corners_before(mesh.face_count() + 1, 0);
+  const auto visit_rings = [&](auto&& visit) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.face_count(), 1024), [&](const auto& range) {
+      std::vector<Index> ring, sorted;
+      for (std::size_t f = range.begin(); f != range.end(); ++f)
+        if (layers.carries.empty() || layers.carries[f] != 0)
+          visit(f, ring, clean_ring(mesh.face(f), place, ring, sorted));
+    });
+  };
+  visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
+    facts.role[f] = is_polygon ? FaceRole::Full : FaceRole::Degenerate;
+    if (!is_polygon) return;
+    const bool split = split_from(layers, f, ring.size()) != kNone;
+    columns_before[f + 1] = split ? 2 : 1;
+    corners_before[f + 1] = split ? 6 : static_cast<Index>(ring.size());
+  });
+  std::partial_sum(columns_before.begin(), columns_before.end(), columns_before.begin());
+  std::partial_sum(corners_before.begin(), corners_before.end(), corners_before.begin());
   LayerColumns columns;
-  columns.corners.reserve(mesh.corners.size());
-  columns.begin.reserve(mesh.face_count() + 1);
-  columns.face.reserve(mesh.face_count());
-  std::vector<Index> ring, sorted;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (!layers.carries.empty() && layers.carries[f] == 0) continue;
-    if (!clean_ring(mesh.face(f), place, ring, sorted)) {
-      facts.role[f] = FaceRole::Degenerate;
-      continue;
+  columns.corners.resize(corners_before.back());
+  columns.begin.assign(columns_before.back() + std::size_t{1}, 0);
+  columns.face.resize(columns_before.back());
+  visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
+    if (!is_polygon) return;
+    const auto to = columns.corners.begin() + corners_before[f];
+    const Index from = split_from(layers, f, ring.size()), first = columns_before[f];
+    columns.face[first] = static_cast<Index>(f);
+    columns.begin[columns_before[f + 1]] = corners_before[f + 1];
+    if (from == kNone) {
+      std::copy(ring.begin(), ring.end(), to);
+      return;
     }
-    facts.role[f] = FaceRole::Full;
-    const bool split = !layers.carries.empty() && layers.carries[f] > 1 && ring.size() == 4;
-    const auto add = [&](std::initializer_list<std::size_t> places) {
-      for (const std::size_t k : places) columns.corners.push_back(ring[k % 4]);
-    };
-    const auto close = [&] {
-      columns.begin.push_back(static_cast<Index>(columns.corners.size()));
-      columns.face.push_back(static_cast<Index>(f));
-    };
-    if (split) {
-      const std::size_t from = layers.carries[f] - 2u;
-      add({from, from + 1, from + 2});
-      close();
-      add({from + 2, from + 3, from});
-    } else {
-      columns.corners.insert(columns.corners.end(), ring.begin(), ring.end());
-    }
-    close();
-  }
+    for (Index i = 0; i < 6; ++i) to[i] = ring[(from + (i < 3 ? i : i - 1)) % 4];
+    columns.face[first + 1] = static_cast<Index>(f);
+    columns.begin[first + 1] = corners_before[f] + 3;
+  });
   return columns;
 }
 
-/// Leaves out what gives no cell, and turns what lies on the other side.
-void keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, LayerColumns& columns,
-                  LayerCellFacts& facts) {
-  const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
+/// What becomes of a column, and whether it lies on the other side.
+struct ColumnRole {
+  FaceRole role;
+  bool turned;
+};
+std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const std::uint8_t> flat, bool inward,
+                                   const LayerColumns& columns) {
   const std::vector<std::uint8_t> repeated = find_repeated_faces(columns.corners, columns.begin);
-  const std::vector<Index> face = columns.face;
-  std::size_t kept = 0;
-  Index end = 0, last_face = kNone;
-  for (std::size_t c = 0, begin = 0; c < face.size(); ++c) {
-    const auto ring = std::span(columns.corners).subspan(begin, columns.begin[c + 1] - begin);
-    begin = columns.begin[c + 1];
+  std::vector<ColumnRole> roles(columns.count());
+  for_each_index(columns.count(), [&](std::size_t c) {
+    const auto ring = columns.ring(c);
     const auto flats =
         static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index v) { return flat[v] != 0; }));
     const FaceRole role = repeated[c] != 0       ? FaceRole::Repeated
                           : flats == ring.size() ? FaceRole::Flat
                           : flats > 0            ? FaceRole::Transition
                                                  : FaceRole::Full;
+    const double side = role == FaceRole::Repeated || role == FaceRole::Flat ? 0 : rises(layers, ring);
+    roles[c] = {role, side != 0 && (side < 0) != inward};
+  });
+  return roles;
+}
+
+/// Leaves out what gives no cell, and turns what lies on the other side.
+void keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, LayerColumns& columns,
+                  LayerCellFacts& facts) {
+  const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
+  const std::vector<ColumnRole> roles = find_roles(layers, flat, inward, columns);
+  std::size_t kept = 0;
+  Index end = 0, last_face = kNone;
+  for (std::size_t c = 0, begin = 0; c < roles.size(); ++c) {
+    const auto ring = std::span(columns.corners).subspan(begin, columns.begin[c + 1] - begin);
+    begin = columns.begin[c + 1];
+    const Index face = columns.face[c];
+    const auto [role, turned] = roles[c];
     // The second of a split quad's columns: where they differ, layers end in it.
-    const bool second = face[c] == last_face;
-    last_face = face[c];
-    FaceRole& of_face = facts.role[face[c]];
+    const bool second = face == last_face;
+    last_face = face;
+    FaceRole& of_face = facts.role[face];
     of_face = second && of_face != role ? FaceRole::Transition : role;
     if (role == FaceRole::Repeated || role == FaceRole::Flat) continue;
-    const double side = rises(layers, ring);
-    const bool turned = side != 0 && (side < 0) != inward;
     facts.turned_faces += turned && !second;
     if (turned != inward) std::reverse(ring.begin() + 1, ring.end());
     std::copy(ring.begin(), ring.end(), columns.corners.begin() + end);
     end += static_cast<Index>(ring.size());
-    columns.face[kept++] = face[c];
+    columns.face[kept++] = face;
     columns.begin[kept] = end;
   }
   columns.face.resize(kept);
@@ -153,18 +187,26 @@ void pair_sides(std::span<const EdgeSide> sides, std::span<const Index> corners,
 class SideMatch {
  public:
   SideMatch(std::size_t vertices, std::span<const std::uint8_t> flat, LayerColumns& columns, LayerCellFacts& facts)
-      : columns_(columns), flat_(flat), places_(vertices), crowded_(vertices, 0) {
-    for (std::size_t v = 0; v < vertices; ++v) places_[v] = static_cast<Index>(v);
+      : columns_(columns),
+        flat_(flat),
+        edges_({{}, columns.corners, columns.begin}, numbers_below(vertices)),
+        crowded_(vertices, 0) {
     columns.open.assign(columns.corners.size(), 0);
-    for_edges([&](Index a, Index b, std::span<const EdgeSide> sides) {
-      pair_sides(
-          sides, columns_.corners, a, [](SidePair) {},
-          [&](Index corner) {
-            columns_.open[corner] = 1;
-            ++(sides.size() == 1 ? facts.border_sides : facts.unpaired_sides);
-            if (sides.size() > 1) crowded_[a] = crowded_[b] = 1;
-          });
+    std::atomic<std::size_t> border_sides = 0, unpaired_sides = 0;
+    for_each_index(edges_.places(), [&](std::size_t v) {
+      visit_risen_from(v, [&](Index a, Index b, std::span<const EdgeSide> sides) {
+        pair_sides(
+            sides, columns_.corners, a, [](SidePair) {},
+            [&](Index corner) {
+              columns_.open[corner] = 1;
+              ++(sides.size() == 1 ? border_sides : unpaired_sides);
+              if (sides.size() == 1) return;
+              for (const Index end : {a, b}) std::atomic_ref(crowded_[end]).store(1, std::memory_order_relaxed);
+            });
+      });
     });
+    facts.border_sides = border_sides;
+    facts.unpaired_sides = unpaired_sides;
   }
   bool crowded(Index place) const { return crowded_[place] != 0; }
 
@@ -201,12 +243,21 @@ class SideMatch {
   }
 
  private:
+  static std::vector<Index> numbers_below(std::size_t count) {
+    std::vector<Index> numbers(count);
+    for_each_index(count, [&](std::size_t i) { numbers[i] = static_cast<Index>(i); });
+    return numbers;
+  }
   template <class Visit>
-  void for_edges(Visit&& visit) const {
-    visit_edges({{}, columns_.corners, columns_.begin}, places_, [&](Index smaller, std::span<const EdgeSide> sides) {
+  void visit_risen_from(std::size_t place, Visit&& visit) const {
+    edges_.visit_from(place, [&](Index smaller, std::span<const EdgeSide> sides) {
       const Index larger = sides[0].larger_end;
       if (flat_[smaller] == 0 || flat_[larger] == 0) visit(smaller, larger, sides);
     });
+  }
+  template <class Visit>
+  void for_edges(Visit&& visit) const {
+    for (std::size_t v = 0; v < edges_.places(); ++v) visit_risen_from(v, visit);
   }
   Index next(Index corner) const {
     const auto column = std::upper_bound(columns_.begin.begin(), columns_.begin.end(), corner) - 1;
@@ -215,7 +266,7 @@ class SideMatch {
 
   LayerColumns& columns_;
   std::span<const std::uint8_t> flat_;
-  std::vector<Index> places_;
+  EdgeSides edges_;
   std::vector<std::uint8_t> crowded_;
 };
 
@@ -232,7 +283,9 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, LayerColumns& colu
   const SideMatch sides(flat.size(), flat, columns, facts);
   LayerPoints points;
   std::vector<Index> of_place(flat.size(), kNone);
-  for (const Index place : columns.corners) of_place[place] = 0;
+  for_each_index(columns.corners.size(), [&](std::size_t c) {
+    std::atomic_ref(of_place[columns.corners[c]]).store(0, std::memory_order_relaxed);
+  });
   for (std::size_t v = 0; v < flat.size(); ++v)
     if (of_place[v] != kNone) {
       of_place[v] = points.wall();

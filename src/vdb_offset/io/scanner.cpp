@@ -78,13 +78,15 @@ bool Scanner::at_line_end() {
 }
 
 void Scanner::next_line() {
-  // A comment ends with its line, whatever its last character is.
-  bool comment = false;
-  while (at_ < text_.size() && text_[at_] != '\n') {
-    comment = comment || (comment_ && text_[at_] == comment_);
-    at_ += comment ? 1 : std::max<std::size_t>(1, continuation_length(at_));
+  for (bool goes_on = true; goes_on;) {
+    const std::size_t begin = at_, end = std::min(text_.find('\n', begin), text_.size());
+    at_ = std::min(end + 1, text_.size());
+    std::size_t last = end;  // of the line, less what a line break of two bytes leaves
+    if (last > begin && text_[last - 1] == '\r') --last;
+    goes_on = last > begin && continuation_length(last - 1) > 0;
+    // A comment ends with its line, whatever its last character is.
+    if (goes_on && comment_) goes_on = text_.substr(begin, end - begin).find(comment_) == std::string_view::npos;
   }
-  if (at_ < text_.size()) ++at_;
 }
 
 bool Scanner::at_text_end() {

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset {
+
+/// Scaled Jacobian and aspect ratio of a cell: see cell_quality.h.
+struct CellQuality {
+  double jacobian, aspect;
+};
+
+/// Two numbers that are worked on at once. What is a template below takes one number, or so many.
+using Pair = double __attribute__((vector_size(16)));
+
+template <class Real>
+struct Way {
+  Real x, y, z;
+
+  Real dot(const Way& o) const { return x * o.x + y * o.y + z * o.z; }
+  Way cross(const Way& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
+};
+template <class Real>
+Way<Real> operator-(const Way<Real>& a, const Way<Real>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Real>
+Real lesser(const Real& a, const Real& b) {
+  return b < a ? b : a;
+}
+template <class Real>
+Real greater(const Real& a, const Real& b) {
+  return b > a ? b : a;
+}
+
+/// The square, with its sign, of a triple product of unit vectors, by that of the vectors and the product of their
+/// squared lengths; 0 where one of these is.
+template <class Real>
+Real unit_square(const Real& triple, const Real& squares) {
+  return triple * (triple < 0 ? -triple : triple) / (squares > 0 ? squares : Real{} + 1.0);
+}
+
+/// What a cell's quality is found from: the least square of a triple product over its corners, and the squared lengths
+/// of its shortest and its longest edge.
+template <class Real>
+struct QualitySquares {
+  Real triple, shortest, longest;
+};
+inline CellQuality quality_of(double triple, double shortest, double longest) {
+  return {std::copysign(std::sqrt(std::abs(triple)), triple),
+          shortest > 0 ? std::sqrt(longest / shortest) : std::numeric_limits<double>::infinity()};
+}
+
+/// A triangle on which a prism stands, or which lies on one, or both.
+template <class Real>
+struct PrismLevel {
+  explicit PrismLevel(const std::array<Way<Real>, 3>& corners) : corner(corners) {
+    Way<Real> side[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      side[k] = corner[(k + 1) % 3] - corner[k];
+      square[k] = side[k].dot(side[k]);
+    }
+    normal = side[2].cross(side[0]);
+    for (std::size_t k = 0; k < 3; ++k) product[k] = square[(k + 2) % 3] * square[k];
+    shortest = lesser(lesser(square[0], square[1]), square[2]);
+    longest = greater(greater(square[0], square[1]), square[2]);
+  }
+
+  std::array<Way<Real>, 3> corner;
+  Real square[3], product[3];  // of sides, and of the two at a corner
+  Way<Real> normal;            // the cross product of the sides at each corner
+  Real shortest, longest;
+};
+
+/// Of the prism between two triangles.
+template <class Real>
+QualitySquares<Real> prism_squares(const PrismLevel<Real>& below, const PrismLevel<Real>& above) {
+  QualitySquares<Real> found{Real{} + std::numeric_limits<double>::infinity(), lesser(below.shortest, above.shortest),
+                             greater(below.longest, above.longest)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Way<Real> up = above.corner[k] - below.corner[k];
+    const Real square = up.dot(up);
+    found.shortest = lesser(found.shortest, square);
+    found.longest = greater(found.longest, square);
+    for (const PrismLevel<Real>* level : {&below, &above})
+      found.triple = lesser(found.triple, unit_square(level->normal.dot(up), level->product[k] * square));
+  }
+  return found;
+}
+
+/// As quality_of(); a prism over a regular triangle has 1.
+inline CellQuality prism_quality_of(double triple, double shortest, double longest) {
+  const CellQuality quality = quality_of(triple, shortest, longest);
+  return {2 / std::numbers::sqrt3 * quality.jacobian, quality.aspect};
+}
+
+}  // namespace vdb_offset
