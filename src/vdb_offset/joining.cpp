@@ -1,10 +1,14 @@
 #include "vdb_offset/joining.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/buckets.h"
 #include "vdb_offset/orientation.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/repeated_faces.h"
@@ -13,17 +17,23 @@ namespace vdb_offset {
 namespace {
 
 /// Half-edges bucketed by their smaller end, in order; in a bucket, those with the same larger end make an edge.
-template <class Visit>
-void for_each_edge(const Surface& surface, Visit&& visit) {
-  const auto half_edges = static_cast<std::uint32_t>(3 * surface.triangles.size());
-  std::vector<std::uint32_t> begin(surface.vertices.size() + 2, 0), bucket(half_edges);
-  const auto smaller = [&](std::uint32_t e) { return std::min(surface.from(e), surface.to(e)); };
-  const auto larger = [&](std::uint32_t e) { return std::max(surface.from(e), surface.to(e)); };
-  for (std::uint32_t e = 0; e < half_edges; ++e) ++begin[smaller(e) + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  for (std::uint32_t e = 0; e < half_edges; ++e) bucket[begin[smaller(e) + 1]++] = e;
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
-    const auto first = bucket.begin() + begin[v], last = bucket.begin() + begin[v + 1];
+class HalfEdges {
+ public:
+  explicit HalfEdges(const Surface& surface) : surface_(surface) {
+    const std::size_t count = 3 * surface.triangles.size();
+    Buckets buckets(surface.vertices.size());
+    for_each_index(count, [&](std::size_t e) { buckets.count(smaller(static_cast<std::uint32_t>(e))); });
+    sorted_.resize(buckets.close());
+    for_each_index(count, [&](std::size_t e) {
+      sorted_[buckets.next(smaller(static_cast<std::uint32_t>(e)))] = static_cast<std::uint32_t>(e);
+    });
+    begin_ = buckets.take();
+  }
+
+  /// Sorts the bucket of vertex v, and calls visit(half-edges) for each of its edges.
+  template <class Visit>
+  void visit_from(std::size_t v, Visit&& visit) {
+    const auto first = sorted_.begin() + begin_[v], last = sorted_.begin() + begin_[v + 1];
     std::sort(first, last,
               [&](std::uint32_t a, std::uint32_t b) { return std::pair(larger(a), a) < std::pair(larger(b), b); });
     for (auto run = first; run != last;) {
@@ -33,25 +43,61 @@ void for_each_edge(const Surface& surface, Visit&& visit) {
       run = end;
     }
   }
-}
 
-std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t x) {
-  while (parent[x] != x) x = parent[x] = parent[parent[x]];
-  return x;
-}
+ private:
+  std::uint32_t smaller(std::uint32_t e) const { return std::min(surface_.from(e), surface_.to(e)); }
+  std::uint32_t larger(std::uint32_t e) const { return std::max(surface_.from(e), surface_.to(e)); }
+
+  const Surface& surface_;
+  std::vector<std::uint32_t> begin_, sorted_;
+};
+
+/// Sets that any number of threads may unite; the first of a set's members stands for it, whatever the order.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) {
+    for_each_index(count, [&](std::size_t i) { parent_[i] = static_cast<std::uint32_t>(i); });
+  }
+  std::uint32_t first(std::uint32_t i) {
+    for (std::uint32_t up = parent(i).load(std::memory_order_relaxed); up != i;) {
+      const std::uint32_t further = parent(up).load(std::memory_order_relaxed);
+      // Whoever comes next finds a shorter way.
+      if (further != up) parent(i).compare_exchange_strong(up, further, std::memory_order_relaxed);
+      i = further;
+      up = parent(i).load(std::memory_order_relaxed);
+    }
+    return i;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = first(a), b = first(b);
+      if (a == b) return;
+      if (a < b) std::swap(a, b);
+      std::uint32_t expected = a;
+      if (parent(a).compare_exchange_strong(expected, b, std::memory_order_relaxed)) return;
+    }
+  }
+
+ private:
+  std::atomic_ref<std::uint32_t> parent(std::uint32_t i) { return std::atomic_ref(parent_[i]); }
+  std::vector<std::uint32_t> parent_;
+};
 
 /// Numbers the components in the order of their first face and hands them to the vertices; one that several
 /// components share by a corner belongs to the last of them. Returns the component of each triangle.
-std::vector<std::uint32_t> number_components(Surface& surface, std::vector<std::uint32_t>& parent) {
-  std::vector<std::uint32_t> number(parent.size(), kNone), component_of(surface.triangles.size());
-  surface.component.resize(surface.vertices.size());
+std::vector<std::uint32_t> number_components(Surface& surface, Sets& faces, std::size_t face_count) {
+  std::vector<std::uint32_t> number(face_count, kNone), component_of(surface.triangles.size());
+  for_each_index(component_of.size(), [&](std::size_t t) { component_of[t] = faces.first(surface.face[t]); });
   surface.facts.components = 0;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    auto& component = number[root(parent, surface.face[t])];
-    if (component == kNone) component = static_cast<std::uint32_t>(surface.facts.components++);
-    for (const auto v : surface.triangles[t]) surface.component[v] = component;
-    component_of[t] = component;
+  for (auto& component : component_of) {
+    auto& known = number[component];
+    if (known == kNone) known = static_cast<std::uint32_t>(surface.facts.components++);
+    component = known;
   }
+  surface.component.assign(surface.vertices.size(), 0);
+  if (surface.facts.components > 1)
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      for (const auto v : surface.triangles[t]) surface.component[v] = component_of[t];
   return component_of;
 }
 
@@ -60,34 +106,48 @@ struct Joined {
   std::size_t boundary = 0, non_manifold = 0, conflicts = 0;  // edges
   bool folded = false;                                        // two triangles over the same corners share an edge
   std::vector<std::uint32_t> component_of;                    // each triangle
+  std::vector<double> lengths;                                // of edges, while they are gathered
+
+  void add(const Surface& surface, std::span<const std::uint32_t> edge) {
+    const auto across = [&](std::uint32_t e) { return surface.triangles[e / 3][(e + 2) % 3]; };
+    const bool pair = edge.size() == 2;
+    boundary += edge.size() == 1;
+    non_manifold += edge.size() > 2;
+    conflicts += pair && surface.from(edge[0]) == surface.from(edge[1]);
+    folded |= pair && across(edge[0]) == across(edge[1]);
+    lengths.push_back((surface.vertices[surface.from(edge[0])] - surface.vertices[surface.to(edge[0])]).length());
+  }
+  void add(Joined&& part) {
+    boundary += part.boundary, non_manifold += part.non_manifold, conflicts += part.conflicts;
+    folded |= part.folded;
+    lengths.insert(lengths.end(), part.lengths.begin(), part.lengths.end());
+  }
 };
 
 Joined join(Surface& surface, std::size_t face_count) {
-  Joined joined;
   surface.next_around_edge.resize(3 * surface.triangles.size());
-  std::iota(surface.next_around_edge.begin(), surface.next_around_edge.end(), 0u);
-  std::vector<std::uint32_t> parent(face_count);
-  std::iota(parent.begin(), parent.end(), 0u);
-  std::vector<double> lengths;
-  lengths.reserve(surface.triangles.size() * 3 / 2);
-  const auto across = [&](std::uint32_t e) { return surface.triangles[e / 3][(e + 2) % 3]; };
-  for_each_edge(surface, [&](std::span<const std::uint32_t> edge) {
-    for (std::size_t i = 0; i < edge.size(); ++i) {
-      surface.next_around_edge[edge[i]] = edge[(i + 1) % edge.size()];
-      parent[root(parent, surface.face[edge[i] / 3])] = root(parent, surface.face[edge[0] / 3]);
-    }
-    const bool pair = edge.size() == 2;
-    joined.boundary += edge.size() == 1;
-    joined.non_manifold += edge.size() > 2;
-    joined.conflicts += pair && surface.from(edge[0]) == surface.from(edge[1]);
-    joined.folded |= pair && across(edge[0]) == across(edge[1]);
-    lengths.push_back((surface.vertices[surface.from(edge[0])] - surface.vertices[surface.to(edge[0])]).length());
+  for_each_index(surface.next_around_edge.size(),
+                 [&](std::size_t e) { surface.next_around_edge[e] = static_cast<std::uint32_t>(e); });
+  Sets faces(face_count);
+  HalfEdges half_edges(surface);
+  tbb::enumerable_thread_specific<Joined> parts;
+  for_each_index(surface.vertices.size(), [&](std::size_t v) {
+    Joined& part = parts.local();
+    half_edges.visit_from(v, [&](std::span<const std::uint32_t> edge) {
+      for (std::size_t i = 0; i < edge.size(); ++i) {
+        surface.next_around_edge[edge[i]] = edge[(i + 1) % edge.size()];
+        faces.unite(surface.face[edge[i] / 3], surface.face[edge[0] / 3]);
+      }
+      part.add(surface, edge);
+    });
   });
+  Joined joined;
+  for (Joined& part : parts) joined.add(std::move(part));
   // A line that had to stay is all border: it has no side.
   joined.boundary +=
       static_cast<std::size_t>(std::count_if(surface.triangles.begin(), surface.triangles.end(), repeats_corner));
-  joined.component_of = number_components(surface, parent);
-  if (!lengths.empty()) {
+  joined.component_of = number_components(surface, faces, face_count);
+  if (std::vector<double>& lengths = joined.lengths; !lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
     surface.facts.median_edge = *middle;

@@ -1,6 +1,8 @@
 #include "vdb_offset/offset.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -423,12 +425,24 @@ OffsetResult offset(Mesh& mesh, const OffsetOptions& options) {
 
 double used_diagonal(PolygonView mesh) {
   if (mesh.corners.empty()) return 0;
-  Vec3d lower = mesh.positions[mesh.corners[0]], upper = lower;
-  for (const auto v : mesh.corners) {
-    lower = openvdb::math::minComponent(lower, mesh.positions[v]);
-    upper = openvdb::math::maxComponent(upper, mesh.positions[v]);
-  }
-  return (upper - lower).length();
+  using openvdb::math::maxComponent, openvdb::math::minComponent;
+  struct Box {
+    Vec3d lower, upper;
+  };
+  const Vec3d& first = mesh.positions[mesh.corners[0]];
+  const Box box = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, mesh.corners.size()), Box{first, first},
+      [&](const auto& range, Box part) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          const Vec3d& x = mesh.positions[mesh.corners[i]];
+          part = {minComponent(part.lower, x), maxComponent(part.upper, x)};
+        }
+        return part;
+      },
+      [](const Box& a, const Box& b) {
+        return Box{minComponent(a.lower, b.lower), maxComponent(a.upper, b.upper)};
+      });
+  return (box.upper - box.lower).length();
 }
 
 OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options) {

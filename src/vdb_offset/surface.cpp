@@ -1,10 +1,15 @@
 #include "vdb_offset/surface.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 
+#include "vdb_offset/buckets.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/joining.h"
 #include "vdb_offset/morton.h"
@@ -28,48 +33,88 @@ void leave_out_lines(Surface& surface) {
   });
 }
 
-void split_faces(PolygonView polygons, Surface& surface) {
-  std::vector<std::uint32_t> face;
-  surface.triangles.reserve(polygons.corners.size() - 2 * polygons.face_count());
-  surface.face.reserve(surface.triangles.capacity());
-  for (std::size_t f = 0; f < polygons.face_count(); ++f) {
-    face.clear();
-    for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
-    ++surface.facts.faces_by_corners[face.size()];
-    triangulate(surface.vertices, face, surface.triangles);
-    surface.face.resize(surface.triangles.size(), static_cast<std::uint32_t>(f));
+void count_corners(PolygonView polygons, MeshFacts& facts) {
+  for (std::size_t f = 0; f < polygons.face_count();) {
+    const std::size_t first = f, corners = polygons.face(f).size();
+    while (f < polygons.face_count() && polygons.face(f).size() == corners) ++f;
+    facts.faces_by_corners[corners] += f - first;
   }
+}
+
+/// Each face of n corners has n - 2 triangles.
+void split_faces(PolygonView polygons, Surface& surface) {
+  count_corners(polygons, surface.facts);
+  surface.triangles.resize(polygons.corners.size() - 2 * polygons.face_count());
+  surface.face.resize(surface.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), 1024), [&](const auto& range) {
+    std::vector<std::uint32_t> face;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t f = range.begin(); f != range.end(); ++f) {
+      face.clear();
+      triangles.clear();
+      for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
+      triangulate(surface.vertices, face, triangles);
+      const auto at = static_cast<std::ptrdiff_t>(polygons.face_begin[f] - 2 * f);
+      std::copy(triangles.begin(), triangles.end(), surface.triangles.begin() + at);
+      std::fill_n(surface.face.begin() + at, triangles.size(), static_cast<std::uint32_t>(f));
+    }
+  });
   leave_out_lines(surface);
 }
 
-/// Numbers the vertices as the triangles come to use them.
-void renumber_vertices(Surface& surface) {
-  std::vector<std::uint32_t> number(surface.vertices.size(), kNone), order;
-  order.reserve(number.size());
-  for (auto& triangle : surface.triangles)
-    for (auto& v : triangle) {
-      if (number[v] == kNone) {
-        number[v] = static_cast<std::uint32_t>(order.size());
-        order.push_back(v);
-      }
-      v = number[v];
+/// Numbers the vertices as the triangles come to use them: of all corners those where one is used for the first time
+/// are counted, in runs.
+std::vector<std::uint32_t> order_of_use(const Surface& surface) {
+  constexpr std::size_t kRun = 1 << 16;
+  const std::size_t corners = 3 * surface.triangles.size(), runs = (corners + kRun - 1) / kRun;
+  const auto vertex = [&](std::size_t i) { return surface.triangles[i / 3][i % 3]; };
+  std::vector<std::uint32_t> first(surface.vertices.size(), kNone);
+  for_each_index(corners, [&](std::size_t i) {
+    const std::atomic_ref slot(first[vertex(i)]);
+    std::uint32_t known = slot.load(std::memory_order_relaxed);
+    while (i < known && !slot.compare_exchange_weak(known, static_cast<std::uint32_t>(i), std::memory_order_relaxed)) {
     }
+  });
+  const auto visit_first = [&](std::size_t run, auto&& visit) {
+    for (std::size_t i = run * kRun; i < std::min(corners, (run + 1) * kRun); ++i)
+      if (first[vertex(i)] == i) visit(vertex(i));
+  };
+  std::vector<std::size_t> before(runs + 1, 0);
+  for_each_index(
+      runs, [&](std::size_t run) { visit_first(run, [&](std::uint32_t) { ++before[run + 1]; }); }, 1);
+  std::partial_sum(before.begin(), before.end(), before.begin());
+  std::vector<std::uint32_t> order(surface.vertices.size());
+  for_each_index(
+      runs,
+      [&](std::size_t run) {
+        std::size_t at = before[run];
+        visit_first(run, [&](std::uint32_t v) { order[at++] = v; });
+      },
+      1);
   // A face may be in use and yet give no triangle.
-  for (std::uint32_t v = 0; v < number.size(); ++v)
-    if (number[v] == kNone) {
-      number[v] = static_cast<std::uint32_t>(order.size());
-      order.push_back(v);
-    }
+  std::size_t at = before.back();
+  for (std::uint32_t v = 0; at < order.size() && v < first.size(); ++v)
+    if (first[v] == kNone) order[at++] = v;
+  return order;
+}
+
+void renumber_vertices(Surface& surface) {
+  const std::vector<std::uint32_t> order = order_of_use(surface);
   std::vector<Vec3d> vertices(order.size());
-  std::vector<std::uint32_t> representative(order.size());
+  std::vector<std::uint32_t> representative(order.size()), number(order.size());
   for_each_index(order.size(), [&](std::size_t i) {
     vertices[i] = surface.vertices[order[i]];
     representative[i] = surface.representative[order[i]];
+    number[order[i]] = static_cast<std::uint32_t>(i);
   });
   surface.vertices = std::move(vertices);
   surface.representative = std::move(representative);
-  for (auto& v : surface.welded)
-    if (v != kNone) v = number[v];
+  for_each_index(surface.triangles.size(), [&](std::size_t t) {
+    for (auto& v : surface.triangles[t]) v = number[v];
+  });
+  for_each_index(surface.welded.size(), [&](std::size_t v) {
+    if (surface.welded[v] != kNone) surface.welded[v] = number[surface.welded[v]];
+  });
 }
 
 void find_bounds(Surface& surface) {
@@ -121,21 +166,40 @@ TriangleShape shape_of(const Surface& surface, std::size_t t) {
   return {n / twice, twice / 2};
 }
 
+/// Summed up in runs of one length, for any number of threads; marks the faces of triangles that have an area.
+double add_areas(const Surface& surface, std::vector<std::uint8_t>& degenerate) {
+  constexpr std::size_t kRun = 4096;
+  std::vector<double> sums((surface.triangles.size() + kRun - 1) / kRun, 0);
+  for_each_index(
+      sums.size(),
+      [&](std::size_t run) {
+        for (std::size_t t = run * kRun; t < std::min(surface.triangles.size(), (run + 1) * kRun); ++t) {
+          const double area = shape_of(surface, t).area;
+          sums[run] += area;
+          if (area > 0) std::atomic_ref(degenerate[surface.face[t]]).store(0, std::memory_order_relaxed);
+        }
+      },
+      1);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+/// Whether a face has a place at two of its corners.
+bool repeats_place(PolygonView polygons, const Surface& surface, std::size_t f, std::vector<std::uint32_t>& places) {
+  places.clear();
+  for (const auto v : polygons.face(f)) places.push_back(surface.welded[v]);
+  std::sort(places.begin(), places.end());
+  return std::adjacent_find(places.begin(), places.end()) != places.end();
+}
+
 void measure(PolygonView polygons, Surface& surface) {
   MeshFacts& facts = surface.facts;
   std::vector<std::uint8_t> degenerate(polygons.face_count(), 1);
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const double area = shape_of(surface, t).area;
-    facts.area += area;
-    if (area > 0) degenerate[surface.face[t]] = 0;
-  }
-  std::vector<std::uint32_t> face;
-  for (std::size_t f = 0; f < polygons.face_count(); ++f) {
-    face.clear();
-    for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
-    std::sort(face.begin(), face.end());
-    if (std::adjacent_find(face.begin(), face.end()) != face.end()) degenerate[f] = 1;
-  }
+  facts.area = add_areas(surface, degenerate);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), 1024), [&](const auto& range) {
+    std::vector<std::uint32_t> places;
+    for (std::size_t f = range.begin(); f != range.end(); ++f)
+      if (repeats_place(polygons, surface, f, places)) degenerate[f] = 1;
+  });
   facts.degenerate_faces = static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
 }
 
@@ -223,15 +287,20 @@ TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) 
 }
 
 void list_incident_triangles(Surface& surface) {
-  auto& begin = surface.incident_begin;
-  begin.assign(surface.vertices.size() + 2, 0);
-  for (const auto& t : surface.triangles)
-    for (const auto v : t) ++begin[v + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  surface.incident.resize(3 * surface.triangles.size());
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
-    for (const auto v : surface.triangles[t]) surface.incident[begin[v + 1]++] = t;
-  begin.pop_back();
+  Buckets buckets(surface.vertices.size());
+  const auto for_each_corner = [&](auto&& visit) {
+    for_each_index(surface.triangles.size(), [&](std::size_t t) {
+      for (const auto v : surface.triangles[t]) visit(v, static_cast<std::uint32_t>(t));
+    });
+  };
+  for_each_corner([&](std::uint32_t v, std::uint32_t) { buckets.count(v); });
+  surface.incident.resize(buckets.close());
+  for_each_corner([&](std::uint32_t v, std::uint32_t t) { surface.incident[buckets.next(v)] = t; });
+  surface.incident_begin = buckets.take();
+  for_each_index(surface.vertices.size(), [&](std::size_t v) {
+    std::sort(surface.incident.begin() + surface.incident_begin[v],
+              surface.incident.begin() + surface.incident_begin[v + 1]);
+  });
 }
 
 Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient orient) {

@@ -111,14 +111,17 @@ class EarClipper {
 
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                  std::vector<Triangle>& triangles) {
-  const Vec3d area = area_vector(positions, polygon);
-  if (polygon.size() <= 4 || !is_flat(positions, polygon, area) || fan_turns_one_way(positions, polygon, area)) {
+  const auto is_fan = [&](const Vec3d& area) {
+    return !is_flat(positions, polygon, area) || fan_turns_one_way(positions, polygon, area);
+  };
+  if (polygon.size() <= 4 || is_fan(area_vector(positions, polygon))) {
     for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
     return;
   }
-  EarClipper(project(positions, polygon, area)).run([&](std::size_t a, std::size_t b, std::size_t c) {
-    triangles.push_back({polygon[a], polygon[b], polygon[c]});
-  });
+  EarClipper(project(positions, polygon, area_vector(positions, polygon)))
+      .run([&](std::size_t a, std::size_t b, std::size_t c) {
+        triangles.push_back({polygon[a], polygon[b], polygon[c]});
+      });
 }
 
 }  // namespace vdb_offset

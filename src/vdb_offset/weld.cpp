@@ -2,47 +2,47 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <string>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/mix.h"
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-/// Finds the first vertex that stands where another one does. Open addressing over vertex numbers.
-class Welder {
+constexpr std::uint64_t kNone64 = ~std::uint64_t{0};
+
+using Cell = std::array<std::int64_t, 3>;
+std::size_t hash(const Cell& c) {
+  return mix(static_cast<std::uint64_t>(c[0]) +
+             mix(static_cast<std::uint64_t>(c[1]) + mix(static_cast<std::uint64_t>(c[2]))));
+}
+std::size_t slots_for(std::size_t count) { return std::bit_ceil(2 * count + 16); }
+
+/// Finds the first vertex within a tolerance of another one, one after the other. Open addressing over vertex numbers.
+class TolerantWelder {
  public:
-  Welder(std::span<const Vec3d> positions, const WeldOptions& options, std::size_t count)
-      : positions_(positions), tolerance_(options.tolerance), slots_(std::bit_ceil(2 * count + 16), kNone) {}
+  TolerantWelder(std::span<const Vec3d> positions, double tolerance)
+      : positions_(positions), tolerance_(tolerance), slots_(slots_for(positions.size()), kNone) {}
 
   /// The first vertex seen within the tolerance of vertex v: v itself if there is none.
   std::uint32_t first_at(std::uint32_t v) {
-    if (tolerance_ > 0)
-      if (const std::uint32_t near = search_around(v); near != kNone) return near;
-    const auto key = cell(positions_[v]);
-    std::size_t slot = hash(key) & (slots_.size() - 1);
-    for (; slots_[slot] != kNone; slot = (slot + 1) & (slots_.size() - 1))
-      if (tolerance_ == 0 && positions_[slots_[slot]] == positions_[v]) return slots_[slot];
+    if (const std::uint32_t near = search_around(v); near != kNone) return near;
+    std::size_t slot = hash(cell(positions_[v])) & (slots_.size() - 1);
+    while (slots_[slot] != kNone) slot = (slot + 1) & (slots_.size() - 1);
     return slots_[slot] = v;
   }
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
-
-  /// The position's bits for exact welding (with -0 as 0), else the cell of side `tolerance` around it.
+  /// Of side `tolerance`.
   Cell cell(const Vec3d& p) const {
     Cell c;
-    for (int k = 0; k < 3; ++k)
-      c[k] = tolerance_ > 0 ? static_cast<std::int64_t>(std::floor(p[k] / tolerance_))
-                            : std::bit_cast<std::int64_t>(p[k] + 0.0);
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<std::int64_t>(std::floor(p[k] / tolerance_));
     return c;
-  }
-  static std::size_t hash(const Cell& c) {
-    return mix(static_cast<std::uint64_t>(c[0]) +
-               mix(static_cast<std::uint64_t>(c[1]) + mix(static_cast<std::uint64_t>(c[2]))));
   }
   std::uint32_t search_around(std::uint32_t v) const {
     const Cell centre = cell(positions_[v]);
@@ -61,6 +61,67 @@ class Welder {
   double tolerance_;
   std::vector<std::uint32_t> slots_;
 };
+
+/// Finds the first vertex of all that stand at one place, bit by bit, from any number of threads: first all are added,
+/// then each may ask. A place keeps the slot that its first comer got, where the lowest number stays.
+class ExactWelder {
+ public:
+  explicit ExactWelder(std::span<const Vec3d> positions)
+      : positions_(positions), slots_(slots_for(positions.size()), kNone) {}
+
+  void add(std::uint32_t v) {
+    for (std::size_t at = start(v);; at = (at + 1) & (slots_.size() - 1)) {
+      const std::atomic_ref slot(slots_[at]);
+      std::uint32_t known = slot.load(std::memory_order_relaxed);
+      if (known == kNone && slot.compare_exchange_strong(known, v, std::memory_order_relaxed)) return;
+      if (positions_[known] != positions_[v]) continue;
+      while (v < known && !slot.compare_exchange_weak(known, v, std::memory_order_relaxed)) {
+      }
+      return;
+    }
+  }
+  std::uint32_t first_at(std::uint32_t v) const {
+    std::size_t at = start(v);
+    while (positions_[slots_[at]] != positions_[v]) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at];
+  }
+
+ private:
+  /// By the position's bits, with -0 as 0.
+  std::size_t start(std::uint32_t v) const {
+    Cell bits;
+    for (int k = 0; k < 3; ++k) bits[static_cast<std::size_t>(k)] = std::bit_cast<std::int64_t>(positions_[v][k] + 0.0);
+    return hash(bits) & (slots_.size() - 1);
+  }
+
+  std::span<const Vec3d> positions_;
+  std::vector<std::uint32_t> slots_;
+};
+
+/// Of each vertex in use the first one that it is welded with, itself or another; kNone of others.
+std::vector<std::uint32_t> find_firsts(PolygonView polygons, const WeldOptions& options) {
+  const std::size_t count = polygons.positions.size();
+  std::vector<std::uint32_t> first(count, kNone);
+  for_each_index(polygons.corners.size(), [&](std::size_t i) {
+    const std::uint32_t v = polygons.corners[i];
+    std::atomic_ref(first[v]).store(v, std::memory_order_relaxed);
+  });
+  if (!options.enabled) return first;
+  if (options.tolerance > 0) {
+    TolerantWelder welder(polygons.positions, options.tolerance);
+    for (std::uint32_t v = 0; v < count; ++v)
+      if (first[v] != kNone) first[v] = welder.first_at(v);
+    return first;
+  }
+  ExactWelder welder(polygons.positions);
+  for_each_index(count, [&](std::size_t v) {
+    if (first[v] != kNone) welder.add(static_cast<std::uint32_t>(v));
+  });
+  for_each_index(count, [&](std::size_t v) {
+    if (first[v] != kNone) first[v] = welder.first_at(static_cast<std::uint32_t>(v));
+  });
+  return first;
+}
 
 void require_tolerance(PolygonView polygons, const WeldOptions& options) {
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
@@ -82,40 +143,52 @@ void require_usable(PolygonView polygons, std::uint32_t least_corners) {
                        " face corners");
   if (polygons.face_begin.front() != 0 || polygons.face_begin.back() != polygons.corners.size())
     throw InvalidInput("mesh: expected face_begin to run from 0 to the number of corners");
-  for (std::size_t f = 0; f < polygons.face_count(); ++f)
-    if (polygons.face_begin[f] > polygons.face_begin[f + 1] ||
-        polygons.face_begin[f + 1] - polygons.face_begin[f] < least_corners)
-      throw InvalidInput("mesh: expected at least " + std::to_string(least_corners) + " corners in face " +
-                         std::to_string(f));
-  for (const auto v : polygons.corners)
-    if (v >= polygons.positions.size())
-      throw InvalidInput("mesh: expected vertex indices below " + std::to_string(polygons.positions.size()) + ", got " +
-                         std::to_string(v));
-  for (const auto v : polygons.corners)
-    if (!polygons.positions[v].isFinite())
-      throw InvalidInput("mesh: expected finite coordinates, got a NaN or an infinity at vertex " + std::to_string(v));
+  const auto first_of = [](std::size_t count, auto&& is_wrong) {
+    std::atomic<std::uint64_t> first = kNone64;
+    for_each_index(count, [&](std::size_t i) {
+      if (is_wrong(i)) lower_to(first, i);
+    });
+    return first.load();
+  };
+  const std::uint64_t f = first_of(polygons.face_count(), [&](std::size_t i) {
+    const std::uint32_t begin = polygons.face_begin[i], end = polygons.face_begin[i + 1];
+    return begin > end || end - begin < least_corners;
+  });
+  if (f != kNone64)
+    throw InvalidInput("mesh: expected at least " + std::to_string(least_corners) + " corners in face " +
+                       std::to_string(f));
+  const auto& corners = polygons.corners;
+  const auto& positions = polygons.positions;
+  if (const std::uint64_t i = first_of(corners.size(), [&](std::size_t c) { return corners[c] >= positions.size(); });
+      i != kNone64)
+    throw InvalidInput("mesh: expected vertex indices below " + std::to_string(positions.size()) + ", got " +
+                       std::to_string(corners[i]));
+  if (const std::uint64_t i =
+          first_of(corners.size(), [&](std::size_t c) { return !positions[corners[c]].isFinite(); });
+      i != kNone64)
+    throw InvalidInput("mesh: expected finite coordinates, got a NaN or an infinity at vertex " +
+                       std::to_string(corners[i]));
 }
 
 void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
   require_tolerance(polygons, options);
   const std::size_t count = polygons.positions.size();
-  std::vector<std::uint8_t> used(count, 0);
-  for (const auto v : polygons.corners) used[v] = 1;
+  const std::vector<std::uint32_t> first = find_firsts(polygons, options);
   surface.welded.assign(count, kNone);
-  Welder welder(polygons.positions, options, options.enabled ? count : 0);
+  surface.representative.reserve(count);
   for (std::uint32_t v = 0; v < count; ++v) {
-    if (!used[v]) continue;
-    const std::uint32_t first = options.enabled ? welder.first_at(v) : v;
-    if (first == v) {
-      surface.welded[v] = static_cast<std::uint32_t>(surface.vertices.size());
-      surface.vertices.push_back(polygons.positions[v]);
-      surface.representative.push_back(v);
-    } else {
-      surface.welded[v] = surface.welded[first];
-    }
+    if (first[v] != v) continue;
+    surface.welded[v] = static_cast<std::uint32_t>(surface.representative.size());
+    surface.representative.push_back(v);
   }
+  for_each_index(count, [&](std::size_t v) {
+    if (first[v] != kNone && first[v] != v) surface.welded[v] = surface.welded[first[v]];
+  });
+  surface.vertices.resize(surface.representative.size());
+  for_each_index(surface.vertices.size(),
+                 [&](std::size_t w) { surface.vertices[w] = polygons.positions[surface.representative[w]]; });
   surface.facts.vertices = count;
-  surface.facts.unused_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+  surface.facts.unused_vertices = static_cast<std::size_t>(std::count(first.begin(), first.end(), kNone));
   surface.facts.welded_vertices = surface.vertices.size();
 }
 
