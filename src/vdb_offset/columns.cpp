@@ -8,6 +8,7 @@
 
 #include "vdb_offset/layer_rail.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/ways.h"
 
 namespace vdb_offset {
 namespace {
@@ -48,6 +49,39 @@ bool has_upright_hexahedra(std::span<const std::uint32_t> corners, const Stacks&
     if (!leans(up, n * side)) return false;
   }
   return true;
+}
+
+/// The triangles of two columns in a layer, and their normals.
+struct TwoTriangles {
+  TwoTriangles(const std::array<std::span<const std::uint32_t>, 2>& base, const Stacks& stacks, std::size_t layer) {
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = both(stacks.of(base[0][k])[layer], stacks.of(base[1][k])[layer]);
+    normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    square = normal.dot(normal);
+  }
+  std::array<Way<Pair>, 3> corner;
+  Way<Pair> normal;
+  Pair square;  // of the normal
+};
+
+/// Whether in all prisms of two columns the ways up from each corner lean towards both triangles' normals, as leans().
+std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const Stacks& stacks,
+                                int side) {
+  PairMask upright{-1, -1};
+  TwoTriangles below(base, stacks, 0);
+  for (std::size_t layer = 0; layer < stacks.layers() && (upright[0] != 0 || upright[1] != 0); ++layer) {
+    const TwoTriangles above(base, stacks, layer + 1);
+    const TwoTriangles* const ends[] = {&below, &above};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Way<Pair> up = above.corner[k] - below.corner[k];
+      const Pair square = up.dot(up);
+      for (const TwoTriangles* triangles : ends) {
+        const Pair dot = triangles->normal.dot(up) * static_cast<double>(side);
+        upright &= (dot > 0.0) & (dot * dot > kLeastLean * kLeastLean * triangles->square * square);
+      }
+    }
+    below = above;
+  }
+  return {upright[0] != 0, upright[1] != 0};
 }
 
 /// Twice the area of triangle abc, as n sees it.
@@ -175,6 +209,19 @@ bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) c
     }
   }
   return true;
+}
+
+bool CellColumns::is_of_prisms(std::size_t column, const Stacks& stacks) const {
+  const auto corners = base(column);
+  return corners.size() == 3 &&
+         std::none_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
+}
+
+std::array<bool, 2> CellColumns::are_valid(std::size_t column, std::size_t other, const Stacks& stacks,
+                                           int side) const {
+  if (!is_of_prisms(column, stacks) || !is_of_prisms(other, stacks))
+    return {is_valid(column, stacks, side), is_valid(other, stacks, side)};
+  return are_upright({base(column), base(other)}, stacks, side);
 }
 
 }  // namespace vdb_offset

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -67,8 +68,11 @@ class CellColumns {
   /// must not be inside out in their middle either, and quads with flat corners are also seen as the triangles that
   /// they are split into.
   bool is_valid(std::size_t column, const Stacks& stacks, int side) const;
+  /// The same of two columns, in half the time where both are of prisms.
+  std::array<bool, 2> are_valid(std::size_t column, std::size_t other, const Stacks& stacks, int side) const;
 
  private:
+  bool is_of_prisms(std::size_t column, const Stacks& stacks) const;
   bool take_all(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
   void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source);
 

@@ -136,10 +136,8 @@ void fill_cells(const LayerPoints& points, const LayerColumns& columns, const Wa
 PrismLevel<Pair> level_of(const LayerPoints& points, std::span<const Index> ring, std::span<const Index> other,
                           std::size_t layer, const VolumeMesh& volume) {
   std::array<Way<Pair>, 3> corner;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3d &x = volume.points[points.at(ring[k], layer)], &y = volume.points[points.at(other[k], layer)];
-    corner[k] = {Pair{x[0], y[0]}, Pair{x[1], y[1]}, Pair{x[2], y[2]}};
-  }
+  for (std::size_t k = 0; k < 3; ++k)
+    corner[k] = both(volume.points[points.at(ring[k], layer)], volume.points[points.at(other[k], layer)]);
   return PrismLevel<Pair>(corner);
 }
 

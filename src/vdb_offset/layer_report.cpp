@@ -4,14 +4,13 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <tuple>
 
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/error.h"
@@ -140,7 +139,7 @@ Spread spread(std::vector<float> values) {
 /// Quantiles of so many numbers, value(i) each.
 template <class Value>
 Spread spread_of(std::size_t count, Value value) {
-  constexpr std::size_t kFew = 100000;
+  constexpr std::size_t kFew = 10000;
   if (count > kFew) return Quantiles<Value>(count, value).spread();
   std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
@@ -151,30 +150,49 @@ struct Weighted {
   double value, weight;
 };
 
+/// Finds for each of some rising sums of weights the value by which more has been summed up, in the order of values:
+/// by halves around some value, of which only those with such a sum in them are looked into. `below` is what weighs
+/// before these values.
+void find_at(std::span<Weighted> values, double below, std::span<const double> sums, std::span<double> found) {
+  const auto weight = [](std::span<const Weighted> of) {
+    return std::accumulate(of.begin(), of.end(), 0.0, [](double sum, const Weighted& v) { return sum + v.weight; });
+  };
+  while (!sums.empty()) {
+    const double middle = values[values.size() / 2].value;
+    const auto equal = std::partition(values.begin(), values.end(), [&](const auto& v) { return v.value < middle; });
+    const auto more = std::partition(equal, values.end(), [&](const auto& v) { return v.value == middle; });
+    const std::span less(values.begin(), equal), rest(more, values.end());
+    const double before = below + weight(less), up_to = before + weight({equal, more});
+    // What rounding leaves over belongs to the last.
+    const auto in_less = less.empty() ? sums.begin() : std::lower_bound(sums.begin(), sums.end(), before);
+    const auto in_equal = rest.empty() ? sums.end() : std::lower_bound(in_less, sums.end(), up_to);
+    const auto count = static_cast<std::size_t>(in_less - sums.begin()),
+               up_to_rest = static_cast<std::size_t>(in_equal - sums.begin());
+    find_at(less, below, sums.first(count), found.first(count));
+    std::fill(found.begin() + (in_less - sums.begin()), found.begin() + (in_equal - sums.begin()), middle);
+    values = rest;
+    below = up_to;
+    sums = sums.subspan(up_to_rest);
+    found = found.subspan(up_to_rest);
+  }
+}
+
 /// Of numbers that count by their weights; those without any weight count alike.
 Spread spread(std::vector<Weighted> values) {
   if (values.empty()) return {};
-  const auto is_less = [](const Weighted& a, const Weighted& b) { return a.value < b.value; };
-  // By weights too, so that sums are the same for any number of threads.
-  if (!std::is_sorted(values.begin(), values.end(), is_less))
-    tbb::parallel_sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
-      return std::tie(a.value, a.weight) < std::tie(b.value, b.weight);
-    });
   double whole = 0, sum = 0;
   for (const Weighted& v : values) whole += v.weight, sum += v.value * v.weight;
   if (!(whole > 0)) {
     for (Weighted& v : values) v.weight = 1;
     return spread(std::move(values));
   }
-  const double shares[] = {0.01, 0.05, 0.5, 0.95, 0.99};
-  double quantiles[5], below = 0;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < std::size(shares); ++i) {
-    while (at + 1 < values.size() && below + values[at].weight <= shares[i] * whole) below += values[at++].weight;
-    quantiles[i] = values[at].value;
-  }
-  return {values.front().value, quantiles[0], quantiles[1],        quantiles[2],
-          quantiles[3],         quantiles[4], values.back().value, sum / whole};
+  const auto [least, most] =
+      std::minmax_element(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+  const double ends[] = {least->value, most->value};
+  std::array<double, 5> sums{0.01, 0.05, 0.5, 0.95, 0.99}, found{};
+  for (double& share : sums) share *= whole;
+  find_at(values, 0, sums, found);
+  return {ends[0], found[0], found[1], found[2], found[3], found[4], ends[1], sum / whole};
 }
 
 /// Of a segment its length.

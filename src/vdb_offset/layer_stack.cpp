@@ -51,6 +51,9 @@ class SurfaceStacker final : public Stacker {
   std::span<const std::uint32_t> base(std::size_t column) const override { return columns_.base(column); }
   std::span<const std::uint32_t> columns_around(std::uint32_t v) const override { return columns_.around(v); }
   bool is_valid(std::size_t column) const override { return columns_.is_valid(column, stack_.stacks, side_); }
+  std::array<bool, 2> are_valid(std::size_t column, std::size_t other) const override {
+    return columns_.are_valid(column, other, stack_.stacks, side_);
+  }
 
   void look(const Indices& vertices) override {
     faults_.look(vertices, [&](std::uint32_t v) { return outermost(v); });

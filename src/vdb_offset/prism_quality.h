@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "vdb_offset/polygons.h"
+#include "vdb_offset/ways.h"
 
 namespace vdb_offset {
 
@@ -15,20 +15,6 @@ struct CellQuality {
   double jacobian, aspect;
 };
 
-/// Two numbers that are worked on at once. What is a template below takes one number, or so many.
-using Pair = double __attribute__((vector_size(16)));
-
-template <class Real>
-struct Way {
-  Real x, y, z;
-
-  Real dot(const Way& o) const { return x * o.x + y * o.y + z * o.z; }
-  Way cross(const Way& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
-};
-template <class Real>
-Way<Real> operator-(const Way<Real>& a, const Way<Real>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
 template <class Real>
 Real lesser(const Real& a, const Real& b) {
   return b < a ? b : a;

@@ -104,10 +104,22 @@ void Stacker::smooth_around(const Indices& vertices) {
   smooth(std::move(around));
 }
 
+/// Looks whether columns column(0 .. count - 1) are valid, two at a time.
+template <class Column>
+void Stacker::judge(std::size_t count, Column&& column) {
+  for_each_index((count + 1) / 2,
+                 [&](std::size_t i) {
+                   const std::size_t c = column(2 * i), other = column(std::min(2 * i + 1, count - 1));
+                   const auto [valid, other_valid] = are_valid(c, other);
+                   wrong_column_[c] = !valid;
+                   wrong_column_[other] = !other_valid;
+                 },
+                 32);
+}
+
 void Stacker::check_all_columns() {
   wrong_column_.assign(column_count(), 0);
-  for_each_index(
-      column_count(), [&](std::size_t c) { wrong_column_[c] = !is_valid(c); }, 64);
+  judge(column_count(), [](std::size_t c) { return c; });
   for (std::uint32_t c = 0; c < column_count(); ++c)
     if (wrong_column_[c]) wrong_columns_.push_back(c);
 }
@@ -116,8 +128,7 @@ void Stacker::check_columns(const Indices& moved) {
   Indices columns;
   for (const auto v : moved) columns.insert(columns.end(), columns_around(v).begin(), columns_around(v).end());
   sort_unique(columns);
-  for_each_index(
-      columns.size(), [&](std::size_t i) { wrong_column_[columns[i]] = !is_valid(columns[i]); }, 64);
+  judge(columns.size(), [&](std::size_t i) { return columns[i]; });
   std::erase_if(wrong_columns_, [&](std::uint32_t c) { return !wrong_column_[c]; });
   for (const auto c : columns)
     if (wrong_column_[c]) wrong_columns_.push_back(c);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -39,6 +40,9 @@ class Stacker {
   virtual std::span<const std::uint32_t> columns_around(std::uint32_t vertex) const = 0;
   /// Whether all cells of a column are valid. Called in parallel.
   virtual bool is_valid(std::size_t column) const = 0;
+  virtual std::array<bool, 2> are_valid(std::size_t column, std::size_t other) const {
+    return {is_valid(column), is_valid(other)};
+  }
 
   /// Puts these vertices' layers where their shares want them.
   virtual void put(const Indices& vertices) = 0;
@@ -90,6 +94,8 @@ class Stacker {
   Indices smooth(Indices changed);
   void smooth_around(const Indices& vertices);
   void check_all_columns();
+  template <class Column>
+  void judge(std::size_t count, Column&& column);
   void check_columns(const Indices& moved);
   void move(const Indices& vertices);
   Indices corners_of_wrong_columns() const;
