@@ -471,6 +471,42 @@ TEST_CASE("cell quality: the angle at the wall", "[cell_quality]") {
   CHECK(wall_angle(wall, wall, face) == 90);
 }
 
+TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever their order", "[layer_report]") {
+  const Polygons mesh = grid(60, false);
+  LayersResult layers = layers_up(mesh, {0.25, 0.5}, std::vector<double>(mesh.positions.size(), 1));
+  const auto count = static_cast<double>(layers.achieved.size());
+  for (const int shape : {0, 1, 2}) {
+    for (std::size_t v = 0; v < layers.achieved.size(); ++v) {
+      const double at = static_cast<double>(v) / count;
+      layers.achieved[v] = shape == 0   ? std::sin(std::numbers::pi * at)
+                           : shape == 1 ? std::abs(at - 0.5)
+                                        : std::floor(3 * at);
+    }
+    LayerCellFacts facts;
+    const VolumeMesh volume = make_cells(mesh.view(), layers, {}, {}, &facts);
+    const Spread reached = report_layers(mesh.view(), layers, {}, volume, facts).all.reached;
+    std::vector<double> sorted;
+    for (std::size_t f = 0; f < mesh.view().face_count(); ++f) {
+      double mean = 0;
+      for (const auto v : mesh.view().face(f)) mean += layers.achieved[v] / 4;
+      sorted.push_back(mean);
+    }
+    std::sort(sorted.begin(), sorted.end());
+    const auto quantile = [&](double share) {
+      return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))];
+    };
+    // Sums of areas are rounded: a face more or less.
+    constexpr double kOneFace = 4e-3;
+    CHECK(reached.least == Approx(sorted.front()));
+    CHECK(reached.quantile_01 == Approx(quantile(0.01)).margin(kOneFace));
+    CHECK(reached.quantile_05 == Approx(quantile(0.05)).margin(kOneFace));
+    CHECK(reached.median == Approx(quantile(0.5)).margin(kOneFace));
+    CHECK(reached.quantile_95 == Approx(quantile(0.95)).margin(kOneFace));
+    CHECK(reached.quantile_99 == Approx(quantile(0.99)).margin(kOneFace));
+    CHECK(reached.most == Approx(sorted.back()));
+  }
+}
+
 TEST_CASE("layer report: figures of each patch and of all", "[layer_report]") {
   Polygons mesh = grid(4, false);
   std::vector<double> share(mesh.positions.size(), 1);

@@ -149,18 +149,21 @@ Spread spread_of(std::size_t count, Value value) {
 struct Weighted {
   double value, weight;
 };
+bool is_less(const Weighted& a, const Weighted& b) { return a.value < b.value; }
 
 /// Finds for each of some rising sums of weights the value by which more has been summed up, in the order of values:
-/// by halves around some value, of which only those with such a sum in them are looked into. `below` is what weighs
+/// by halves around the middle one, of which only those with such a sum in them are looked into. `below` is what weighs
 /// before these values.
 void find_at(std::span<Weighted> values, double below, std::span<const double> sums, std::span<double> found) {
   const auto weight = [](std::span<const Weighted> of) {
     return std::accumulate(of.begin(), of.end(), 0.0, [](double sum, const Weighted& v) { return sum + v.weight; });
   };
   while (!sums.empty()) {
-    const double middle = values[values.size() / 2].value;
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), half, values.end(), is_less);
+    const double middle = half->value;
     const auto equal = std::partition(values.begin(), values.end(), [&](const auto& v) { return v.value < middle; });
-    const auto more = std::partition(equal, values.end(), [&](const auto& v) { return v.value == middle; });
+    const auto more = std::partition(equal, values.end(), [&](const auto& v) { return !(middle < v.value); });
     const std::span less(values.begin(), equal), rest(more, values.end());
     const double before = below + weight(less), up_to = before + weight({equal, more});
     // What rounding leaves over belongs to the last.
