@@ -57,7 +57,7 @@ class CurveStacker final : public Stacker {
           const std::uint32_t p = points[i];
           std::fill(stack_.stacks.of(p).begin(), stack_.stacks.of(p).end(), source_[p]);
           if (stack_.share[p] > 0)
-            put_down(p, CareField<CurveQuery>(curves_.front, faults_.around(p).front()),
+            put_down(p, 1, CareField<CurveQuery>(curves_.front, faults_.around(p).front()),
                      [](std::size_t, double) { return true; });
         },
         64);

@@ -78,16 +78,19 @@ class SurfaceStacker final : public Stacker {
 
   void put_block(std::span<const std::uint32_t> vertices) {
     std::vector<std::uint32_t> open;
+    std::vector<double> tops;
     std::vector<ClosestQuery::Ball> balls;
     for (const auto v : vertices) {
       std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
       if (!(stack_.share[v] > 0) || (slides_ && body_.is_bound(v) && put_along_border(v))) continue;
-      const Vec3d& whole = paths_.displacement[v];
+      const double top = top_of(v);
+      const Vec3d way = rail_of(v)(top);
       open.push_back(v);
-      balls.push_back({source_[v] - front_.origin + whole, std::max(whole.length(), paths_.achieved[v]) * kReachRoom});
+      tops.push_back(top);
+      balls.push_back({source_[v] - front_.origin + way, way.length() * kReachRoom});
     }
     body_.front.collect_together(balls, [&](std::size_t i, NearTriangles& near) {
-      if (!put_among_few(open[i], balls[i], near)) put_with_care(open[i]);
+      if (!put_among_few(open[i], tops[i], balls[i], near)) put_with_care(open[i]);
     });
   }
 
@@ -134,23 +137,22 @@ class SurfaceStacker final : public Stacker {
     NearTriangles& near_;
     std::size_t believed_;
   };
-  /// What may be the closest triangle to some point of the rail is no farther from its end than that point's distance
-  /// and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers. False if
-  /// that was wrong of a layer, or does not lead to its height.
-  bool put_among_few(std::uint32_t v, const ClosestQuery::Ball& ball, NearTriangles& near) {
+  /// What may be the closest triangle to some point of the rail below its top is no farther from that than the point's
+  /// distance and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers.
+  /// False if that was wrong of a layer, or does not lead to its height.
+  bool put_among_few(std::uint32_t v, double top, const ClosestQuery::Ball& ball, NearTriangles& near) {
     const auto stack = stack_.stacks.of(v);
-    const Vec3d& whole = paths_.displacement[v];
-    const double reach = ball.radius;
     if (near.size() == 0 || near.size() > kMostNear) return false;
-    return put_down(v, FewField(front_, near), [&](std::size_t k, double phi) {
+    const Vec3d centre = ball.centre + front_.origin;
+    return put_down(v, top, FewField(front_, near), [&](std::size_t k, double phi) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
       return std::abs(phi - height) <= kReachedTolerance * height &&
-             (stack[k + 1] - source_[v] - whole).length() + phi <= reach;
+             (stack[k + 1] - centre).length() + phi <= ball.radius;
     });
   }
 
   void put_with_care(std::uint32_t v) {
-    put_down(v, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
+    put_down(v, 1, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
   }
 
   const Body& body_;

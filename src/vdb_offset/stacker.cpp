@@ -24,6 +24,7 @@ Stacker::Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::
       side_(heights.back().farthest() < 0 ? -1 : 1),
       paths_(paths),
       most_(source.size(), 0.0),
+      stood_(source.size()),
       straight_(source.size(), 0) {
   stack_.stacks = Stacks(source.size(), heights.size());
   stack_.first_achieved.assign(source.size(), 0.0);
@@ -165,7 +166,10 @@ bool Stacker::straighten() {
     return straight_[v] || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
   });
   if (corners.empty()) return false;
-  for (const auto v : corners) straight_[v] = 1;
+  for (const auto v : corners) {
+    straight_[v] = 1;
+    stood_[v] = {};
+  }
   stack_.statistics.straightened += corners.size();
   move(corners);
   return true;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -59,21 +61,32 @@ class Stacker {
   /// Whether a vertex's outermost layer is where its path ended.
   bool is_at_end(std::uint32_t v) const { return stack_.share[v] == most_[v] && most_[v] > 0; }
 
-  /// Goes down a vertex's rail from height to height, from the outermost. `placed` is told of each layer and its
-  /// distance, and may end the descent: then this is false.
+  Rail rail_of(std::uint32_t v) const;
+  /// Where on its rail, 0 .. 1, a vertex's descent may begin: above its share. Where it has stood tells of a place
+  /// nearby, which is likely to be.
+  double top_of(std::uint32_t v) const {
+    constexpr double kRoom = 1.15;
+    const Standing& stood = stood_[v];
+    return is_at_end(v) ? 1 : std::min(1.0, kRoom * stood.eta * (stack_.share[v] / stood.share));
+  }
+
+  /// Goes down a vertex's rail from height to height, from the outermost, which is below `top` on it. False if it is
+  /// not. `placed` is told of each layer and its distance, and may end the descent: then this is false, too.
   template <class Field, class Placed>
-  bool put_down(std::uint32_t v, Field&& field, Placed&& placed) {
+  bool put_down(std::uint32_t v, double top, Field&& field, Placed&& placed) {
     const auto stack = stack_.stacks.of(v);
     const double share = stack_.share[v];
     const Rail rail = rail_of(v);
     const Vec3d origin = source_[v] - front_origin_;
-    RailPlace above{1, field.find(origin + rail.whole)};
+    RailPlace above{top, field.find(origin + rail(top))};
+    if (top < 1 && above.phi.value < share * asked(v)) return false;
     for (std::size_t k = heights_.size(); k-- > 0;) {
       const double target = share * std::abs(heights_[k][v]);
       const bool at_end = k + 1 == heights_.size() && share == most_[v];
       if (!at_end) above = place_on(rail, origin, above, target, field);
       stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(above.eta), target));
       if (!placed(k, above.phi.value)) return false;
+      if (k + 1 == heights_.size()) stood_[v] = {share, above.eta};
       stack_.first_achieved[v] = above.phi.value;
     }
     return true;
@@ -88,9 +101,12 @@ class Stacker {
   LayerStack stack_;
 
  private:
+  /// Where on a rail the outermost layer was when that was last put, and with which share.
+  struct Standing {
+    double share = 1, eta = std::numeric_limits<double>::infinity();  // it was nowhere
+  };
   double share_at_end(std::uint32_t v);
   Vec3d start_of_rail(std::uint32_t v) const;
-  Rail rail_of(std::uint32_t v) const;
   Indices smooth(Indices changed);
   void smooth_around(const Indices& vertices);
   void check_all_columns();
@@ -106,6 +122,7 @@ class Stacker {
   void let_out(Indices& thinned);
   void finish();
 
+  std::vector<Standing> stood_;
   std::vector<std::uint8_t> straight_;  // whether a vertex's layers stand on a straight line
   std::vector<std::uint8_t> wrong_column_;
   Indices wrong_columns_;
