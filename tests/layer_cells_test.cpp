@@ -28,12 +28,14 @@ LayersResult layers_along(const Polygons& mesh, const std::vector<Vec3d>& direct
   LayersResult layers;
   share.resize(mesh.positions.size(), 1);
   layers.share = share;
-  layers.positions.push_back(mesh.positions);
-  for (const double height : heights) {
-    layers.heights.emplace_back(height);
-    layers.positions.push_back(mesh.positions);
-    for (std::size_t v = 0; v < share.size(); ++v) layers.positions.back()[v] += share[v] * height * directions[v];
+  layers.stacks = Stacks(mesh.positions.size(), heights.size());
+  for (std::size_t v = 0; v < share.size(); ++v) {
+    const auto stack = layers.stacks.of(v);
+    stack[0] = mesh.positions[v];
+    for (std::size_t k = 0; k < heights.size(); ++k)
+      stack[k + 1] = mesh.positions[v] + share[v] * heights[k] * directions[v];
   }
+  for (const double height : heights) layers.heights.emplace_back(height);
   layers.states.assign(share.size(), VertexState::Reached);
   for (const double s : share) {
     layers.achieved.push_back(s * std::abs(heights.back()));
@@ -464,11 +466,10 @@ TEST_CASE("cell quality: a hexahedron that is twisted shows at its principal axe
 
 TEST_CASE("cell quality: the angle at the wall", "[cell_quality]") {
   const std::vector<Vec3d> wall = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<std::uint32_t> face = {0, 1, 2};
   std::vector<Vec3d> first = wall;
   for (Vec3d& p : first) p += Vec3d(0.1 * std::tan(std::numbers::pi / 180), 0, -0.1);
-  CHECK(wall_angle(wall, first, face) == Approx(1).epsilon(1e-12));
-  CHECK(wall_angle(wall, wall, face) == 90);
+  CHECK(wall_angle(wall, first) == Approx(1).epsilon(1e-12));
+  CHECK(wall_angle(wall, wall) == 90);
 }
 
 TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever their order", "[layer_report]") {
@@ -484,7 +485,8 @@ TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever t
     }
     LayerCellFacts facts;
     const VolumeMesh volume = make_cells(mesh.view(), layers, {}, {}, &facts);
-    const Spread reached = report_layers(mesh.view(), layers, {}, volume, facts).all.reached;
+    const Spread reached =
+        report_layers(mesh.view(), layers, {}, facts, quality_of(volume, layers.count())).all.reached;
     std::vector<double> sorted;
     for (std::size_t f = 0; f < mesh.view().face_count(); ++f) {
       double mean = 0;
@@ -519,7 +521,7 @@ TEST_CASE("layer report: figures of each patch and of all", "[layer_report]") {
   LayerCellFacts facts;
   const VolumeMesh volume = make_cells(mesh.view(), layers, {}, names, &facts);
   check_cells(volume);
-  const LayerReport report = report_layers(mesh.view(), layers, names, volume, facts);
+  const LayerReport report = report_layers(mesh.view(), layers, names, facts, quality_of(volume, layers.count()));
   CHECK(report.layers == 2);
   CHECK(report.volume == Approx(sum_of_cells(volume)).epsilon(1e-12));
   CHECK(report.all.area == Approx(1));

@@ -35,7 +35,7 @@ Grown grow(const Polygons& mesh, std::span<const Distances> heights, const Offse
   Grown grown{grow_layers(mesh.view(), heights, options), {}, {}};
   LayerCellFacts facts;
   grown.volume = make_cells(mesh.view(), grown.layers, options.weld, {}, &facts);
-  grown.report = report_layers(mesh.view(), grown.layers, {}, grown.volume, facts);
+  grown.report = report_layers(mesh.view(), grown.layers, {}, facts, quality_of(grown.volume, grown.layers.count()));
   return grown;
 }
 
@@ -48,7 +48,7 @@ void check_heights(const Polygons& mesh, const LayersResult& layers, std::size_t
     for (std::size_t k = 0; k < layers.count(); ++k) {
       const double height = layers.share[v] * std::abs(layers.heights[k][v]);
       if (height == 0) continue;
-      const double distance = test::brute_force_distance(mesh.view(), layers.positions[k + 1][v]);
+      const double distance = test::brute_force_distance(mesh.view(), layers.stacks.of(v)[k + 1]);
       worst = std::max(worst, std::abs(distance - height) / height);
       ++seen;
     }
@@ -103,7 +103,7 @@ TEST_CASE("layers: on a plane, heights and volumes are exact", "[layers]") {
   CHECK(grown.report.all.coverage == Approx(1));
   for (std::size_t k = 0; k < 10; ++k)
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-      const Vec3d up = grown.layers.positions[k + 1][v] - mesh.positions[v];
+      const Vec3d up = grown.layers.stacks.of(v)[k + 1] - mesh.positions[v];
       CHECK((up - Vec3d(0, 0, grown.layers.heights[k][v])).length() < 1e-9);
     }
   const double thickness = grown.layers.heights.back()[0];
@@ -131,7 +131,7 @@ TEST_CASE("layers: on a sphere and in a tube, heights are exact and cells fill w
       sum += six_volumes_below(positions, mesh.view().face(f), {}) / 6;
     return sum;
   };
-  const double between = enclosed(grown.layers.positions.back()) - enclosed(mesh.positions);
+  const double between = enclosed(grown.layers.stacks.surface(grown.layers.count())) - enclosed(mesh.positions);
   CHECK(grown.report.volume == Approx(std::abs(between)).epsilon(1e-9));
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("layers: the outermost surface of a cylinder's side has its radius", "
   const double r = 0.5, outer = r + thickness;  // an edge of a convex prism goes straight out
   CHECK(grown.report.volume == Approx(64 * std::sin(angle) / 2 * (outer * outer - r * r)).epsilon(1e-6));
   for (const auto v : tube.corners)
-    CHECK(std::hypot(grown.layers.positions.back()[v][0], grown.layers.positions.back()[v][1]) ==
+    CHECK(std::hypot(grown.layers.stacks.of(v).back()[0], grown.layers.stacks.of(v).back()[1]) ==
           Approx(outer).epsilon(1e-6));
 }
 
@@ -244,7 +244,7 @@ TEST_CASE("layers: those of two plates stop before each other", "[layers]") {
   const Polygons mesh = scene::plates(1, 0.1, 0.1, 24);
   const Grown grown = grow(mesh, growing(0.005, 1.2, 8));  // 0.082 in all, in a gap of 0.1
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const double wall = mesh.positions[v][2], outer = grown.layers.positions.back()[v][2];
+    const double wall = mesh.positions[v][2], outer = grown.layers.stacks.of(v).back()[2];
     if (std::abs(wall) < 0.051) CHECK(wall * outer > 0);
   }
   CHECK(grown.layers.layer_statistics.thinned_vertices > 0);
@@ -280,7 +280,7 @@ TEST_CASE("layers: on a part of a box whose edge slides, the sides stay flat", "
   CHECK(positive_cells(grown.volume) == 1);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3d& wall = mesh.positions[v];
-    const Vec3d& outer = grown.layers.positions.back()[v];
+    const Vec3d& outer = grown.layers.stacks.of(v).back();
     if (wall[2] < 0.499) CHECK(outer == wall);
     for (int k = 0; k < 2; ++k)
       if (std::abs(wall[k]) == 0.5) CHECK(outer[k] == wall[k]);
@@ -324,8 +324,8 @@ TEST_CASE("layers: where the edge of a part slides on a bent surface, all layers
   double off_side = 0, off_chord = 0;
   for (std::size_t v = 1 + (kLid - 1) * kAround; v < 1 + kLid * kAround; ++v)
     for (std::size_t k = 1; k <= grown.layers.count(); ++k) {
-      const Vec3d &x = grown.layers.positions[k][v], &wall = bowl.positions[v];
-      const Vec3d chord = grown.layers.positions.back()[v] - wall;
+      const Vec3d &x = grown.layers.stacks.of(v)[k], &wall = bowl.positions[v];
+      const Vec3d chord = grown.layers.stacks.of(v).back() - wall;
       off_side = std::max(off_side, test::brute_force_distance(bowl.view(), x));
       off_chord = std::max(off_chord, chord.cross(x - wall).length() / chord.length());
     }
@@ -356,7 +356,7 @@ TEST_CASE("layers: what rests at the edge of a part is in the way of what rises 
   CHECK(positive_cells(grown.volume) == 1);
   std::size_t high = 0;
   for (std::uint32_t v = 0; v < wall; ++v) {
-    const Vec3d& x = grown.layers.positions.back()[v];
+    const Vec3d& x = grown.layers.stacks.of(v).back();
     if (x[0] < 0.5) CHECK(x[2] <= kSteepness * x[0] + 1e-9);
     high += x[2] > 0.1;
   }
@@ -382,7 +382,7 @@ TEST_CASE("layers: the same for any number of threads", "[layers]") {
   one.threads = 1;
   const auto heights = growing(0.01, 1.2, 6);
   const LayersResult a = grow_layers(mesh.view(), heights, one), b = grow_layers(mesh.view(), heights, {});
-  CHECK(a.positions == b.positions);
+  for (std::size_t k = 0; k <= a.count(); ++k) CHECK(a.stacks.surface(k) == b.stacks.surface(k));
   CHECK(a.share == b.share);
 }
 

@@ -97,10 +97,11 @@ CellQuality hexahedron_quality(const CellPoints& x) {
   return {std::min(unit_triple(u, v, w), corners.jacobian), corners.aspect};
 }
 
-Vec3d twice_area(std::span<const Vec3d> points, std::span<const std::uint32_t> face) {
+/// Of a face with so many corners, at(0), at(1) ...
+template <class At>
+Vec3d twice_area(std::size_t corners, At&& at) {
   Vec3d sum(0.0);
-  const Vec3d base = points[face[0]];
-  for (std::size_t k = 2; k < face.size(); ++k) sum += (points[face[k - 1]] - base).cross(points[face[k]] - base);
+  for (std::size_t k = 2; k < corners; ++k) sum += (at(k - 1) - at(0)).cross(at(k) - at(0));
   return sum;
 }
 
@@ -116,7 +117,7 @@ Around around(std::span<const std::uint32_t> face, std::size_t k) {
 /// Corners that are in both base and top have two edges or four.
 double polyhedron_jacobian(const VolumeMesh& mesh, std::span<const std::uint32_t> cell) {
   const auto base = cell.subspan(2, cell[1]), top = cell.subspan(3 + cell[1], cell[2 + cell[1]]);
-  const Vec3d down = twice_area(mesh.points, base);
+  const Vec3d down = twice_area(base.size(), [&](std::size_t k) { return mesh.points[base[k]]; });
   const auto triple = [&](std::uint32_t at, Around in_face, std::uint32_t across) {
     const Vec3d& x = mesh.points[at];
     return unit_triple(mesh.points[in_face.previous] - x, mesh.points[in_face.next] - x, mesh.points[across] - x);
@@ -183,16 +184,6 @@ double aspect_ratio(const VolumeMesh& mesh, std::size_t cell) {
   return lengths.ratio();
 }
 
-double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin) {
-  const std::size_t n = face.size();
-  const auto first = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
-  const auto corner = [&](std::size_t k) { return points[face[(first + k) % n]] - origin; };
-  const Vec3d fan = corner(0);
-  double sum = 0;
-  for (std::size_t k = 2; k < n; ++k) sum += fan.dot(corner(k - 1).cross(corner(k)));
-  return sum;
-}
-
 double cell_volume(const VolumeMesh& mesh, std::size_t cell) {
   const auto corners = mesh.cell(cell);
   const CellType type = mesh.cell_types[cell];
@@ -243,11 +234,11 @@ double enclosed_volume(const VolumeMesh& mesh) {
   return sum / (mesh.plane() ? 2 : 6);
 }
 
-double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first, std::span<const std::uint32_t> face) {
+double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first) {
   Vec3d rise(0.0);
-  for (const auto v : face) rise += first[v] - wall[v];
-  const bool edge = face.size() == 2;
-  const Vec3d axis = edge ? wall[face[1]] - wall[face[0]] : twice_area(wall, face);
+  for (std::size_t k = 0; k < wall.size(); ++k) rise += first[k] - wall[k];
+  const bool edge = wall.size() == 2;
+  const Vec3d axis = edge ? wall[1] - wall[0] : twice_area(wall.size(), [&](std::size_t k) { return wall[k]; });
   // By the tangent, which knows small angles.
   double along = std::abs(axis.dot(rise)), across = axis.cross(rise).length();
   if (edge) std::swap(along, across);

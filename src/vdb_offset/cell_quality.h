@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -27,8 +28,21 @@ double aspect_ratio(const VolumeMesh& mesh, std::size_t cell);
 double cell_volume(const VolumeMesh& mesh, std::size_t cell);
 
 /// Six times the volume between a face and `origin`, signed: the sum over a closed boundary is six times what it
-/// encloses.
-double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face, const Vec3d& origin);
+/// encloses. `place` gives the position of a corner.
+template <class Place>
+double six_volumes_below(std::span<const std::uint32_t> face, const Vec3d& origin, Place&& place) {
+  const std::size_t n = face.size();
+  const auto first = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
+  const auto corner = [&](std::size_t k) -> Vec3d { return place(face[(first + k) % n]) - origin; };
+  const Vec3d fan = corner(0);
+  double sum = 0;
+  for (std::size_t k = 2; k < n; ++k) sum += fan.dot(corner(k - 1).cross(corner(k)));
+  return sum;
+}
+inline double six_volumes_below(std::span<const Vec3d> points, std::span<const std::uint32_t> face,
+                                const Vec3d& origin) {
+  return six_volumes_below(face, origin, [&](std::uint32_t p) -> const Vec3d& { return points[p]; });
+}
 
 /// Both: each edge of a prism or hexahedron is looked at once.
 CellQuality cell_quality(const VolumeMesh& mesh, std::size_t cell);
@@ -41,7 +55,7 @@ double enclosed_volume(const VolumeMesh& mesh);
 
 /// Angle in degrees, 0 .. 90, between the normal of a wall's face, or of a segment, and the mean of the edges that rise
 /// from its corners to the first layer: 0 is best. 90 if either has no direction. \pre `first` has a position for each
-/// of `wall`.
-double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first, std::span<const std::uint32_t> face);
+/// corner of `wall`.
+double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first);
 
 }  // namespace vdb_offset

@@ -2,36 +2,14 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "vdb_offset/body.h"
 #include "vdb_offset/polygons.h"
+#include "vdb_offset/stacks.h"
 
 namespace vdb_offset {
-
-/// Where the vertices of a body stand in each layer: from the wall outward, one vertex after the other.
-class Stacks {
- public:
-  Stacks() = default;
-  /// Places are not set: who does that, in parallel, is the first to touch the memory.
-  Stacks(std::size_t vertices, std::size_t layers)
-      : layers_(layers), places_(std::make_unique_for_overwrite<Vec3d[]>(vertices * (layers + 1))) {}
-
-  std::size_t layers() const { return layers_; }
-  /// World coordinates: layers() + 1 places.
-  std::span<Vec3d> of(std::uint32_t vertex) { return {places_.get() + vertex * (layers_ + 1), layers_ + 1}; }
-  std::span<const Vec3d> of(std::uint32_t vertex) const {
-    return {places_.get() + vertex * (layers_ + 1), layers_ + 1};
-  }
-  /// Whether all of a vertex's layers are at one place.
-  bool is_flat(std::uint32_t vertex) const { return of(vertex).front() == of(vertex).back(); }
-
- private:
-  std::size_t layers_ = 0;
-  std::unique_ptr<Vec3d[]> places_;
-};
 
 /// The columns of cells that stand on the faces of a body's front, on its welded vertices.
 ///

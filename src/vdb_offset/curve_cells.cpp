@@ -41,18 +41,18 @@ class CurveCellMaker {
   }
 
  private:
-  bool is_flat(std::uint32_t p) const { return layers_.positions.front()[p] == layers_.positions.back()[p]; }
+  bool is_flat(std::uint32_t p) const { return layers_.stacks.is_flat(p); }
   std::uint32_t number(std::size_t layer, std::uint32_t p) const { return numbers_[is_flat(p) ? 0 : layer][p]; }
 
   void add_points() {
     VolumeMesh& mesh = result_.mesh;
     mesh.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"state", {}}};
-    numbers_.assign(layers_.positions.size(), std::vector<std::uint32_t>(chains_.place.size(), kNone));
+    numbers_.assign(layers_.count() + 1, std::vector<std::uint32_t>(chains_.place.size(), kNone));
     for (std::size_t k = 0; k < numbers_.size(); ++k)
       for (std::uint32_t p = 0; p < chains_.place.size(); ++p) {
         if (chains_.place[p] != p || (k > 0 && is_flat(p))) continue;
         numbers_[k][p] = static_cast<std::uint32_t>(mesh.points.size());
-        mesh.points.push_back(layers_.positions[k][p]);
+        mesh.points.push_back(layers_.stacks.of(p)[k]);
         mesh.point_fields[0].values.push_back(static_cast<float>(k));
         mesh.point_fields[1].values.push_back(static_cast<float>(layers_.share[p]));
         mesh.point_fields[2].values.push_back(height_at(layers_, k, p));
@@ -143,7 +143,7 @@ StructuredBlock make_curve_block(CurvesView curves, const LayersResult& layers) 
   block.point_fields = {{"share", {}}, {"height", {}}, {"state", {}}};
   for (std::size_t j = 0; j < block.nj; ++j)
     for (const auto p : along) {
-      block.points.push_back(layers.positions[j][p]);
+      block.points.push_back(layers.stacks.of(p)[j]);
       block.point_fields[0].values.push_back(static_cast<float>(layers.share[p]));
       block.point_fields[1].values.push_back(height_at(layers, j, p));
       block.point_fields[2].values.push_back(static_cast<float>(layers.states[p]));

@@ -275,11 +275,12 @@ class CurvePipeline {
     const std::size_t count = points_.size();
     result.share.assign(count, 0.0);
     result.first_achieved.assign(count, 0.0);
-    const std::vector<Vec3d> wall(curves_.positions.begin(), curves_.positions.end());
-    result.positions.assign(heights.size() + 1, wall);
+    result.stacks = Stacks(count, heights.size());
     std::vector<std::vector<double>> asked(heights.size(), std::vector<double>(count, 0.0));
     for (std::uint32_t p = 0; p < count; ++p) {
       const auto v = vertex_[p];
+      const auto to = result.stacks.of(p);
+      std::fill(to.begin(), to.end(), curves_.positions[p]);
       if (v == kNone) continue;
       result.share[p] = stack.share[v];
       result.first_achieved[p] = stack.first_achieved[v];
@@ -288,7 +289,7 @@ class CurvePipeline {
         asked[k][p] = heights[k][v];
         if (stack.stacks.is_flat(v)) continue;
         const Vec3d way = places[k + 1] - places[0];
-        result.positions[k + 1][p] += frame_.to_space({way[0], way[1]});
+        to[k + 1] += frame_.to_space({way[0], way[1]});
       }
     }
     for (auto& each : asked) result.heights.emplace_back(std::move(each));

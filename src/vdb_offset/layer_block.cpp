@@ -149,7 +149,7 @@ StructuredBlock make_block(PolygonView mesh, const LayersResult& layers, const W
   for_each_index(block.points.size(), [&](std::size_t p) {
     const std::size_t k = p / in_layer, i = p % in_layer % block.ni, j = p % in_layer / block.ni;
     const std::uint32_t v = inward ? rows[i * width + j] : rows[j * width + i];
-    block.points[p] = layers.positions[k][v];
+    block.points[p] = layers.stacks.of(v)[k];
     block.point_fields[0].values[p] = static_cast<float>(layers.share[v]);
     block.point_fields[1].values[p] = static_cast<float>(k == 0 ? 0 : layers.heights[k - 1][v]);
     block.point_fields[2].values[p] = static_cast<float>(layers.states[v]);

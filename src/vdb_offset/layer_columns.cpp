@@ -7,9 +7,12 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 
+#include "vdb_offset/cell_stack.h"
 #include "vdb_offset/edge_sides.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/repeated_faces.h"
 
@@ -34,11 +37,11 @@ bool clean_ring(std::span<const Index> face, std::span<const Index> place, std::
 /// On which side of a face its first layer lies: above 0 if its normal points there. Farther out, a face may have
 /// turned its back to where it came from.
 double rises(const LayersResult& layers, std::span<const Index> ring) {
-  const std::vector<Vec3d>&wall = layers.positions[0], &first = layers.positions[1];
+  const auto at = [&](Index v, std::size_t layer) -> const Vec3d& { return layers.stacks.of(v)[layer]; };
   Vec3d normal(0.0), rise(0.0);
   for (std::size_t k = 2; k < ring.size(); ++k)
-    normal += (wall[ring[k - 1]] - wall[ring[0]]).cross(wall[ring[k]] - wall[ring[0]]);
-  for (const Index v : ring) rise += first[v] - wall[v];
+    normal += (at(ring[k - 1], 0) - at(ring[0], 0)).cross(at(ring[k], 0) - at(ring[0], 0));
+  for (const Index v : ring) rise += at(v, 1) - at(v, 0);
   return normal.dot(rise);
 }
 
@@ -270,8 +273,8 @@ class SideMatch {
   std::vector<std::uint8_t> crowded_;
 };
 
-}  // namespace
-
+/// The faces over which layers rise, on the side where they do, with the first vertex at each corner's place; facts
+/// know what became of the others. `flat` tells of each vertex whether it rises in no layer.
 LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const Index> place,
                           std::span<const std::uint8_t> flat, LayerCellFacts& facts) {
   LayerColumns columns = find_polygons(mesh, layers, place, facts);
@@ -279,6 +282,8 @@ LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::spa
   return columns;
 }
 
+/// Numbers the points, and replaces the columns' places by those of the wall, where sides that have no partner get
+/// points of their own. Tells the columns which of their sides are open.
 LayerPoints number_points(std::span<const std::uint8_t> flat, LayerColumns& columns, LayerCellFacts& facts) {
   const SideMatch sides(flat.size(), flat, columns, facts);
   LayerPoints points;
@@ -313,8 +318,86 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, LayerColumns& colu
   columns.corners = std::move(point);
   points.in_layer.assign(points.wall(), kNone);
   for (Index p = 0; p < points.wall(); ++p)
-    if (flat[points.vertex[p]] == 0) points.in_layer[p] = points.risen++;
+    if (flat[points.vertex[p]] == 0) {
+      points.in_layer[p] = points.risen();
+      points.rising.push_back(p);
+    }
   return points;
+}
+
+void require_layers_of(PolygonView mesh, const LayersResult& layers) {
+  const auto require = [](const char* what, std::size_t expected, std::size_t got) {
+    if (got != expected)
+      throw InvalidInput("layer_cells: expected " + std::to_string(expected) + " " + what + ", got " +
+                         std::to_string(got));
+  };
+  require("layers, one for each height,", layers.count(), layers.stacks.layers());
+  require("stacks", mesh.positions.size(), layers.stacks.vertices());
+  require("shares", mesh.positions.size(), layers.share.size());
+  require("states", mesh.positions.size(), layers.states.size());
+  require("distances achieved", mesh.positions.size(), layers.achieved.size());
+  require("distances of the first layer", mesh.positions.size(), layers.first_achieved.size());
+  for (const Distances& heights : layers.heights)
+    if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
+  if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
+}
+
+std::vector<std::uint8_t> find_flat(const Stacks& stacks) {
+  std::vector<std::uint8_t> flat(stacks.vertices());
+  for_each_index(flat.size(), [&](std::size_t v) {
+    const auto stack = stacks.of(v);
+    flat[v] = std::all_of(stack.begin(), stack.end(), [&](const Vec3d& x) { return x == stack[0]; });
+  });
+  return flat;
+}
+
+/// Counts what a layer has, and so where each column's cells are.
+void count_cells(const LayerPoints& points, LayerColumns& columns, LayerCellFacts& facts) {
+  columns.cells.assign(columns.count() + 1, 0);
+  columns.size.assign(columns.count() + 1, 0);
+  for_each_index(columns.count(), [&](std::size_t c) {
+    CellStack(points, columns.ring(c), 0)
+        .visit_cells([&](CellType) { ++columns.cells[c + 1]; }, [&](Index) { ++columns.size[c + 1]; });
+  });
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    facts.cells[columns.face[c]] = static_cast<std::uint8_t>(facts.cells[columns.face[c]] + columns.cells[c + 1]);
+  std::partial_sum(columns.cells.begin(), columns.cells.end(), columns.cells.begin());
+  std::partial_sum(columns.size.begin(), columns.size.end(), columns.size.begin());
+}
+
+void require_countable(const LayerPoints& points, const LayerColumns& columns, std::size_t layers) {
+  const std::uint64_t all_points = points.wall() + std::uint64_t{points.risen()} * layers;
+  const std::uint64_t all_cells = std::uint64_t{columns.cells.back()} * layers;
+  if (all_points >= kNone || all_cells >= kNone)
+    throw InvalidInput("layer_cells: expected fewer than 2^32 points and cells, got " + std::to_string(all_points) +
+                       " and " + std::to_string(all_cells) + " (ask for fewer layers)");
+}
+
+}  // namespace
+
+const char* name(FaceRole role) {
+  constexpr const char* kNames[kFaceRoleCount] = {"bare", "full", "transition", "flat", "degenerate", "repeated"};
+  return kNames[static_cast<std::size_t>(role)];
+}
+
+bool LayerCells::is_of_prisms(std::size_t column) const {
+  const auto ring = columns.ring(column);
+  return ring.size() == 3 && std::none_of(ring.begin(), ring.end(), [&](Index p) { return points.flat(p); });
+}
+
+LayerCells number_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld) {
+  require_layers_of(mesh, layers);
+  const std::vector<Index> place = weld_by_position(mesh, weld);
+  LayerCells cells;
+  cells.layers = layers.count();
+  cells.facts.role.assign(mesh.face_count(), FaceRole::Bare);
+  cells.facts.cells.assign(mesh.face_count(), 0);
+  const std::vector<std::uint8_t> flat = find_flat(layers.stacks);
+  cells.columns = find_columns(mesh, layers, place, flat, cells.facts);
+  cells.points = number_points(flat, cells.columns, cells.facts);
+  count_cells(cells.points, cells.columns, cells.facts);
+  require_countable(cells.points, cells.columns, layers.count());
+  return cells;
 }
 
 }  // namespace vdb_offset

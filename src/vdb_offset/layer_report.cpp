@@ -1,7 +1,9 @@
 #include "vdb_offset/layer_report.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
@@ -13,7 +15,6 @@
 #include <numeric>
 
 #include "vdb_offset/cell_quality.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
@@ -207,23 +208,11 @@ double area_of(std::span<const Vec3d> points, std::span<const std::uint32_t> fac
   return sum.length() / 2;
 }
 
-std::span<const float> values_of(const VolumeMesh& volume, const char* name) {
-  for (const VolumeField& field : volume.cell_fields)
-    if (field.name == name) return field.values;
-  throw InvalidInput(std::string("layer_report: expected cells with a field ") + name + ", got none");
-}
-
 /// What the figures of all parts are read from.
 class Source {
  public:
-  Source(PolygonView mesh, const LayersResult& layers, const VolumeMesh& volume, const LayerCellFacts& facts)
-      : mesh_(mesh),
-        layers_(layers),
-        volume_(volume),
-        facts_(facts),
-        jacobian_(values_of(volume, "scaled_jacobian")),
-        aspect_(values_of(volume, "aspect_ratio")),
-        first_cell_(mesh.face_count() + 1, 0) {
+  Source(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const LayerQuality& quality)
+      : mesh_(mesh), layers_(layers), facts_(facts), quality_(quality), first_cell_(mesh.face_count() + 1, 0) {
     for (std::size_t f = 0; f < mesh.face_count(); ++f) first_cell_[f + 1] = first_cell_[f] + facts.cells[f];
   }
 
@@ -317,9 +306,16 @@ class Source {
     for (const auto f : faces)
       if (facts_.cells[f] > 0) with_cells.push_back(f);
     std::vector<float> angles(with_cells.size());
-    for_each_index(angles.size(), [&](std::size_t i) {
-      const auto face = mesh_.face(with_cells[i]);
-      angles[i] = static_cast<float>(wall_angle(layers_.positions[0], layers_.positions[1], face));
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, angles.size(), 1024), [&](const auto& range) {
+      std::vector<Vec3d> wall, first;
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        wall.clear(), first.clear();
+        for (const auto v : mesh_.face(with_cells[i])) {
+          const auto stack = layers_.stacks.of(v);
+          wall.push_back(stack[0]), first.push_back(stack[1]);
+        }
+        angles[i] = static_cast<float>(wall_angle(wall, first));
+      }
     });
     figures.wall_angle = spread_of(angles.size(), [&](std::size_t i) { return angles[i]; });
   }
@@ -329,7 +325,7 @@ class Source {
     for (const auto f : faces) {
       for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c) {
         in_layer.push_back(static_cast<std::uint32_t>(c));
-        figures.cells_by_type[static_cast<std::size_t>(volume_.cell_types[c])] += layers_.count();
+        figures.cells_by_type[static_cast<std::size_t>(quality_.types[c])] += layers_.count();
       }
       if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += layers_.count() * facts_.cells[f];
     }
@@ -341,19 +337,19 @@ class Source {
     figures.inverted_cells = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, figures.cells, 65536), std::size_t{0},
         [&](const auto& range, std::size_t sum) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) sum += !(jacobian_[number(i)] > 0);
+          for (std::size_t i = range.begin(); i != range.end(); ++i) sum += !(quality_.scaled_jacobian[number(i)] > 0);
           return sum;
         },
         std::plus<>());
-    figures.scaled_jacobian = spread_of(figures.cells, [&](std::size_t i) { return jacobian_[number(i)]; });
-    figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return aspect_[number(i)]; });
+    figures.scaled_jacobian =
+        spread_of(figures.cells, [&](std::size_t i) { return quality_.scaled_jacobian[number(i)]; });
+    figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return quality_.aspect_ratio[number(i)]; });
   }
 
   PolygonView mesh_;
   const LayersResult& layers_;
-  const VolumeMesh& volume_;
   const LayerCellFacts& facts_;
-  std::span<const float> jacobian_, aspect_;
+  const LayerQuality& quality_;
   std::vector<std::size_t> first_cell_;  // of each face, in a layer
 };
 
@@ -376,8 +372,8 @@ std::size_t left_out(const LayerFigures& figures) {
 }  // namespace
 
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
-                          const VolumeMesh& volume, const LayerCellFacts& facts) {
-  const Source source(mesh, layers, volume, facts);
+                          const LayerCellFacts& facts, const LayerQuality& quality) {
+  const Source source(mesh, layers, facts, quality);
   const FacesByPatch faces = sort_faces(mesh.face_count(), names);
   const std::vector<std::string> patches = patch_names(names);
   LayerReport report;
@@ -391,9 +387,9 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
     for_each_index(
         patches.size(), [&](std::size_t p) { report.patches[p] = source.figures(patches[p], faces.of(p)); }, 1);
   }
-  report.volume = enclosed_volume(volume);
-  report.plane = volume.plane();
-  report.points = volume.points.size();
+  report.volume = quality.volume;
+  report.plane = quality.plane;
+  report.points = quality.points;
   report.growing = layers.layer_statistics;
   report.turned_faces = facts.turned_faces;
   report.border_sides = facts.border_sides;

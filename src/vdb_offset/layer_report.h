@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/layer_columns.h"
+#include "vdb_offset/layer_quality.h"
 
 namespace vdb_offset {
 
@@ -42,10 +43,9 @@ struct LayerReport {
   std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;
 };
 
-/// Sums up layers and the cells that make_cells() made of them, all from one mesh and under the same names.
-/// \throw InvalidInput if the cells have no fields of scaled_jacobian and aspect_ratio.
+/// Sums up layers and the cells over them, of which facts and quality tell, under their faces' names.
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
-                          const VolumeMesh& volume, const LayerCellFacts& facts);
+                          const LayerCellFacts& facts, const LayerQuality& quality);
 
 /// A few lines for a terminal, each ended.
 std::string summary(const LayerReport& report);

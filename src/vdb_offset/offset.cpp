@@ -319,32 +319,46 @@ class Pipeline {
     }
   }
 
+  /// The same memory, if the surface's vertices are the input's.
+  Stacks stacks_of_input(Stacks of_surface) const {
+    const std::vector<std::uint32_t>& welded = work_.surface().welded;
+    const std::size_t count = mesh_.positions.size();
+    bool same = of_surface.vertices() == count;
+    for (std::size_t v = 0; same && v < count; ++v) same = welded[v] == v;
+    if (same) return of_surface;
+    Stacks result(count, of_surface.layers());
+    for_each_index(count, [&](std::size_t v) {
+      const auto w = welded[v];
+      const auto stack = result.of(v);
+      // What is flat keeps its place, welded with a tolerance though it may be.
+      if (w == kNone || of_surface.is_flat(w)) std::fill(stack.begin(), stack.end(), mesh_.positions[v]);
+      else std::copy(of_surface.of(w).begin(), of_surface.of(w).end(), stack.begin());
+      stack[0] = mesh_.positions[v];
+    });
+    return result;
+  }
+
   /// Layers as those of the input's vertices and faces.
   LayersResult hand_over(OffsetStatistics statistics, const CellColumns& columns, const Paths& paths, LayerStack stack,
                          std::span<const Distances> heights) const {
     const Surface& surface = work_.surface();
     const std::size_t count = mesh_.positions.size();
-    OffsetResult outermost = unmoved(mesh_);
-    move_vertices(mesh_, surface, paths, outermost);
     LayersResult result;
     result.statistics = std::move(statistics);
     result.layer_statistics = stack.statistics;
-    result.states = std::move(outermost.states);
-    result.achieved = std::move(outermost.achieved);
+    result.states.assign(count, VertexState::Unused);
+    result.achieved.assign(count, 0.0);
     result.share.assign(count, 0.0);
     result.first_achieved.assign(count, 0.0);
-    result.positions.resize(heights.size() + 1);
-    for_each_index(
-        result.positions.size(),
-        [&](std::size_t k) { result.positions[k].assign(mesh_.positions.begin(), mesh_.positions.end()); }, 1);
     for_each_index(count, [&](std::size_t v) {
       const auto w = surface.welded[v];
       if (w == kNone) return;
+      result.states[v] = paths.state[w];
+      result.achieved[v] = paths.achieved[w];
       result.share[v] = stack.share[w];
       result.first_achieved[v] = stack.first_achieved[w];
-      if (stack.stacks.is_flat(w)) return;  // keeps its place, welded with a tolerance though it may be
-      for (std::size_t k = 1; k <= heights.size(); ++k) result.positions[k][v] = stack.stacks.of(w)[k];
     });
+    result.stacks = stacks_of_input(std::move(stack.stacks));
     for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
     result.carries.assign(mesh_.face_count(), 1);
     for (std::size_t f = 0; f < options_.only.size(); ++f) result.carries[f] = options_.only[f] != 0;

@@ -13,6 +13,7 @@
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/io/wall_names.h"
 #include "vdb_offset/layer_block.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layer_report.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/run.h"
@@ -24,26 +25,30 @@ bool is_volume(const std::string& path) {
   return io::volume_format_of(path).has_value() || io::structured_format_of(path).has_value();
 }
 
-/// Cells are made and measured whatever is written.
+/// Cells are measured whatever is written; those over a mesh are made if they are.
 struct Grown {
   LayersResult layers;
-  VolumeMesh volume;
+  WallNames names;
+  LayerCells cells;
+  LayerQuality quality;
+  VolumeMesh on_curves;
   LayerReport report;
 };
 
 void measure_on_curves(CurvesView curves, Grown& grown) {
   const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   CurveCells cells = make_curve_cells(curves, grown.layers);
-  grown.report = report_layers(cells.segments.view(), grown.layers, {}, cells.mesh, cells.facts);
-  grown.volume = std::move(cells.mesh);
+  grown.report =
+      report_layers(cells.segments.view(), grown.layers, {}, cells.facts, quality_of(cells.mesh, grown.layers.count()));
+  grown.on_curves = std::move(cells.mesh);
 }
 
 void measure(const Arguments& args, const Source& source, Grown& grown) {
   const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
-  const WallNames names = source.file ? io::wall_names(*source.file) : WallNames{};
-  LayerCellFacts facts;
-  grown.volume = make_cells(source.view(), grown.layers, args.options.weld, names, &facts);
-  grown.report = report_layers(source.view(), grown.layers, names, grown.volume, facts);
+  if (source.file) grown.names = io::wall_names(*source.file);
+  grown.cells = number_cells(source.view(), grown.layers, args.options.weld);
+  grown.quality = measure_cells(grown.layers, grown.cells);
+  grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells.facts, grown.quality);
 }
 
 Grown grow(const Arguments& args, const Source& source, std::span<const Distances> heights) {
@@ -62,25 +67,32 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
   for (std::size_t k = 0; k < layers.count(); ++k) {
     const std::string path = name_of_layer(args.output, k + 1, layers.count());
     io::WriteOptions options = args.write;
+    const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
     if (source.curves) {
-      io::write_curves(path, *source.curves, layers.positions[k + 1], options);
+      io::write_curves(path, *source.curves, surface, options);
       continue;
     }
     options.format = format_of(path, args);
     if (source.file) {
-      tell_losses(args, path, io::write_mesh(path, *source.file, layers.positions[k + 1], options));
+      tell_losses(args, path, io::write_mesh(path, *source.file, surface, options));
       continue;
     }
     const PolygonView mesh = source.view();
-    io::write_mesh(path, PolygonView{layers.positions[k + 1], mesh.corners, mesh.face_begin}, options);
+    io::write_mesh(path, PolygonView{surface, mesh.corners, mesh.face_begin}, options);
   }
 }
 
-void write_cells(const Arguments& args, const Source& source, const Grown& grown) {
+void write_volume(const Arguments& args, const Source& source, Grown& grown) {
+  io::write_volume(args.output, source.curves
+                                    ? std::move(grown.on_curves)
+                                    : make_cells(grown.layers, grown.cells, grown.names, std::move(grown.quality)));
+}
+
+void write_cells(const Arguments& args, const Source& source, Grown& grown) {
   if (args.layers->structured)
     io::write_structured(args.output, source.curves ? make_curve_block(source.view(), grown.layers)
                                                     : make_block(source.view(), grown.layers, args.options.weld));
-  else if (is_volume(args.output)) io::write_volume(args.output, grown.volume);
+  else if (is_volume(args.output)) write_volume(args, source, grown);
   else write_surfaces(args, source, grown.layers);
 }
 
@@ -117,7 +129,7 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   const PolygonView mesh = source.view();
   if (!args.states.empty())
-    io::write_states(args.states, {layers.positions.back(), mesh.corners, mesh.face_begin},
+    io::write_states(args.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
                      {layers.states, layers.achieved, layers.heights.back()});
   const auto writing = Clock::now();
   write_cells(args, source, grown);
