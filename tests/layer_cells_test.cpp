@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "oracles.h"
@@ -28,13 +29,16 @@ LayersResult layers_along(const Polygons& mesh, const std::vector<Vec3d>& direct
   LayersResult layers;
   share.resize(mesh.positions.size(), 1);
   layers.share = share;
-  layers.stacks = Stacks(mesh.positions.size(), heights.size());
+  Stacks stacks(mesh.positions.size(), heights.size());
+  std::vector<std::uint32_t> own(mesh.positions.size());
+  std::iota(own.begin(), own.end(), 0);
   for (std::size_t v = 0; v < share.size(); ++v) {
-    const auto stack = layers.stacks.of(v);
+    const auto stack = stacks.of(v);
     stack[0] = mesh.positions[v];
     for (std::size_t k = 0; k < heights.size(); ++k)
       stack[k + 1] = mesh.positions[v] + share[v] * heights[k] * directions[v];
   }
+  layers.stacks = {std::move(stacks), std::move(own)};
   for (const double height : heights) layers.heights.emplace_back(height);
   layers.states.assign(share.size(), VertexState::Reached);
   for (const double s : share) {

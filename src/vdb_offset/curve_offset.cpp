@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "vdb_offset/curve_limit.h"
@@ -275,11 +276,11 @@ class CurvePipeline {
     const std::size_t count = points_.size();
     result.share.assign(count, 0.0);
     result.first_achieved.assign(count, 0.0);
-    result.stacks = Stacks(count, heights.size());
+    Stacks stacks(count, heights.size());
     std::vector<std::vector<double>> asked(heights.size(), std::vector<double>(count, 0.0));
     for (std::uint32_t p = 0; p < count; ++p) {
       const auto v = vertex_[p];
-      const auto to = result.stacks.of(p);
+      const auto to = stacks.of(p);
       std::fill(to.begin(), to.end(), curves_.positions[p]);
       if (v == kNone) continue;
       result.share[p] = stack.share[v];
@@ -292,6 +293,9 @@ class CurvePipeline {
         to[k + 1] += frame_.to_space({way[0], way[1]});
       }
     }
+    std::vector<std::uint32_t> own(count);
+    std::iota(own.begin(), own.end(), 0);
+    result.stacks = SharedStacks(std::move(stacks), std::move(own));
     for (auto& each : asked) result.heights.emplace_back(std::move(each));
     return result;
   }

@@ -342,7 +342,7 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
   if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
 }
 
-std::vector<std::uint8_t> find_flat(const Stacks& stacks) {
+std::vector<std::uint8_t> find_flat(const SharedStacks& stacks) {
   std::vector<std::uint8_t> flat(stacks.vertices());
   for_each_index(flat.size(), [&](std::size_t v) {
     const auto stack = stacks.of(v);

@@ -1,8 +1,5 @@
 #include "vdb_offset/layer_quality.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -69,17 +66,25 @@ class CellMeasurer {
   CellMeasurer(const LayersResult& layers, const LayerCells& cells) : layers_(layers), cells_(cells) {}
 
   LayerQuality measure() {
+    result_.points = cells_.point_count();
+    if (cells_.count() == 0) return std::move(result_);
     result_.types.resize(cells_.in_layer());
+    origin_ = stack(cells_.columns.corners[0])[0];
     std::vector<float>* const fields[] = {&result_.scaled_jacobian, &result_.aspect_ratio};
     for_each_index(
         2, [&](std::size_t i) { fields[i]->resize(cells_.count()); }, 1);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells_.columns.count(), kBlock), [&](const auto& range) {
-      ColumnMesh column;
-      for (std::size_t c = range.begin(); c < range.end(); c += 2)
-        measure_two(c, std::min(c + 1, range.end() - 1), column);
-    });
-    result_.volume = volume();
-    result_.points = cells_.point_count();
+    const std::size_t columns = cells_.columns.count();
+    std::vector<double> six_volumes((columns + kBlock - 1) / kBlock, 0);
+    for_each_index(
+        six_volumes.size(),
+        [&](std::size_t b) {
+          ColumnMesh column;
+          const std::size_t end = std::min(columns, (b + 1) * kBlock);
+          for (std::size_t c = b * kBlock; c < end; c += 2)
+            six_volumes[b] += measure_two(c, std::min(c + 1, end - 1), column);
+        },
+        1);
+    result_.volume = std::accumulate(six_volumes.begin(), six_volumes.end(), 0.0) / 6;
     return std::move(result_);
   }
 
@@ -100,11 +105,11 @@ class CellMeasurer {
     }
   }
 
-  void measure_two(std::size_t c, std::size_t other, ColumnMesh& column) {
+  /// Six times the volume of both columns' cells.
+  double measure_two(std::size_t c, std::size_t other, ColumnMesh& column) {
     prefetch(c + kAhead), prefetch(c + kAhead + 1);
-    if (cells_.is_of_prisms(c) && cells_.is_of_prisms(other)) return measure_prisms(c, other);
-    measure_column(c, column);
-    if (other != c) measure_column(other, column);
+    if (c != other && cells_.is_of_prisms(c) && cells_.is_of_prisms(other)) return measure_prisms(c, other);
+    return measure_column(c, column) + (other != c ? measure_column(other, column) : 0);
   }
 
   void set(std::size_t layer, std::size_t cell, const CellQuality& quality) {
@@ -113,7 +118,7 @@ class CellMeasurer {
     result_.aspect_ratio[at] = static_cast<float>(quality.aspect);
   }
 
-  void measure_prisms(std::size_t c, std::size_t other) {
+  double measure_prisms(std::size_t c, std::size_t other) {
     const LayerColumns& columns = cells_.columns;
     std::array<const Vec3d*, 3> of, of_other;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -126,7 +131,9 @@ class CellMeasurer {
       return PrismLevel<Pair>(corner);
     };
     for (const std::size_t each : {c, other}) result_.types[columns.cells[each]] = CellType::Prism;
+    const Way<Pair> origin = both(origin_, origin_);
     PrismLevel<Pair> below = level(0);
+    Pair six_volumes = below.normal.dot(origin - below.corner[0]);
     for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
       const PrismLevel<Pair> above = level(layer + 1);
       const auto [triple, shortest, longest] = prism_squares(below, above);
@@ -134,9 +141,11 @@ class CellMeasurer {
       set(layer, columns.cells[other], prism_quality_of(triple[1], shortest[1], longest[1]));
       below = above;
     }
+    six_volumes += below.normal.dot(below.corner[0] - origin);
+    return six_volumes[0] + six_volumes[1] + six_volumes_at_sides(c) + six_volumes_at_sides(other);
   }
 
-  void measure_column(std::size_t c, ColumnMesh& column) {
+  double measure_column(std::size_t c, ColumnMesh& column) {
     const auto ring = cells_.columns.ring(c);
     column.begin(cells_.points, ring);
     const std::size_t first = cells_.columns.cells[c];
@@ -145,45 +154,29 @@ class CellMeasurer {
       const VolumeMesh& mesh = column.at(layer, [&](Index k) { return stack(ring[k]); });
       for (std::size_t i = 0; i < mesh.cell_count(); ++i) set(layer, first + i, cell_quality(mesh, i));
     }
+    std::vector<Index> face;
+    double six_volumes = six_volumes_at_sides(c);
+    const auto add = [&](std::span<const Index> corners, Index) { six_volumes += six_volumes_under(corners); };
+    CellStack(cells_.points, ring, 0).visit_below(face, add);
+    CellStack(cells_.points, ring, cells_.layers - 1).visit_above(face, add);
+    return six_volumes;
   }
 
-  /// Of what walls, outermost faces and open sides enclose.
-  double volume() const {
-    const std::size_t columns = cells_.columns.count();
-    if (cells_.layers == 0 || columns == 0) return 0;
-    const Vec3d origin = stack(cells_.columns.corners[0])[0];
-    std::vector<double> sums((columns + kBlock - 1) / kBlock, 0);
-    for_each_index(
-        sums.size(),
-        [&](std::size_t b) {
-          std::vector<Index> scratch;
-          for (std::size_t c = b * kBlock; c < std::min(columns, (b + 1) * kBlock); ++c)
-            sums[b] += six_volumes_around(c, origin, scratch);
-        },
-        1);
-    return std::accumulate(sums.begin(), sums.end(), 0.0) / 6;
-  }
-  double six_volumes_around(std::size_t c, const Vec3d& origin, std::vector<Index>& scratch) const {
+  double six_volumes_at_sides(std::size_t c) const {
     const auto ring = cells_.columns.ring(c);
-    const auto below = [&](std::span<const Index> face) {
-      return six_volumes_below(face, origin, [&](Index p) -> const Vec3d& { return place(p); });
-    };
     double sum = 0;
-    CellStack(cells_.points, ring, 0).visit_below(scratch, [&](std::span<const Index> face, Index) {
-      sum += below(face);
-    });
-    CellStack(cells_.points, ring, cells_.layers - 1).visit_above(scratch, [&](std::span<const Index> face, Index) {
-      sum += below(face);
-    });
     for (Index k = 0; k < ring.size(); ++k) {
       if (cells_.columns.open[cells_.columns.begin[c] + k] == 0) continue;
       for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
         std::array<Index, 4> face;
         const Index size = CellStack(cells_.points, ring, layer).side(k, face);
-        if (size > 0) sum += below(std::span(face).first(size));
+        if (size > 0) sum += six_volumes_under(std::span(face).first(size));
       }
     }
     return sum;
+  }
+  double six_volumes_under(std::span<const Index> face) const {
+    return six_volumes_below(face, origin_, [&](Index p) -> const Vec3d& { return place(p); });
   }
   const Vec3d& place(Index point) const {
     const LayerPoints& points = cells_.points;
@@ -194,6 +187,7 @@ class CellMeasurer {
 
   const LayersResult& layers_;
   const LayerCells& cells_;
+  Vec3d origin_{0.0};  // volumes are those below the boundary's faces from here
   LayerQuality result_;
 };
 

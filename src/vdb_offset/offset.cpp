@@ -319,23 +319,27 @@ class Pipeline {
     }
   }
 
-  /// The same memory, if the surface's vertices are the input's.
-  Stacks stacks_of_input(Stacks of_surface) const {
-    const std::vector<std::uint32_t>& welded = work_.surface().welded;
-    const std::size_t count = mesh_.positions.size();
-    bool same = of_surface.vertices() == count;
-    for (std::size_t v = 0; same && v < count; ++v) same = welded[v] == v;
-    if (same) return of_surface;
-    Stacks result(count, of_surface.layers());
-    for_each_index(count, [&](std::size_t v) {
-      const auto w = welded[v];
-      const auto stack = result.of(v);
-      // What is flat keeps its place, welded with a tolerance though it may be.
-      if (w == kNone || of_surface.is_flat(w)) std::fill(stack.begin(), stack.end(), mesh_.positions[v]);
-      else std::copy(of_surface.of(w).begin(), of_surface.of(w).end(), stack.begin());
-      stack[0] = mesh_.positions[v];
+  /// Vertices share the stacks of the surface's, but for those that stand elsewhere: what no face uses, or has been
+  /// welded with a tolerance, which keeps its place on the wall, and in all layers if it is flat.
+  SharedStacks stacks_of_input(Stacks of_surface) const {
+    std::vector<std::uint32_t> stack = work_.surface().welded, elsewhere;
+    for (std::uint32_t v = 0; v < stack.size(); ++v)
+      if (stack[v] == kNone || of_surface.of(stack[v])[0] != mesh_.positions[v]) elsewhere.push_back(v);
+    if (elsewhere.empty()) return {std::move(of_surface), std::move(stack)};
+    const std::size_t of_the_surface = of_surface.vertices();
+    Stacks all(of_the_surface + elsewhere.size(), of_surface.layers());
+    for_each_index(of_the_surface, [&](std::size_t w) {
+      std::copy(of_surface.of(w).begin(), of_surface.of(w).end(), all.of(w).begin());
     });
-    return result;
+    for (std::size_t i = 0; i < elsewhere.size(); ++i) {
+      const std::uint32_t v = elsewhere[i], w = stack[v];
+      const auto own = all.of(of_the_surface + i);
+      if (w == kNone || of_surface.is_flat(w)) std::fill(own.begin(), own.end(), mesh_.positions[v]);
+      else std::copy(of_surface.of(w).begin(), of_surface.of(w).end(), own.begin());
+      own[0] = mesh_.positions[v];
+      stack[v] = static_cast<std::uint32_t>(of_the_surface + i);
+    }
+    return {std::move(all), std::move(stack)};
   }
 
   /// Layers as those of the input's vertices and faces.

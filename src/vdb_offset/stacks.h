@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "vdb_offset/parallel.h"
@@ -29,16 +30,34 @@ class Stacks {
   /// Whether all of a vertex's layers are at one place.
   bool is_flat(std::size_t vertex) const { return of(vertex).front() == of(vertex).back(); }
 
-  /// Of all vertices in one layer, 0 for the wall.
+ private:
+  std::size_t vertices_ = 0, layers_ = 0;
+  std::unique_ptr<Vec3d[]> places_;
+};
+
+/// The stacks of a mesh's vertices, of which several may share one, in whatever order those lie.
+class SharedStacks {
+ public:
+  SharedStacks() = default;
+  /// `stack` is that of each vertex.
+  SharedStacks(Stacks stacks, std::vector<std::uint32_t> stack)
+      : stacks_(std::move(stacks)), stack_(std::move(stack)) {}
+
+  std::size_t vertices() const { return stack_.size(); }
+  std::size_t layers() const { return stacks_.layers(); }
+  std::span<const Vec3d> of(std::size_t vertex) const { return stacks_.of(stack_[vertex]); }
+  bool is_flat(std::size_t vertex) const { return stacks_.is_flat(stack_[vertex]); }
+
+  /// Where all vertices are in one layer, 0 for the wall.
   std::vector<Vec3d> surface(std::size_t layer) const {
-    std::vector<Vec3d> places(vertices_);
-    for_each_index(vertices_, [&](std::size_t v) { places[v] = of(v)[layer]; });
+    std::vector<Vec3d> places(vertices());
+    for_each_index(vertices(), [&](std::size_t v) { places[v] = of(v)[layer]; });
     return places;
   }
 
  private:
-  std::size_t vertices_ = 0, layers_ = 0;
-  std::unique_ptr<Vec3d[]> places_;
+  Stacks stacks_;
+  std::vector<std::uint32_t> stack_;
 };
 
 }  // namespace vdb_offset
