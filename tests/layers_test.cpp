@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "oracles.h"
+#include "random_scenes.h"
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
@@ -216,6 +217,18 @@ TEST_CASE("layers: scenes with corners, creases and narrow places have valid cel
     CHECK(boundary_crossings(grown.volume) == 0);
     check_heights(c.mesh, grown.layers, 37);
     check_evenness(c.mesh, grown.layers);
+  }
+}
+
+TEST_CASE("layers: on random scenes, all cells are valid", "[layers][property][random]") {
+  const test::Seeds seeds = test::random_seeds(60);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
+    INFO("seed " << seed);
+    const test::RandomScene scene = test::random_scene(seed);
+    const Grown grown = grow(scene.mesh, growing(scene.distance * 0.2 / (std::pow(1.2, 6) - 1), 1.2, 6));
+    CHECK(grown.report.all.inverted_cells == 0);
+    CHECK(grown.layers.statistics.limit.left.total() == 0);
+    check_evenness(scene.mesh, grown.layers);
   }
 }
 

@@ -228,6 +228,9 @@ class Source {
   }
 
  private:
+  // So many faces on, stacks that are far apart in memory are asked for.
+  static constexpr std::size_t kAhead = 8;
+
   bool full(std::uint32_t v) const { return layers_.share[v] == 1 && layers_.states[v] == VertexState::Reached; }
 
   /// Means over a face's corners.
@@ -310,6 +313,8 @@ class Source {
       std::vector<Vec3d> wall, first;
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         wall.clear(), first.clear();
+        for (const auto v : mesh_.face(with_cells[std::min(i + kAhead, angles.size() - 1)]))
+          for (const Vec3d& x : layers_.stacks.of(v).first(2)) __builtin_prefetch(&x);
         for (const auto v : mesh_.face(with_cells[i])) {
           const auto stack = layers_.stacks.of(v);
           wall.push_back(stack[0]), first.push_back(stack[1]);

@@ -136,8 +136,38 @@ void Stacker::check_columns(const Indices& moved) {
   sort_unique(wrong_columns_);
 }
 
+Stacker::Snapshot Stacker::snapshot(const Indices& vertices) const {
+  Snapshot taken{vertices, {}, {}, {}};
+  taken.places.reserve(vertices.size() * (heights_.size() + 1));
+  taken.first_achieved.reserve(vertices.size());
+  taken.stood.reserve(vertices.size());
+  for (const auto v : vertices) {
+    const auto stack = stack_.stacks.of(v);
+    taken.places.insert(taken.places.end(), stack.begin(), stack.end());
+    taken.first_achieved.push_back(stack_.first_achieved[v]);
+    taken.stood.push_back(stood_[v]);
+  }
+  return taken;
+}
+
+/// False if v is none of the snapshot's.
+bool Stacker::restore(const Snapshot& snapshot, std::uint32_t v) {
+  const auto found = std::lower_bound(snapshot.vertices.begin(), snapshot.vertices.end(), v);
+  if (found == snapshot.vertices.end() || *found != v) return false;
+  const auto i = static_cast<std::size_t>(found - snapshot.vertices.begin());
+  const auto stack = stack_.stacks.of(v);
+  std::copy_n(snapshot.places.begin() + static_cast<std::ptrdiff_t>(i * stack.size()), stack.size(), stack.begin());
+  stack_.first_achieved[v] = snapshot.first_achieved[i];
+  stood_[v] = snapshot.stood[i];
+  return true;
+}
+
 void Stacker::move(const Indices& vertices) {
   put(vertices);
+  judge_moved(vertices);
+}
+
+void Stacker::judge_moved(const Indices& vertices) {
   look(vertices);
   check_columns(vertices);
   ++stack_.statistics.rounds;
@@ -210,16 +240,32 @@ void Stacker::let_out(Indices& thinned) {
   for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
   smooth_around(thinned);
   std::erase_if(thinned, stays);
-  for (Indices moved = thinned; !moved.empty();) {
-    move(moved);
-    moved = wrong_vertices();
+  if (thinned.empty()) return;
+  const Snapshot stood = snapshot(thinned);
+  move(thinned);
+  take_back(before, stood);
+  std::erase_if(thinned, [&](std::uint32_t v) { return stays(v) || stack_.share[v] == most_[v]; });
+}
+
+/// Takes vertices that something is wrong with, and who hinders their thickness from being even, back to where all was
+/// well. Those with the share they had are put back themselves: on its rail, a vertex may find that share's height at
+/// several places.
+void Stacker::take_back(const std::vector<double>& before, const Snapshot& snapshot) {
+  const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
+  while (true) {
+    Indices moved = wrong_vertices();
     std::erase_if(moved, stays);
+    if (moved.empty()) return;
     for (const auto v : moved) stack_.share[v] = before[v];
     const Indices lowered = smooth(moved);
     moved.insert(moved.end(), lowered.begin(), lowered.end());
     sort_unique(moved);
+    Indices between;
+    for (const auto v : moved)
+      if (stack_.share[v] != before[v] || !restore(snapshot, v)) between.push_back(v);
+    put(between);
+    judge_moved(moved);
   }
-  std::erase_if(thinned, [&](std::uint32_t v) { return stays(v) || stack_.share[v] == most_[v]; });
 }
 
 void Stacker::finish() {

@@ -105,6 +105,13 @@ class Stacker {
   struct Standing {
     double share = 1, eta = std::numeric_limits<double>::infinity();  // it was nowhere
   };
+  /// Vertices with all that is known of their layers.
+  struct Snapshot {
+    Indices vertices;  // sorted
+    std::vector<Vec3d> places;
+    std::vector<double> first_achieved;
+    std::vector<Standing> stood;
+  };
   double share_at_end(std::uint32_t v);
   Vec3d start_of_rail(std::uint32_t v) const;
   Indices smooth(Indices changed);
@@ -113,13 +120,17 @@ class Stacker {
   template <class Column>
   void judge(std::size_t count, Column&& column);
   void check_columns(const Indices& moved);
+  Snapshot snapshot(const Indices& vertices) const;
+  bool restore(const Snapshot& snapshot, std::uint32_t v);
   void move(const Indices& vertices);
+  void judge_moved(const Indices& vertices);
   Indices corners_of_wrong_columns() const;
   Indices wrong_vertices() const;
   bool straighten();
   bool thin();
   void let_all_out(Progress& progress);
   void let_out(Indices& thinned);
+  void take_back(const std::vector<double>& before, const Snapshot& snapshot);
   void finish();
 
   std::vector<Standing> stood_;
