@@ -104,6 +104,15 @@ void check_cells(const VolumeMesh& volume) {
       CHECK(field.values.size() == (fields == &volume.cell_fields ? volume.cell_count() : volume.points.size()));
 }
 
+/// The same, and what is measured of cells that have not been made is what they have.
+void check_cells(const Polygons& mesh, const LayersResult& layers) {
+  const LayerCells cells = number_cells(mesh.view(), layers, {});
+  const LayerQuality quality = measure_cells(layers, cells);
+  const VolumeMesh volume = make_cells(layers, cells, {}, quality);
+  check_cells(volume);
+  test::check_measured(quality, volume, layers.count());
+}
+
 std::size_t count(const VolumeMesh& volume, CellType type) {
   return static_cast<std::size_t>(std::count(volume.cell_types.begin(), volume.cell_types.end(), type));
 }
@@ -293,13 +302,11 @@ TEST_CASE("layer cells: flat vertices anywhere leave a closed, matching mesh", "
       for (const double flat : {0.2, 0.6}) {
         const std::vector<double> heights = {0.01 * sign, 0.03 * sign, 0.06 * sign};
         for (const Polygons& mesh : {grid(7, false), grid(7, true), honeycomb(5)})
-          check_cells(make_cells(mesh.view(), layers_up(mesh, heights, random_share(mesh, seed, flat)), {}, {}));
+          check_cells(mesh, layers_up(mesh, heights, random_share(mesh, seed, flat)));
         const Polygons cube = seamed_cube(4);
-        check_cells(make_cells(cube.view(), layers_along(cube, cube.positions, heights, random_share(cube, seed, flat)),
-                               {}, {}));
+        check_cells(cube, layers_along(cube, cube.positions, heights, random_share(cube, seed, flat)));
         const Polygons ball = test::torn(scene::icosphere(1, 2));
-        check_cells(make_cells(ball.view(), layers_along(ball, ball.positions, heights, random_share(ball, seed, flat)),
-                               {}, {}));
+        check_cells(ball, layers_along(ball, ball.positions, heights, random_share(ball, seed, flat)));
       }
 }
 
@@ -490,7 +497,7 @@ TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever t
     LayerCellFacts facts;
     const VolumeMesh volume = make_cells(mesh.view(), layers, {}, {}, &facts);
     const Spread reached =
-        report_layers(mesh.view(), layers, {}, facts, quality_of(volume, layers.count())).all.reached;
+        report_layers(mesh.view(), layers, {}, facts, layer_quality_of(volume, layers.count())).all.reached;
     std::vector<double> sorted;
     for (std::size_t f = 0; f < mesh.view().face_count(); ++f) {
       double mean = 0;
@@ -525,7 +532,7 @@ TEST_CASE("layer report: figures of each patch and of all", "[layer_report]") {
   LayerCellFacts facts;
   const VolumeMesh volume = make_cells(mesh.view(), layers, {}, names, &facts);
   check_cells(volume);
-  const LayerReport report = report_layers(mesh.view(), layers, names, facts, quality_of(volume, layers.count()));
+  const LayerReport report = report_layers(mesh.view(), layers, names, facts, layer_quality_of(volume, layers.count()));
   CHECK(report.layers == 2);
   CHECK(report.volume == Approx(sum_of_cells(volume)).epsilon(1e-12));
   CHECK(report.all.area == Approx(1));

@@ -34,9 +34,11 @@ struct Grown {
 
 Grown grow(const Polygons& mesh, std::span<const Distances> heights, const OffsetOptions& options = {}) {
   Grown grown{grow_layers(mesh.view(), heights, options), {}, {}};
-  LayerCellFacts facts;
-  grown.volume = make_cells(mesh.view(), grown.layers, options.weld, {}, &facts);
-  grown.report = report_layers(mesh.view(), grown.layers, {}, facts, quality_of(grown.volume, grown.layers.count()));
+  const LayerCells cells = number_cells(mesh.view(), grown.layers, options.weld);
+  const LayerQuality quality = measure_cells(grown.layers, cells);
+  grown.volume = make_cells(grown.layers, cells, {}, quality);
+  test::check_measured(quality, grown.volume, grown.layers.count());
+  grown.report = report_layers(mesh.view(), grown.layers, {}, cells.facts, quality);
   return grown;
 }
 

@@ -1,8 +1,11 @@
 #include "oracles.h"
 
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "vdb_offset/cell_quality.h"
 
 namespace vdb_offset::test {
 namespace {
@@ -88,6 +91,15 @@ double share(const OffsetResult& result, VertexState state) {
   for (std::size_t s = 0; s < kVertexStateCount; ++s)
     if (static_cast<VertexState>(s) != VertexState::Unused) used += by_state[s];
   return static_cast<double>(by_state[static_cast<std::size_t>(state)]) / static_cast<double>(used);
+}
+
+void check_measured(const LayerQuality& measured, const VolumeMesh& made, std::size_t layers) {
+  const LayerQuality expected = layer_quality_of(made, layers);
+  CHECK(measured.types == expected.types);
+  CHECK(measured.points == expected.points);
+  CHECK(measured.volume == Approx(expected.volume).epsilon(1e-9));
+  CHECK(measured.scaled_jacobian == quality_fields(made)[0].values);
+  CHECK(measured.aspect_ratio == quality_fields(made)[1].values);
 }
 
 }  // namespace vdb_offset::test

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vdb_offset/layer_quality.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset::test {
@@ -40,6 +41,9 @@ PositionErrors position_errors(PolygonView source, const OffsetResult& result, A
   errors.rms = std::sqrt(errors.rms / static_cast<double>(result.positions.size()));
   return errors;
 }
+
+/// Checks what was measured of cells before they were made against what the made ones have.
+void check_measured(const LayerQuality& measured, const VolumeMesh& made, std::size_t layers);
 
 /// The result's share of vertices in a state, among those in use.
 double share(const OffsetResult& result, VertexState state);

@@ -5,27 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "vdb_offset/cell_stack.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
 using Index = std::uint32_t;
-
-void require_names_of(const LayerCells& cells, const WallNames& names) {
-  if (names.of_face.empty()) return;
-  if (names.of_face.size() != cells.facts.role.size())
-    throw InvalidInput("layer_cells: expected " + std::to_string(cells.facts.role.size()) + " names of faces, got " +
-                       std::to_string(names.of_face.size()));
-  for (const Index name : names.of_face)
-    if (name >= names.names.size())
-      throw InvalidInput("layer_cells: expected names below " + std::to_string(names.names.size()) + ", got " +
-                         std::to_string(name));
-}
 
 /// The distance of a layer's vertex: as measured at the lowest and the outermost, what its share asks for between.
 double achieved(const LayersResult& layers, std::size_t layer, Index v) {
@@ -156,7 +143,7 @@ void add_patches(const LayerPoints& points, const LayerColumns& columns, const W
 
 VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,
                       LayerQuality quality) {
-  require_names_of(cells, names);
+  require_names(names, cells.facts.role.size());
   VolumeMesh volume;
   place_points(layers, cells, volume);
   tbb::parallel_invoke([&] { fill_cells(cells.points, cells.columns, names, layers.count(), volume); },

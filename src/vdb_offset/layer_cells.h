@@ -19,17 +19,16 @@ namespace vdb_offset {
 /// Points: those of the wall in the order of the mesh's vertices, split ones behind them; then the same for each layer
 /// without the flat ones. Cells: layer by layer from the wall, in the order of faces. Patches: one for each of
 /// patch_names(), which may have no faces, "outer", and "sides" if there are any.
-/// Point fields: layer (0: wall), share, height (asked of the point, world units, signed), state (of VertexState).
-/// Cell fields: layer (from 1), face (of the input; exact up to 2^24), patch, scaled_jacobian, aspect_ratio.
-/// The result does not depend on the number of threads. Cost: O(cells).
+/// Point fields: layer (0: wall), share, height (asked of the point, world units, signed), achieved, state (of
+/// VertexState). Cell fields: layer (from 1), face (of the input; exact up to 2^24), patch, scaled_jacobian,
+/// aspect_ratio. The result does not depend on the number of threads. Cost: O(cells).
 ///
-/// `cells` are those of `layers`, `quality` is theirs, under these names. \throw InvalidInput for names that are not
-/// those of the mesh's faces.
+/// \pre `cells` are those of `layers`, and `quality` is theirs. \throw InvalidInput as require_names()
 VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,
                       LayerQuality quality);
 
 /// The same from the mesh.
-/// \throw InvalidInput as number_cells()
+/// \throw InvalidInput as number_cells() and require_names()
 VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld, const WallNames& names,
                       LayerCellFacts* facts = nullptr);
 

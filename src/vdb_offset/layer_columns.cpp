@@ -331,7 +331,7 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
       throw InvalidInput("layer_cells: expected " + std::to_string(expected) + " " + what + ", got " +
                          std::to_string(got));
   };
-  require("layers, one for each height,", layers.count(), layers.stacks.layers());
+  require("layers in a stack", layers.count(), layers.stacks.layers());
   require("stacks", mesh.positions.size(), layers.stacks.vertices());
   require("shares", mesh.positions.size(), layers.share.size());
   require("states", mesh.positions.size(), layers.states.size());

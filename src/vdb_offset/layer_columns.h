@@ -37,10 +37,10 @@ struct LayerCellFacts {
 struct LayerColumns {
   std::vector<std::uint32_t> corners;  ///< Points of the wall.
   std::vector<std::uint32_t> begin{0};
-  std::vector<std::uint32_t> face;   ///< Of the input.
-  std::vector<std::uint8_t> open;    ///< Of each corner: 1 if the side from it to the next one is on the boundary.
-  std::vector<std::uint32_t> cells;  ///< Of a layer, before each column; one more than columns.
-  std::vector<std::uint64_t> size;   ///< The same of the cells' corners.
+  std::vector<std::uint32_t> face;      ///< Of the input.
+  std::vector<std::uint8_t> open;       ///< Of each corner: 1 if the side from it to the next one is on the boundary.
+  std::vector<std::uint32_t> cells{0};  ///< Of a layer, before each column; one more than columns.
+  std::vector<std::uint64_t> size;      ///< The same of the cells' corners.
 
   std::size_t count() const { return face.size(); }
   std::span<const std::uint32_t> ring(std::size_t c) const {

@@ -203,7 +203,7 @@ LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells) 
   return CellMeasurer(layers, cells).measure();
 }
 
-LayerQuality quality_of(const VolumeMesh& volume, std::size_t layers) {
+LayerQuality layer_quality_of(const VolumeMesh& volume, std::size_t layers) {
   LayerQuality quality;
   const std::size_t in_layer = layers > 0 ? volume.cell_count() / layers : 0;
   quality.types.assign(volume.cell_types.begin(), volume.cell_types.begin() + static_cast<std::ptrdiff_t>(in_layer));

@@ -24,6 +24,6 @@ LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells);
 
 /// The same of cells that have been made layer by layer, with fields of scaled_jacobian and aspect_ratio.
 /// \throw InvalidInput if they have none
-LayerQuality quality_of(const VolumeMesh& volume, std::size_t layers);
+LayerQuality layer_quality_of(const VolumeMesh& volume, std::size_t layers);
 
 }  // namespace vdb_offset

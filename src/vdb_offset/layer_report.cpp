@@ -378,6 +378,7 @@ std::size_t left_out(const LayerFigures& figures) {
 
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
                           const LayerCellFacts& facts, const LayerQuality& quality) {
+  require_names(names, mesh.face_count());
   const Source source(mesh, layers, facts, quality);
   const FacesByPatch faces = sort_faces(mesh.face_count(), names);
   const std::vector<std::string> patches = patch_names(names);

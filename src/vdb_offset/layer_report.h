@@ -44,6 +44,7 @@ struct LayerReport {
 };
 
 /// Sums up layers and the cells over them, of which facts and quality tell, under their faces' names.
+/// \throw InvalidInput as require_names()
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
                           const LayerCellFacts& facts, const LayerQuality& quality);
 

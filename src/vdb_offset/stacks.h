@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,6 +22,14 @@ class Stacks {
       : vertices_(vertices),
         layers_(layers),
         places_(std::make_unique_for_overwrite<Vec3d[]>(vertices * (layers + 1))) {}
+
+  Stacks(const Stacks& other) : Stacks(other.vertices_, other.layers_) {
+    std::copy_n(other.places_.get(), vertices_ * (layers_ + 1), places_.get());
+  }
+  Stacks(Stacks&&) = default;
+  Stacks& operator=(const Stacks& other) { return *this = Stacks(other); }
+  Stacks& operator=(Stacks&&) = default;
+  ~Stacks() = default;
 
   std::size_t vertices() const { return vertices_; }
   std::size_t layers() const { return layers_; }

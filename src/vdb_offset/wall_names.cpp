@@ -1,5 +1,7 @@
 #include "vdb_offset/wall_names.h"
 
+#include "vdb_offset/error.h"
+
 #include <algorithm>
 #include <set>
 
@@ -20,6 +22,17 @@ std::string cleaned(std::string name) {
 }
 
 }  // namespace
+
+void require_names(const WallNames& walls, std::size_t faces) {
+  if (walls.of_face.empty()) return;
+  if (walls.of_face.size() != faces)
+    throw InvalidInput("layers: expected " + std::to_string(faces) + " names of faces, got " +
+                       std::to_string(walls.of_face.size()));
+  for (const std::uint32_t name : walls.of_face)
+    if (name >= walls.names.size())
+      throw InvalidInput("layers: expected names below " + std::to_string(walls.names.size()) + ", got " +
+                         std::to_string(name));
+}
 
 std::vector<std::string> patch_names(const WallNames& walls) {
   if (walls.of_face.empty()) return {"wall"};

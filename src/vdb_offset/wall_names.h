@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@ struct WallNames {
   std::vector<std::string> names;
   std::vector<std::uint32_t> of_face;  ///< Index into `names`, of each face of the input. Empty: all are "wall".
 };
+
+/// \throw InvalidInput unless each of so many faces has one of the names, or none is told of
+void require_names(const WallNames& walls, std::size_t faces);
 
 /// The names as patches of a volume mesh have them, in their order; {"wall"} if there are none. They hold ASCII
 /// letters, digits and _ - . alone and start with a letter, as OpenFOAM's words and SU2's tags ask for: other

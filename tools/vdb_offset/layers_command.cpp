@@ -38,8 +38,8 @@ struct Grown {
 void measure_on_curves(CurvesView curves, Grown& grown) {
   const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   CurveCells cells = make_curve_cells(curves, grown.layers);
-  grown.report =
-      report_layers(cells.segments.view(), grown.layers, {}, cells.facts, quality_of(cells.mesh, grown.layers.count()));
+  grown.report = report_layers(cells.segments.view(), grown.layers, {}, cells.facts,
+                               layer_quality_of(cells.mesh, grown.layers.count()));
   grown.on_curves = std::move(cells.mesh);
 }
 
@@ -99,7 +99,10 @@ void write_cells(const Arguments& args, const Source& source, Grown& grown) {
 void require_names(const Arguments& args, std::size_t layers) {
   for (const std::string& path : {args.report, args.states})
     if (!path.empty()) require_writable(path);
-  if (is_volume(args.output)) return;
+  if (is_volume(args.output)) {
+    if (io::volume_format_of(args.output) != io::VolumeFormat::Foam) require_writable(args.output);
+    return;
+  }
   if (name_of_layer(args.output, 1, layers) == name_of_layer(args.output, 2, layers) && layers > 1)
     throw UsageError(fmt::format("OUTPUT: expected names that differ, got {} twice (use {{i}})", args.output));
   for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(args.output, k, layers));
