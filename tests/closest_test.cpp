@@ -7,6 +7,7 @@
 
 #include "oracles.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/vertex_fan.h"
 
 using namespace vdb_offset;
 
@@ -152,11 +153,81 @@ Planes try_planes(const Polygons& mesh, double size) {
         if (random() % 3 == 0) near.hold_back(n, x, x - point.point, at);
       }
     }
+    std::vector<std::uint32_t> left;
+    for (std::size_t n = 0; n < near.size(); ++n)
+      if (near.triangle(n) % 3 != 0) left.push_back(near.triangle(n));
+    near.remove_if([](std::uint32_t t) { return t % 3 == 0; });
+    std::vector<std::uint32_t> kept;
+    near.visit_nearer(centre, 2 * surface.facts.diagonal, [&](std::size_t n) {
+      kept.push_back(near.triangle(n));
+      return 2 * surface.facts.diagonal;
+    });
+    found.missed += kept != left;
   });
   return found;
 }
 
+/// The worst difference, relative to the mesh's diagonal, of distances to vertices' fans from those to their triangles;
+/// how many triangles around vertices were in no fan, and how often it was wrong about which are.
+struct Fans {
+  double worst = 0;
+  std::size_t left_out = 0, wrong = 0;
+};
+Fans try_fans(const Polygons& mesh) {
+  Surface surface = build_surface(mesh.view(), {});
+  place(surface, surface.facts.diagonal / 50);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> signed_unit(-1, 1);
+  VertexFan fan;
+  Fans found;
+  for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+    fan.begin(surface, v);
+    const auto around = surface.triangles_around(v);
+    for (const auto t : around) found.left_out += !fan.has(t);
+    for (std::uint32_t t = 0; t < std::min<std::size_t>(surface.triangles.size(), 200); ++t)
+      found.wrong += fan.has(t) && std::find(around.begin(), around.end(), t) == around.end();
+    for (const double size : {1e-6, 1e-3, 1.0}) {
+      const auto near = [&] {
+        const Vec3d way(signed_unit(random), signed_unit(random), signed_unit(random));
+        return surface.vertices[v] + way * (size * surface.facts.diagonal);
+      };
+      const Vec3d x = near(), next = x + (near() - surface.vertices[v]) * 1e-3;
+      double closest = around.empty() ? 0 : (x - surface.vertices[v]).length();
+      double closest_to_next = around.empty() ? 0 : (next - surface.vertices[v]).length();
+      for (const auto t : around) {
+        if (!fan.has(t)) continue;
+        closest = std::min(closest, std::sqrt(surface.closest_on(t, x).squared_distance));
+        closest_to_next = std::min(closest_to_next, std::sqrt(surface.closest_on(t, next).squared_distance));
+      }
+      if (around.empty()) continue;
+      const double rounding = 1e-15 * surface.facts.diagonal;
+      found.worst = std::max(found.worst, (std::abs(fan.find_away_from(x).length() - closest) - rounding) / closest);
+      found.wrong += fan.away_from(x) != fan.find_away_from(x);
+      found.wrong += fan.away_from(next).length() < closest_to_next * (1 - 1e-9) - rounding;
+    }
+  }
+  return found;
+}
+
 }  // namespace
+
+TEST_CASE("closest: a vertex's triangles seen all at once", "[closest]") {
+  for (const double scale : {1e-30, 1.0, 1e30}) {
+    const Fans sphere = try_fans(scene::icosphere(scale, 3));
+    CHECK(sphere.worst < 1e-9);
+    CHECK(sphere.left_out == 0);
+    CHECK(sphere.wrong == 0);
+  }
+  // Borders, sharp and reflex edges, corners of one triangle, and needles of 1 to 1e5, which are not among them.
+  for (const Polygons& mesh : {scene::hemisphere(1, 12, 4), scene::box(Vec3d(1), 1, true), scene::room_corner(1, 3),
+                               scene::gear(9, 0.8, 1, 0.3, 0.2, 2), scene::bumpy_sphere(1, 0.3, 1.5, 3, 3),
+                               scene::box(Vec3d(1, 1e5, 1), 1, true)}) {
+    const Fans fans = try_fans(mesh);
+    CHECK(fans.worst < 1e-9);
+    CHECK(fans.wrong == 0);
+  }
+  CHECK(try_fans(scene::box(Vec3d(1, 1e5, 1), 1, true)).left_out > 0);
+}
 
 TEST_CASE("closest: triangles near a ball stay behind their planes", "[closest]") {
   for (const double scale : {1e-30, 1.0, 1e30}) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/stacker.h"
+#include "vdb_offset/vertex_fan.h"
 
 namespace vdb_offset {
 namespace {
@@ -89,8 +89,9 @@ class SurfaceStacker final : public Stacker {
       tops.push_back(top);
       balls.push_back({source_[v] - front_.origin + way, way.length() * kReachRoom});
     }
+    VertexFan fan;
     body_.front.collect_together(balls, [&](std::size_t i, NearTriangles& near) {
-      if (!put_among_few(open[i], tops[i], balls[i], near)) put_with_care(open[i]);
+      if (!put_among_few(open[i], tops[i], balls[i], fan, near)) put_with_care(open[i]);
     });
   }
 
@@ -109,42 +110,54 @@ class SurfaceStacker final : public Stacker {
     return true;
   }
 
-  /// As CareField, where the closest triangle is one of a few.
+  /// As CareField, where the closest triangle is one of those around the vertex, or of a few others.
   class FewField {
    public:
-    FewField(const Surface& front, NearTriangles& near) : front_(front), near_(near), believed_(near.foremost()) {}
+    FewField(const Surface& front, VertexFan& fan, NearTriangles& others) : front_(front), fan_(fan), others_(others) {
+      if (others.size() > 0) believed_ = static_cast<std::uint32_t>(others.foremost());
+    }
 
-    Phi at(const Vec3d& x) const { return phi_of(front_.closest_on(near_.triangle(believed_), x), x); }
+    Phi at(const Vec3d& x) const { return believed_ == kNone ? phi_of(fan_.away_from(x)) : of_other(believed_, x); }
     Phi find(const Vec3d& x) {
-      const std::size_t believed = believed_;
-      Phi nearest = at(x);
-      const Phi of_believed = nearest;
-      near_.visit_nearer(x, nearest.value, [&](std::size_t i) {
-        if (i == believed) return nearest.value;
-        const Phi other = phi_of(front_.closest_on(near_.triangle(i), x), x);
-        near_.hold_back(i, x, other.away, other.value);
-        if (!(other.value < nearest.value)) return nearest.value;
+      Phi nearest = phi_of(fan_.find_away_from(x));
+      const std::uint32_t believed = believed_;
+      believed_ = kNone;
+      const auto look = [&](std::uint32_t i) {
+        const Phi other = of_other(i, x);
+        others_.hold_back(i, x, other.away, other.value);
+        if (!(other.value < nearest.value)) return;
         nearest = other;
         believed_ = i;
+      };
+      if (believed != kNone) look(believed);
+      others_.visit_nearer(x, nearest.value, [&](std::size_t i) {
+        if (i != believed) look(static_cast<std::uint32_t>(i));
         return nearest.value;
       });
-      near_.hold_back(believed, x, of_believed.away, of_believed.value);
       return nearest;
     }
 
    private:
+    static Phi phi_of(const Vec3d& away) { return {away.length(), away}; }
+    Phi of_other(std::uint32_t i, const Vec3d& x) const {
+      return vdb_offset::phi_of(front_.closest_on(others_.triangle(i), x), x);
+    }
+
     const Surface& front_;
-    NearTriangles& near_;
-    std::size_t believed_;
+    VertexFan& fan_;
+    NearTriangles& others_;
+    std::uint32_t believed_ = kNone;  // of the others
   };
   /// What may be the closest triangle to some point of the rail below its top is no farther from that than the point's
   /// distance and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers.
   /// False if that was wrong of a layer, or does not lead to its height.
-  bool put_among_few(std::uint32_t v, double top, const ClosestQuery::Ball& ball, NearTriangles& near) {
+  bool put_among_few(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
     const auto stack = stack_.stacks.of(v);
-    if (near.size() == 0 || near.size() > kMostNear) return false;
+    if (near.size() > kMostNear) return false;
+    fan.begin(front_, body_.front_vertex.empty() ? v : body_.front_vertex[v]);
+    near.remove_if([&](std::uint32_t t) { return fan.has(t); });
     const Vec3d centre = ball.centre + front_.origin;
-    return put_down(v, top, FewField(front_, near), [&](std::size_t k, double phi) {
+    return put_down(v, top, FewField(front_, fan, near), [&](std::size_t k, double phi) {
       const double height = stack_.share[v] * std::abs(heights_[k][v]);
       return std::abs(phi - height) <= kReachedTolerance * height &&
              (stack[k + 1] - centre).length() + phi <= ball.radius;

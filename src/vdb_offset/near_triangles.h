@@ -35,6 +35,16 @@ class NearTriangles {
     four.height[lane] = height;
   }
 
+  /// Leaves those out of which that is true.
+  template <class Predicate>
+  void remove_if(Predicate&& leaves) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size_; ++i)
+      if (!leaves(triangle(i))) copy(i, kept++);
+    size_ = kept;
+    for (; kept % kLanes != 0; ++kept) fours_[kept / kLanes].height[kept % kLanes] = kNowhere;
+  }
+
   std::size_t size() const { return size_; }
   std::uint32_t triangle(std::size_t i) const { return fours_[i / kLanes].triangle[i % kLanes]; }
   /// The one whose plane is the nearest to the centre. \pre size() > 0
@@ -44,7 +54,6 @@ class NearTriangles {
       if (height(i) < height(found)) found = i;
     return found;
   }
-
   /// Calls look(i) for all that may be nearer to x than `distance`, which look() returns, lowered or not.
   template <class Look>
   void visit_nearer(const Vec3d& x, double distance, Look&& look) const {
@@ -79,6 +88,13 @@ class NearTriangles {
     std::uint32_t triangle[kLanes];
   };
   float height(std::size_t i) const { return fours_[i / kLanes].height[i % kLanes]; }
+  void copy(std::size_t i, std::size_t to) {
+    const Four& from = fours_[i / kLanes];
+    Four& four = fours_[to / kLanes];
+    for (std::size_t k = 0; k < 3; ++k) four.normal[k][to % kLanes] = from.normal[k][i % kLanes];
+    four.height[to % kLanes] = from.height[i % kLanes];
+    four.triangle[to % kLanes] = from.triangle[i % kLanes];
+  }
 
   Vec3d centre_{0.0};
   double scale_ = 1;
