@@ -9,6 +9,8 @@ namespace {
 
 // How much of its heights a vertex keeps in a round of thinning; below the last share it keeps none.
 constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
+// A vertex that has been thinned in so many rounds and is still wrong takes two steps at once.
+constexpr int kSmallSteps = 2;
 // Rounds in which thinned vertices are let out again, each by one step.
 constexpr int kLetOuts = 12;
 // Thickness may change by so much of the length of an edge.
@@ -25,7 +27,8 @@ Stacker::Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::
       paths_(paths),
       most_(source.size(), 0.0),
       stood_(source.size()),
-      straight_(source.size(), 0) {
+      straight_(source.size(), 0),
+      thinned_(source.size(), 0) {
   stack_.stacks = Stacks(source.size(), heights.size());
   stack_.first_achieved.assign(source.size(), 0.0);
 }
@@ -211,7 +214,8 @@ bool Stacker::thin() {
   std::erase_if(wrong, [&](std::uint32_t v) { return stack_.share[v] == 0; });
   if (wrong.empty()) return false;
   for (const auto v : wrong) {
-    stack_.share[v] *= kKeptHeight;
+    stack_.share[v] *= thinned_[v] < kSmallSteps ? kKeptHeight : kKeptHeight * kKeptHeight;
+    ++thinned_[v];
     if (stack_.share[v] < kLeastShare) stack_.share[v] = 0;
   }
   const Indices lowered = smooth(wrong);

@@ -135,6 +135,7 @@ class Stacker {
 
   std::vector<Standing> stood_;
   std::vector<std::uint8_t> straight_;  // whether a vertex's layers stand on a straight line
+  std::vector<std::uint8_t> thinned_;   // in how many rounds a vertex was
   std::vector<std::uint8_t> wrong_column_;
   Indices wrong_columns_;
 };
