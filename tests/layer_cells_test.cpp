@@ -39,6 +39,7 @@ LayersResult layers_along(const Polygons& mesh, const std::vector<Vec3d>& direct
       stack[k + 1] = mesh.positions[v] + share[v] * heights[k] * directions[v];
   }
   layers.stacks = {std::move(stacks), std::move(own)};
+  layers.place = weld_by_position(mesh.view(), {});
   for (const double height : heights) layers.heights.emplace_back(height);
   layers.states.assign(share.size(), VertexState::Reached);
   for (const double s : share) {
@@ -106,7 +107,7 @@ void check_cells(const VolumeMesh& volume) {
 
 /// The same, and what is measured of cells that have not been made is what they have.
 void check_cells(const Polygons& mesh, const LayersResult& layers) {
-  const LayerCells cells = number_cells(mesh.view(), layers, {});
+  const LayerCells cells = number_cells(mesh.view(), layers);
   const LayerQuality quality = measure_cells(layers, cells);
   const VolumeMesh volume = make_cells(layers, cells, {}, quality);
   check_cells(volume);
@@ -202,7 +203,7 @@ VolumeMesh single(CellType type, std::vector<Vec3d> points) {
 TEST_CASE("layer cells: a plane of triangles, by numbers", "[layer_cells]") {
   const Polygons mesh = grid(4, true);
   LayerCellFacts facts;
-  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {0.5, 1.25}), {}, {}, &facts);
+  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {0.5, 1.25}), {}, &facts);
   check_cells(volume);
   CHECK(volume.points.size() == 75);
   CHECK(count(volume, CellType::Prism) == 64);
@@ -234,7 +235,7 @@ TEST_CASE("layer cells: seams of a cube are one, and mitred cells fill what is b
   for (Vec3d& d : directions)
     for (int k = 0; k < 3; ++k) d[k] = std::abs(d[k]) == 1 ? d[k] : 0;
   for (const double sign : {1.0, -1.0}) {
-    const VolumeMesh volume = make_cells(mesh.view(), layers_along(mesh, directions, {0.1 * sign, 0.3 * sign}), {}, {});
+    const VolumeMesh volume = make_cells(mesh.view(), layers_along(mesh, directions, {0.1 * sign, 0.3 * sign}), {});
     check_cells(volume);
     CHECK(volume.points.size() == 3 * 98);
     CHECK(count(volume, CellType::Hexahedron) == 2 * 96);
@@ -257,7 +258,7 @@ TEST_CASE("layer cells: a cylinder's wall, by its closed form", "[layer_cells]")
     const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
     mesh.add_face({a, b, b + 1, a + 1});
   }
-  const VolumeMesh volume = make_cells(mesh.view(), layers_along(mesh, directions, {0.25}), {}, {});
+  const VolumeMesh volume = make_cells(mesh.view(), layers_along(mesh, directions, {0.25}), {});
   check_cells(volume);
   for (std::size_t c = 0; c < kSides; ++c)
     CHECK(cell_volume(volume, c) ==
@@ -283,7 +284,7 @@ TEST_CASE("layer cells: each pattern of flat corners in a quad or triangle match
         int flats = 0;
         for (std::size_t k = 0; k < face.size(); ++k)
           if ((pattern >> k & 1) != 0) share[face[k]] = 0, ++flats;
-        const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {0.1 * sign, 0.2 * sign}, share), {}, {});
+        const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {0.1 * sign, 0.2 * sign}, share), {});
         INFO("pattern " << pattern << " sign " << sign << " triangles " << triangles);
         check_cells(volume);
         std::vector<CellType> types;
@@ -312,7 +313,7 @@ TEST_CASE("layer cells: flat vertices anywhere leave a closed, matching mesh", "
 
 TEST_CASE("layer cells: polygons become polyhedra", "[layer_cells]") {
   const Polygons mesh = honeycomb(3);
-  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {0.5, 1}), {}, {});
+  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {0.5, 1}), {});
   check_cells(volume);
   CHECK(count(volume, CellType::Polyhedron) == 18);
   const double hexagon = 1.5 * std::numbers::sqrt3;
@@ -332,14 +333,14 @@ TEST_CASE("layer cells: what carries nothing, repeats or folds up gives no cells
   LayersResult layers = layers_up(mesh, {1});
   layers.carries = {1, 0, 1, 1, 1, 1, 0};
   LayerCellFacts facts;
-  const VolumeMesh volume = make_cells(mesh.view(), layers, {}, {}, &facts);
+  const VolumeMesh volume = make_cells(mesh.view(), layers, {}, &facts);
   check_cells(volume);
   CHECK(facts.role == std::vector<FaceRole>{FaceRole::Full, FaceRole::Bare, FaceRole::Full, FaceRole::Full,
                                             FaceRole::Repeated, FaceRole::Degenerate, FaceRole::Bare});
   CHECK(volume.points.size() == 16);  // not the far corner of the bare quad, nor the vertex in no face
   CHECK(volume.patches.back().face_count() == 8);
   layers.carries = {0, 0, 0, 0, 0, 0, 1};
-  const VolumeMesh triangle = make_cells(mesh.view(), layers, {}, {});
+  const VolumeMesh triangle = make_cells(mesh.view(), layers, {});
   check_cells(triangle);
   CHECK(triangle.cell_types == std::vector{CellType::Prism});
 }
@@ -354,14 +355,14 @@ TEST_CASE("layer cells: on edges of three faces, and where faces disagree, what 
   LayerCellFacts facts;
   const LayersResult layers =
       layers_along(mesh, std::vector<Vec3d>(mesh.positions.size(), Vec3d(-1, 0, 1)), {0.1, 0.2});
-  check_cells(make_cells(mesh.view(), layers, {}, {}, &facts));
+  check_cells(make_cells(mesh.view(), layers, {}, &facts));
   CHECK(facts.unpaired_sides == 2);
   CHECK(facts.split_points == 3);
   CHECK(facts.coincident_sides == 0);
 
   Polygons turned = grid(2, true);
   std::reverse(turned.corners.begin() + 3, turned.corners.begin() + 6);
-  check_cells(make_cells(turned.view(), layers_up(turned, {0.1, 0.2}), {}, {}, &facts));
+  check_cells(make_cells(turned.view(), layers_up(turned, {0.1, 0.2}), {}, &facts));
   CHECK(facts.turned_faces == 1);
   CHECK(facts.unpaired_sides == 0);
 }
@@ -369,7 +370,7 @@ TEST_CASE("layer cells: on edges of three faces, and where faces disagree, what 
 TEST_CASE("layer cells: walls have the names of their faces", "[layer_cells]") {
   const Polygons mesh = grid(2, false);
   const WallNames names{{"a b", "outer", "a_b", "7", "none"}, {0, 1, 2, 3}};
-  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {1, 2}), {}, names);
+  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {1, 2}), names);
   check_cells(volume);
   REQUIRE(volume.patches.size() == 7);
   CHECK(volume.patches[0].name == "a_b");
@@ -405,9 +406,9 @@ TEST_CASE("layer cells: a file's groups, materials, objects and solids name wall
 TEST_CASE("layer cells: the same for any number of threads", "[layer_cells]") {
   const Polygons mesh = scene::icosphere(1, 4);
   const LayersResult layers = layers_along(mesh, mesh.positions, {0.1, 0.2, 0.4}, random_share(mesh, 1, 0.1));
-  const VolumeMesh volume = make_cells(mesh.view(), layers, {}, {});
+  const VolumeMesh volume = make_cells(mesh.view(), layers, {});
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const VolumeMesh same = make_cells(mesh.view(), layers, {}, {});
+  const VolumeMesh same = make_cells(mesh.view(), layers, {});
   CHECK(volume.points == same.points);
   CHECK(volume.cell_types == same.cell_types);
   CHECK(volume.corners == same.corners);
@@ -420,9 +421,12 @@ TEST_CASE("layer cells: the same for any number of threads", "[layer_cells]") {
 TEST_CASE("layer cells: layers of another mesh are refused", "[layer_cells]") {
   const Polygons mesh = grid(2, false);
   LayersResult layers = layers_up(mesh, {1});
-  CHECK_THROWS_AS(make_cells(mesh.view(), layers, {}, {{"a"}, {0, 0, 0, 1}}), InvalidInput);
+  CHECK_THROWS_AS(make_cells(mesh.view(), layers, {{"a"}, {0, 0, 0, 1}}), InvalidInput);
+  LayersResult nowhere = layers;
+  nowhere.place[4] = kNone;
+  CHECK_THROWS_WITH(make_cells(mesh.view(), nowhere, {}), Catch::Contains("that lack places of its corners"));
   layers.share.pop_back();
-  CHECK_THROWS_WITH(make_cells(mesh.view(), layers, {}, {}), "layer_cells: expected 9 shares, got 8");
+  CHECK_THROWS_WITH(make_cells(mesh.view(), layers, {}), "layers: expected 9 shares, got 8");
 }
 
 TEST_CASE("cell quality: cells of known quality", "[cell_quality]") {
@@ -495,7 +499,7 @@ TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever t
                                         : std::floor(3 * at);
     }
     LayerCellFacts facts;
-    const VolumeMesh volume = make_cells(mesh.view(), layers, {}, {}, &facts);
+    const VolumeMesh volume = make_cells(mesh.view(), layers, {}, &facts);
     const Spread reached =
         report_layers(mesh.view(), layers, {}, facts, layer_quality_of(volume, layers.count())).all.reached;
     std::vector<double> sorted;
@@ -530,7 +534,7 @@ TEST_CASE("layer report: figures of each patch and of all", "[layer_report]") {
   layers.first_achieved[24] = 0.25 * 1.5;
   const WallNames names{{"front", "back"}, {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1}};
   LayerCellFacts facts;
-  const VolumeMesh volume = make_cells(mesh.view(), layers, {}, names, &facts);
+  const VolumeMesh volume = make_cells(mesh.view(), layers, names, &facts);
   check_cells(volume);
   const LayerReport report = report_layers(mesh.view(), layers, names, facts, layer_quality_of(volume, layers.count()));
   CHECK(report.layers == 2);

@@ -32,9 +32,22 @@ struct Grown {
   LayerReport report;
 };
 
+/// Cells are the same where nothing is known of the mesh's edges and faces, and all has to be looked for.
+void check_numbered(const Polygons& mesh, LayersResult layers, const LayerCells& cells) {
+  layers.statistics.facts = {};
+  const LayerCells searched = number_cells(mesh.view(), layers);
+  CHECK(searched.columns.corners == cells.columns.corners);
+  CHECK(searched.columns.open == cells.columns.open);
+  CHECK(searched.points.vertex == cells.points.vertex);
+  CHECK(searched.facts.role == cells.facts.role);
+  CHECK(searched.facts.border_sides == cells.facts.border_sides);
+  CHECK(searched.facts.unpaired_sides == cells.facts.unpaired_sides);
+}
+
 Grown grow(const Polygons& mesh, std::span<const Distances> heights, const OffsetOptions& options = {}) {
   Grown grown{grow_layers(mesh.view(), heights, options), {}, {}};
-  const LayerCells cells = number_cells(mesh.view(), grown.layers, options.weld);
+  const LayerCells cells = number_cells(mesh.view(), grown.layers);
+  check_numbered(mesh, grown.layers, cells);
   const LayerQuality quality = measure_cells(grown.layers, cells);
   grown.volume = make_cells(grown.layers, cells, {}, quality);
   test::check_measured(quality, grown.volume, grown.layers.count());
@@ -420,7 +433,7 @@ TEST_CASE("layers: a grid of quads gives a structured block", "[layers]") {
   const Polygons mesh = closed ? scene::torus(1, 0.4, 24, 12) : scene::patch(1, 0.05, 12);
   const double sign = GENERATE(1, -1);
   const LayersResult layers = grow_layers(mesh.view(), growing(sign * 0.005, 1.2, 4), {});
-  const StructuredBlock block = make_block(mesh.view(), layers, {});
+  const StructuredBlock block = make_block(mesh.view(), layers);
   CHECK(block.nk == 5);
   CHECK(std::minmax(block.ni, block.nj) == (closed ? std::minmax(25u, 13u) : std::minmax(13u, 13u)));
   const auto at = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
@@ -434,5 +447,5 @@ TEST_CASE("layers: a grid of quads gives a structured block", "[layers]") {
         wrong += !((at(i + 1, j, k) - p).cross(at(i, j + 1, k) - p).dot(at(i, j, k + 1) - p) > 0);
       }
   CHECK(wrong == 0);
-  CHECK_THROWS_AS(make_block(scene::icosphere(1, 1).view(), layers, {}), InvalidInput);
+  CHECK_THROWS_AS(make_block(scene::icosphere(1, 1).view(), layers), InvalidInput);
 }

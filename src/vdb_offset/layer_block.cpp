@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/layer_columns.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
@@ -20,15 +21,15 @@ struct View {
 /// A grid of quads, by the places of its vertices.
 class QuadGrid {
  public:
-  QuadGrid(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld)
-      : place_(weld_by_position(mesh, weld)) {
+  QuadGrid(PolygonView mesh, const LayersResult& layers) {
+    require_layers_of(mesh, layers);
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
       if (!layers.carries.empty() && layers.carries[f] == 0) continue;
       const auto face = mesh.face(f);
       if (face.size() != 4)
         throw InvalidInput("structured block: expected quads, got face " + std::to_string(f) + " (counted from 0) of " +
                            std::to_string(face.size()) + " corners");
-      for (const auto v : face) corners_.push_back(place_[v]);
+      for (const auto v : face) corners_.push_back(layers.place[v]);
     }
     if (corners_.empty()) throw InvalidInput("structured block: expected quads, got none");
     begin_.assign(mesh.positions.size() + 2, 0);
@@ -124,15 +125,15 @@ class QuadGrid {
     return number;
   }
 
-  std::vector<std::uint32_t> place_, corners_;
+  std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> around_, begin_;  // corners at each vertex
   std::uint32_t width_ = 0;
 };
 
 }  // namespace
 
-StructuredBlock make_block(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld) {
-  QuadGrid grid(mesh, layers, weld);
+StructuredBlock make_block(PolygonView mesh, const LayersResult& layers) {
+  QuadGrid grid(mesh, layers);
   const std::vector<std::uint32_t> rows = grid.rows();
   const bool inward = layers.heights.back().farthest() < 0;
   const auto width = grid.width(), height = static_cast<std::uint32_t>(rows.size() / width);

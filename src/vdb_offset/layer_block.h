@@ -9,7 +9,8 @@ namespace vdb_offset {
 /// positive volumes. Row and column 0 are at the corner of the grid with the lowest vertex. A grid that is closed in a
 /// direction, as a tube is, is cut open, and its first points come again as the last.
 /// Fields: share, height and state, as make_cells() has them.
-/// \throw InvalidInput unless the faces that carry layers are quads that make one such grid, with its vertices welded.
-StructuredBlock make_block(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld);
+/// \throw InvalidInput as require_layers_of(), and unless the faces that carry layers are quads that make one such
+/// grid, with its vertices welded.
+StructuredBlock make_block(PolygonView mesh, const LayersResult& layers);
 
 }  // namespace vdb_offset

@@ -156,9 +156,8 @@ VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const
   return volume;
 }
 
-VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld, const WallNames& names,
-                      LayerCellFacts* facts) {
-  LayerCells cells = number_cells(mesh, layers, weld);
+VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WallNames& names, LayerCellFacts* facts) {
+  LayerCells cells = number_cells(mesh, layers);
   VolumeMesh volume = make_cells(layers, cells, names, measure_cells(layers, cells));
   if (facts != nullptr) *facts = std::move(cells.facts);
   return volume;

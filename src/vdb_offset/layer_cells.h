@@ -29,7 +29,7 @@ VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const
 
 /// The same from the mesh.
 /// \throw InvalidInput as number_cells() and require_names()
-VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld, const WallNames& names,
+VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WallNames& names,
                       LayerCellFacts* facts = nullptr);
 
 }  // namespace vdb_offset

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -51,8 +52,7 @@ Index split_from(const LayersResult& layers, std::size_t f, std::size_t corners)
 }
 
 /// Faces that are polygons; facts know what became of the others.
-LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, std::span<const Index> place,
-                           LayerCellFacts& facts) {
+LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCellFacts& facts) {
   // Of each face how many columns and how many corners it has, and so what is before it.
   std::vector<Index> columns_before(mesh.face_count() + 1, 0), corners_before(mesh.face_count() + 1, 0);
   const auto visit_rings = [&](auto&& visit) {
@@ -60,7 +60,7 @@ LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, std::sp
       std::vector<Index> ring, sorted;
       for (std::size_t f = range.begin(); f != range.end(); ++f)
         if (layers.carries.empty() || layers.carries[f] != 0)
-          visit(f, ring, clean_ring(mesh.face(f), place, ring, sorted));
+          visit(f, ring, clean_ring(mesh.face(f), layers.place, ring, sorted));
     });
   };
   visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
@@ -100,10 +100,14 @@ struct ColumnRole {
 };
 std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const std::uint8_t> flat, bool inward,
                                    const LayerColumns& columns) {
-  const std::vector<std::uint8_t> repeated = find_repeated_faces(columns.corners, columns.begin);
+  constexpr std::size_t kAhead = 8;  // columns whose stacks, far apart in memory, are asked for before their turn
+  std::vector<std::uint8_t> repeated(columns.count(), 0);
+  if (!layers.statistics.facts.two_sided()) repeated = find_repeated_faces(columns.corners, columns.begin);
   std::vector<ColumnRole> roles(columns.count());
   for_each_index(columns.count(), [&](std::size_t c) {
     const auto ring = columns.ring(c);
+    for (const Index v : columns.ring(std::min(c + kAhead, columns.count() - 1)))
+      for (const Vec3d& x : layers.stacks.of(v).first(2)) __builtin_prefetch(&x);
     const auto flats =
         static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index v) { return flat[v] != 0; }));
     const FaceRole role = repeated[c] != 0       ? FaceRole::Repeated
@@ -116,12 +120,13 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
   return roles;
 }
 
-/// Leaves out what gives no cell, and turns what lies on the other side.
-void keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, LayerColumns& columns,
+/// Leaves out what gives no cell, and turns what lies on the other side. False if any column is left out or turned.
+bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, LayerColumns& columns,
                   LayerCellFacts& facts) {
   const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
   const std::vector<ColumnRole> roles = find_roles(layers, flat, inward, columns);
   std::size_t kept = 0;
+  bool all_alike = true;
   Index end = 0, last_face = kNone;
   for (std::size_t c = 0, begin = 0; c < roles.size(); ++c) {
     const auto ring = std::span(columns.corners).subspan(begin, columns.begin[c + 1] - begin);
@@ -133,7 +138,9 @@ void keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
     last_face = face;
     FaceRole& of_face = facts.role[face];
     of_face = second && of_face != role ? FaceRole::Transition : role;
-    if (role == FaceRole::Repeated || role == FaceRole::Flat) continue;
+    const bool left_out = role == FaceRole::Repeated || role == FaceRole::Flat;
+    all_alike = all_alike && !left_out && !turned;
+    if (left_out) continue;
     facts.turned_faces += turned && !second;
     if (turned != inward) std::reverse(ring.begin() + 1, ring.end());
     std::copy(ring.begin(), ring.end(), columns.corners.begin() + end);
@@ -144,6 +151,7 @@ void keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
   columns.face.resize(kept);
   columns.begin.resize(kept + 1);
   columns.corners.resize(end);
+  return all_alike;
 }
 
 /// Corners at one point of the wall, where some places have several.
@@ -194,7 +202,6 @@ class SideMatch {
         flat_(flat),
         edges_({{}, columns.corners, columns.begin}, numbers_below(vertices)),
         crowded_(vertices, 0) {
-    columns.open.assign(columns.corners.size(), 0);
     std::atomic<std::size_t> border_sides = 0, unpaired_sides = 0;
     for_each_index(edges_.places(), [&](std::size_t v) {
       visit_risen_from(v, [&](Index a, Index b, std::span<const EdgeSide> sides) {
@@ -274,18 +281,25 @@ class SideMatch {
 };
 
 /// The faces over which layers rise, on the side where they do, with the first vertex at each corner's place; facts
-/// know what became of the others. `flat` tells of each vertex whether it rises in no layer.
-LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const Index> place,
-                          std::span<const std::uint8_t> flat, LayerCellFacts& facts) {
-  LayerColumns columns = find_polygons(mesh, layers, place, facts);
-  keep_columns(layers, flat, columns, facts);
+/// know what became of the others. `flat` tells of each vertex whether it rises in no layer. `all_paired` becomes
+/// true if each side is known to have one partner.
+LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
+                          LayerCellFacts& facts, bool& all_paired) {
+  LayerColumns columns = find_polygons(mesh, layers, facts);
+  const bool all_alike = keep_columns(layers, flat, columns, facts);
+  all_paired = all_alike && layers.statistics.facts.two_sided() &&
+               std::none_of(facts.role.begin(), facts.role.end(),
+                            [](FaceRole role) { return role == FaceRole::Bare || role == FaceRole::Degenerate; });
   return columns;
 }
 
 /// Numbers the points, and replaces the columns' places by those of the wall, where sides that have no partner get
 /// points of their own. Tells the columns which of their sides are open.
-LayerPoints number_points(std::span<const std::uint8_t> flat, LayerColumns& columns, LayerCellFacts& facts) {
-  const SideMatch sides(flat.size(), flat, columns, facts);
+LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, LayerColumns& columns,
+                          LayerCellFacts& facts) {
+  columns.open.assign(columns.corners.size(), 0);
+  std::optional<SideMatch> sides;
+  if (!all_paired) sides.emplace(flat.size(), flat, columns, facts);
   LayerPoints points;
   std::vector<Index> of_place(flat.size(), kNone);
   for_each_index(columns.corners.size(), [&](std::size_t c) {
@@ -299,12 +313,12 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, LayerColumns& colu
   std::vector<Index> point(columns.corners.size());
   for_each_index(point.size(), [&](std::size_t c) { point[c] = of_place[columns.corners[c]]; });
   if (facts.unpaired_sides > 0) {
-    CornerSets fans = sides.join_fans();
-    facts.coincident_sides = sides.count_coincident(fans);
+    CornerSets fans = sides->join_fans();
+    facts.coincident_sides = sides->count_coincident(fans);
     std::vector<std::uint8_t> taken(flat.size(), 0);
     for (Index c = 0; c < point.size(); ++c) {
       const Index place = columns.corners[c], first = fans.first(c);
-      if (!sides.crowded(place)) continue;
+      if (!sides->crowded(place)) continue;
       if (first != c) {
         point[c] = point[first];
       } else if (taken[place] != 0) {
@@ -323,23 +337,6 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, LayerColumns& colu
       points.rising.push_back(p);
     }
   return points;
-}
-
-void require_layers_of(PolygonView mesh, const LayersResult& layers) {
-  const auto require = [](const char* what, std::size_t expected, std::size_t got) {
-    if (got != expected)
-      throw InvalidInput("layer_cells: expected " + std::to_string(expected) + " " + what + ", got " +
-                         std::to_string(got));
-  };
-  require("layers in a stack", layers.count(), layers.stacks.layers());
-  require("stacks", mesh.positions.size(), layers.stacks.vertices());
-  require("shares", mesh.positions.size(), layers.share.size());
-  require("states", mesh.positions.size(), layers.states.size());
-  require("distances achieved", mesh.positions.size(), layers.achieved.size());
-  require("distances of the first layer", mesh.positions.size(), layers.first_achieved.size());
-  for (const Distances& heights : layers.heights)
-    if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
-  if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
 }
 
 std::vector<std::uint8_t> find_flat(const SharedStacks& stacks) {
@@ -375,6 +372,30 @@ void require_countable(const LayerPoints& points, const LayerColumns& columns, s
 
 }  // namespace
 
+void require_layers_of(PolygonView mesh, const LayersResult& layers) {
+  const auto require = [](const char* what, std::size_t expected, std::size_t got) {
+    if (got != expected)
+      throw InvalidInput("layers: expected " + std::to_string(expected) + " " + what + ", got " + std::to_string(got));
+  };
+  require("layers in a stack", layers.count(), layers.stacks.layers());
+  require("stacks", mesh.positions.size(), layers.stacks.vertices());
+  require("places", mesh.positions.size(), layers.place.size());
+  require("shares", mesh.positions.size(), layers.share.size());
+  require("states", mesh.positions.size(), layers.states.size());
+  require("distances achieved", mesh.positions.size(), layers.achieved.size());
+  require("distances of the first layer", mesh.positions.size(), layers.first_achieved.size());
+  for (const Distances& heights : layers.heights)
+    if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
+  if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
+  std::atomic<bool> placed = true;
+  for_each_index(mesh.corners.size(), [&](std::size_t c) {
+    const Index v = mesh.corners[c];
+    if (!(v < layers.place.size() && layers.place[v] < layers.place.size()))
+      placed.store(false, std::memory_order_relaxed);
+  });
+  if (!placed) throw InvalidInput("layers: expected layers of this mesh, got some that lack places of its corners");
+}
+
 const char* name(FaceRole role) {
   constexpr const char* kNames[kFaceRoleCount] = {"bare", "full", "transition", "flat", "degenerate", "repeated"};
   return kNames[static_cast<std::size_t>(role)];
@@ -385,16 +406,16 @@ bool LayerCells::is_of_prisms(std::size_t column) const {
   return ring.size() == 3 && std::none_of(ring.begin(), ring.end(), [&](Index p) { return points.flat(p); });
 }
 
-LayerCells number_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld) {
+LayerCells number_cells(PolygonView mesh, const LayersResult& layers) {
   require_layers_of(mesh, layers);
-  const std::vector<Index> place = weld_by_position(mesh, weld);
   LayerCells cells;
   cells.layers = layers.count();
   cells.facts.role.assign(mesh.face_count(), FaceRole::Bare);
   cells.facts.cells.assign(mesh.face_count(), 0);
   const std::vector<std::uint8_t> flat = find_flat(layers.stacks);
-  cells.columns = find_columns(mesh, layers, place, flat, cells.facts);
-  cells.points = number_points(flat, cells.columns, cells.facts);
+  bool all_paired = false;
+  cells.columns = find_columns(mesh, layers, flat, cells.facts, all_paired);
+  cells.points = number_points(flat, all_paired, cells.columns, cells.facts);
   count_cells(cells.points, cells.columns, cells.facts);
   require_countable(cells.points, cells.columns, layers.count());
   return cells;

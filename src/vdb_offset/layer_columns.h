@@ -81,9 +81,11 @@ struct LayerCells {
   bool is_of_prisms(std::size_t column) const;
 };
 
+/// \throw InvalidInput for layers that are not this mesh's.
+void require_layers_of(PolygonView mesh, const LayersResult& layers);
+
 /// Finds the cells that stand on a mesh's faces, in an order that does not depend on the number of threads: see
-/// make_cells(). \throw InvalidInput as weld_by_position(), for layers that are not this mesh's, and for more than 2^32
-/// points or cells.
-LayerCells number_cells(PolygonView mesh, const LayersResult& layers, const WeldOptions& weld);
+/// make_cells(). \throw InvalidInput as require_layers_of(), and for more than 2^32 points or cells.
+LayerCells number_cells(PolygonView mesh, const LayersResult& layers);
 
 }  // namespace vdb_offset

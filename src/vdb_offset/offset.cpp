@@ -363,6 +363,7 @@ class Pipeline {
       result.first_achieved[v] = stack.first_achieved[w];
     });
     result.stacks = stacks_of_input(std::move(stack.stacks));
+    result.place = first_at_place(surface);
     for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
     result.carries.assign(mesh_.face_count(), 1);
     for (std::size_t f = 0; f < options_.only.size(); ++f) result.carries[f] = options_.only[f] != 0;

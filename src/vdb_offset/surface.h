@@ -50,6 +50,11 @@ struct MeshFacts {
   double median_edge = 0;  ///< Median edge length of the triangulated surface.
 
   bool closed() const { return boundary_left == 0 && non_manifold_left == 0; }
+  /// Whether each edge has two faces, of opposite directions, and no face had to be left out or turned round for that.
+  bool two_sided() const {
+    return components > 0 && boundary_edges == 0 && non_manifold_edges == 0 && orientation_conflicts == 0 &&
+           repeated_faces == 0 && folded_triangles == 0 && degenerate_faces == 0;
+  }
   bool oriented() const { return unsettled_conflicts == 0 && non_manifold_left == 0; }
 };
 
@@ -107,8 +112,9 @@ struct Surface {
 /// finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
-/// For each vertex the first that stands where it does; kNone for one that is in no face. Faces may have any number of
-/// corners. \throw as build_surface().
+/// For each vertex the first that stands where it does; kNone for one that is in no face.
+std::vector<std::uint32_t> first_at_place(const Surface& surface);
+/// The same of polygons, which may have any number of corners. \throw as build_surface().
 std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& weld);
 
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding

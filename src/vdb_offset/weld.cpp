@@ -192,14 +192,19 @@ void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
   surface.facts.welded_vertices = surface.vertices.size();
 }
 
+std::vector<std::uint32_t> first_at_place(const Surface& surface) {
+  std::vector<std::uint32_t> first(surface.welded.size(), kNone);
+  for_each_index(first.size(), [&](std::size_t v) {
+    if (surface.welded[v] != kNone) first[v] = surface.representative[surface.welded[v]];
+  });
+  return first;
+}
+
 std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& options) {
   require_usable(polygons, 1);
   Surface surface;
   weld(polygons, options, surface);
-  std::vector<std::uint32_t> first(polygons.positions.size(), kNone);
-  for (std::size_t v = 0; v < first.size(); ++v)
-    if (surface.welded[v] != kNone) first[v] = surface.representative[surface.welded[v]];
-  return first;
+  return first_at_place(surface);
 }
 
 }  // namespace vdb_offset

@@ -43,10 +43,10 @@ void measure_on_curves(CurvesView curves, Grown& grown) {
   grown.on_curves = std::move(cells.mesh);
 }
 
-void measure(const Arguments& args, const Source& source, Grown& grown) {
+void measure(const Source& source, Grown& grown) {
   const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   if (source.file) grown.names = io::wall_names(*source.file);
-  grown.cells = number_cells(source.view(), grown.layers, args.options.weld);
+  grown.cells = number_cells(source.view(), grown.layers);
   grown.quality = measure_cells(grown.layers, grown.cells);
   grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells.facts, grown.quality);
 }
@@ -58,7 +58,7 @@ Grown grow(const Arguments& args, const Source& source, std::span<const Distance
     measure_on_curves(source.view(), grown);
   } else {
     grown.layers = grow_layers(source.view(), heights, args.options);
-    measure(args, source, grown);
+    measure(source, grown);
   }
   return grown;
 }
@@ -91,7 +91,7 @@ void write_volume(const Arguments& args, const Source& source, Grown& grown) {
 void write_cells(const Arguments& args, const Source& source, Grown& grown) {
   if (args.layers->structured)
     io::write_structured(args.output, source.curves ? make_curve_block(source.view(), grown.layers)
-                                                    : make_block(source.view(), grown.layers, args.options.weld));
+                                                    : make_block(source.view(), grown.layers));
   else if (is_volume(args.output)) write_volume(args, source, grown);
   else write_surfaces(args, source, grown.layers);
 }
