@@ -120,13 +120,13 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
   return roles;
 }
 
-/// Leaves out what gives no cell, and turns what lies on the other side. False if any column is left out or turned.
+/// Leaves out what gives no cell, and turns what lies on the other side. False if any column is turned.
 bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, LayerColumns& columns,
                   LayerCellFacts& facts) {
   const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
   const std::vector<ColumnRole> roles = find_roles(layers, flat, inward, columns);
   std::size_t kept = 0;
-  bool all_alike = true;
+  bool none_turned = true;
   Index end = 0, last_face = kNone;
   for (std::size_t c = 0, begin = 0; c < roles.size(); ++c) {
     const auto ring = std::span(columns.corners).subspan(begin, columns.begin[c + 1] - begin);
@@ -138,9 +138,8 @@ bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
     last_face = face;
     FaceRole& of_face = facts.role[face];
     of_face = second && of_face != role ? FaceRole::Transition : role;
-    const bool left_out = role == FaceRole::Repeated || role == FaceRole::Flat;
-    all_alike = all_alike && !left_out && !turned;
-    if (left_out) continue;
+    if (role == FaceRole::Repeated || role == FaceRole::Flat) continue;
+    none_turned = none_turned && !turned;
     facts.turned_faces += turned && !second;
     if (turned != inward) std::reverse(ring.begin() + 1, ring.end());
     std::copy(ring.begin(), ring.end(), columns.corners.begin() + end);
@@ -151,7 +150,7 @@ bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
   columns.face.resize(kept);
   columns.begin.resize(kept + 1);
   columns.corners.resize(end);
-  return all_alike;
+  return none_turned;
 }
 
 /// Corners at one point of the wall, where some places have several.
@@ -282,12 +281,12 @@ class SideMatch {
 
 /// The faces over which layers rise, on the side where they do, with the first vertex at each corner's place; facts
 /// know what became of the others. `flat` tells of each vertex whether it rises in no layer. `all_paired` becomes
-/// true if each side is known to have one partner.
+/// true if each side that rises is known to have one partner. (Faces that are flat have none that does.)
 LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
                           LayerCellFacts& facts, bool& all_paired) {
   LayerColumns columns = find_polygons(mesh, layers, facts);
-  const bool all_alike = keep_columns(layers, flat, columns, facts);
-  all_paired = all_alike && layers.statistics.facts.two_sided() &&
+  const bool none_turned = keep_columns(layers, flat, columns, facts);
+  all_paired = none_turned && layers.statistics.facts.two_sided() &&
                std::none_of(facts.role.begin(), facts.role.end(),
                             [](FaceRole role) { return role == FaceRole::Bare || role == FaceRole::Degenerate; });
   return columns;
