@@ -62,8 +62,7 @@ Way<double> way_to(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 CellQuality prism_quality(const CellPoints& x) {
   const PrismLevel<double> below({way_to(x[0]), way_to(x[1]), way_to(x[2])}),
       above({way_to(x[3]), way_to(x[4]), way_to(x[5])});
-  const auto [triple, shortest, longest] = prism_squares(below, above);
-  return prism_quality_of(triple, shortest, longest);
+  return prism_quality_of(prism_squares(below, above));
 }
 
 Way<Pair> ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
@@ -93,7 +92,7 @@ CellQuality hexahedron_quality(const CellPoints& x) {
   const Vec3d u = (x[1] - x[0]) + (x[2] - x[3]) + (x[5] - x[4]) + (x[6] - x[7]);
   const Vec3d v = (x[3] - x[0]) + (x[2] - x[1]) + (x[7] - x[4]) + (x[6] - x[5]);
   const Vec3d w = (x[4] - x[0]) + (x[5] - x[1]) + (x[6] - x[2]) + (x[7] - x[3]);
-  const CellQuality corners = quality_of(least, lengths.least, lengths.most);
+  const CellQuality corners = quality_of(QualitySquares<double>{least, lengths.least, lengths.most});
   return {std::min(unit_triple(u, v, w), corners.jacobian), corners.aspect};
 }
 

@@ -401,8 +401,8 @@ const char* name(FaceRole role) {
 }
 
 bool LayerCells::is_of_prisms(std::size_t column) const {
-  const auto ring = columns.ring(column);
-  return ring.size() == 3 && std::none_of(ring.begin(), ring.end(), [&](Index p) { return points.flat(p); });
+  // With fewer corners, it would have flat ones.
+  return columns.ring(column).size() == 3 && columns.size[column + 1] - columns.size[column] == 6;
 }
 
 LayerCells number_cells(PolygonView mesh, const LayersResult& layers) {

@@ -136,9 +136,9 @@ class CellMeasurer {
     Pair six_volumes = below.normal.dot(origin - below.corner[0]);
     for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
       const PrismLevel<Pair> above = level(layer + 1);
-      const auto [triple, shortest, longest] = prism_squares(below, above);
-      set(layer, columns.cells[c], prism_quality_of(triple[0], shortest[0], longest[0]));
-      set(layer, columns.cells[other], prism_quality_of(triple[1], shortest[1], longest[1]));
+      const QualityOf<Pair> quality = prism_quality_of(prism_squares(below, above));
+      set(layer, columns.cells[c], {quality.jacobian[0], quality.aspect[0]});
+      set(layer, columns.cells[other], {quality.jacobian[1], quality.aspect[1]});
       below = above;
     }
     six_volumes += below.normal.dot(below.corner[0] - origin);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numbers>
@@ -11,18 +10,11 @@
 namespace vdb_offset {
 
 /// Scaled Jacobian and aspect ratio of a cell: see cell_quality.h.
-struct CellQuality {
-  double jacobian, aspect;
+template <class Real>
+struct QualityOf {
+  Real jacobian, aspect;
 };
-
-template <class Real>
-Real lesser(const Real& a, const Real& b) {
-  return b < a ? b : a;
-}
-template <class Real>
-Real greater(const Real& a, const Real& b) {
-  return b > a ? b : a;
-}
+using CellQuality = QualityOf<double>;
 
 /// The square, with its sign, of a triple product of unit vectors, by that of the vectors and the product of their
 /// squared lengths; 0 where one of these is.
@@ -37,9 +29,13 @@ template <class Real>
 struct QualitySquares {
   Real triple, shortest, longest;
 };
-inline CellQuality quality_of(double triple, double shortest, double longest) {
-  return {std::copysign(std::sqrt(std::abs(triple)), triple),
-          shortest > 0 ? std::sqrt(longest / shortest) : std::numeric_limits<double>::infinity()};
+template <class Real>
+QualityOf<Real> quality_of(const QualitySquares<Real>& squares) {
+  const auto& [triple, shortest, longest] = squares;
+  const Real one = Real{} + 1.0, infinite = Real{} + std::numeric_limits<double>::infinity();
+  const Real jacobian = root(triple < 0 ? -triple : triple);
+  return {triple < 0 ? -jacobian : jacobian,
+          shortest > 0 ? root(longest / (shortest > 0 ? shortest : one)) : infinite};
 }
 
 /// A triangle on which a prism stands, or which lies on one, or both.
@@ -80,8 +76,9 @@ QualitySquares<Real> prism_squares(const PrismLevel<Real>& below, const PrismLev
 }
 
 /// As quality_of(); a prism over a regular triangle has 1.
-inline CellQuality prism_quality_of(double triple, double shortest, double longest) {
-  const CellQuality quality = quality_of(triple, shortest, longest);
+template <class Real>
+QualityOf<Real> prism_quality_of(const QualitySquares<Real>& squares) {
+  const QualityOf<Real> quality = quality_of(squares);
   return {2 / std::numbers::sqrt3 * quality.jacobian, quality.aspect};
 }
 

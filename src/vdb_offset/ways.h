@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #include "vdb_offset/polygons.h"
 
@@ -9,6 +13,23 @@ namespace vdb_offset {
 /// Two numbers that are worked on at once, as the registers of every x86-64 do; comparisons give all ones or zero.
 using Pair = double __attribute__((vector_size(16)));
 using PairMask = std::int64_t __attribute__((vector_size(16)));
+
+inline double root(double square) { return std::sqrt(square); }
+inline Pair root(const Pair& squares) {
+#ifdef __SSE2__
+  return reinterpret_cast<Pair>(_mm_sqrt_pd(reinterpret_cast<__m128d>(squares)));
+#else
+  return Pair{std::sqrt(squares[0]), std::sqrt(squares[1])};
+#endif
+}
+template <class Real>
+Real lesser(const Real& a, const Real& b) {
+  return b < a ? b : a;
+}
+template <class Real>
+Real greater(const Real& a, const Real& b) {
+  return b > a ? b : a;
+}
 
 /// A vector of so many dimensions as space has, of one number each or of two: what is a template over Real is then done
 /// for two things at once.
