@@ -251,31 +251,45 @@ class Source {
     return of;
   }
 
+  /// Areas of some faces: all, times the share of heights that they keep, and what has all of them.
+  struct Areas {
+    double all = 0, kept = 0, full = 0;
+  };
+
   /// Of faces that were to carry layers and can: those that repeat others, or are none, have no area of their own.
   void add_thickness(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    std::vector<std::uint32_t> asked_of;
+    constexpr std::size_t kBlock = 4096;
+    std::vector<std::uint32_t> of;
     for (const auto f : faces) {
       const FaceRole role = facts_.role[f];
-      if (role == FaceRole::Full || role == FaceRole::Transition || role == FaceRole::Flat) asked_of.push_back(f);
+      if (role == FaceRole::Full || role == FaceRole::Transition || role == FaceRole::Flat) of.push_back(f);
     }
-    std::vector<OnFace> of(asked_of.size());
-    std::vector<Weighted> asked(of.size()), reached(of.size());
-    for_each_index(of.size(), [&](std::size_t i) {
-      of[i] = means(asked_of[i]);
-      asked[i] = {of[i].to_reach, of[i].area};
-      reached[i] = {of[i].achieved, of[i].area};
-    });
-    double kept = 0, covered = 0;
-    for (const OnFace& face : of) {
-      figures.area += face.area;
-      kept += face.area * face.share;
-      if (face.full) covered += face.area;
+    const Distances& asked_heights = layers_.heights.back();
+    std::vector<Weighted> asked(asked_heights.uniform() ? 0 : of.size()), reached(of.size());
+    std::vector<Areas> areas((of.size() + kBlock - 1) / kBlock);
+    for_each_index(
+        areas.size(),
+        [&](std::size_t b) {
+          for (std::size_t i = b * kBlock; i < std::min(of.size(), (b + 1) * kBlock); ++i) {
+            const OnFace face = means(of[i]);
+            areas[b].all += face.area;
+            areas[b].kept += face.area * face.share;
+            if (face.full) areas[b].full += face.area;
+            if (!asked.empty()) asked[i] = {face.to_reach, face.area};
+            reached[i] = {face.achieved, face.area};
+          }
+        },
+        1);
+    Areas sum;
+    for (const Areas& each : areas) sum.all += each.all, sum.kept += each.kept, sum.full += each.full;
+    figures.area = sum.all;
+    if (sum.all > 0) {
+      figures.layers_reached = static_cast<double>(layers_.count()) * sum.kept / sum.all;
+      figures.coverage = sum.full / sum.all;
     }
-    if (figures.area > 0) {
-      figures.layers_reached = static_cast<double>(layers_.count()) * kept / figures.area;
-      figures.coverage = covered / figures.area;
-    }
-    figures.asked = spread(std::move(asked));
+    const double height = std::abs(asked_heights.farthest());
+    if (!asked_heights.uniform()) figures.asked = spread(std::move(asked));
+    else if (!of.empty()) figures.asked = {height, height, height, height, height, height, height, height};
     figures.reached = spread(std::move(reached));
   }
 

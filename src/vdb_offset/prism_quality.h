@@ -34,8 +34,7 @@ QualityOf<Real> quality_of(const QualitySquares<Real>& squares) {
   const auto& [triple, shortest, longest] = squares;
   const Real one = Real{} + 1.0, infinite = Real{} + std::numeric_limits<double>::infinity();
   const Real jacobian = root(triple < 0 ? -triple : triple);
-  return {triple < 0 ? -jacobian : jacobian,
-          shortest > 0 ? root(longest / (shortest > 0 ? shortest : one)) : infinite};
+  return {triple < 0 ? -jacobian : jacobian, shortest > 0 ? root(longest / (shortest > 0 ? shortest : one)) : infinite};
 }
 
 /// A triangle on which a prism stands, or which lies on one, or both.
