@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -37,6 +38,7 @@ template <class Real>
 struct Way {
   Real x, y, z;
 
+  void set(std::size_t lane, const Vec3d& way) { x[lane] = way[0], y[lane] = way[1], z[lane] = way[2]; }
   Real dot(const Way& o) const { return x * o.x + y * o.y + z * o.z; }
   Way cross(const Way& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
 };
