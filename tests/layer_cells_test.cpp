@@ -43,8 +43,8 @@ LayersResult layers_along(const Polygons& mesh, const std::vector<Vec3d>& direct
   for (const double height : heights) layers.heights.emplace_back(height);
   layers.states.assign(share.size(), VertexState::Reached);
   for (const double s : share) {
-    layers.achieved.push_back(s * std::abs(heights.back()));
-    layers.first_achieved.push_back(s * std::abs(heights.front()));
+    layers.achieved.push_back(heights.empty() ? 0 : s * std::abs(heights.back()));
+    layers.first_achieved.push_back(heights.empty() ? 0 : s * std::abs(heights.front()));
   }
   return layers;
 }
@@ -416,6 +416,14 @@ TEST_CASE("layer cells: the same for any number of threads", "[layer_cells]") {
   for (std::size_t i = 0; i < same.cell_fields.size(); ++i)
     CHECK(volume.cell_fields[i].values == same.cell_fields[i].values);
   CHECK(enclosed_volume(volume) == enclosed_volume(same));
+}
+
+TEST_CASE("layer cells: without layers, there are none", "[layer_cells]") {
+  const Polygons mesh = grid(2, false);
+  LayerCellFacts facts;
+  const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {}), {}, &facts);
+  CHECK(volume.cell_count() == 0);
+  CHECK(std::count(facts.role.begin(), facts.role.end(), FaceRole::Flat) == 4);
 }
 
 TEST_CASE("layer cells: layers of another mesh are refused", "[layer_cells]") {

@@ -106,8 +106,10 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
   std::vector<ColumnRole> roles(columns.count());
   for_each_index(columns.count(), [&](std::size_t c) {
     const auto ring = columns.ring(c);
-    for (const Index v : columns.ring(std::min(c + kAhead, columns.count() - 1)))
-      for (const Vec3d& x : layers.stacks.of(v).first(2)) __builtin_prefetch(&x);
+    for (const Index v : columns.ring(std::min(c + kAhead, columns.count() - 1))) {
+      const Vec3d* const stack = layers.stacks.of(v).data();
+      __builtin_prefetch(stack), __builtin_prefetch(stack + 1);
+    }
     const auto flats =
         static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index v) { return flat[v] != 0; }));
     const FaceRole role = repeated[c] != 0       ? FaceRole::Repeated
