@@ -449,3 +449,12 @@ TEST_CASE("layers: a grid of quads gives a structured block", "[layers]") {
   CHECK(wrong == 0);
   CHECK_THROWS_AS(make_block(scene::icosphere(1, 1).view(), layers), InvalidInput);
 }
+
+TEST_CASE("layers: polygons that repeat each other are told, wherever they begin", "[layers]") {
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.corners = {0, 1, 2, 3, 3, 2, 1, 0};
+  mesh.face_begin = {0, 4, 8};
+  const Grown grown = grow(mesh, growing(0.01, 1.2, 3));
+  CHECK(grown.report.all.faces_by_role[static_cast<std::size_t>(FaceRole::Repeated)] == 1);
+}

@@ -16,6 +16,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/repeated_faces.h"
+#include "vdb_offset/weld.h"
 
 namespace vdb_offset {
 namespace {
@@ -93,6 +94,12 @@ LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCe
   return columns;
 }
 
+/// Whether the surface knows that each side has one partner, and that no column repeats another. It is triangles that
+/// it knows of: polygons may repeat each other, or be split otherwise.
+bool knows_sides(const MeshFacts& facts) {
+  return facts.two_sided() && facts.faces_by_corners.size() == 1 && facts.faces_by_corners.begin()->first == 3;
+}
+
 /// What becomes of a column, and whether it lies on the other side.
 struct ColumnRole {
   FaceRole role;
@@ -102,7 +109,7 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
                                    const LayerColumns& columns) {
   constexpr std::size_t kAhead = 8;  // columns whose stacks, far apart in memory, are asked for before their turn
   std::vector<std::uint8_t> repeated(columns.count(), 0);
-  if (!layers.statistics.facts.two_sided()) repeated = find_repeated_faces(columns.corners, columns.begin);
+  if (!knows_sides(layers.statistics.facts)) repeated = find_repeated_faces(columns.corners, columns.begin);
   std::vector<ColumnRole> roles(columns.count());
   for_each_index(columns.count(), [&](std::size_t c) {
     const auto ring = columns.ring(c);
@@ -288,7 +295,7 @@ LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::spa
                           LayerCellFacts& facts, bool& all_paired) {
   LayerColumns columns = find_polygons(mesh, layers, facts);
   const bool none_turned = keep_columns(layers, flat, columns, facts);
-  all_paired = none_turned && layers.statistics.facts.two_sided() &&
+  all_paired = none_turned && knows_sides(layers.statistics.facts) &&
                std::none_of(facts.role.begin(), facts.role.end(),
                             [](FaceRole role) { return role == FaceRole::Bare || role == FaceRole::Degenerate; });
   return columns;
@@ -388,6 +395,7 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
   for (const Distances& heights : layers.heights)
     if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
   if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
+  require_usable(mesh, 1);
   std::atomic<bool> placed = true;
   for_each_index(mesh.corners.size(), [&](std::size_t c) {
     const Index v = mesh.corners[c];

@@ -81,7 +81,7 @@ struct LayerCells {
   bool is_of_prisms(std::size_t column) const;
 };
 
-/// \throw InvalidInput for layers that are not this mesh's.
+/// \throw InvalidInput for polygons that are none, and layers that cannot be this mesh's, by their counts and places.
 void require_layers_of(PolygonView mesh, const LayersResult& layers);
 
 /// Finds the cells that stand on a mesh's faces, in an order that does not depend on the number of threads: see

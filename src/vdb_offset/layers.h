@@ -13,9 +13,10 @@ namespace vdb_offset {
 /// Layers on a mesh: one surface for each height, of the mesh's vertices and faces.
 struct LayersResult {
   SharedStacks stacks;  ///< Of the input's vertices: on the wall, which is the mesh itself, and at each height.
-  std::vector<std::uint32_t> place;    ///< Of each input vertex, the first one that it moves with; kNone if in no face.
-  std::vector<Distances> heights;      ///< Asked of each input vertex, one set a layer; all of one sign.
-  std::vector<double> share;           ///< Of each input vertex: of its heights that it keeps, 0 .. 1, in all layers.
+  std::vector<std::uint32_t>
+      place;                       ///< Of each input vertex, the first it moves with; kNone: in no face. Not on curves.
+  std::vector<Distances> heights;  ///< Asked of each input vertex, one set a layer; all of one sign.
+  std::vector<double> share;       ///< Of each input vertex: of its heights that it keeps, 0 .. 1, in all layers.
   std::vector<VertexState> states;     ///< Of the outermost surface's vertices.
   std::vector<double> achieved;        ///< Exact distance of the outermost surface's vertices, world units.
   std::vector<double> first_achieved;  ///< The same of the first layer's.

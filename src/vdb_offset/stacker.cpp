@@ -7,7 +7,7 @@
 namespace vdb_offset {
 namespace {
 
-// How much of its heights a vertex keeps in a round of thinning; below the last share it keeps none.
+// How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none.
 constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
 // A vertex that has been thinned in so many rounds and is still wrong takes two steps at once.
 constexpr int kSmallSteps = 2;
