@@ -29,6 +29,7 @@ struct Phi {
 inline Phi phi_of(const TrianglePoint& nearest, const Vec3d& x) {
   return {std::sqrt(nearest.squared_distance), x - nearest.point};
 }
+inline Phi phi_of(const Vec3d& away) { return {away.length(), away}; }
 
 /// Distances along a vertex's rail, of points in the front's frame. The closest triangle to one point is likely to be
 /// that of the next: find() looks for it, at() believes it and is never too small.

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "vdb_offset/fan_field.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/stacker.h"
-#include "vdb_offset/vertex_fan.h"
 
 namespace vdb_offset {
 namespace {
@@ -17,6 +18,9 @@ constexpr std::size_t kMostNear = 2000;
 // How much longer than the way straight to the vertex the way along the rail may be.
 constexpr double kReachRoom = 1.01;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Where nothing nearer can lie farther from a vertex than this share of its distance, it is looked for there alone.
+constexpr double kFanShare = 0.5;
 class SurfaceStacker final : public Stacker {
  public:
   SurfaceStacker(const Body& body, const BorderSlides* slides, const CellColumns& columns,
@@ -43,9 +47,7 @@ class SurfaceStacker final : public Stacker {
     return true;
   }
 
-  Vec3d direction_of(std::uint32_t v) const override {
-    return start_direction(front_, body_.front_vertex.empty() ? v : body_.front_vertex[v]);
-  }
+  Vec3d direction_of(std::uint32_t v) const override { return start_direction(front_, on_front(v)); }
 
   std::size_t column_count() const override { return columns_.size(); }
   std::span<const std::uint32_t> base(std::size_t column) const override { return columns_.base(column); }
@@ -76,23 +78,46 @@ class SurfaceStacker final : public Stacker {
                    1);
   }
 
-  void put_block(std::span<const std::uint32_t> vertices) {
-    std::vector<std::uint32_t> open;
+  /// Vertices whose layers are put down below the tops of their rails, and the balls that all lies in that these may
+  /// be closest to.
+  struct Puts {
+    Indices vertices;
     std::vector<double> tops;
     std::vector<ClosestQuery::Ball> balls;
+    void add(std::uint32_t v, double top, const ClosestQuery::Ball& ball) {
+      vertices.push_back(v);
+      tops.push_back(top);
+      balls.push_back(ball);
+    }
+  };
+
+  void put_block(std::span<const std::uint32_t> vertices) {
+    VertexFan fan;
+    Puts by_fan, by_ball;
+    std::vector<double> distances;
     for (const auto v : vertices) {
       std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
       if (!(stack_.share[v] > 0) || (slides_ && body_.is_bound(v) && put_along_border(v))) continue;
-      const double top = top_of(v);
-      const Vec3d way = rail_of(v)(top);
-      open.push_back(v);
-      tops.push_back(top);
-      balls.push_back({source_[v] - front_.origin + way, way.length() * kReachRoom});
+      const double top = top_of(v), radius = put_on_fan(v, top, fan, distances);
+      if (radius < kInfinity) by_fan.add(v, top, {source_[v] - front_.origin, radius});
+      else by_ball.add(v, top, ball_of_rail(v, top));
     }
-    VertexFan fan;
-    body_.front.collect_together(balls, [&](std::size_t i, NearTriangles& near) {
-      if (!put_among_few(open[i], tops[i], balls[i], fan, near)) put_with_care(open[i]);
+    body_.front.collect_together(by_fan.balls, [&](std::size_t i, NearTriangles& near) {
+      const std::uint32_t v = by_fan.vertices[i];
+      const auto of_layers = std::span(distances).subspan(i * heights_.size(), heights_.size());
+      if (!is_on_fan(v, of_layers, near)) by_ball.add(v, by_fan.tops[i], ball_of_rail(v, by_fan.tops[i]));
     });
+    body_.front.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
+      const std::uint32_t v = by_ball.vertices[i];
+      if (!put_among_few(v, by_ball.tops[i], by_ball.balls[i], fan, near)) put_with_care(v);
+    });
+  }
+
+  /// What may be the closest triangle to some point of the rail below its top is no farther from that than the point's
+  /// distance and the way to it, so hardly farther than the vertex.
+  ClosestQuery::Ball ball_of_rail(std::uint32_t v, double top) const {
+    const Vec3d way = rail_of(v)(top);
+    return {source_[v] - front_.origin + way, way.length() * kReachRoom};
   }
 
   /// False if a vertex gets to one of its heights not by sliding there.
@@ -110,58 +135,66 @@ class SurfaceStacker final : public Stacker {
     return true;
   }
 
-  /// As CareField, where the closest triangle is one of those around the vertex, or of a few others.
-  class FewField {
-   public:
-    FewField(const Surface& front, VertexFan& fan, NearTriangles& others) : front_(front), fan_(fan), others_(others) {
-      if (others.size() > 0) believed_ = static_cast<std::uint32_t>(others.foremost());
-    }
+  std::uint32_t on_front(std::uint32_t v) const { return body_.front_vertex.empty() ? v : body_.front_vertex[v]; }
 
-    Phi at(const Vec3d& x) const { return believed_ == kNone ? phi_of(fan_.away_from(x)) : of_other(believed_, x); }
-    Phi find(const Vec3d& x) {
-      Phi nearest = phi_of(fan_.find_away_from(x));
-      const std::uint32_t believed = believed_;
-      believed_ = kNone;
-      const auto look = [&](std::uint32_t i) {
-        const Phi other = of_other(i, x);
-        others_.hold_back(i, x, other.away, other.value);
-        if (!(other.value < nearest.value)) return;
-        nearest = other;
-        believed_ = i;
-      };
-      if (believed != kNone) look(believed);
-      others_.visit_nearer(x, nearest.value, [&](std::size_t i) {
-        if (i != believed) look(static_cast<std::uint32_t>(i));
-        return nearest.value;
+  /// Puts layers where the triangles around the vertex have their distances. What is nearer to some of them lies within
+  /// the radius around the vertex that this returns, as the ball around the end of its path holds nothing. It is
+  /// infinite where that tells little, or where the layers' closest triangles are clearly others.
+  double put_on_fan(std::uint32_t v, double top, VertexFan& fan, std::vector<double>& distances) {
+    fan.begin(front_, on_front(v));
+    if (!fan.whole()) return kInfinity;
+    const auto stack = stack_.stacks.of(v);
+    const EmptyBall empty{source_[v] + paths_.displacement[v], paths_.achieved[v] - faults_.rounding(v)};
+    const std::size_t before = distances.size();
+    distances.resize(before + heights_.size());
+    double radius = 0;
+    const bool there = put_down(v, top, FanField(fan), [&](std::size_t k, double phi) {
+      distances[before + k] = phi;
+      // How far a path's end is, is known.
+      const bool at_end = k + 1 == heights_.size() && is_at_end(v);
+      if (!at_end) radius = std::max(radius, empty.radius_beside(source_[v], stack[k + 1], phi));
+      return is_at_height(v, k, phi) && radius <= kFanShare * empty.radius;
+    });
+    if (there) return radius;
+    distances.resize(before);
+    return kInfinity;
+  }
+  /// Whether none of the triangles near a vertex are nearer to its layers than those around it.
+  bool is_on_fan(std::uint32_t v, std::span<const double> distances, NearTriangles& near) const {
+    near.remove_if([&](std::uint32_t t) {
+      const auto& corners = front_.triangles[t];
+      return std::find(corners.begin(), corners.end(), on_front(v)) != corners.end();
+    });
+    bool holds = true;
+    for (std::size_t k = distances.size(); near.size() > 0 && holds && k-- > 0;) {
+      const Vec3d x = stack_.stacks.of(v)[k + 1] - front_.origin;
+      const double nearer = distances[k] * (1 - kSameDistance);
+      near.visit_nearer(x, nearer, [&](std::size_t i) {
+        const Phi other = phi_of(front_.closest_on(near.triangle(i), x), x);
+        near.hold_back(i, x, other.away, other.value);
+        holds = holds && !(other.value < nearer);
+        return nearer;
       });
-      return nearest;
     }
+    return holds;
+  }
 
-   private:
-    static Phi phi_of(const Vec3d& away) { return {away.length(), away}; }
-    Phi of_other(std::uint32_t i, const Vec3d& x) const {
-      return vdb_offset::phi_of(front_.closest_on(others_.triangle(i), x), x);
-    }
-
-    const Surface& front_;
-    VertexFan& fan_;
-    NearTriangles& others_;
-    std::uint32_t believed_ = kNone;  // of the others
-  };
-  /// What may be the closest triangle to some point of the rail below its top is no farther from that than the point's
-  /// distance and the way to it, so hardly farther than the vertex: few are, which are collected once for all layers.
-  /// False if that was wrong of a layer, or does not lead to its height.
+  /// The triangles near a rail are few, and collected once for all layers. False if one of the layers turns out to be
+  /// where others may be nearer, or is not at its height.
   bool put_among_few(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
     const auto stack = stack_.stacks.of(v);
     if (near.size() > kMostNear) return false;
-    fan.begin(front_, body_.front_vertex.empty() ? v : body_.front_vertex[v]);
+    fan.begin(front_, on_front(v));
     near.remove_if([&](std::uint32_t t) { return fan.has(t); });
     const Vec3d centre = ball.centre + front_.origin;
     return put_down(v, top, FewField(front_, fan, near), [&](std::size_t k, double phi) {
-      const double height = stack_.share[v] * std::abs(heights_[k][v]);
-      return std::abs(phi - height) <= kReachedTolerance * height &&
-             (stack[k + 1] - centre).length() + phi <= ball.radius;
+      return is_at_height(v, k, phi) && (stack[k + 1] - centre).length() + phi <= ball.radius;
     });
+  }
+
+  bool is_at_height(std::uint32_t v, std::size_t k, double distance) const {
+    const double height = stack_.share[v] * std::abs(heights_[k][v]);
+    return std::abs(distance - height) <= kReachedTolerance * height;
   }
 
   void put_with_care(std::uint32_t v) {

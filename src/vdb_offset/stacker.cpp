@@ -9,10 +9,10 @@ namespace {
 
 // How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none.
 constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
-// A vertex that has been thinned in so many rounds and is still wrong takes two steps at once.
-constexpr int kSmallSteps = 2;
+// A vertex that has been thinned in so many rounds and is still wrong takes ever more steps at once, up to some.
+constexpr int kSmallSteps = 3, kMostSteps = 4;
 // Rounds in which thinned vertices are let out again, each by one step.
-constexpr int kLetOuts = 12;
+constexpr int kLetOuts = 16;
 // Thickness may change by so much of the length of an edge.
 constexpr double kThicknessSlope = 0.5;
 
@@ -214,8 +214,8 @@ bool Stacker::thin() {
   std::erase_if(wrong, [&](std::uint32_t v) { return stack_.share[v] == 0; });
   if (wrong.empty()) return false;
   for (const auto v : wrong) {
-    stack_.share[v] *= thinned_[v] < kSmallSteps ? kKeptHeight : kKeptHeight * kKeptHeight;
-    ++thinned_[v];
+    const int steps = std::clamp(thinned_[v]++ - kSmallSteps + 1, 1, kMostSteps);
+    for (int i = 0; i < steps; ++i) stack_.share[v] *= kKeptHeight;
     if (stack_.share[v] < kLeastShare) stack_.share[v] = 0;
   }
   const Indices lowered = smooth(wrong);

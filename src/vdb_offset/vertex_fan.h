@@ -21,6 +21,7 @@ class VertexFan {
     corner_ = surface.vertices[vertex];
     size_ = believed_ = 0;
     for (const auto t : surface.triangles_around(vertex)) add(surface, t, vertex);
+    whole_ = size_ == surface.triangles_around(vertex).size();
     // An odd one is its own neighbour.
     if (size_ % 2 != 0) {
       const std::size_t size = size_;
@@ -29,6 +30,8 @@ class VertexFan {
     }
   }
 
+  /// Whether no triangle around the vertex is a sliver.
+  bool whole() const { return whole_; }
   bool has(std::uint32_t triangle) const {
     return std::any_of(couples_.begin(), couples_.begin() + static_cast<std::ptrdiff_t>(couple_count()),
                        [&](const Couple& of) { return of.triangle[0] == triangle || of.triangle[1] == triangle; });
@@ -100,6 +103,8 @@ class VertexFan {
     constexpr Pair kZero{}, kOne{1, 1};
     const Way<Pair> way = both(y, y);
     const Pair by = of.b.dot(way), cy = of.c.dot(way);
+    // No place on the side that both edges turn away from gains anything.
+    if (!(std::max({by[0], by[1], cy[0], cy[1]}) > 0)) return {};
     const Pair foot_b = (by * of.cc - cy * of.bc) * of.over_area, foot_c = (cy * of.bb - by * of.bc) * of.over_area;
     const auto inside = (foot_b > kZero) & (foot_c > kZero) & (foot_b + foot_c < kOne);
     const Pair on_b = clamped(by * of.over_bb), on_c = clamped(cy * of.over_cc);
@@ -120,6 +125,7 @@ class VertexFan {
 
   Vec3d corner_{0.0};
   std::size_t size_ = 0, believed_ = 0;
+  bool whole_ = true;
   std::vector<Couple> couples_;
 };
 
