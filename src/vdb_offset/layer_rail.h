@@ -58,9 +58,10 @@ struct RailPlace {
 
 /// Where on the rail, between its start and the place `above`, the distance is `target`, far below the promised 1e-6:
 /// Newton's method on the distance of one triangle, kept between what is known to be below and above; where that does
-/// not lead on, or has led there, on the closest one's.
+/// not lead on, or has led there, on the closest one's. It is the innermost loop: called, it takes a fifteenth longer.
 template <class Field>
-RailPlace place_on(const Rail& rail, const Vec3d& origin, const RailPlace& above, double target, Field&& field) {
+[[gnu::always_inline]] inline RailPlace place_on(const Rail& rail, const Vec3d& origin, const RailPlace& above,
+                                                 double target, Field&& field) {
   constexpr double kTolerance = 1e-7, kNearlyThere = 2e-4;
   constexpr int kMost = 60;
   double low = 0, high = above.eta, believed_high = high;
