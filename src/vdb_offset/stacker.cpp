@@ -7,12 +7,14 @@
 namespace vdb_offset {
 namespace {
 
-// How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none.
-constexpr double kKeptHeight = 0.85, kLeastShare = 0.01;
+// How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none. Large steps take few
+// rounds, and what is thinned too far is let out again by small ones.
+constexpr double kKeptHeight = 0.65, kLeastShare = 0.01;
 // A vertex that has been thinned in so many rounds and is still wrong takes ever more steps at once, up to some.
 constexpr int kSmallSteps = 3, kMostSteps = 4;
-// Rounds in which thinned vertices are let out again, each by one step.
+// Rounds in which thinned vertices are let out again, each by one step; and what it had before, of what it has then.
 constexpr int kLetOuts = 16;
+constexpr double kLetOutFrom = 0.85;
 // Thickness may change by so much of the length of an edge.
 constexpr double kThicknessSlope = 0.5;
 
@@ -241,7 +243,7 @@ void Stacker::let_all_out(Progress& progress) {
 void Stacker::let_out(Indices& thinned) {
   const std::vector<double> before = stack_.share;
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
-  for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kKeptHeight);
+  for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kLetOutFrom);
   smooth_around(thinned);
   std::erase_if(thinned, stays);
   if (thinned.empty()) return;
