@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t kVertexBlock = 64;
 // Where more triangles than this may be the closest ones, a tree finds them sooner.
 constexpr std::size_t kMostNear = 2000;
-// How much longer than the way straight to the vertex the way along the rail may be.
-constexpr double kReachRoom = 1.01;
+// How much larger than around a straight rail, along which the distance grows evenly, the ball is that holds all that
+// may be the closest to its layers.
+constexpr double kBallRoom = 1.02;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where nothing nearer can lie farther from a vertex than this share of its distance, it is looked for there alone.
@@ -113,11 +114,14 @@ class SurfaceStacker final : public Stacker {
     });
   }
 
-  /// What may be the closest triangle to some point of the rail below its top is no farther from that than the point's
-  /// distance and the way to it, so hardly farther than the vertex.
+  /// What may be the closest triangle to one of a vertex's layers is no farther from that than its height, and heights
+  /// fall towards the vertex as the way there does: all lies in the ball whose diameter goes from the vertex through
+  /// the top of the rail to as far beyond as the outermost height.
   ClosestQuery::Ball ball_of_rail(std::uint32_t v, double top) const {
-    const Vec3d way = rail_of(v)(top);
-    return {source_[v] - front_.origin + way, way.length() * kReachRoom};
+    const Vec3d way = rail_of(v)(top), foot = source_[v] - front_.origin;
+    const double length = way.length(), radius = (length + std::min(length, stack_.share[v] * asked(v))) / 2;
+    if (!(length > 0)) return {foot, 0};
+    return {foot + way * (radius / length), radius * kBallRoom};
   }
 
   /// False if a vertex gets to one of its heights not by sliding there.

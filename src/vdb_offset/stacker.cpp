@@ -7,8 +7,8 @@
 namespace vdb_offset {
 namespace {
 
-// How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none. Large steps take few
-// rounds, and what is thinned too far is let out again by small ones.
+// How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none. Large steps take
+// few rounds, and what is thinned too far is let out again by small ones.
 constexpr double kKeptHeight = 0.65, kLeastShare = 0.01;
 // A vertex that has been thinned in so many rounds and is still wrong takes ever more steps at once, up to some.
 constexpr int kSmallSteps = 3, kMostSteps = 4;
@@ -29,7 +29,7 @@ Stacker::Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::
       paths_(paths),
       most_(source.size(), 0.0),
       stood_(source.size()),
-      straight_(source.size(), 0),
+      bend_(source.size(), Vec3d(0.0)),
       thinned_(source.size(), 0) {
   stack_.stacks = Stacks(source.size(), heights.size());
   stack_.first_achieved.assign(source.size(), 0.0);
@@ -59,22 +59,12 @@ LayerStack Stacker::run(Progress& progress) {
 double Stacker::share_at_end(std::uint32_t v) {
   if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
   const Vec3d& whole = paths_.displacement[v];
-  straight_[v] = is_bound(v) || !sees_all_faces(v, start_of_rail(v));
-  if (straight_[v] && !sees_all_faces(v, whole)) return 0;
+  const Vec3d start = is_bound(v) ? whole : direction_of(v) * (side_ * whole.length());
+  if (!is_bound(v) && sees_all_faces(v, start)) bend_[v] = start - whole;
+  else if (!sees_all_faces(v, whole)) return 0;
   if (paths_.state[v] == VertexState::Reached) return 1;
   const double share = std::min(1.0, paths_.achieved[v] / asked(v));
   return share < kLeastShare ? 0 : share;
-}
-
-/// As long as the whole way.
-Vec3d Stacker::start_of_rail(std::uint32_t v) const {
-  return direction_of(v) * (side_ * paths_.displacement[v].length());
-}
-
-Rail Stacker::rail_of(std::uint32_t v) const {
-  const Vec3d& whole = paths_.displacement[v];
-  if (straight_[v]) return {whole, Vec3d(0.0)};
-  return {whole, start_of_rail(v) - whole};
 }
 
 /// Lowers shares of these vertices and their neighbours until thickness is even enough: for each what the lowest
@@ -198,11 +188,11 @@ Indices Stacker::wrong_vertices() const {
 bool Stacker::straighten() {
   Indices corners = corners_of_wrong_columns();
   std::erase_if(corners, [&](std::uint32_t v) {
-    return straight_[v] || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
+    return bend_[v] == Vec3d(0.0) || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
   });
   if (corners.empty()) return false;
   for (const auto v : corners) {
-    straight_[v] = 1;
+    bend_[v] = Vec3d(0.0);
     stood_[v] = {};
   }
   stack_.statistics.straightened += corners.size();

@@ -61,7 +61,8 @@ class Stacker {
   /// Whether a vertex's outermost layer is where its path ended.
   bool is_at_end(std::uint32_t v) const { return stack_.share[v] == most_[v] && most_[v] > 0; }
 
-  Rail rail_of(std::uint32_t v) const;
+  /// It sets out in the vertex's own direction, or along a straight line, to where the path ended.
+  Rail rail_of(std::uint32_t v) const { return {paths_.displacement[v], bend_[v]}; }
   /// Where on its rail, 0 .. 1, a vertex's descent may begin: above its share. Where it has stood tells of a place
   /// nearby, which is likely to be.
   double top_of(std::uint32_t v) const {
@@ -113,7 +114,6 @@ class Stacker {
     std::vector<Standing> stood;
   };
   double share_at_end(std::uint32_t v);
-  Vec3d start_of_rail(std::uint32_t v) const;
   Indices smooth(Indices changed);
   void smooth_around(const Indices& vertices);
   void check_all_columns();
@@ -134,8 +134,8 @@ class Stacker {
   void finish();
 
   std::vector<Standing> stood_;
-  std::vector<std::uint8_t> straight_;  // whether a vertex's layers stand on a straight line
-  std::vector<std::uint8_t> thinned_;   // in how many rounds a vertex was
+  std::vector<Vec3d> bend_;            // of a vertex's rail, zero where its layers stand on a straight line
+  std::vector<std::uint8_t> thinned_;  // in how many rounds a vertex was
   std::vector<std::uint8_t> wrong_column_;
   Indices wrong_columns_;
 };
