@@ -132,16 +132,18 @@ class CellMeasurer {
     };
     for (const std::size_t each : {c, other}) result_.types[columns.cells[each]] = CellType::Prism;
     const Way<Pair> origin = both(origin_, origin_);
-    PrismLevel<Pair> below = level(0);
-    Pair six_volumes = below.normal.dot(origin - below.corner[0]);
+    // The levels above and below take turns: they are too large to be copied.
+    std::array<PrismLevel<Pair>, 2> levels{level(0), level(0)};
+    Pair six_volumes = levels[0].normal.dot(origin - levels[0].corner[0]);
     for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
-      const PrismLevel<Pair> above = level(layer + 1);
+      PrismLevel<Pair>&above = levels[(layer + 1) % 2], &below = levels[layer % 2];
+      above = level(layer + 1);
       const QualityOf<Pair> quality = prism_quality_of(prism_squares(below, above));
       set(layer, columns.cells[c], {quality.jacobian[0], quality.aspect[0]});
       set(layer, columns.cells[other], {quality.jacobian[1], quality.aspect[1]});
-      below = above;
     }
-    six_volumes += below.normal.dot(below.corner[0] - origin);
+    const PrismLevel<Pair>& last = levels[cells_.layers % 2];
+    six_volumes += last.normal.dot(last.corner[0] - origin);
     return six_volumes[0] + six_volumes[1] + six_volumes_at_sides(c) + six_volumes_at_sides(other);
   }
 

@@ -20,7 +20,8 @@ using CellQuality = QualityOf<double>;
 /// squared lengths; 0 where one of these is.
 template <class Real>
 Real unit_square(const Real& triple, const Real& squares) {
-  return triple * (triple < 0 ? -triple : triple) / (squares > 0 ? squares : Real{} + 1.0);
+  const Real size = greater(triple, -triple), least = Real{} + std::numeric_limits<double>::min();
+  return triple * size / greater(squares, least);
 }
 
 /// What a cell's quality is found from: the least square of a triple product over its corners, and the squared lengths
