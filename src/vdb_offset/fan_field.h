@@ -15,22 +15,31 @@ namespace vdb_offset {
 // Distances that differ by less are the same.
 inline constexpr double kSameDistance = 1e-9;
 
-/// A ball that holds nothing of the front.
-struct EmptyBall {
-  Vec3d centre;
-  double radius;
+/// Around the end of a vertex's path lies a ball that holds nothing of the front. What is nearer to a place x than some
+/// distance is in the ball around x, and outside of that one: nothing of it is farther than where both their surfaces
+/// meet from the pole of the ball around x, on the way from the end through x. Around the vertex, all of that lies
+/// within a radius.
+class SpaceBesideBall {
+ public:
+  SpaceBesideBall(const Vec3d& vertex, const Vec3d& end, double radius) : vertex_(vertex), end_(end), radius_(radius) {}
 
-  /// Around `vertex`, the radius that all lies within which is nearer to x than `distance`: it is in the ball around x,
-  /// and outside of this one. Nothing of that is farther than where both their surfaces meet from the pole of the ball
-  /// around x, on the way from the centre through x.
-  double radius_beside(const Vec3d& vertex, const Vec3d& x, double distance) const {
-    const Vec3d away = x - centre;
-    const double way = away.length(), beyond = way + distance - radius * (1 - kSameDistance);
-    if (!(beyond > 0)) return 0;
-    if (!(way > 0)) return std::numeric_limits<double>::infinity();
-    const double rim = std::sqrt(distance / way * beyond * (way + distance + radius));
-    return rim + (x + away * (distance / way) - vertex).length();
+  /// False if the radius is now beyond `most`.
+  bool add(const Vec3d& x, double distance, double most) {
+    const Vec3d away = x - end_;
+    const double way = away.length(), beyond = way + distance - radius_ * (1 - kSameDistance);
+    if (!(beyond > 0)) return true;
+    if (!(way > 0)) return false;
+    const double scale = distance / way;
+    rim_ = std::max(rim_, scale * beyond * (way + distance + radius_));
+    pole_ = std::max(pole_, (x + away * scale - vertex_).lengthSqr());
+    return std::max(rim_, pole_) <= most * most;
   }
+  double radius() const { return std::sqrt(rim_) + std::sqrt(pole_); }
+
+ private:
+  Vec3d vertex_, end_;
+  double radius_;
+  double rim_ = 0, pole_ = 0;  // how far rims are from their poles, and these from the vertex, squared
 };
 
 /// As CareField, where the closest triangle is one of those around the vertex.

@@ -146,20 +146,20 @@ class SurfaceStacker final : public Stacker {
   /// infinite where that tells little, or where the layers' closest triangles are clearly others.
   double put_on_fan(std::uint32_t v, double top, VertexFan& fan, std::vector<double>& distances) {
     fan.begin(front_, on_front(v));
-    if (!fan.whole()) return kInfinity;
+    const double free = paths_.achieved[v] - faults_.rounding(v);
+    if (!fan.whole() || !(free > 0)) return kInfinity;
     const auto stack = stack_.stacks.of(v);
-    const EmptyBall empty{source_[v] + paths_.displacement[v], paths_.achieved[v] - faults_.rounding(v)};
+    SpaceBesideBall beside(source_[v], source_[v] + paths_.displacement[v], free);
     const std::size_t before = distances.size();
     distances.resize(before + heights_.size());
-    double radius = 0;
     const bool there = put_down(v, top, FanField(fan), [&](std::size_t k, double phi) {
       distances[before + k] = phi;
+      if (!is_at_height(v, k, phi)) return false;
       // How far a path's end is, is known.
       const bool at_end = k + 1 == heights_.size() && is_at_end(v);
-      if (!at_end) radius = std::max(radius, empty.radius_beside(source_[v], stack[k + 1], phi));
-      return is_at_height(v, k, phi) && radius <= kFanShare * empty.radius;
+      return at_end || beside.add(stack[k + 1], phi, kFanShare * free);
     });
-    if (there) return radius;
+    if (there) return beside.radius();
     distances.resize(before);
     return kInfinity;
   }
