@@ -37,23 +37,16 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
       finder_(surface_, place_) {
-  if (body.off_source) {
-    source_finder_.emplace(surface_, source_);
-    find_folded();
-  }
+  if (body.off_source) source_finder_.emplace(surface_, source_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
   if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
   if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, place_, distances_);
   source_crossings_.emplace(surface_, source_crossings ? std::move(*source_crossings) : finder_.all());
 }
 
-void FaultFinder::find_folded() {
-  folded_.assign(source_.size(), 0);
-  for_each_index(source_.size(), [&](std::size_t v) {
-    const auto vertex = static_cast<std::uint32_t>(v);
-    const std::uint32_t on_front = body_.front_vertex.empty() ? vertex : body_.front_vertex[vertex];
-    folded_[v] = on_front != kNone && is_folded(body_.front.surface(), on_front);
-  });
+bool FaultFinder::is_folded_source(std::uint32_t v) const {
+  const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
+  return on_front != kNone && is_folded(body_.front.surface(), on_front);
 }
 
 Indices FaultFinder::triangles_around(const Indices& vertices) {
@@ -213,12 +206,14 @@ Indices FaultFinder::caught() const {
   Indices caught;
   if (!source_finder_) return caught;
   for (const auto t : faces_) {
-    const auto& corners = surface_.triangles[t];
-    const bool folded = folded_[corners[0]] || folded_[corners[1]] || folded_[corners[2]];
-    if (!folded || fault_[t] != Fault::Crowded) continue;
+    if (fault_[t] != Fault::Crowded) continue;
+    Indices folded;
+    for (const auto v : surface_.triangles[t])
+      if (is_folded_source(v)) folded.push_back(v);
+    if (folded.empty()) continue;
     for (const auto s : source_finder_->met_by(t, place_))
       for (const auto v : surface_.triangles[s])
-        if (folded_[v] && std::find(corners.begin(), corners.end(), v) != corners.end()) caught.push_back(v);
+        if (std::find(folded.begin(), folded.end(), v) != folded.end()) caught.push_back(v);
   }
   sort_unique(caught);
   return caught;

@@ -84,7 +84,7 @@ class FaultFinder {
  private:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
-  void find_folded();
+  bool is_folded_source(std::uint32_t v) const;
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
@@ -113,7 +113,6 @@ class FaultFinder {
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
   std::vector<std::uint8_t> right_side_;
-  std::vector<std::uint8_t> folded_;  // of each vertex; empty but where the source must not be met
   std::vector<Fault> fault_;          // of each triangle
   IndexGatherer touched_;             // triangles
   IndexGatherer wrong_;               // vertices
