@@ -113,9 +113,9 @@ class FaultFinder {
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
   std::vector<std::uint8_t> right_side_;
-  std::vector<Fault> fault_;          // of each triangle
-  IndexGatherer touched_;             // triangles
-  IndexGatherer wrong_;               // vertices
+  std::vector<Fault> fault_;  // of each triangle
+  IndexGatherer touched_;     // triangles
+  IndexGatherer wrong_;       // vertices
   Indices faces_, misplaced_;
   std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;

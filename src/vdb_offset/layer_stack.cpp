@@ -11,8 +11,8 @@
 namespace vdb_offset {
 namespace {
 
-// Vertices that a thread takes at a time.
-constexpr std::size_t kVertexBlock = 64;
+// Vertices that a thread takes at a time: fewer, if there are not many.
+constexpr std::size_t kVertexBlock = 64, kSmallBlock = 16, kFewVertices = 8192;
 // Where more triangles than this may be the closest ones, a tree finds them sooner.
 constexpr std::size_t kMostNear = 2000;
 // How much larger than around a straight rail, along which the distance grows evenly, the ball is that holds all that
@@ -71,10 +71,11 @@ class SurfaceStacker final : public Stacker {
   double distance_of(std::uint32_t v) const override { return faults_.distance_of(v); }
 
   void put(const Indices& vertices) override {
-    for_each_index((vertices.size() + kVertexBlock - 1) / kVertexBlock,
+    const std::size_t size = vertices.size() < kFewVertices ? kSmallBlock : kVertexBlock;
+    for_each_index((vertices.size() + size - 1) / size,
                    [&](std::size_t block) {
-                     const std::size_t first = block * kVertexBlock;
-                     put_block(std::span(vertices).subspan(first, std::min(kVertexBlock, vertices.size() - first)));
+                     const std::size_t first = block * size;
+                     put_block(std::span(vertices).subspan(first, std::min(size, vertices.size() - first)));
                    },
                    1);
   }
