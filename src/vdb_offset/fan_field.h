@@ -1,10 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
-#include "vdb_offset/indices.h"
 #include "vdb_offset/layer_rail.h"
 #include "vdb_offset/near_triangles.h"
 #include "vdb_offset/surface.h"

@@ -44,9 +44,13 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
   source_crossings_.emplace(surface_, source_crossings ? std::move(*source_crossings) : finder_.all());
 }
 
-bool FaultFinder::is_folded_source(std::uint32_t v) const {
-  const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
-  return on_front != kNone && is_folded(body_.front.surface(), on_front);
+void FaultFinder::find_folded() {
+  folded_.assign(source_.size(), 0);
+  for_each_index(source_.size(), [&](std::size_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    const std::uint32_t on_front = body_.front_vertex.empty() ? vertex : body_.front_vertex[vertex];
+    folded_[v] = on_front != kNone && is_folded(body_.front.surface(), on_front);
+  });
 }
 
 Indices FaultFinder::triangles_around(const Indices& vertices) {
@@ -202,18 +206,17 @@ bool FaultFinder::meets_other_skin(std::uint32_t t) const {
                      [&](std::uint32_t s) { return body_.is_front(s) && !source_crossings_->sheets_cross(s, t); });
 }
 
-Indices FaultFinder::caught() const {
+Indices FaultFinder::caught() {
   Indices caught;
   if (!source_finder_) return caught;
+  if (folded_.empty()) find_folded();
   for (const auto t : faces_) {
-    if (fault_[t] != Fault::Crowded) continue;
-    Indices folded;
-    for (const auto v : surface_.triangles[t])
-      if (is_folded_source(v)) folded.push_back(v);
-    if (folded.empty()) continue;
+    const auto& corners = surface_.triangles[t];
+    const bool folded = folded_[corners[0]] || folded_[corners[1]] || folded_[corners[2]];
+    if (!folded || fault_[t] != Fault::Crowded) continue;
     for (const auto s : source_finder_->met_by(t, place_))
       for (const auto v : surface_.triangles[s])
-        if (std::find(folded.begin(), folded.end(), v) != folded.end()) caught.push_back(v);
+        if (folded_[v] && std::find(corners.begin(), corners.end(), v) != corners.end()) caught.push_back(v);
   }
   sort_unique(caught);
   return caught;

@@ -66,7 +66,7 @@ class FaultFinder {
   template <class Visit>
   void for_each_wrong_corner(Visit&& visit) const;
   /// Folded vertices (see is_folded()) whose faces meet the source around them, which only ends where they stay on it.
-  Indices caught() const;
+  Indices caught();
   /// All vertices that something is wrong with.
   Indices wrong_vertices();
 
@@ -84,7 +84,7 @@ class FaultFinder {
  private:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
-  bool is_folded_source(std::uint32_t v) const;
+  void find_folded();
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
@@ -113,9 +113,10 @@ class FaultFinder {
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
   std::vector<std::uint8_t> right_side_;
-  std::vector<Fault> fault_;  // of each triangle
-  IndexGatherer touched_;     // triangles
-  IndexGatherer wrong_;       // vertices
+  std::vector<std::uint8_t> folded_;  // of each vertex; empty until something may be caught
+  std::vector<Fault> fault_;          // of each triangle
+  IndexGatherer touched_;             // triangles
+  IndexGatherer wrong_;               // vertices
   Indices faces_, misplaced_;
   std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;

@@ -133,7 +133,8 @@ class CellMeasurer {
     for (const std::size_t each : {c, other}) result_.types[columns.cells[each]] = CellType::Prism;
     const Way<Pair> origin = both(origin_, origin_);
     // The levels above and below take turns: they are too large to be copied.
-    std::array<PrismLevel<Pair>, 2> levels{level(0), level(0)};
+    std::array<PrismLevel<Pair>, 2> levels;
+    levels[0] = level(0);
     Pair six_volumes = levels[0].normal.dot(origin - levels[0].corner[0]);
     for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
       PrismLevel<Pair>&above = levels[(layer + 1) % 2], &below = levels[layer % 2];

@@ -83,7 +83,7 @@ class SurfaceStacker final : public Stacker {
   /// Vertices whose layers are put down below the tops of their rails, and the balls that all lies in that these may
   /// be closest to.
   struct Puts {
-    Indices vertices;
+    std::vector<std::uint32_t> vertices;
     std::vector<double> tops;
     std::vector<ClosestQuery::Ball> balls;
     void add(std::uint32_t v, double top, const ClosestQuery::Ball& ball) {
@@ -147,7 +147,7 @@ class SurfaceStacker final : public Stacker {
   /// infinite where that tells little, or where the layers' closest triangles are clearly others.
   double put_on_fan(std::uint32_t v, double top, VertexFan& fan, std::vector<double>& distances) {
     fan.begin(front_, on_front(v));
-    const double free = paths_.achieved[v] - faults_.rounding(v);
+    const double free = paths_.achieved[v] - 2 * faults_.rounding(v);
     if (!fan.whole() || !(free > 0)) return kInfinity;
     const auto stack = stack_.stacks.of(v);
     SpaceBesideBall beside(source_[v], source_[v] + paths_.displacement[v], free);

@@ -41,6 +41,7 @@ QualityOf<Real> quality_of(const QualitySquares<Real>& squares) {
 /// A triangle on which a prism stands, or which lies on one, or both.
 template <class Real>
 struct PrismLevel {
+  PrismLevel() = default;
   explicit PrismLevel(const std::array<Way<Real>, 3>& corners) : corner(corners) {
     Way<Real> side[3];
     for (std::size_t k = 0; k < 3; ++k) {

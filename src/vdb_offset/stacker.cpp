@@ -59,7 +59,7 @@ LayerStack Stacker::run(Progress& progress) {
 double Stacker::share_at_end(std::uint32_t v) {
   if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
   const Vec3d& whole = paths_.displacement[v];
-  const Vec3d start = is_bound(v) ? whole : direction_of(v) * (side_ * whole.length());
+  const Vec3d start = direction_of(v) * (side_ * whole.length());
   if (!is_bound(v) && sees_all_faces(v, start)) bend_[v] = start - whole;
   else if (!sees_all_faces(v, whole)) return 0;
   if (paths_.state[v] == VertexState::Reached) return 1;
