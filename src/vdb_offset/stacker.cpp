@@ -92,12 +92,12 @@ Indices Stacker::smooth(Indices changed) {
 }
 
 /// As smooth(), where vertices have been let out that their neighbours may hold back.
-void Stacker::smooth_around(const Indices& vertices) {
+Indices Stacker::smooth_around(const Indices& vertices) {
   Indices around = vertices;
   for (const auto v : vertices)
     for (const auto column : columns_around(v)) around.insert(around.end(), base(column).begin(), base(column).end());
   sort_unique(around);
-  smooth(std::move(around));
+  return smooth(std::move(around));
 }
 
 /// Looks whether columns column(0 .. count - 1) are valid, two at a time.
@@ -222,36 +222,41 @@ void Stacker::let_all_out(Progress& progress) {
   Indices thinned;
   for (std::uint32_t v = 0; v < source_.size(); ++v)
     if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) thinned.push_back(v);
+  std::vector<double> before = stack_.share;
   for (int i = 0; i < kLetOuts && !thinned.empty(); ++i) {
-    let_out(thinned);
+    let_out(thinned, before);
     progress.advance(1);
   }
 }
 
 /// Lets these vertices out by one step, as far as thickness stays even, and takes those back that something is then
-/// wrong with. Keeps in `thinned` who has been let out, and is not at its end yet.
-void Stacker::let_out(Indices& thinned) {
-  const std::vector<double> before = stack_.share;
+/// wrong with. Keeps in `thinned` who has been let out, and is not at its end yet; `before`, the shares that there are,
+/// keeps up with them.
+void Stacker::let_out(Indices& thinned, std::vector<double>& before) {
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
   for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kLetOutFrom);
-  smooth_around(thinned);
+  Indices changed = thinned;
+  const auto add = [&](const Indices& others) { changed.insert(changed.end(), others.begin(), others.end()); };
+  add(smooth_around(thinned));
   std::erase_if(thinned, stays);
   if (thinned.empty()) return;
   const Snapshot stood = snapshot(thinned);
   move(thinned);
-  take_back(before, stood);
+  add(take_back(before, stood));
   std::erase_if(thinned, [&](std::uint32_t v) { return stays(v) || stack_.share[v] == most_[v]; });
+  for (const auto v : changed) before[v] = stack_.share[v];
 }
 
 /// Takes vertices that something is wrong with, and who hinders their thickness from being even, back to where all was
 /// well. Those with the share they had are put back themselves: on its rail, a vertex may find that share's height at
-/// several places.
-void Stacker::take_back(const std::vector<double>& before, const Snapshot& snapshot) {
+/// several places. Returns all of them.
+Indices Stacker::take_back(const std::vector<double>& before, const Snapshot& snapshot) {
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
+  Indices taken;
   while (true) {
     Indices moved = wrong_vertices();
     std::erase_if(moved, stays);
-    if (moved.empty()) return;
+    if (moved.empty()) return taken;
     for (const auto v : moved) stack_.share[v] = before[v];
     const Indices lowered = smooth(moved);
     moved.insert(moved.end(), lowered.begin(), lowered.end());
@@ -261,6 +266,7 @@ void Stacker::take_back(const std::vector<double>& before, const Snapshot& snaps
       if (stack_.share[v] != before[v] || !restore(snapshot, v)) between.push_back(v);
     put(between);
     judge_moved(moved);
+    taken.insert(taken.end(), moved.begin(), moved.end());
   }
 }
 

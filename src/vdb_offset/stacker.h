@@ -115,7 +115,7 @@ class Stacker {
   };
   double share_at_end(std::uint32_t v);
   Indices smooth(Indices changed);
-  void smooth_around(const Indices& vertices);
+  Indices smooth_around(const Indices& vertices);
   void check_all_columns();
   template <class Column>
   void judge(std::size_t count, Column&& column);
@@ -129,8 +129,8 @@ class Stacker {
   bool straighten();
   bool thin();
   void let_all_out(Progress& progress);
-  void let_out(Indices& thinned);
-  void take_back(const std::vector<double>& before, const Snapshot& snapshot);
+  void let_out(Indices& thinned, std::vector<double>& before);
+  Indices take_back(const std::vector<double>& before, const Snapshot& snapshot);
   void finish();
 
   std::vector<Standing> stood_;
