@@ -1,6 +1,7 @@
 #include "vdb_offset/stacker.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "vdb_offset/parallel.h"
 
@@ -67,6 +68,24 @@ double Stacker::share_at_end(std::uint32_t v) {
   return share < kLeastShare ? 0 : share;
 }
 
+/// Calls visit(neighbour, length of the edge) for each that moves: twice, where two columns share the edge.
+template <class Visit>
+void Stacker::for_each_neighbour(std::uint32_t v, Visit&& visit) const {
+  for (const auto column : columns_around(v)) {
+    const auto ring = base(column);
+    const auto k = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
+    for (const auto w : {ring[(k + 1) % ring.size()], ring[(k + ring.size() - 1) % ring.size()]})
+      if (moves(w)) visit(w, (source_[w] - source_[v]).length());
+  }
+}
+
+/// False if a vertex's thickness is no more than what a neighbour allows.
+bool Stacker::lower(std::uint32_t v, double most) {
+  if (!(stack_.share[v] * asked(v) > most * (1 + 1e-9))) return false;
+  stack_.share[v] = most / asked(v) < kLeastShare ? 0 : most / asked(v);
+  return true;
+}
+
 /// Lowers shares of these vertices and their neighbours until thickness is even enough: for each what the lowest
 /// allow. Returns all vertices that it lowered.
 Indices Stacker::smooth(Indices changed) {
@@ -75,29 +94,28 @@ Indices Stacker::smooth(Indices changed) {
     const std::uint32_t v = changed[i];
     if (!moves(v)) continue;
     const double thickness = stack_.share[v] * asked(v);
-    for (const auto column : columns_around(v)) {
-      const auto ring = base(column);
-      const std::size_t k = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
-      for (const auto w : {ring[(k + 1) % ring.size()], ring[(k + ring.size() - 1) % ring.size()]}) {
-        const double most = thickness + kThicknessSlope * (source_[w] - source_[v]).length();
-        if (!(stack_.share[w] * asked(w) > most * (1 + 1e-9))) continue;
-        stack_.share[w] = most / asked(w) < kLeastShare ? 0 : most / asked(w);
-        lowered.push_back(w);
-        changed.push_back(w);
-      }
-    }
+    for_each_neighbour(v, [&](std::uint32_t w, double length) {
+      if (!lower(w, thickness + kThicknessSlope * length)) return;
+      lowered.push_back(w);
+      changed.push_back(w);
+    });
   }
   sort_unique(lowered);
   return lowered;
 }
 
 /// As smooth(), where vertices have been let out that their neighbours may hold back.
-Indices Stacker::smooth_around(const Indices& vertices) {
-  Indices around = vertices;
-  for (const auto v : vertices)
-    for (const auto column : columns_around(v)) around.insert(around.end(), base(column).begin(), base(column).end());
-  sort_unique(around);
-  return smooth(std::move(around));
+Indices Stacker::smooth_back(const Indices& vertices) {
+  std::vector<double> most(vertices.size(), std::numeric_limits<double>::infinity());
+  for_each_index(vertices.size(), [&](std::size_t i) {
+    for_each_neighbour(vertices[i], [&](std::uint32_t w, double length) {
+      most[i] = std::min(most[i], stack_.share[w] * asked(w) + kThicknessSlope * length);
+    });
+  });
+  Indices held_back;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    if (lower(vertices[i], most[i])) held_back.push_back(vertices[i]);
+  return smooth(std::move(held_back));
 }
 
 /// Looks whether columns column(0 .. count - 1) are valid, two at a time.
@@ -237,7 +255,7 @@ void Stacker::let_out(Indices& thinned, std::vector<double>& before) {
   for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kLetOutFrom);
   Indices changed = thinned;
   const auto add = [&](const Indices& others) { changed.insert(changed.end(), others.begin(), others.end()); };
-  add(smooth_around(thinned));
+  add(smooth_back(thinned));
   std::erase_if(thinned, stays);
   if (thinned.empty()) return;
   const Snapshot stood = snapshot(thinned);

@@ -114,8 +114,11 @@ class Stacker {
     std::vector<Standing> stood;
   };
   double share_at_end(std::uint32_t v);
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t v, Visit&& visit) const;
+  bool lower(std::uint32_t v, double most);
   Indices smooth(Indices changed);
-  Indices smooth_around(const Indices& vertices);
+  Indices smooth_back(const Indices& vertices);
   void check_all_columns();
   template <class Column>
   void judge(std::size_t count, Column&& column);
