@@ -104,7 +104,7 @@ Indices Stacker::smooth(Indices changed) {
   return lowered;
 }
 
-/// As smooth(), where vertices have been let out that their neighbours may hold back.
+/// As smooth(), where only these vertices, which have been let out, may be too high. Returns whom else it lowered.
 Indices Stacker::smooth_back(const Indices& vertices) {
   std::vector<double> most(vertices.size(), std::numeric_limits<double>::infinity());
   for_each_index(vertices.size(), [&](std::size_t i) {
