@@ -36,7 +36,7 @@ GrownCurves grow(const Curves& curves, std::vector<Distances> heights) {
   grown.layers = grow_curve_layers(curves.view(), heights, {});
   grown.cells = make_curve_cells(curves.view(), grown.layers);
   grown.report = report_layers(grown.cells.segments.view(), grown.layers, {}, grown.cells.facts,
-                               layer_quality_of(grown.cells.mesh, grown.layers.count()));
+                               measure_curve_cells(grown.cells, grown.layers));
   return grown;
 }
 

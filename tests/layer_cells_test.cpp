@@ -14,6 +14,7 @@
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/wall_names.h"
+#include "vdb_offset/prism_columns.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/scene/shapes.h"
 
@@ -111,7 +112,7 @@ void check_cells(const Polygons& mesh, const LayersResult& layers) {
   const LayerQuality quality = measure_cells(layers, cells);
   const VolumeMesh volume = make_cells(layers, cells, {}, quality);
   check_cells(volume);
-  test::check_measured(quality, volume, layers.count());
+  test::check_measured(quality, volume, layers, cells);
 }
 
 std::size_t count(const VolumeMesh& volume, CellType type) {
@@ -495,6 +496,40 @@ TEST_CASE("cell quality: the angle at the wall", "[cell_quality]") {
   CHECK(wall_angle(wall, wall) == 90);
 }
 
+TEST_CASE("prism columns: four at once and pairs give the same bits", "[cell_quality]") {
+  constexpr std::size_t kLayers = 3, kInLayer = 7;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const Vec3d origin(any(random), any(random), any(random));
+  std::vector<Vec3d> stacks(3 * PrismColumns::kCount * (kLayers + 1));
+  struct Found {
+    std::vector<float> jacobian = std::vector<float>(kLayers * kInLayer, -2), aspect = jacobian, angle = jacobian;
+    SixVolumes six_volumes{};
+    bool operator==(const Found&) const = default;
+  };
+  for (int trial = 0; trial < 1000; ++trial) {
+    for (Vec3d& place : stacks)
+      for (int i = 0; i < 3; ++i) place[i] = trial % 4 == 0 ? std::round(any(random)) : any(random);
+    Found found[2];
+    for (const bool pairs : {false, true}) {
+      Found& to = found[pairs];
+      PrismColumns columns{.layers = kLayers,
+                           .in_layer = kInLayer,
+                           .scaled_jacobian = to.jacobian.data() + 1,
+                           .aspect_ratio = to.aspect.data() + 1,
+                           .wall_angle = to.angle.data() + 1,
+                           .origin = origin.asPointer()};
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < PrismColumns::kCount; ++i)
+          columns.stack[k][i] = stacks[(i * 3 + k) * (kLayers + 1)].asPointer();
+      to.six_volumes = pairs ? measure_prism_pairs(columns) : measure_prism_columns(columns);
+    }
+    REQUIRE(found[0] == found[1]);
+    CHECK(found[0].jacobian[kInLayer] == -2);
+    CHECK(found[0].jacobian[PrismColumns::kCount] >= -2 / std::numbers::sqrt3);
+  }
+}
+
 TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever their order", "[layer_report]") {
   const Polygons mesh = grid(60, false);
   LayersResult layers = layers_up(mesh, {0.25, 0.5}, std::vector<double>(mesh.positions.size(), 1));
@@ -506,10 +541,9 @@ TEST_CASE("layer report: quantiles by area are those of sorted faces, whatever t
                            : shape == 1 ? std::abs(at - 0.5)
                                         : std::floor(3 * at);
     }
-    LayerCellFacts facts;
-    const VolumeMesh volume = make_cells(mesh.view(), layers, {}, &facts);
+    const LayerCells cells = number_cells(mesh.view(), layers);
     const Spread reached =
-        report_layers(mesh.view(), layers, {}, facts, layer_quality_of(volume, layers.count())).all.reached;
+        report_layers(mesh.view(), layers, {}, cells.facts, measure_cells(layers, cells)).all.reached;
     std::vector<double> sorted;
     for (std::size_t f = 0; f < mesh.view().face_count(); ++f) {
       double mean = 0;
@@ -541,10 +575,11 @@ TEST_CASE("layer report: figures of each patch and of all", "[layer_report]") {
   layers.states[1] = VertexState::Limited;
   layers.first_achieved[24] = 0.25 * 1.5;
   const WallNames names{{"front", "back"}, {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1}};
-  LayerCellFacts facts;
-  const VolumeMesh volume = make_cells(mesh.view(), layers, names, &facts);
+  const LayerCells cells = number_cells(mesh.view(), layers);
+  const LayerQuality quality = measure_cells(layers, cells);
+  const VolumeMesh volume = make_cells(layers, cells, names, quality);
   check_cells(volume);
-  const LayerReport report = report_layers(mesh.view(), layers, names, facts, layer_quality_of(volume, layers.count()));
+  const LayerReport report = report_layers(mesh.view(), layers, names, cells.facts, quality);
   CHECK(report.layers == 2);
   CHECK(report.volume == Approx(sum_of_cells(volume)).epsilon(1e-12));
   CHECK(report.all.area == Approx(1));

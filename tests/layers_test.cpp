@@ -50,7 +50,7 @@ Grown grow(const Polygons& mesh, std::span<const Distances> heights, const Offse
   check_numbered(mesh, grown.layers, cells);
   const LayerQuality quality = measure_cells(grown.layers, cells);
   grown.volume = make_cells(grown.layers, cells, {}, quality);
-  test::check_measured(quality, grown.volume, grown.layers.count());
+  test::check_measured(quality, grown.volume, grown.layers, cells);
   grown.report = report_layers(mesh.view(), grown.layers, {}, cells.facts, quality);
   return grown;
 }

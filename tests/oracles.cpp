@@ -93,13 +93,28 @@ double share(const OffsetResult& result, VertexState state) {
   return static_cast<double>(by_state[static_cast<std::size_t>(state)]) / static_cast<double>(used);
 }
 
-void check_measured(const LayerQuality& measured, const VolumeMesh& made, std::size_t layers) {
-  const LayerQuality expected = layer_quality_of(made, layers);
-  CHECK(measured.types == expected.types);
-  CHECK(measured.points == expected.points);
-  CHECK(measured.volume == Approx(expected.volume).epsilon(1e-9));
+void check_measured(const LayerQuality& measured, const VolumeMesh& made, const LayersResult& layers,
+                    const LayerCells& cells) {
+  REQUIRE(made.cell_count() == cells.count());
+  CHECK(measured.types ==
+        std::vector<CellType>(made.cell_types.begin(),
+                              made.cell_types.begin() + static_cast<std::ptrdiff_t>(cells.in_layer())));
+  CHECK(measured.points == made.points.size());
+  CHECK(measured.volume == Approx(enclosed_volume(made)).epsilon(1e-9));
   CHECK(measured.scaled_jacobian == quality_fields(made)[0].values);
   CHECK(measured.aspect_ratio == quality_fields(made)[1].values);
+  REQUIRE(measured.wall_angle.size() == cells.in_layer());
+  std::size_t wrong = 0;
+  for (std::size_t c = 0; c < cells.columns.count(); ++c) {
+    std::vector<Vec3d> wall, first;
+    for (const auto p : cells.columns.ring(c)) {
+      const auto stack = layers.stacks.of(cells.points.vertex[p]);
+      wall.push_back(stack[0]), first.push_back(stack[1]);
+    }
+    for (auto cell = cells.columns.cells[c]; cell < cells.columns.cells[c + 1]; ++cell)
+      wrong += measured.wall_angle[cell] != Approx(wall_angle(wall, first)).epsilon(1e-7).margin(1e-12);
+  }
+  CHECK(wrong == 0);
 }
 
 }  // namespace vdb_offset::test

@@ -43,7 +43,8 @@ PositionErrors position_errors(PolygonView source, const OffsetResult& result, A
 }
 
 /// Checks what was measured of cells before they were made against what the made ones have.
-void check_measured(const LayerQuality& measured, const VolumeMesh& made, std::size_t layers);
+void check_measured(const LayerQuality& measured, const VolumeMesh& made, const LayersResult& layers,
+                    const LayerCells& cells);
 
 /// The result's share of vertices in a state, among those in use.
 double share(const OffsetResult& result, VertexState state);

@@ -1,6 +1,7 @@
 #include "vdb_offset/curve_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "vdb_offset/cell_quality.h"
@@ -126,6 +127,25 @@ class CurveCellMaker {
 
 CurveCells make_curve_cells(CurvesView curves, const LayersResult& layers) {
   return CurveCellMaker(curves, layers).make();
+}
+
+LayerQuality measure_curve_cells(const CurveCells& cells, const LayersResult& layers) {
+  auto [jacobian, aspect] = quality_fields(cells.mesh);
+  LayerQuality quality{.scaled_jacobian = std::move(jacobian.values),
+                       .aspect_ratio = std::move(aspect.values),
+                       .volume = enclosed_volume(cells.mesh),
+                       .points = cells.mesh.points.size(),
+                       .plane = true};
+  const std::size_t in_layer = cells.mesh.cell_count() / layers.count();
+  quality.types.assign(cells.mesh.cell_types.begin(),
+                       cells.mesh.cell_types.begin() + static_cast<std::ptrdiff_t>(in_layer));
+  for (std::size_t s = 0; s < cells.segments.view().face_count(); ++s) {
+    if (cells.facts.cells[s] == 0) continue;
+    const auto segment = cells.segments.view().face(s);
+    const auto a = layers.stacks.of(segment[0]), b = layers.stacks.of(segment[1]);
+    quality.wall_angle.push_back(static_cast<float>(wall_angle(std::array{a[0], b[0]}, std::array{a[1], b[1]})));
+  }
+  return quality;
 }
 
 StructuredBlock make_curve_block(CurvesView curves, const LayersResult& layers) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdb_offset/layer_cells.h"
+#include "vdb_offset/layer_quality.h"
 #include "vdb_offset/ribbon.h"
 
 namespace vdb_offset {
@@ -18,6 +19,9 @@ struct CurveCells {
 /// without the flat ones. Cells: layer by layer from the wall, in the order of segments. Patches: "wall", "outer", and
 /// "sides" if curves end. Fields as make_cells() has them. \throw InvalidInput as plane_of()
 CurveCells make_curve_cells(CurvesView curves, const LayersResult& layers);
+
+/// Measures those cells. \pre `cells` are those of `layers`.
+LayerQuality measure_curve_cells(const CurveCells& cells, const LayersResult& layers);
 
 /// Layers on one curve as one structured block, nk = 1: i along the curve, j from the wall outward, and i, j and the
 /// plane's normal a right-handed system, in which the cells have positive areas. A closed curve is cut open at its

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <string>
 
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/cell_stack.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/prism_columns.h"
 
 namespace vdb_offset {
 namespace {
@@ -69,6 +68,7 @@ class CellMeasurer {
     result_.points = cells_.point_count();
     if (cells_.count() == 0) return std::move(result_);
     result_.types.resize(cells_.in_layer());
+    result_.wall_angle.resize(cells_.in_layer());
     origin_ = stack(cells_.columns.corners[0])[0];
     std::vector<float>* const fields[] = {&result_.scaled_jacobian, &result_.aspect_ratio};
     for_each_index(
@@ -80,8 +80,7 @@ class CellMeasurer {
         [&](std::size_t b) {
           ColumnMesh column;
           const std::size_t end = std::min(columns, (b + 1) * kBlock);
-          for (std::size_t c = b * kBlock; c < end; c += 2)
-            six_volumes[b] += measure_two(c, std::min(c + 1, end - 1), column);
+          six_volumes[b] = measure_columns(b * kBlock, end, column);
         },
         1);
     result_.volume = std::accumulate(six_volumes.begin(), six_volumes.end(), 0.0) / 6;
@@ -90,26 +89,26 @@ class CellMeasurer {
 
  private:
   static constexpr std::size_t kBlock = 1024;
-  // So many columns on, stacks that are far apart in memory are asked for.
-  static constexpr std::size_t kAhead = 4;
 
   const Vec3d* stack(Index point) const { return layers_.stacks.of(cells_.points.vertex[point]).data(); }
 
-  void prefetch(std::size_t c) const {
-    constexpr std::size_t kLine = 64;
-    if (c >= cells_.columns.count()) return;
-    for (const Index p : cells_.columns.ring(c)) {
-      const auto places = std::as_bytes(layers_.stacks.of(cells_.points.vertex[p]));
-      for (std::size_t at = 0; at < places.size(); at += kLine) __builtin_prefetch(places.data() + at);
-      __builtin_prefetch(&places.back());
+  /// Six times the volume of the cells of columns begin .. end - 1.
+  double measure_columns(std::size_t begin, std::size_t end, ColumnMesh& column) {
+    double six_volumes = 0;
+    while (begin < end) {
+      const std::size_t prisms = begin + PrismColumns::kCount;
+      if (prisms <= end && are_of_prisms(begin, prisms)) {
+        six_volumes += measure_prisms(begin);
+        begin = prisms;
+      } else {
+        six_volumes += measure_column(begin++, column);
+      }
     }
+    return six_volumes;
   }
-
-  /// Six times the volume of both columns' cells.
-  double measure_two(std::size_t c, std::size_t other, ColumnMesh& column) {
-    prefetch(c + kAhead), prefetch(c + kAhead + 1);
-    if (c != other && cells_.is_of_prisms(c) && cells_.is_of_prisms(other)) return measure_prisms(c, other);
-    return measure_column(c, column) + (other != c ? measure_column(other, column) : 0);
+  bool are_of_prisms(std::size_t begin, std::size_t end) const {
+    while (begin < end && cells_.is_of_prisms(begin)) ++begin;
+    return begin == end;
   }
 
   void set(std::size_t layer, std::size_t cell, const CellQuality& quality) {
@@ -118,34 +117,23 @@ class CellMeasurer {
     result_.aspect_ratio[at] = static_cast<float>(quality.aspect);
   }
 
-  double measure_prisms(std::size_t c, std::size_t other) {
-    const LayerColumns& columns = cells_.columns;
-    std::array<const Vec3d*, 3> of, of_other;
-    for (std::size_t k = 0; k < 3; ++k) {
-      of[k] = stack(columns.ring(c)[k]);
-      of_other[k] = stack(columns.ring(other)[k]);
+  double measure_prisms(std::size_t begin) {
+    const std::size_t first = cells_.columns.cells[begin];
+    PrismColumns columns{.layers = cells_.layers,
+                         .in_layer = cells_.in_layer(),
+                         .scaled_jacobian = result_.scaled_jacobian.data() + first,
+                         .aspect_ratio = result_.aspect_ratio.data() + first,
+                         .wall_angle = result_.wall_angle.data() + first,
+                         .origin = origin_.asPointer()};
+    double sides = 0;
+    for (std::size_t i = 0; i < PrismColumns::kCount; ++i) {
+      const auto ring = cells_.columns.ring(begin + i);
+      for (std::size_t k = 0; k < 3; ++k) columns.stack[k][i] = stack(ring[k])->asPointer();
+      result_.types[first + i] = CellType::Prism;
+      sides += six_volumes_at_sides(begin + i);
     }
-    const auto level = [&](std::size_t layer) {
-      std::array<Way<Pair>, 3> corner;
-      for (std::size_t k = 0; k < 3; ++k) corner[k] = both(of[k][layer], of_other[k][layer]);
-      return PrismLevel<Pair>(corner);
-    };
-    for (const std::size_t each : {c, other}) result_.types[columns.cells[each]] = CellType::Prism;
-    const Way<Pair> origin = both(origin_, origin_);
-    // The levels above and below take turns: they are too large to be copied.
-    std::array<PrismLevel<Pair>, 2> levels;
-    levels[0] = level(0);
-    Pair six_volumes = levels[0].normal.dot(origin - levels[0].corner[0]);
-    for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
-      PrismLevel<Pair>&above = levels[(layer + 1) % 2], &below = levels[layer % 2];
-      above = level(layer + 1);
-      const QualityOf<Pair> quality = prism_quality_of(prism_squares(below, above));
-      set(layer, columns.cells[c], {quality.jacobian[0], quality.aspect[0]});
-      set(layer, columns.cells[other], {quality.jacobian[1], quality.aspect[1]});
-    }
-    const PrismLevel<Pair>& last = levels[cells_.layers % 2];
-    six_volumes += last.normal.dot(last.corner[0] - origin);
-    return six_volumes[0] + six_volumes[1] + six_volumes_at_sides(c) + six_volumes_at_sides(other);
+    const SixVolumes six_volumes = measure_prism_columns(columns);
+    return std::accumulate(six_volumes.begin(), six_volumes.end(), sides);
   }
 
   double measure_column(std::size_t c, ColumnMesh& column) {
@@ -153,6 +141,8 @@ class CellMeasurer {
     column.begin(cells_.points, ring);
     const std::size_t first = cells_.columns.cells[c];
     std::copy(column.types().begin(), column.types().end(), result_.types.begin() + static_cast<std::ptrdiff_t>(first));
+    std::fill_n(result_.wall_angle.begin() + static_cast<std::ptrdiff_t>(first), column.types().size(),
+                angle_at_wall(ring));
     for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
       const VolumeMesh& mesh = column.at(layer, [&](Index k) { return stack(ring[k]); });
       for (std::size_t i = 0; i < mesh.cell_count(); ++i) set(layer, first + i, cell_quality(mesh, i));
@@ -163,6 +153,12 @@ class CellMeasurer {
     CellStack(cells_.points, ring, 0).visit_below(face, add);
     CellStack(cells_.points, ring, cells_.layers - 1).visit_above(face, add);
     return six_volumes;
+  }
+
+  float angle_at_wall(std::span<const Index> ring) const {
+    std::vector<Vec3d> wall, first;
+    for (const Index p : ring) wall.push_back(stack(p)[0]), first.push_back(stack(p)[1]);
+    return static_cast<float>(wall_angle(wall, first));
   }
 
   double six_volumes_at_sides(std::size_t c) const {
@@ -194,28 +190,10 @@ class CellMeasurer {
   LayerQuality result_;
 };
 
-const std::vector<float>& values_of(const VolumeMesh& volume, const char* name) {
-  for (const VolumeField& field : volume.cell_fields)
-    if (field.name == name) return field.values;
-  throw InvalidInput(std::string("layer_quality: expected cells with a field ") + name + ", got none");
-}
-
 }  // namespace
 
 LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells) {
   return CellMeasurer(layers, cells).measure();
-}
-
-LayerQuality layer_quality_of(const VolumeMesh& volume, std::size_t layers) {
-  LayerQuality quality;
-  const std::size_t in_layer = layers > 0 ? volume.cell_count() / layers : 0;
-  quality.types.assign(volume.cell_types.begin(), volume.cell_types.begin() + static_cast<std::ptrdiff_t>(in_layer));
-  quality.scaled_jacobian = values_of(volume, "scaled_jacobian");
-  quality.aspect_ratio = values_of(volume, "aspect_ratio");
-  quality.volume = enclosed_volume(volume);
-  quality.points = volume.points.size();
-  quality.plane = volume.plane();
-  return quality;
 }
 
 }  // namespace vdb_offset

@@ -12,18 +12,15 @@ struct LayerQuality {
   std::vector<CellType> types;  ///< Of a layer's cells.
   /// Of all cells, layer by layer: see cell_quality.h.
   std::vector<float> scaled_jacobian, aspect_ratio;
-  double volume = 0;  ///< Of all cells, world units^3; of those in a plane their area, ^2.
+  std::vector<float> wall_angle;  ///< Degrees, of a layer's cells, in whose column it is: see cell_quality.h.
+  double volume = 0;              ///< Of all cells, world units^3; of those in a plane their area, ^2.
   std::size_t points = 0;
   bool plane = false;
 };
 
 /// Measures cells as they follow from their columns, without making them: where prisms stand on each other, each
-/// triangle is looked at once for that above and that below it, in two columns at once. The result does not depend on
+/// triangle is looked at once for that above and that below it, in four columns at once. The result does not depend on
 /// the number of threads. Cost: O(cells). \pre `cells` are those of `layers`.
 LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells);
-
-/// The same of cells that have been made layer by layer, with fields of scaled_jacobian and aspect_ratio.
-/// \throw InvalidInput if they have none
-LayerQuality layer_quality_of(const VolumeMesh& volume, std::size_t layers);
 
 }  // namespace vdb_offset

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -39,166 +36,6 @@ FacesByPatch sort_faces(std::size_t count, const WallNames& names) {
   return sorted;
 }
 
-constexpr double kShares[] = {0, 0.01, 0.05, 0.5, 0.95, 0.99, 1};
-
-/// Quantiles of so many numbers, value(i) each, none of which is NaN. Their bits, as a number that grows with them, are
-/// looked at in two halves: how many numbers there are for each upper half says in which of them a quantile lies.
-template <class Value>
-class Quantiles {
- public:
-  Quantiles(std::size_t count, Value value) : count_(count), value_(value), slot_(kHalf, kNoSlot) {}
-
-  Spread spread() {
-    if (count_ == 0) return {};
-    const Counts upper = counted(1, [](std::uint32_t bits, auto&& add) { add(0, bits >> 16); });
-    for (const double share : kShares) add_slot(upper, share);
-    const Counts lower = counted(slots_, [&](std::uint32_t bits, auto&& add) {
-      if (slot_[bits >> 16] != kNoSlot) add(slot_[bits >> 16], bits & 0xffff);
-    });
-    double found[std::size(kShares)];
-    for (std::size_t i = 0; i < std::size(kShares); ++i) found[i] = find(upper, lower, kShares[i]);
-    return {found[0], found[1], found[2], found[3], found[4], found[5], found[6], sum_ / static_cast<double>(count_)};
-  }
-
- private:
-  static constexpr std::size_t kHalf = std::size_t{1} << 16, kBlock = std::size_t{1} << 20;
-  static constexpr std::uint8_t kNoSlot = 255;
-  using Counts = std::vector<std::size_t>;
-
-  static std::uint32_t ordered(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    return bits >> 31 ? ~bits : bits | 0x80000000U;
-  }
-  static float number(std::uint32_t ordered) {
-    return std::bit_cast<float>(ordered >> 31 ? ordered & 0x7fffffffU : ~ordered);
-  }
-
-  /// How often look() adds each half of each slot, over all numbers.
-  template <class Look>
-  Counts counted(std::size_t slots, Look&& look) {
-    const std::size_t blocks = (count_ + kBlock - 1) / kBlock;
-    tbb::enumerable_thread_specific<Counts> parts([&] { return Counts(slots * kHalf, 0); });
-    std::vector<double> sums(blocks, 0);
-    for_each_index(
-        blocks,
-        [&](std::size_t b) {
-          Counts& part = parts.local();
-          for (std::size_t i = b * kBlock; i < std::min(count_, (b + 1) * kBlock); ++i) {
-            const float value = value_(i);
-            sums[b] += value;
-            look(ordered(value), [&](std::size_t slot, std::uint32_t key) { ++part[slot * kHalf + key]; });
-          }
-        },
-        1);
-    sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
-    Counts all(slots * kHalf, 0);
-    for (const Counts& part : parts)
-      for (std::size_t i = 0; i < all.size(); ++i) all[i] += part[i];
-    return all;
-  }
-
-  std::size_t rank(double share) const {
-    return std::min(count_ - 1, static_cast<std::size_t>(share * static_cast<double>(count_)));
-  }
-  /// The first half by whose end more than `rank` numbers have been counted; `rank` is then that among its own.
-  static std::uint32_t half_at(std::span<const std::size_t> counts, std::size_t& rank) {
-    std::uint32_t found = 0;
-    for (; rank >= counts[found]; ++found) rank -= counts[found];
-    return found;
-  }
-  void add_slot(const Counts& upper, double share) {
-    std::size_t at = rank(share);
-    std::uint8_t& slot = slot_[half_at(upper, at)];
-    if (slot == kNoSlot) slot = static_cast<std::uint8_t>(slots_++);
-  }
-  double find(const Counts& upper, const Counts& lower, double share) const {
-    std::size_t at = rank(share);
-    const std::uint32_t high = half_at(upper, at);
-    const std::uint32_t low = half_at(std::span(lower).subspan(slot_[high] * kHalf, kHalf), at);
-    return number(high << 16 | low);
-  }
-
-  std::size_t count_;
-  Value value_;
-  double sum_ = 0;
-  std::vector<std::uint8_t> slot_;  // of each upper half that a quantile lies in
-  std::size_t slots_ = 0;
-};
-
-/// The same of few numbers.
-Spread spread(std::vector<float> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const auto quantile = [&](std::size_t i) -> double {
-    return values[std::min(values.size() - 1,
-                           static_cast<std::size_t>(kShares[i] * static_cast<double>(values.size())))];
-  };
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  return {quantile(0), quantile(1), quantile(2), quantile(3), quantile(4), quantile(5), quantile(6), mean};
-}
-
-/// Quantiles of so many numbers, value(i) each.
-template <class Value>
-Spread spread_of(std::size_t count, Value value) {
-  constexpr std::size_t kFew = 10000;
-  if (count > kFew) return Quantiles<Value>(count, value).spread();
-  std::vector<float> values(count);
-  for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
-  return spread(std::move(values));
-}
-
-struct Weighted {
-  double value, weight;
-};
-bool is_less(const Weighted& a, const Weighted& b) { return a.value < b.value; }
-
-/// Finds for each of some rising sums of weights the value by which more has been summed up, in the order of values:
-/// by halves around the middle one, of which only those with such a sum in them are looked into. `below` is what weighs
-/// before these values.
-void find_at(std::span<Weighted> values, double below, std::span<const double> sums, std::span<double> found) {
-  const auto weight = [](std::span<const Weighted> of) {
-    return std::accumulate(of.begin(), of.end(), 0.0, [](double sum, const Weighted& v) { return sum + v.weight; });
-  };
-  while (!sums.empty()) {
-    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), half, values.end(), is_less);
-    const double middle = half->value;
-    const auto equal = std::partition(values.begin(), values.end(), [&](const auto& v) { return v.value < middle; });
-    const auto more = std::partition(equal, values.end(), [&](const auto& v) { return !(middle < v.value); });
-    const std::span less(values.begin(), equal), rest(more, values.end());
-    const double before = below + weight(less), up_to = before + weight({equal, more});
-    // What rounding leaves over belongs to the last.
-    const auto in_less = less.empty() ? sums.begin() : std::lower_bound(sums.begin(), sums.end(), before);
-    const auto in_equal = rest.empty() ? sums.end() : std::lower_bound(in_less, sums.end(), up_to);
-    const auto count = static_cast<std::size_t>(in_less - sums.begin()),
-               up_to_rest = static_cast<std::size_t>(in_equal - sums.begin());
-    find_at(less, below, sums.first(count), found.first(count));
-    std::fill(found.begin() + (in_less - sums.begin()), found.begin() + (in_equal - sums.begin()), middle);
-    values = rest;
-    below = up_to;
-    sums = sums.subspan(up_to_rest);
-    found = found.subspan(up_to_rest);
-  }
-}
-
-/// Of numbers that count by their weights; those without any weight count alike.
-Spread spread(std::vector<Weighted> values) {
-  if (values.empty()) return {};
-  double whole = 0, sum = 0;
-  for (const Weighted& v : values) whole += v.weight, sum += v.value * v.weight;
-  if (!(whole > 0)) {
-    for (Weighted& v : values) v.weight = 1;
-    return spread(std::move(values));
-  }
-  const auto [least, most] =
-      std::minmax_element(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-  const double ends[] = {least->value, most->value};
-  std::array<double, 5> sums{0.01, 0.05, 0.5, 0.95, 0.99}, found{};
-  for (double& share : sums) share *= whole;
-  find_at(values, 0, sums, found);
-  return {ends[0], found[0], found[1], found[2], found[3], found[4], ends[1], sum / whole};
-}
-
 /// Of a segment its length.
 double area_of(std::span<const Vec3d> points, std::span<const std::uint32_t> face) {
   if (face.size() == 2) return (points[face[1]] - points[face[0]]).length();
@@ -223,14 +60,11 @@ class Source {
     if (layers_.count() == 0) return figures;
     // Each has figures of its own to fill in, and a part that takes one thread.
     tbb::parallel_invoke([&] { add_cells(faces, figures); }, [&] { add_thickness(faces, figures); },
-                         [&] { add_first_heights(faces, figures); }, [&] { add_wall_angles(faces, figures); });
+                         [&] { add_first_heights(faces, figures); });
     return figures;
   }
 
  private:
-  // So many faces on, stacks that are far apart in memory are asked for.
-  static constexpr std::size_t kAhead = 8;
-
   bool full(std::uint32_t v) const { return layers_.share[v] == 1 && layers_.states[v] == VertexState::Reached; }
 
   /// Means over a face's corners.
@@ -288,9 +122,9 @@ class Source {
       figures.coverage = sum.full / sum.all;
     }
     const double height = std::abs(asked_heights.farthest());
-    if (!asked_heights.uniform()) figures.asked = spread(std::move(asked));
+    if (!asked_heights.uniform()) figures.asked = spread_of(asked);
     else if (!of.empty()) figures.asked = {height, height, height, height, height, height, height, height};
-    figures.reached = spread(std::move(reached));
+    figures.reached = spread_of(reached);
   }
 
   void add_first_heights(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
@@ -318,41 +152,31 @@ class Source {
         for (const auto v : mesh_.face(f)) visit(v);
   }
 
-  void add_wall_angles(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    std::vector<std::uint32_t> with_cells;
-    for (const auto f : faces)
-      if (facts_.cells[f] > 0) with_cells.push_back(f);
-    std::vector<float> angles(with_cells.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, angles.size(), 1024), [&](const auto& range) {
-      std::vector<Vec3d> wall, first;
-      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-        wall.clear(), first.clear();
-        for (const auto v : mesh_.face(with_cells[std::min(i + kAhead, angles.size() - 1)]))
-          for (const Vec3d& x : layers_.stacks.of(v).first(2)) __builtin_prefetch(&x);
-        for (const auto v : mesh_.face(with_cells[i])) {
-          const auto stack = layers_.stacks.of(v);
-          wall.push_back(stack[0]), first.push_back(stack[1]);
-        }
-        angles[i] = static_cast<float>(wall_angle(wall, first));
-      }
-    });
-    figures.wall_angle = spread_of(angles.size(), [&](std::size_t i) { return angles[i]; });
-  }
-
   void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    std::vector<std::uint32_t> in_layer;  // these faces' cells
     for (const auto f : faces) {
-      for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c) {
-        in_layer.push_back(static_cast<std::uint32_t>(c));
+      for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c)
         figures.cells_by_type[static_cast<std::size_t>(quality_.types[c])] += layers_.count();
-      }
       if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += layers_.count() * facts_.cells[f];
     }
-    figures.cells = in_layer.size() * layers_.count();
-    const bool whole_layers = in_layer.size() == first_cell_.back();
-    const auto number = [&](std::size_t i) {
-      return whole_layers ? i : i / in_layer.size() * first_cell_.back() + in_layer[i % in_layer.size()];
-    };
+    figures.cells = std::accumulate(figures.cells_by_type.begin(), figures.cells_by_type.end(), std::size_t{0});
+    const std::size_t in_layer = figures.cells / layers_.count();
+    if (in_layer == first_cell_.back()) {
+      add_quality(
+          in_layer, [](std::size_t i) { return i; }, figures);
+    } else {
+      std::vector<std::uint32_t> numbers;  // of these faces' cells
+      numbers.reserve(in_layer);
+      for (const auto f : faces)
+        for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c)
+          numbers.push_back(static_cast<std::uint32_t>(c));
+      add_quality(
+          in_layer, [&](std::size_t i) { return i / in_layer * first_cell_.back() + numbers[i % in_layer]; }, figures);
+    }
+  }
+
+  /// Of so many cells in each layer: number(i) is that of a layer's i-th one, or one in a layer further out.
+  template <class Number>
+  void add_quality(std::size_t in_layer, Number&& number, LayerFigures& figures) const {
     figures.inverted_cells = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, figures.cells, 65536), std::size_t{0},
         [&](const auto& range, std::size_t sum) {
@@ -363,6 +187,7 @@ class Source {
     figures.scaled_jacobian =
         spread_of(figures.cells, [&](std::size_t i) { return quality_.scaled_jacobian[number(i)]; });
     figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return quality_.aspect_ratio[number(i)]; });
+    figures.wall_angle = spread_of(in_layer, [&](std::size_t i) { return quality_.wall_angle[number(i)]; });
   }
 
   PolygonView mesh_;

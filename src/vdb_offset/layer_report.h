@@ -6,14 +6,9 @@
 
 #include "vdb_offset/layer_columns.h"
 #include "vdb_offset/layer_quality.h"
+#include "vdb_offset/spread.h"
 
 namespace vdb_offset {
-
-/// How numbers are spread.
-struct Spread {
-  double least = 0, quantile_01 = 0, quantile_05 = 0, median = 0, quantile_95 = 0, quantile_99 = 0, most = 0;
-  double mean = 0;
-};
 
 /// Figures of the layers on a part of the wall, or on all of it. On curves, faces are segments and areas lengths.
 struct LayerFigures {
@@ -29,7 +24,7 @@ struct LayerFigures {
   double first_error = 0, first_error_99 = 0;  ///< Of their first heights, relative: the most, and the 99 % quantile.
   Spread scaled_jacobian, aspect_ratio;        ///< Of cells (see cell_quality.h).
   std::size_t inverted_cells = 0;              ///< Whose scaled Jacobian is not above 0.
-  Spread wall_angle;                           ///< Degrees, of the faces with cells: 0 is best.
+  Spread wall_angle;                           ///< Degrees, of the cells at the wall: 0 is best.
 };
 
 struct LayerReport {

@@ -4,10 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #ifdef __SSE2__
-#include <emmintrin.h>
+#include <immintrin.h>
 #endif
-
-#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 
@@ -23,6 +21,15 @@ inline Pair root(const Pair& squares) {
   return Pair{std::sqrt(squares[0]), std::sqrt(squares[1])};
 #endif
 }
+
+#ifdef __AVX2__
+/// Four numbers, where a source is compiled for such registers: see prism_columns_avx2.cpp.
+using Quad = double __attribute__((vector_size(32)));
+inline Quad root(const Quad& squares) {
+  return reinterpret_cast<Quad>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(squares)));
+}
+#endif
+
 template <class Real>
 Real lesser(const Real& a, const Real& b) {
   return b < a ? b : a;
@@ -32,20 +39,31 @@ Real greater(const Real& a, const Real& b) {
   return b > a ? b : a;
 }
 
-/// A vector of so many dimensions as space has, of one number each or of two: what is a template over Real is then done
-/// for two things at once.
+/// A vector of so many dimensions as space has, of one number each or of several: what is a template over Real is then
+/// done for several things at once.
 template <class Real>
 struct Way {
   Real x, y, z;
 
-  void set(std::size_t lane, const Vec3d& way) { x[lane] = way[0], y[lane] = way[1], z[lane] = way[2]; }
+  /// `way` has an x, y and z at 0, 1 and 2.
+  template <class Place>
+  void set(std::size_t lane, const Place& way) {
+    x[lane] = way[0], y[lane] = way[1], z[lane] = way[2];
+  }
   Real dot(const Way& o) const { return x * o.x + y * o.y + z * o.z; }
   Way cross(const Way& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
 };
 template <class Real>
+Way<Real> operator+(const Way<Real>& a, const Way<Real>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Real>
 Way<Real> operator-(const Way<Real>& a, const Way<Real>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline Way<Pair> both(const Vec3d& a, const Vec3d& b) { return {Pair{a[0], b[0]}, Pair{a[1], b[1]}, Pair{a[2], b[2]}}; }
+template <class Place>
+Way<Pair> both(const Place& a, const Place& b) {
+  return {Pair{a[0], b[0]}, Pair{a[1], b[1]}, Pair{a[2], b[2]}};
+}
 
 }  // namespace vdb_offset

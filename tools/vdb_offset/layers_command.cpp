@@ -38,8 +38,8 @@ struct Grown {
 void measure_on_curves(CurvesView curves, Grown& grown) {
   const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   CurveCells cells = make_curve_cells(curves, grown.layers);
-  grown.report = report_layers(cells.segments.view(), grown.layers, {}, cells.facts,
-                               layer_quality_of(cells.mesh, grown.layers.count()));
+  grown.report =
+      report_layers(cells.segments.view(), grown.layers, {}, cells.facts, measure_curve_cells(cells, grown.layers));
   grown.on_curves = std::move(cells.mesh);
 }
 
