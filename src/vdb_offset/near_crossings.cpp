@@ -1,6 +1,7 @@
 #include "vdb_offset/near_crossings.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace vdb_offset {
 namespace {
@@ -10,23 +11,44 @@ constexpr int kNearRings = 2;
 }  // namespace
 
 NearCrossings::NearCrossings(const Surface& surface, std::vector<TrianglePair> pairs)
-    : surface_(surface), pairs_(std::move(pairs)), near_(surface.vertices.size(), 0) {
-  for (const auto& [s, t] : pairs_) {
-    reversed_.emplace_back(t, s);
-    for (const auto triangle : {s, t})
-      for (const auto v : surface.triangles[triangle]) near_[v] = 1;
+    : surface_(surface), pairs_(std::move(pairs)), near_begin_(surface.vertices.size() + 1, 0) {
+  if (pairs_.empty()) return;
+  pair_up();
+  look_around();
+}
+
+void NearCrossings::pair_up() {
+  std::vector<TrianglePair> both_ways = pairs_;
+  for (const auto& [s, t] : pairs_) both_ways.emplace_back(t, s);
+  std::sort(both_ways.begin(), both_ways.end());
+  for (std::size_t i = 0; i < both_ways.size(); ++i) {
+    if (i > 0 && both_ways[i].first == both_ways[i - 1].first) continue;
+    crossing_.push_back(both_ways[i].first);
+    crossed_begin_.push_back(static_cast<std::uint32_t>(i));
   }
-  std::sort(reversed_.begin(), reversed_.end());
-  for (int ring = 0; ring < kNearRings && !pairs_.empty(); ++ring) {
-    const std::vector<std::uint8_t> inner = near_;
-    for (const auto& [a, b, c] : surface.triangles)
-      if (inner[a] || inner[b] || inner[c]) near_[a] = near_[b] = near_[c] = 1;
+  crossed_begin_.push_back(static_cast<std::uint32_t>(both_ways.size()));
+  for (const TrianglePair& pair : both_ways)
+    crossed_.push_back(static_cast<std::uint32_t>(std::lower_bound(crossing_.begin(), crossing_.end(), pair.second) -
+                                                  crossing_.begin()));
+}
+
+void NearCrossings::look_around() {
+  std::vector<std::vector<std::uint32_t>> beside;
+  beside.reserve(crossing_.size());
+  for (const auto triangle : crossing_) {
+    beside.push_back(vertices_beside(triangle));
+    for (const auto v : beside.back()) ++near_begin_[v + 1];
   }
+  std::partial_sum(near_begin_.begin(), near_begin_.end(), near_begin_.begin());
+  near_.resize(near_begin_.back());
+  std::vector<std::uint32_t> end(near_begin_.begin(), near_begin_.end() - 1);
+  for (std::uint32_t i = 0; i < beside.size(); ++i)
+    for (const auto v : beside[i]) near_[end[v]++] = i;
 }
 
 bool NearCrossings::is_near(std::uint32_t triangle) const {
-  const auto& [a, b, c] = surface_.triangles[triangle];
-  return near_[a] || near_[b] || near_[c];
+  const auto& corners = surface_.triangles[triangle];
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_vertex_near(v); });
 }
 
 /// Those of the triangle, and within two rings of it; sorted.
@@ -43,19 +65,16 @@ std::vector<std::uint32_t> NearCrossings::vertices_beside(std::uint32_t triangle
 }
 
 bool NearCrossings::sheets_cross(std::uint32_t s, std::uint32_t t) const {
-  if (!is_near(s) || !is_near(t)) return false;
-  const std::vector<std::uint32_t> beside_t = vertices_beside(t);
-  const auto is_beside_t = [&](std::uint32_t triangle) {
-    const auto& corners = surface_.triangles[triangle];
+  const auto is_near_t = [&](std::uint32_t crossing) {
+    const auto& corners = surface_.triangles[t];
     return std::any_of(corners.begin(), corners.end(),
-                       [&](std::uint32_t v) { return std::binary_search(beside_t.begin(), beside_t.end(), v); });
+                       [&](std::uint32_t v) { return std::binary_search(near(v).begin(), near(v).end(), crossing); });
   };
-  for (const auto v : vertices_beside(s))
-    for (const auto first : surface_.triangles_around(v))
-      for (const auto* pairs : {&pairs_, &reversed_})
-        for (auto pair = std::lower_bound(pairs->begin(), pairs->end(), TrianglePair(first, 0));
-             pair != pairs->end() && pair->first == first; ++pair)
-          if (is_beside_t(pair->second)) return true;
+  if (!is_near(t)) return false;
+  for (const auto v : surface_.triangles[s])
+    for (const auto crossing : near(v))
+      for (std::uint32_t i = crossed_begin_[crossing]; i < crossed_begin_[crossing + 1]; ++i)
+        if (is_near_t(crossed_[i])) return true;
   return false;
 }
 

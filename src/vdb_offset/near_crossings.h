@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "vdb_offset/crossings.h"
@@ -17,7 +18,7 @@ class NearCrossings {
 
   /// Within two rings of a face that crosses another.
   bool is_near(std::uint32_t triangle) const;
-  bool is_vertex_near(std::uint32_t vertex) const { return near_[vertex]; }
+  bool is_vertex_near(std::uint32_t vertex) const { return !near(vertex).empty(); }
 
   /// Whether the sheets that two triangles are part of go through each other beside both: two faces cross of which one
   /// is within two rings of the first, and the other within two rings of the second. What moves off one sheet then has
@@ -25,11 +26,19 @@ class NearCrossings {
   bool sheets_cross(std::uint32_t s, std::uint32_t t) const;
 
  private:
+  /// Triangles that cross others, by their places in crossing_: rising.
+  std::span<const std::uint32_t> near(std::uint32_t vertex) const {
+    return std::span(near_).subspan(near_begin_[vertex], near_begin_[vertex + 1] - near_begin_[vertex]);
+  }
+  void pair_up();
+  void look_around();
   std::vector<std::uint32_t> vertices_beside(std::uint32_t triangle) const;
 
   const Surface& surface_;
-  std::vector<TrianglePair> pairs_, reversed_;  // reversed_: the larger index first
-  std::vector<std::uint8_t> near_;              // of each vertex
+  std::vector<TrianglePair> pairs_;
+  std::vector<std::uint32_t> crossing_;                 // triangles that cross others, rising
+  std::vector<std::uint32_t> crossed_begin_, crossed_;  // of each of them: those that it crosses, by their places
+  std::vector<std::uint32_t> near_begin_, near_;        // of each vertex: which of them are within two rings of it
 };
 
 }  // namespace vdb_offset
