@@ -102,6 +102,19 @@ bool on_one_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b, i
   return std::abs(sum) == 3 - shared;
 }
 
+/// The same of two of a surface's triangles, of the first of which the plane is known.
+bool on_one_side(const Plane& plane, const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s,
+                 std::uint32_t t) {
+  const auto& [a, b, c] = surface.triangles[s];
+  int sum = 0, corners = 0;
+  for (const auto v : surface.triangles[t]) {
+    if (v == a || v == b || v == c) continue;
+    sum += plane.side(positions[v]);
+    ++corners;
+  }
+  return corners > 0 && std::abs(sum) == corners;
+}
+
 /// True if the triangles, which share their first corner, clearly lie to either side of a plane through it: one at
 /// right angles to the difference of the directions that they lie in.
 bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
@@ -191,26 +204,34 @@ FloatBox CrossingFinder::box_of(const std::array<Vec3d, 3>& corners) const {
   return box;
 }
 
+/// Block by block, each with those that follow it. Few of a block's triangles come near the box around another.
 std::vector<TrianglePair> CrossingFinder::all() const {
   const auto& blocks = tree_.levels().front();
   constexpr std::uint32_t kWidth = BoxTree::kWidth;
-  const auto compare = [&](std::size_t block, std::size_t other, std::vector<TrianglePair>& found) {
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      unsigned meets = BoxTree::overlaps(blocks[other], BoxTree::box(blocks[block], static_cast<int>(i)));
+  const auto compare = [&](std::size_t block, std::size_t other, unsigned near, std::vector<TrianglePair>& found) {
+    for (; near != 0; near &= near - 1) {
+      const int i = std::countr_zero(near);
+      unsigned meets = BoxTree::overlaps(blocks[other], BoxTree::box(blocks[block], i));
       if (block == other) meets &= ~0u << (i + 1);
-      const auto s = static_cast<std::uint32_t>(block) * kWidth + i;
+      if (meets == 0) continue;
+      const auto s = static_cast<std::uint32_t>(block) * kWidth + static_cast<std::uint32_t>(i);
+      const Plane plane(corners(s, positions_));
       for (; meets != 0; meets &= meets - 1) {
         const auto t = static_cast<std::uint32_t>(other) * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
-        if (meet(surface_, positions_, s, t)) found.emplace_back(s, t);
+        if (!on_one_side(plane, surface_, positions_, s, t) && meet(surface_, positions_, s, t))
+          found.emplace_back(s, t);
       }
     }
   };
+  constexpr unsigned kAll = (1u << kWidth) - 1;
   return find_in_parallel(blocks.size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
-    if (tree_.levels().size() == 1) return compare(block, block, found);
+    if (tree_.levels().size() == 1) return compare(block, block, kAll, found);
     tree_.for_each_overlap(
         BoxTree::around(blocks[block]),
         [&](std::size_t other) {
-          if (other >= block) compare(block, other, found);
+          if (other < block) return;
+          const FloatBox box = BoxTree::box(tree_.levels()[1][other / kWidth], static_cast<int>(other % kWidth));
+          compare(block, other, other == block ? kAll : BoxTree::overlaps(blocks[block], box), found);
         },
         1);
   });
