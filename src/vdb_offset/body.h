@@ -38,6 +38,9 @@ struct Body {
   bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
   /// A triangle of the front to start a search from.
+  std::uint32_t hint_of_triangle(std::uint32_t triangle) const {
+    return front_vertex.empty() ? triangle : hint(surface.triangles[triangle][0]);
+  }
   std::uint32_t hint(std::uint32_t vertex) const {
     const std::uint32_t v = front_vertex.empty() ? vertex : front_vertex[vertex];
     return v == kNone ? 0 : front.surface().triangles_around(v).front();

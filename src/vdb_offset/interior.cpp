@@ -12,37 +12,27 @@ InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, 
   const Surface& surface = body.surface;
   const Vec3d origin = body.front.surface().origin;
   const std::size_t all = surface.triangles.size(), count = most == 0 ? all : std::min(all, most);
-  constexpr std::size_t kSamples = 4, kBlock = 8;
+  constexpr std::size_t kSamples = 4;
   constexpr double kLeftOut = -1;
   const double least_target = 1e-3 * distances.scale();
   std::vector<double> error(kSamples * count, kLeftOut);
-  const auto look = [&](std::size_t block) {
-    const std::size_t first = block * kBlock, last = std::min(first + kBlock, count);
-    std::vector<Vec3d> points;
-    std::vector<double> wanted;
-    std::vector<std::uint32_t> hints;
-    for (std::size_t i = first; i < last; ++i) {
-      const auto t = static_cast<std::uint32_t>(i * all / count);
-      if (!body.is_front(t)) continue;
-      const auto& [a, b, c] = surface.triangles[t];
-      const Vec3d samples[kSamples] = {(places[a] + places[b] + places[c]) / 3.0, (places[a] + places[b]) / 2.0,
-                                       (places[b] + places[c]) / 2.0, (places[c] + places[a]) / 2.0};
-      const double da = distances[a], db = distances[b], dc = distances[c];
-      const double targets[kSamples] = {std::abs(da + db + dc) / 3, std::abs(da + db) / 2, std::abs(db + dc) / 2,
-                                        std::abs(dc + da) / 2};
-      for (std::size_t k = 0; k < kSamples; ++k) {
-        if (targets[k] <= least_target) continue;
-        points.push_back(samples[k] - origin);
-        wanted.push_back(targets[k]);
-        hints.push_back(body.hint(a));
-      }
-    }
-    std::vector<Closest> closest(points.size());
-    body.front.answer_together(points, hints, closest);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      error[kSamples * first + i] = std::abs(closest[i].distance - wanted[i]) / wanted[i];
+  const auto look = [&](std::size_t i) {
+    const auto t = static_cast<std::uint32_t>(i * all / count);
+    if (!body.is_front(t)) return;
+    const auto& [a, b, c] = surface.triangles[t];
+    const double da = distances[a], db = distances[b], dc = distances[c];
+    const Vec3d samples[kSamples] = {(places[a] + places[b] + places[c]) / 3.0 - origin,
+                                     (places[a] + places[b]) / 2.0 - origin, (places[b] + places[c]) / 2.0 - origin,
+                                     (places[c] + places[a]) / 2.0 - origin};
+    const double wanted[kSamples] = {std::abs(da + db + dc) / 3, std::abs(da + db) / 2, std::abs(db + dc) / 2,
+                                     std::abs(dc + da) / 2};
+    const std::uint32_t hint = body.hint_of_triangle(t), hints[kSamples] = {hint, hint, hint, hint};
+    Closest closest[kSamples];
+    body.front.answer_together(samples, hints, closest);
+    for (std::size_t k = 0; k < kSamples; ++k)
+      if (wanted[k] > least_target) error[kSamples * i + k] = std::abs(closest[k].distance - wanted[k]) / wanted[k];
   };
-  for_each_index((count + kBlock - 1) / kBlock, look, 8);
+  for_each_index(count, look, 64);
   std::erase(error, kLeftOut);
   return sum_up_errors(std::move(error));
 }

@@ -38,10 +38,10 @@ class PrismLanes {
 
   void measure(double* six_volumes) {
     // The levels above and below take turns: they are too large to be copied.
-    levels_[0].set(corners(0));
+    look_at(0, levels_[0]);
     for (std::size_t layer = 0; layer < columns_.layers; ++layer) {
       PrismLevel<Real>&above = levels_[(layer + 1) % 2], &below = levels_[layer % 2];
-      above.set(corners(layer + 1));
+      look_at(layer + 1, above);
       if (layer == 0) measure_wall(below, above);
       const QualityOf<Real> quality = prism_quality_of(prism_squares(below, above));
       const std::size_t at = layer * columns_.in_layer;
@@ -61,13 +61,11 @@ class PrismLanes {
     for (std::size_t lane = 0; lane < kLanes; ++lane) way.set(lane, stacks[lane] + 3 * layer);
     return way;
   }
-  typename PrismLevel<Real>::Corners corners(std::size_t layer) const {
-    return {gather(columns_.stack[0] + first_, layer), gather(columns_.stack[1] + first_, layer),
-            gather(columns_.stack[2] + first_, layer)};
+  void look_at(std::size_t layer, PrismLevel<Real>& level) const {
+    for (std::size_t k = 0; k < 3; ++k) level.corner[k] = gather(columns_.stack[k] + first_, layer);
+    level.measure();
   }
-  void put(const Real& values, float* to) const {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) to[first_ + lane] = static_cast<float>(values[lane]);
-  }
+  void put(const Real& values, float* to) const { store_floats(values, to + first_); }
 
   void measure_wall(const PrismLevel<Real>& wall, const PrismLevel<Real>& above) {
     six_volumes_ = wall.normal.dot(origin_ - wall.corner[0]);

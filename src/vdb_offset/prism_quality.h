@@ -41,12 +41,10 @@ QualityOf<Real> quality_of(const QualitySquares<Real>& squares) {
 /// A triangle on which a prism stands, or which lies on one, or both.
 template <class Real>
 struct PrismLevel {
-  using Corners = std::array<Way<Real>, 3>;
-
   PrismLevel() = default;
-  explicit PrismLevel(const Corners& corners) { set(corners); }
-  void set(const Corners& corners) {
-    corner = corners;
+  explicit PrismLevel(const std::array<Way<Real>, 3>& corners) : corner(corners) { measure(); }
+  /// To be called when the corners are others.
+  void measure() {
     Way<Real> side[3];
     for (std::size_t k = 0; k < 3; ++k) {
       side[k] = corner[(k + 1) % 3] - corner[k];
@@ -58,7 +56,7 @@ struct PrismLevel {
     longest = greater(greater(square[0], square[1]), square[2]);
   }
 
-  Corners corner;
+  std::array<Way<Real>, 3> corner;
   Real square[3], product[3];  // of sides, and of the two at a corner
   Way<Real> normal;            // the cross product of the sides at each corner
   Real shortest, longest;

@@ -103,8 +103,10 @@ class Traveller {
   /// Where the smooth directions lead: tell(stop, arrival) for each of the stops, which are at rising distances.
   template <class Tell>
   void march(std::span<const Stop> stops, Tell&& tell) {
-    target_ = stops.front().distance;
+    // What lies before the first step is on the way to it, unless that ends at an obstacle.
+    target_ = (obstacles_ ? stops.front() : stops.back()).distance;
     const auto first = leave_surface(first_step());
+    target_ = stops.front().distance;
     if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
       for (const Stop& stop : stops) tell(stop, Arrival{origin_});
       return;

@@ -22,11 +22,18 @@ inline Pair root(const Pair& squares) {
 #endif
 }
 
+inline void store_floats(const Pair& values, float* to) {
+  to[0] = static_cast<float>(values[0]), to[1] = static_cast<float>(values[1]);
+}
+
 #ifdef __AVX2__
 /// Four numbers, where a source is compiled for such registers: see prism_columns_avx2.cpp.
 using Quad = double __attribute__((vector_size(32)));
 inline Quad root(const Quad& squares) {
   return reinterpret_cast<Quad>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(squares)));
+}
+inline void store_floats(const Quad& values, float* to) {
+  _mm_storeu_ps(to, _mm256_cvtpd_ps(reinterpret_cast<__m256d>(values)));
 }
 #endif
 
