@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/propagate.h"
@@ -32,6 +33,7 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       place_(source.begin(), source.end()),
       away_(source.size()),
       distance_(source.size()),
+      closest_(source.size(), kNone),
       right_side_(source.size(), 1),
       fault_(surface_.triangles.size(), Fault::None),
       touched_(surface_.triangles.size()),
@@ -106,6 +108,7 @@ void FaultFinder::measure(std::span<const std::uint32_t> vertices, const Paths* 
   std::vector<Vec3d> points;
   std::vector<std::uint32_t> hints;
   for (const auto v : vertices) {
+    const std::uint32_t before = std::exchange(closest_[v], kNone);
     distance_[v] = 0;
     away_[v] = Vec3d(0.0);
     right_side_[v] = 1;
@@ -120,7 +123,7 @@ void FaultFinder::measure(std::span<const std::uint32_t> vertices, const Paths* 
     }
     unknown.push_back(v);
     points.push_back(x);
-    hints.push_back(body_.hint(v));
+    hints.push_back(before != kNone ? before : body_.hint(v));
   }
   std::vector<Closest> answers(points.size());
   body_.front.answer_together(points, hints, answers);
@@ -130,6 +133,7 @@ void FaultFinder::measure(std::span<const std::uint32_t> vertices, const Paths* 
 void FaultFinder::take(std::uint32_t v, const Vec3d& x, const Closest& closest) {
   const Surface& front = body_.front.surface();
   distance_[v] = closest.distance;
+  closest_[v] = closest.triangle;
   away_[v] = x - closest.point;
   const int side = distances_[v] < 0 ? -1 : 1;
   if (front.facts.closed() && front.facts.oriented() && closest.distance > near_)
@@ -245,8 +249,8 @@ void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& pla
   look(everything, place_of, ends, Crossings::All);
 }
 
-void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
-  look(moved, place_of, nullptr, Crossings::All);
+void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
+  look(moved, place_of, ends, Crossings::All);
 }
 
 void FaultFinder::glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {

@@ -48,12 +48,12 @@ class FaultFinder {
               std::optional<std::vector<TrianglePair>> source_crossings = {});
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
-  /// them.
-  void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
+  /// them. Where they stand at the ends of paths, what is known of those need not be found again.
+  void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
   /// The same, but of the crossings of each face around them at least one is found, not all: enough to tell which of
   /// these vertices have to go back. Those are to be looked at again, so that none is missed in the end.
   void glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
-  /// The same for all vertices. Where they stand at the ends of paths, what is known of those need not be found again.
+  /// The same for all vertices.
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
 
   bool any() const { return !faces_.empty() || !crossings_.empty() || (rim_ && rim_->count() > 0); }
@@ -72,6 +72,8 @@ class FaultFinder {
 
   /// Exact distance of a vertex as it was last looked at.
   double distance_of(std::uint32_t vertex) const { return distance_[vertex]; }
+  /// The front's triangle that is closest to it; kNone if it is where it was, or not on the front.
+  std::uint32_t closest_to(std::uint32_t vertex) const { return closest_[vertex]; }
   /// How far the precision's rounding may have moved a vertex.
   double rounding(std::uint32_t vertex) const;
   bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }
@@ -112,6 +114,7 @@ class FaultFinder {
   Precision precision_;
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
   std::vector<double> distance_;
+  std::vector<std::uint32_t> closest_;
   std::vector<std::uint8_t> right_side_;
   std::vector<std::uint8_t> folded_;  // of each vertex; empty until something may be caught
   std::vector<Fault> fault_;          // of each triangle

@@ -59,7 +59,8 @@ class SurfaceStacker final : public Stacker {
   }
 
   void look(const Indices& vertices) override {
-    faults_.look(vertices, [&](std::uint32_t v) { return outermost(v); });
+    faults_.look(
+        vertices, [&](std::uint32_t v) { return outermost(v); }, &paths_);
   }
   /// What is wrong where paths end is known.
   void look_first(const Indices& all) override {

@@ -125,6 +125,7 @@ class Limiter {
       const double distance = faults_.distance_of(v);
       lost += std::max(0.0, paths_.achieved[v] - distance) / target;
       paths_.achieved[v] = distance;
+      paths_.closest[v] = faults_.closest_to(v);
       if (std::abs(distance - target) <= kReachedTolerance * target + faults_.rounding(v)) {
         paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
       } else if (share_[v] != 1) {
