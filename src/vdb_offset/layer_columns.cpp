@@ -100,6 +100,12 @@ bool knows_sides(const MeshFacts& facts) {
   return facts.two_sided() && facts.faces_by_corners.size() == 1 && facts.faces_by_corners.begin()->first == 3;
 }
 
+/// Whether layers rise on the side that their heights say from all faces. They do from each triangle of the surface, as
+/// cells are valid, so that only those that are turned round there need be looked for.
+bool rise_from_all(const MeshFacts& facts) {
+  return knows_sides(facts) && facts.turned_triangles == 0 && facts.inside_out_components == 0;
+}
+
 /// What becomes of a column, and whether it lies on the other side.
 struct ColumnRole {
   FaceRole role;
@@ -110,10 +116,12 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
   constexpr std::size_t kAhead = 8;  // columns whose stacks, far apart in memory, are asked for before their turn
   std::vector<std::uint8_t> repeated(columns.count(), 0);
   if (!knows_sides(layers.statistics.facts)) repeated = find_repeated_faces(columns.corners, columns.begin);
+  const bool none_turned = rise_from_all(layers.statistics.facts);
   std::vector<ColumnRole> roles(columns.count());
   for_each_index(columns.count(), [&](std::size_t c) {
     const auto ring = columns.ring(c);
     for (const Index v : columns.ring(std::min(c + kAhead, columns.count() - 1))) {
+      if (none_turned) break;
       const Vec3d* const stack = layers.stacks.of(v).data();
       __builtin_prefetch(stack), __builtin_prefetch(stack + 1);
     }
@@ -123,7 +131,8 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
                           : flats == ring.size() ? FaceRole::Flat
                           : flats > 0            ? FaceRole::Transition
                                                  : FaceRole::Full;
-    const double side = role == FaceRole::Repeated || role == FaceRole::Flat ? 0 : rises(layers, ring);
+    const bool unknown = !none_turned && role != FaceRole::Repeated && role != FaceRole::Flat;
+    const double side = unknown ? rises(layers, ring) : 0;
     roles[c] = {role, side != 0 && (side < 0) != inward};
   });
   return roles;
@@ -396,13 +405,18 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
     if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
   if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
   require_usable(mesh, 1);
-  std::atomic<bool> placed = true;
-  for_each_index(mesh.corners.size(), [&](std::size_t c) {
-    const Index v = mesh.corners[c];
-    if (!(v < layers.place.size() && layers.place[v] < layers.place.size()))
-      placed.store(false, std::memory_order_relaxed);
-  });
-  if (!placed) throw InvalidInput("layers: expected layers of this mesh, got some that lack places of its corners");
+  const auto is_placed = [&](Index v) { return v < layers.place.size() && layers.place[v] < layers.place.size(); };
+  const auto all = [](std::size_t count, auto&& holds) {
+    std::atomic<bool> found = true;
+    for_each_index(count, [&](std::size_t i) {
+      if (!holds(i)) found.store(false, std::memory_order_relaxed);
+    });
+    return found.load();
+  };
+  // Vertices come in their order, corners do not; but those of no face need no place.
+  if (!all(layers.place.size(), [&](std::size_t v) { return is_placed(static_cast<Index>(v)); }) &&
+      !all(mesh.corners.size(), [&](std::size_t c) { return is_placed(mesh.corners[c]); }))
+    throw InvalidInput("layers: expected layers of this mesh, got some that lack places of its corners");
 }
 
 const char* name(FaceRole role) {
