@@ -27,12 +27,16 @@ struct FacesByPatch {
 };
 
 FacesByPatch sort_faces(std::size_t count, const WallNames& names) {
-  const std::size_t patches = names.of_face.empty() ? 1 : names.names.size();
-  const auto patch = [&](std::size_t f) { return names.of_face.empty() ? 0 : names.of_face[f]; };
-  FacesByPatch sorted{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(patches + 2, 0)};
-  for (std::size_t f = 0; f < count; ++f) ++sorted.begin[patch(f) + 2];
+  FacesByPatch sorted{std::vector<std::uint32_t>(count), {0, static_cast<std::uint32_t>(count)}};
+  if (names.of_face.empty()) {
+    for_each_index(count, [&](std::size_t f) { sorted.faces[f] = static_cast<std::uint32_t>(f); });
+    return sorted;
+  }
+  sorted.begin.assign(names.names.size() + 2, 0);
+  for (const auto patch : names.of_face) ++sorted.begin[patch + 2];
   std::partial_sum(sorted.begin.begin(), sorted.begin.end(), sorted.begin.begin());
-  for (std::size_t f = 0; f < count; ++f) sorted.faces[sorted.begin[patch(f) + 1]++] = static_cast<std::uint32_t>(f);
+  for (std::size_t f = 0; f < count; ++f)
+    sorted.faces[sorted.begin[names.of_face[f] + 1]++] = static_cast<std::uint32_t>(f);
   return sorted;
 }
 
@@ -94,6 +98,7 @@ class Source {
   void add_thickness(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
     constexpr std::size_t kBlock = 4096;
     std::vector<std::uint32_t> of;
+    of.reserve(faces.size());
     for (const auto f : faces) {
       const FaceRole role = facts_.role[f];
       if (role == FaceRole::Full || role == FaceRole::Transition || role == FaceRole::Flat) of.push_back(f);
@@ -129,7 +134,10 @@ class Source {
 
   void add_first_heights(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
     std::uint32_t first = kNone, end = 0;
-    for_each_vertex_with_cells(faces, [&](std::uint32_t v) { first = std::min(first, v), end = std::max(end, v + 1); });
+    if (faces.size() == mesh_.face_count()) first = 0, end = static_cast<std::uint32_t>(mesh_.positions.size());
+    else
+      for_each_vertex_with_cells(faces,
+                                 [&](std::uint32_t v) { first = std::min(first, v), end = std::max(end, v + 1); });
     if (end == 0) return;
     std::vector<std::uint8_t> is_full(end - first, 0);
     for_each_vertex_with_cells(faces, [&](std::uint32_t v) { is_full[v - first] = layers_.share[v] == 1; });
