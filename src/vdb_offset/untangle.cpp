@@ -16,9 +16,14 @@ namespace {
 constexpr int kRenewals = 6, kSteps = 20;
 constexpr std::size_t kMemory = 8;
 
-// A step is halved this often until it gains enough; when all of it gains less than this share, the slide ends.
+// Who has no fewer faces folded so many times on end will hardly have, and small patches cost little.
+constexpr int kFruitless = 1, kFruitlessIfSmall = 3;
+constexpr std::size_t kSmall = 100;
+
+// A step is halved this often until it gains enough; when all of it gains less than this share, the slide ends. Once
+// nothing is folded in the planes that share is larger: in new ones the least energy is elsewhere.
 constexpr int kHalvings = 30;
-constexpr double kArmijo = 1e-4, kLeastGain = 1e-6;
+constexpr double kArmijo = 1e-4, kLeastGain = 1e-6, kLeastGainUnfolded = 0.1;
 
 // No vertex goes farther than this, in distances, in one step.
 constexpr double kLongestStep = 0.5;
@@ -109,11 +114,14 @@ class Patch {
   void untangle() {
     renew_planes();
     std::vector<Vec3d> best = places();
-    for (int i = 0, fewest = folded_; i < kRenewals && (i == 0 || fewest > 0); ++i) {
+    const int most_fruitless = free_ > kSmall ? kFruitless : kFruitlessIfSmall;
+    int fewest = folded_, fruitless = 0;
+    for (int i = 0; i < kRenewals && (i == 0 || fewest > 0) && fruitless < most_fruitless; ++i) {
       const std::vector<Vec3d> before = places();
       slide();
       for (std::size_t k = 0; k < free_; ++k) return_to_distance(points_[k], before[k]);
       renew_planes();
+      fruitless = folded_ < fewest ? 0 : fruitless + 1;
       if (i > 0 && folded_ > fewest) continue;
       fewest = folded_;
       best = places();
@@ -254,13 +262,16 @@ class Patch {
     return map;
   }
 
+  struct Energy {
+    double sum = 0;
+    bool folded = false;  // any of the faces
+  };
   /// The energy, and its derivative by the slides, two numbers for each point, which are 0 of those that stand still.
-  /// chi, by which the energy is divided, is about det for det > 0, small and
-  /// positive below.
-  double energy(std::span<const double> slide, double epsilon, std::span<double> derivative) const {
+  /// chi, by which the energy is divided, is about det for det > 0, small and positive below.
+  Energy energy(std::span<const double> slide, double epsilon, std::span<double> derivative) const {
     std::fill(derivative.begin(), derivative.end(), 0.0);
     const double lambda = options_.area_weight;
-    double sum = 0;
+    Energy all;
     for (const Face& face : faces_) {
       double moved[3][2], edge[2][2];
       for (std::size_t k = 0; k < 3; ++k)
@@ -275,7 +286,8 @@ class Patch {
       const double det = map.det(), root = std::sqrt(epsilon * epsilon + det * det),
                    by_chi = det > 0 ? 2 / (det + root) : 2 * (root - det) / (epsilon * epsilon);
       const double e = (j[0] * j[0] + j[1] * j[1] + j[2] * j[2] + j[3] * j[3] + lambda * (det * det + 1)) * by_chi;
-      sum += face.area * e;
+      all.sum += face.area * e;
+      all.folded |= det <= 0;
       const double by_det = (2 * lambda * det) * by_chi - e / root, twice = 2 * by_chi;
       const double by_j[4] = {twice * j[0] + by_det * j[3], twice * j[1] - by_det * j[2], twice * j[2] - by_det * j[1],
                               twice * j[3] + by_det * j[0]};
@@ -291,7 +303,7 @@ class Patch {
               face.map[k][axis][0] * by_place[k][0] + face.map[k][axis][1] * by_place[k][1];
     }
     std::fill(derivative.begin() + static_cast<std::ptrdiff_t>(2 * free_), derivative.end(), 0.0);
-    return sum;
+    return all;
   }
 
   /// Lets the energy fall, with L-BFGS directions and halved steps, then puts the points where they have slid to.
@@ -300,24 +312,25 @@ class Patch {
     const double folded = std::min(least_det_, 0.0), epsilon = std::sqrt(1e-12 + 0.04 * folded * folded);
     std::vector<double> x(n, 0.0), g(n), step(n), next(n), next_g(n);
     QuasiNewton model;
-    double e = energy(x, epsilon, g);
+    double e = energy(x, epsilon, g).sum;
     for (int i = 0; i < kSteps; ++i) {
       model.descend(g, step);
       const double slope = dot(g, step);
       if (!(slope < 0)) break;
-      double t = first_step(step, i == 0), next_e = e;
+      double t = first_step(step, i == 0);
+      Energy next_e{e};
       for (int halvings = 0; halvings < kHalvings; ++halvings, t /= 2) {
         for (std::size_t k = 0; k < n; ++k) next[k] = x[k] + t * step[k];
         next_e = energy(next, epsilon, next_g);
-        if (next_e <= e + kArmijo * t * slope) break;
+        if (next_e.sum <= e + kArmijo * t * slope) break;
       }
-      if (!(next_e <= e + kArmijo * t * slope)) break;
+      if (!(next_e.sum <= e + kArmijo * t * slope)) break;
       model.remember(x, next, g, next_g);
       x.swap(next);
       g.swap(next_g);
-      const double gained = e - next_e;
-      e = next_e;
-      if (gained < kLeastGain * e) break;
+      const double gained = e - next_e.sum;
+      e = next_e.sum;
+      if (gained < (next_e.folded ? kLeastGain : kLeastGainUnfolded) * e) break;
     }
     move_points(x);
   }
