@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -72,17 +73,22 @@ bool FaultFinder::is_fault(const TrianglePair& pair) const {
          !std::binary_search(source_crossings().begin(), source_crossings().end(), pair);
 }
 
-void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings) {
-  finder_.update(touched);
-  const bool first = touched.size() == surface_.triangles.size();
-  // Pairs that have not moved meet as before.
+/// Not those near where sheets of the source cross, which have to slide.
+bool FaultFinder::counts(const TrianglePair& pair) const {
+  return !source_crossings_->is_near(pair.first) && !source_crossings_->is_near(pair.second) && is_fault(pair);
+}
+
+void FaultFinder::forget_crossings_of_updated() {
   std::erase_if(crossings_, [&](const TrianglePair& pair) {
     return finder_.is_updated(pair.first) || finder_.is_updated(pair.second);
   });
-  const auto is_near_source = [&](const TrianglePair& pair) {
-    return source_crossings_->is_near(pair.first) || source_crossings_->is_near(pair.second);
-  };
-  const auto counts = [&](const TrianglePair& pair) { return !is_near_source(pair) && is_fault(pair); };
+}
+
+void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings) {
+  finder_.update(touched);
+  const bool first = touched.size() == surface_.triangles.size();
+  forget_crossings_of_updated();
+  const auto counts = [&](const TrianglePair& pair) { return this->counts(pair); };
   if (crossings == Crossings::OneOfEach) {
     for (const TrianglePair& pair : finder_.one_of_each_updated(counts)) crossings_.push_back(pair);
   } else {
@@ -90,8 +96,12 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
       if (counts(pair)) crossings_.push_back(pair);
       else crossings_near_source_ += first && is_fault(pair);
   }
-  if (rim_)
-    rim_->look(moved, touched, finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
+  look_at_rim(moved, touched);
+}
+
+void FaultFinder::look_at_rim(const Indices& moved, const Indices& touched) {
+  if (!rim_) return;
+  rim_->look(moved, touched, finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
 }
 
 /// Whether a vertex stands where its path ended, rounded: then what was found there holds here to as much, phi being
@@ -275,6 +285,60 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, moved, [&](std::uint32_t v) { return is_misplaced(v); });
   look_for_crossings(moved, touched, crossings);
+}
+
+void FaultFinder::try_out(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
+  before_ = {moved, triangles_around(moved), {}, {}, crossings_};
+  before_.stands.reserve(moved.size());
+  for (const auto v : moved) before_.stands.push_back({place_[v], away_[v], distance_[v], closest_[v], right_side_[v]});
+  before_.faults.reserve(before_.triangles.size());
+  for (const auto t : before_.triangles) before_.faults.push_back(fault_[t]);
+  look(moved, place_of);
+}
+
+void FaultFinder::take_back(const Indices& vertices) {
+  const auto index_of = [](const Indices& sorted, std::uint32_t i) {
+    return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), i) - sorted.begin());
+  };
+  for (const auto v : vertices) {
+    const Stand& stand = before_.stands[index_of(before_.vertices, v)];
+    place_[v] = stand.place;
+    away_[v] = stand.away;
+    distance_[v] = stand.distance;
+    closest_[v] = stand.closest;
+    right_side_[v] = stand.right_side;
+  }
+  const Indices touched = triangles_around(vertices);
+  for (const auto t : touched) fault_[t] = before_.faults[index_of(before_.triangles, t)];
+  replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
+  replace(misplaced_, vertices, [&](std::uint32_t v) { return is_misplaced(v); });
+  finder_.update(touched);
+  forget_crossings_of_updated();
+  look_at_rim(vertices, touched);
+  take_back_crossings(touched);
+}
+
+/// Pairs of what is back where it was meet again, unless one of them has stayed out: those are looked for from the side
+/// that has fewer triangles.
+void FaultFinder::take_back_crossings(const Indices& touched) {
+  Indices out;
+  std::set_difference(before_.triangles.begin(), before_.triangles.end(), touched.begin(), touched.end(),
+                      std::back_inserter(out));
+  if (out.size() >= touched.size()) {
+    for (const TrianglePair& pair : finder_.of_updated())
+      if (counts(pair)) crossings_.push_back(pair);
+    return;
+  }
+  const auto is_in = [](const Indices& some, const TrianglePair& pair) {
+    return std::binary_search(some.begin(), some.end(), pair.first) ||
+           std::binary_search(some.begin(), some.end(), pair.second);
+  };
+  for (const TrianglePair& pair : before_.crossings)
+    if (is_in(touched, pair) && !is_in(out, pair)) crossings_.push_back(pair);
+  if (out.empty()) return;
+  finder_.update(out);
+  for (const TrianglePair& pair : finder_.of_updated())
+    if (is_in(touched, pair) && counts(pair)) crossings_.push_back(pair);
 }
 
 bool FaultFinder::is_misplaced(std::uint32_t v) const {

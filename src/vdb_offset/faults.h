@@ -53,7 +53,12 @@ class FaultFinder {
   /// The same, but of the crossings of each face around them at least one is found, not all: enough to tell which of
   /// these vertices have to go back. Those are to be looked at again, so that none is missed in the end.
   void glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
-  /// The same for all vertices.
+  /// The same as look(), for vertices of which some may be taken back.
+  void try_out(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
+  /// Puts some of those that were last tried out back where they were before, and knows again what was wrong there; no
+  /// face may have both one of them and one that stays out.
+  void take_back(const Indices& vertices);
+  /// The same as look(), for all vertices.
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
 
   bool any() const { return !faces_.empty() || !crossings_.empty() || (rim_ && rim_->count() > 0); }
@@ -86,6 +91,21 @@ class FaultFinder {
  private:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
+  /// What is known of a vertex where it stands.
+  struct Stand {
+    Vec3d place, away;  ///< `away` is the way there from the surface.
+    double distance;
+    std::uint32_t closest;
+    std::uint8_t right_side;
+  };
+  /// How things were before vertices were tried out. Sorted, as are the triangles around them.
+  struct Before {
+    Indices vertices, triangles;
+    std::vector<Stand> stands;
+    std::vector<Fault> faults;
+    std::vector<TrianglePair> crossings;  // all
+  };
+
   void find_folded();
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
@@ -104,6 +124,10 @@ class FaultFinder {
   bool meets_other_skin(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   bool is_fault(const TrianglePair& pair) const;
+  bool counts(const TrianglePair& pair) const;
+  void forget_crossings_of_updated();
+  void look_at_rim(const Indices& moved, const Indices& touched);
+  void take_back_crossings(const Indices& touched);
   void look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings);
 
   const Body& body_;
@@ -123,6 +147,7 @@ class FaultFinder {
   Indices faces_, misplaced_;
   std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;
+  Before before_;
   CrossingFinder finder_;
   std::optional<NearCrossings> source_crossings_;
   std::optional<CrossingFinder> source_finder_;      // where what has moved must not meet the source

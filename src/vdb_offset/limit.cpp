@@ -306,7 +306,7 @@ class Limiter {
     for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
     const Untangler untangler(body_, distances_, options);
     tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
-    look(chosen);
+    faults_.try_out(chosen, [&](std::uint32_t v) { return place_of(v); });
     const std::vector<Wrong> after = wrong_by_patch(patches);
     Indices undone;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -317,7 +317,7 @@ class Limiter {
       undone.push_back(v);
     }
     for (const auto v : chosen) patch_[v] = kNone;
-    if (!undone.empty()) look(undone);
+    if (!undone.empty()) faults_.take_back(undone);
   }
 
   /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.
