@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -17,6 +18,13 @@ namespace vdb_offset {
 struct FloatBox {
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::array<float, 3> lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
+
+  void include(const FloatBox& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], other.lower[k]);
+      upper[k] = std::max(upper[k], other.upper[k]);
+    }
+  }
 };
 
 /// An implicit tree over boxes that come in an order in which neighbours are near each other: eight in a row make one

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace vdb_offset {
 namespace {
@@ -237,16 +238,65 @@ std::vector<TrianglePair> CrossingFinder::all() const {
   });
 }
 
+/// Runs of the last update's triangles that are in one block, by where they begin; then where the last one ends.
+std::vector<std::uint32_t> CrossingFinder::updated_runs() const {
+  std::vector<std::uint32_t> runs;
+  for (std::uint32_t i = 0; i < updated_.size(); ++i)
+    if (i == 0 || updated_[i] / BoxTree::kWidth != updated_[i - 1] / BoxTree::kWidth) runs.push_back(i);
+  runs.push_back(static_cast<std::uint32_t>(updated_.size()));
+  return runs;
+}
+
+/// Calls is_it(t, other, plane) for each triangle of a run that `takes` and each other whose boxes meet, `plane` being
+/// that of the former; no more for who has had true.
+template <class Takes, class IsIt>
+void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes, IsIt&& is_it) const {
+  struct Open {
+    std::uint32_t triangle;
+    FloatBox box;
+    Plane plane;
+  };
+  std::array<std::optional<Open>, BoxTree::kWidth> open;
+  std::size_t count = 0;
+  FloatBox all;
+  for (const auto t : run) {
+    if (!takes(t)) continue;
+    const std::array<Vec3d, 3> here = corners(t, positions_);
+    open[count].emplace(Open{t, box_of(here), Plane(here)});
+    all.include(open[count++]->box);
+  }
+  const auto look_at = [&](std::size_t block) {
+    for (std::size_t i = 0; i < count;) {
+      const auto& [t, box, plane] = *open[i];
+      bool found = false;
+      for (unsigned near = BoxTree::overlaps(tree_.levels().front()[block], box); near != 0 && !found;
+           near &= near - 1) {
+        const auto other =
+            static_cast<std::uint32_t>(block) * BoxTree::kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
+        found = other != t && is_it(t, other, plane);
+      }
+      if (found) open[i] = open[--count];
+      else ++i;
+    }
+    return count == 0;
+  };
+  if (count == 0) return;
+  if (tree_.levels().size() == 1) look_at(0);
+  else tree_.any_overlap(all, look_at, 1);
+}
+
 std::vector<TrianglePair> CrossingFinder::of_updated() const {
-  return find_in_parallel(updated_.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
-    const std::uint32_t t = updated_[i];
-    const Plane plane(corners(t, positions_));
-    tree_.for_each_overlap(box_of(corners(t, positions_)), [&](std::size_t child) {
-      const auto other = static_cast<std::uint32_t>(child);
-      if (other == t || (other < t && is_updated_[other]) || misses(plane, corners(other, positions_))) return;
-      const TrianglePair pair = std::minmax(t, other);
-      if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
-    });
+  const std::vector<std::uint32_t> runs = updated_runs();
+  const auto everyone = [](std::uint32_t) { return true; };
+  return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
+    any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), everyone,
+             [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
+               if (other < t && is_updated_[other]) return false;
+               if (on_one_side(plane, surface_, positions_, t, other)) return false;
+               const TrianglePair pair = std::minmax(t, other);
+               if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
+               return false;
+             });
   });
 }
 
@@ -254,33 +304,28 @@ std::vector<TrianglePair> CrossingFinder::of_updated() const {
 /// those that would have, had they not stopped before.
 std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
     const std::function<bool(const TrianglePair&)>& counts) const {
-  const auto find_one = [&](std::uint32_t t, auto&& may_meet, std::vector<TrianglePair>& found) {
-    const Plane plane(corners(t, positions_));
-    tree_.any_overlap(box_of(corners(t, positions_)), [&](std::size_t child) {
-      const auto other = static_cast<std::uint32_t>(child);
-      if (other == t || !may_meet(other) || misses(plane, corners(other, positions_))) return false;
-      const TrianglePair pair = std::minmax(t, other);
-      if (!meet(surface_, positions_, pair.first, pair.second) || !counts(pair)) return false;
-      found.push_back(pair);
-      return true;
+  const std::vector<std::uint32_t> runs = updated_runs();
+  const auto find_one_of_each = [&](auto&& takes, auto&& may_meet) {
+    return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
+      any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), takes,
+               [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
+                 if (!may_meet(t, other) || on_one_side(plane, surface_, positions_, t, other)) return false;
+                 const TrianglePair pair = std::minmax(t, other);
+                 if (!meet(surface_, positions_, pair.first, pair.second) || !counts(pair)) return false;
+                 found.push_back(pair);
+                 return true;
+               });
     });
   };
   std::vector<TrianglePair> pairs =
-      find_in_parallel(updated_.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
-        const std::uint32_t t = updated_[i];
-        find_one(
-            t, [&](std::uint32_t other) { return other > t || !is_updated_[other]; }, found);
-      });
+      find_one_of_each([](std::uint32_t) { return true; },
+                       [&](std::uint32_t t, std::uint32_t other) { return other > t || !is_updated_[other]; });
   if (pairs.empty()) return pairs;
   std::vector<std::uint8_t> meets(is_updated_.size(), 0);
   for (const auto& [s, t] : pairs) meets[s] = meets[t] = 1;
-  const std::vector<TrianglePair> more =
-      find_in_parallel(updated_.size(), 16, [&](std::size_t i, std::vector<TrianglePair>& found) {
-        const std::uint32_t t = updated_[i];
-        if (!meets[t])
-          find_one(
-              t, [&](std::uint32_t other) { return other < t && is_updated_[other] && meets[other]; }, found);
-      });
+  const std::vector<TrianglePair> more = find_one_of_each(
+      [&](std::uint32_t t) { return !meets[t]; },
+      [&](std::uint32_t t, std::uint32_t other) { return other < t && is_updated_[other] && meets[other]; });
   pairs.insert(pairs.end(), more.begin(), more.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;

@@ -48,6 +48,9 @@ class CrossingFinder {
  private:
   std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> places) const;
   FloatBox box_of(const std::array<Vec3d, 3>& corners) const;
+  std::vector<std::uint32_t> updated_runs() const;
+  template <class Takes, class IsIt>
+  void any_near(std::span<const std::uint32_t> run, Takes&& takes, IsIt&& is_it) const;
 
   const Surface& surface_;
   std::span<const Vec3d> positions_;
