@@ -285,14 +285,14 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
   else tree_.any_overlap(all, look_at, 1);
 }
 
-std::vector<TrianglePair> CrossingFinder::of_updated() const {
+std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(std::uint32_t)>& matters) const {
   const std::vector<std::uint32_t> runs = updated_runs();
-  const auto everyone = [](std::uint32_t) { return true; };
+  const auto may_take = [&](std::uint32_t t) { return !matters || matters(t); };
   return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
-    any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), everyone,
+    any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), may_take,
              [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
                if (other < t && is_updated_[other]) return false;
-               if (on_one_side(plane, surface_, positions_, t, other)) return false;
+               if (on_one_side(plane, surface_, positions_, t, other) || !may_take(other)) return false;
                const TrianglePair pair = std::minmax(t, other);
                if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
                return false;
@@ -303,13 +303,15 @@ std::vector<TrianglePair> CrossingFinder::of_updated() const {
 /// First each looks at those that are not to look at it; then who has found none, and has been found by none, looks at
 /// those that would have, had they not stopped before.
 std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
-    const std::function<bool(const TrianglePair&)>& counts) const {
+    const std::function<bool(std::uint32_t)>& matters, const std::function<bool(const TrianglePair&)>& counts) const {
   const std::vector<std::uint32_t> runs = updated_runs();
+  const auto may_take = [&](std::uint32_t t) { return !matters || matters(t); };
   const auto find_one_of_each = [&](auto&& takes, auto&& may_meet) {
     return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
       any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), takes,
                [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
-                 if (!may_meet(t, other) || on_one_side(plane, surface_, positions_, t, other)) return false;
+                 if (!may_meet(t, other) || on_one_side(plane, surface_, positions_, t, other) || !may_take(other))
+                   return false;
                  const TrianglePair pair = std::minmax(t, other);
                  if (!meet(surface_, positions_, pair.first, pair.second) || !counts(pair)) return false;
                  found.push_back(pair);
@@ -317,14 +319,13 @@ std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
                });
     });
   };
-  std::vector<TrianglePair> pairs =
-      find_one_of_each([](std::uint32_t) { return true; },
-                       [&](std::uint32_t t, std::uint32_t other) { return other > t || !is_updated_[other]; });
+  std::vector<TrianglePair> pairs = find_one_of_each(
+      may_take, [&](std::uint32_t t, std::uint32_t other) { return other > t || !is_updated_[other]; });
   if (pairs.empty()) return pairs;
   std::vector<std::uint8_t> meets(is_updated_.size(), 0);
   for (const auto& [s, t] : pairs) meets[s] = meets[t] = 1;
   const std::vector<TrianglePair> more = find_one_of_each(
-      [&](std::uint32_t t) { return !meets[t]; },
+      [&](std::uint32_t t) { return !meets[t] && may_take(t); },
       [&](std::uint32_t t, std::uint32_t other) { return other < t && is_updated_[other] && meets[other]; });
   pairs.insert(pairs.end(), more.begin(), more.end());
   std::sort(pairs.begin(), pairs.end());

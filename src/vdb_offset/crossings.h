@@ -30,10 +30,11 @@ class CrossingFinder {
 
   /// All pairs, sorted; the same for any number of threads.
   std::vector<TrianglePair> all() const;
-  /// The pairs that a triangle of the last update is part of, or two; sorted.
-  std::vector<TrianglePair> of_updated() const;
-  /// Of each triangle of the last update one pair that counts, if there are any; sorted.
-  std::vector<TrianglePair> one_of_each_updated(const std::function<bool(const TrianglePair&)>& counts) const;
+  /// The pairs that a triangle of the last update is part of, or two, both of which matter (all do by default); sorted.
+  std::vector<TrianglePair> of_updated(const std::function<bool(std::uint32_t)>& matters = {}) const;
+  /// Of each triangle of the last update one such pair that counts, if there are any; sorted.
+  std::vector<TrianglePair> one_of_each_updated(const std::function<bool(std::uint32_t)>& matters,
+                                                const std::function<bool(const TrianglePair&)>& counts) const;
 
   /// The surface's triangles, as they stand here, that one meets with its corners at `places`, elsewhere than in
   /// corners that are at one place. In no particular order.

@@ -73,9 +73,12 @@ bool FaultFinder::is_fault(const TrianglePair& pair) const {
          !std::binary_search(source_crossings().begin(), source_crossings().end(), pair);
 }
 
-/// Not those near where sheets of the source cross, which have to slide.
-bool FaultFinder::counts(const TrianglePair& pair) const {
-  return !source_crossings_->is_near(pair.first) && !source_crossings_->is_near(pair.second) && is_fault(pair);
+/// Not what is near where sheets of the source cross, which has to slide.
+bool FaultFinder::matters(std::uint32_t t) const { return !source_crossings_->is_near(t); }
+
+void FaultFinder::add_crossings_of_updated() {
+  for (const TrianglePair& pair : finder_.of_updated([&](std::uint32_t t) { return matters(t); }))
+    if (is_fault(pair)) crossings_.push_back(pair);
 }
 
 void FaultFinder::forget_crossings_of_updated() {
@@ -88,13 +91,17 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
   finder_.update(touched);
   const bool first = touched.size() == surface_.triangles.size();
   forget_crossings_of_updated();
-  const auto counts = [&](const TrianglePair& pair) { return this->counts(pair); };
-  if (crossings == Crossings::OneOfEach) {
-    for (const TrianglePair& pair : finder_.one_of_each_updated(counts)) crossings_.push_back(pair);
+  if (first) {
+    for (const TrianglePair& pair : finder_.all())
+      if (!is_fault(pair)) continue;
+      else if (matters(pair.first) && matters(pair.second)) crossings_.push_back(pair);
+      else ++crossings_near_source_;
+  } else if (crossings == Crossings::OneOfEach) {
+    for (const TrianglePair& pair : finder_.one_of_each_updated(
+             [&](std::uint32_t t) { return matters(t); }, [&](const TrianglePair& each) { return is_fault(each); }))
+      crossings_.push_back(pair);
   } else {
-    for (const TrianglePair& pair : first ? finder_.all() : finder_.of_updated())
-      if (counts(pair)) crossings_.push_back(pair);
-      else crossings_near_source_ += first && is_fault(pair);
+    add_crossings_of_updated();
   }
   look_at_rim(moved, touched);
 }
@@ -325,8 +332,7 @@ void FaultFinder::take_back_crossings(const Indices& touched) {
   std::set_difference(before_.triangles.begin(), before_.triangles.end(), touched.begin(), touched.end(),
                       std::back_inserter(out));
   if (out.size() >= touched.size()) {
-    for (const TrianglePair& pair : finder_.of_updated())
-      if (counts(pair)) crossings_.push_back(pair);
+    add_crossings_of_updated();
     return;
   }
   const auto is_in = [](const Indices& some, const TrianglePair& pair) {
@@ -337,8 +343,8 @@ void FaultFinder::take_back_crossings(const Indices& touched) {
     if (is_in(touched, pair) && !is_in(out, pair)) crossings_.push_back(pair);
   if (out.empty()) return;
   finder_.update(out);
-  for (const TrianglePair& pair : finder_.of_updated())
-    if (is_in(touched, pair) && counts(pair)) crossings_.push_back(pair);
+  forget_crossings_of_updated();
+  add_crossings_of_updated();
 }
 
 bool FaultFinder::is_misplaced(std::uint32_t v) const {

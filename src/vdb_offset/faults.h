@@ -124,8 +124,9 @@ class FaultFinder {
   bool meets_other_skin(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   bool is_fault(const TrianglePair& pair) const;
-  bool counts(const TrianglePair& pair) const;
+  bool matters(std::uint32_t triangle) const;
   void forget_crossings_of_updated();
+  void add_crossings_of_updated();
   void look_at_rim(const Indices& moved, const Indices& touched);
   void take_back_crossings(const Indices& touched);
   void look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings);

@@ -44,11 +44,10 @@ void NearCrossings::look_around() {
   std::vector<std::uint32_t> end(near_begin_.begin(), near_begin_.end() - 1);
   for (std::uint32_t i = 0; i < beside.size(); ++i)
     for (const auto v : beside[i]) near_[end[v]++] = i;
-}
-
-bool NearCrossings::is_near(std::uint32_t triangle) const {
-  const auto& corners = surface_.triangles[triangle];
-  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_vertex_near(v); });
+  triangle_near_.assign(surface_.triangles.size(), 0);
+  for (const auto& vertices : beside)
+    for (const auto v : vertices)
+      for (const auto t : surface_.triangles_around(v)) triangle_near_[t] = 1;
 }
 
 /// Those of the triangle, and within two rings of it; sorted.

@@ -17,7 +17,7 @@ class NearCrossings {
   const std::vector<TrianglePair>& pairs() const { return pairs_; }
 
   /// Within two rings of a face that crosses another.
-  bool is_near(std::uint32_t triangle) const;
+  bool is_near(std::uint32_t triangle) const { return !triangle_near_.empty() && triangle_near_[triangle]; }
   bool is_vertex_near(std::uint32_t vertex) const { return !near(vertex).empty(); }
 
   /// Whether the sheets that two triangles are part of go through each other beside both: two faces cross of which one
@@ -39,6 +39,7 @@ class NearCrossings {
   std::vector<std::uint32_t> crossing_;                 // triangles that cross others, rising
   std::vector<std::uint32_t> crossed_begin_, crossed_;  // of each of them: those that it crosses, by their places
   std::vector<std::uint32_t> near_begin_, near_;        // of each vertex: which of them are within two rings of it
+  std::vector<std::uint8_t> triangle_near_;             // of each triangle; empty if none is
 };
 
 }  // namespace vdb_offset
