@@ -64,8 +64,13 @@ constexpr int kFewRings = 3;
 constexpr std::size_t kManyFaults = 2000;
 constexpr double kWorthwhile = 0.8;
 
-// Rounds in which pulled vertices are let out again, each by one step.
-constexpr int kReleases = 12;
+// Rounds in which pulled vertices are let out again, each by one step: what it keeps is this share of what it goes
+// then.
+constexpr int kReleases = 16;
+constexpr double kReleased = 0.65;
+// Those that have got into each other's way would do so again if they went together: one of so many of them goes in a
+// round.
+constexpr std::uint64_t kAnew = 4;
 // Rounds after that in which one of so many is let out by more.
 constexpr int kLeaps = 12;
 constexpr std::uint64_t kLeapers = 4;
@@ -86,6 +91,7 @@ class Limiter {
         paths_(paths),
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
+        stopped_(source.size(), 0),
         patch_(source.size(), kNone),
         gathered_(source.size()),
         faults_(faults) {
@@ -104,9 +110,9 @@ class Limiter {
   void pull_back_and_release(Progress& progress) {
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
-    const auto everyone = [](std::uint32_t) { return true; };
-    const auto a_step = [](double share) { return share / kKept; };
-    for (int i = 0; i < kReleases && release(everyone, a_step); ++i) progress.advance(1);
+    const auto a_step = [](double share) { return share / kReleased; };
+    const auto may_go = [&](std::uint32_t v) { return !stopped_[v] || is_drawn(v, kAnew); };
+    for (; turn_ < kReleases && release(may_go, a_step); ++turn_) progress.advance(1);
     leap(progress);
     ease();
   }
@@ -354,14 +360,15 @@ class Limiter {
     return keep_valid(before) > 0;
   }
 
+  /// One of so many vertices, others in each turn.
+  bool is_drawn(std::uint32_t v, std::uint64_t of) const { return mix(turn_ << 32 | v) % of == 0; }
+
   /// Lets a few of the pulled vertices at a time out the whole way, then half of what is left of it. Of a wrong face's
   /// corners often one alone is in the wrong place; the others can go once they do not go along with it.
   void leap(Progress& progress) {
-    std::uint64_t turn = 0;
     for (const double part : {1.0, 0.5})
-      for (int i = 0; i < kLeaps; ++i) {
-        ++turn;
-        release([&](std::uint32_t v) { return mix(turn << 32 | v) % kLeapers == 0; },
+      for (int i = 0; i < kLeaps; ++i, ++turn_) {
+        release([&](std::uint32_t v) { return is_drawn(v, kLeapers); },
                 [&](double share) { return share + (1 - share) * part; });
         progress.advance(1);
       }
@@ -394,7 +401,8 @@ class Limiter {
   }
 
   /// Gives what is wrong, now that these vertices have moved, its old share again, for as long as anything is. Returns
-  /// how many have kept their new one.
+  /// how many have kept their new one. Who has none at first is stopped by others that have moved, and go back as well,
+  /// or by what has not; the others only follow.
   std::size_t keep_valid(const OldShares& before) {
     if (before.empty()) return 0;
     Indices moved;
@@ -404,6 +412,8 @@ class Limiter {
       ++statistics_.rounds;
       moved = take_back_wrong(before);
       if (moved.empty()) return kept;
+      if (kept == before.size())
+        for (const auto v : moved) stopped_[v] = 1;
       look(moved);
     }
   }
@@ -426,11 +436,13 @@ class Limiter {
   const Distances& distances_;
   Paths& paths_;
   std::vector<Vec3d> whole_way_;
-  std::vector<double> share_;  // of the way that a vertex goes
-  Indices pulled_;             // vertices that have been pulled back at some time
-  Indices patch_;              // of each vertex while patches are being untangled, else kNone
-  IndexGatherer gathered_;     // vertices
-  FaultFinder& faults_;        // as things stand
+  std::vector<double> share_;          // of the way that a vertex goes
+  std::vector<std::uint8_t> stopped_;  // vertices that have met others when they were let out
+  std::uint64_t turn_ = 0;             // of letting out
+  Indices pulled_;                     // vertices that have been pulled back at some time
+  Indices patch_;                      // of each vertex while patches are being untangled, else kNone
+  IndexGatherer gathered_;             // vertices
+  FaultFinder& faults_;                // as things stand
   LimitStatistics statistics_;
 };
 
