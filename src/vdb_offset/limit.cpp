@@ -17,12 +17,12 @@ namespace {
 // small, as the skins of a shell touch where a vertex has not moved at all.
 constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 
-// Patches are tried in these ways, with ever more rings around what is wrong. What frees one patch fails in the next;
-// borders leave their planes only for what else does not free. The last ways are for small patches in which little has
-// collided: these cost next to nothing, and one of several ways frees many of them. Patches of more vertices than so
-// many, or in which more have collided, are left out: of 23,000 patches of fifteen models these took more than half of
-// the time, and hardly any of them was freed. Larger meshes than all of those may have patches as many times larger as
-// they have kManyVertices, rounded up.
+// Patches are tried in these ways, the first to its end, with ever more rings around what is wrong. What frees one
+// patch fails in the next; borders leave their planes only for what else does not free. The last ways are for small
+// patches in which little has collided: these cost next to nothing, and one of several ways frees many of them. Patches
+// of more vertices than so many, or in which more have collided, are left out: of 23,000 patches of fifteen models
+// these took more than half of the time, and hardly any of them was freed. Larger meshes than all of those may have
+// patches as many times larger as they have kManyVertices, rounded up.
 constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
 struct Growth {
   int rings;
@@ -40,7 +40,7 @@ constexpr Growth kNearestGrowths[] = {{1, 300}, {2, 300}, {3, 300}};
 constexpr Growth kHopefulGrowths[] = {{1, 1000, 20}, {2, 1000, 20}};
 constexpr Growth kSmoothGrowths[] = {{1, 1000, 20}, {2, 1000, 20}, {4, 1000, 3}, {6, 1000, 3}};
 constexpr Attempt kAttempts[] = {
-    {{1, 4, true}, kFarGrowths},          {{0.1, 10, true}, kNearGrowths},   {{1, 30, false}, kLessGrowths},
+    {{1, 4, true, true}, kFarGrowths},    {{0.1, 10, true}, kNearGrowths},   {{1, 30, false}, kLessGrowths},
     {{0.01, 10, false}, kNearestGrowths}, {{1, 60, false}, kSmoothGrowths},  {{1, 10, true}, kHopefulGrowths},
     {{0.3, 2, true}, kHopefulGrowths},    {{3, 4, true}, kHopefulGrowths},   {{0.03, 30, true}, kHopefulGrowths},
     {{1, 2, true}, kHopefulGrowths},      {{0.1, 4, false}, kHopefulGrowths}};
@@ -52,7 +52,7 @@ struct Freeing {
   Growth growth;
 };
 constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAnyNumber}},
-                                 {{1, 4, true}, {0, kAnyNumber}},
+                                 {{1, 4, true, true}, {0, kAnyNumber}},
                                  {{1, 30, true}, {0, kAnyNumber}},
                                  {{1, 30, false}, {0, 300}},
                                  {{0.01, 10, false}, {0, 300}}};

@@ -17,7 +17,7 @@ constexpr int kRenewals = 6, kSteps = 20;
 constexpr std::size_t kMemory = 8;
 
 // Who has no fewer faces folded so many times on end will hardly have, and small patches cost little.
-constexpr int kFruitless = 1, kFruitlessIfSmall = 3;
+constexpr int kFruitless = 2, kFruitlessIfSmall = 3;
 constexpr std::size_t kSmall = 100;
 
 // A step is halved this often until it gains enough; when all of it gains less than this share, the slide ends. Once
@@ -114,7 +114,7 @@ class Patch {
   void untangle() {
     renew_planes();
     std::vector<Vec3d> best = places();
-    const int most_fruitless = free_ > kSmall ? kFruitless : kFruitlessIfSmall;
+    const int most_fruitless = options_.thorough ? kRenewals : free_ > kSmall ? kFruitless : kFruitlessIfSmall;
     int fewest = folded_, fruitless = 0;
     for (int i = 0; i < kRenewals && (i == 0 || fewest > 0) && fruitless < most_fruitless; ++i) {
       const std::vector<Vec3d> before = places();
@@ -330,7 +330,7 @@ class Patch {
       g.swap(next_g);
       const double gained = e - next_e.sum;
       e = next_e.sum;
-      if (gained < (next_e.folded ? kLeastGain : kLeastGainUnfolded) * e) break;
+      if (gained < (next_e.folded || options_.thorough ? kLeastGain : kLeastGainUnfolded) * e) break;
     }
     move_points(x);
   }

@@ -20,9 +20,10 @@ namespace vdb_offset {
 class Untangler {
  public:
   struct Options {
-    double area_weight;  ///< lambda: of the faces' areas against their shapes.
-    int smoothing;       ///< How often normals are smoothed over the patch.
-    bool keep_borders;   ///< Vertices at a border slide in the plane across it alone.
+    double area_weight;     ///< lambda: of the faces' areas against their shapes.
+    int smoothing;          ///< How often normals are smoothed over the patch.
+    bool keep_borders;      ///< Vertices at a border slide in the plane across it alone.
+    bool thorough = false;  ///< Goes on where little more is gained: to the best shapes, and with what stays folded.
   };
 
   /// Keeps references to the body and the distances of its vertices.
