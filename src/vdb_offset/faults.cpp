@@ -91,15 +91,15 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
   finder_.update(touched);
   const bool first = touched.size() == surface_.triangles.size();
   forget_crossings_of_updated();
-  if (first) {
+  if (crossings == Crossings::OneOfEach) {
+    for (const TrianglePair& pair : finder_.one_of_each_updated(
+             [&](std::uint32_t t) { return matters(t); }, [&](const TrianglePair& each) { return is_fault(each); }))
+      crossings_.push_back(pair);
+  } else if (first) {
     for (const TrianglePair& pair : finder_.all())
       if (!is_fault(pair)) continue;
       else if (matters(pair.first) && matters(pair.second)) crossings_.push_back(pair);
       else ++crossings_near_source_;
-  } else if (crossings == Crossings::OneOfEach) {
-    for (const TrianglePair& pair : finder_.one_of_each_updated(
-             [&](std::uint32_t t) { return matters(t); }, [&](const TrianglePair& each) { return is_fault(each); }))
-      crossings_.push_back(pair);
   } else {
     add_crossings_of_updated();
   }
