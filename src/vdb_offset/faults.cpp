@@ -266,6 +266,10 @@ void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& pla
   look(everything, place_of, ends, Crossings::All);
 }
 
+void FaultFinder::look_at_ends(const Paths& paths) {
+  look_everywhere([&](std::uint32_t v) { return source_[v] + paths.displacement[v]; }, &paths);
+}
+
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
   look(moved, place_of, ends, Crossings::All);
 }

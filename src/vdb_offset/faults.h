@@ -60,6 +60,8 @@ class FaultFinder {
   void take_back(const Indices& vertices);
   /// The same as look(), for all vertices.
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
+  /// Puts all vertices to the ends of their paths, and finds what is wrong there.
+  void look_at_ends(const Paths& paths);
 
   bool any() const { return !faces_.empty() || !crossings_.empty() || (rim_ && rim_->count() > 0); }
   FaultCounts count() const;
@@ -67,9 +69,14 @@ class FaultFinder {
   const Indices& misplaced() const { return misplaced_; }
   /// Pairs that meet where the source's do not, away from where those do.
   const std::vector<TrianglePair>& crossings() const { return crossings_; }
-  /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another.
+  /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another; not of those
+  /// that are left out (triangle), or of which both are.
+  template <class Visit, class LeftOut>
+  void for_each_wrong_corner(Visit&& visit, LeftOut&& is_left_out) const;
   template <class Visit>
-  void for_each_wrong_corner(Visit&& visit) const;
+  void for_each_wrong_corner(Visit&& visit) const {
+    for_each_wrong_corner(visit, [](std::uint32_t) { return false; });
+  }
   /// Folded vertices (see is_folded()) whose faces meet the source around them, which only ends where they stay on it.
   Indices caught();
   /// All vertices that something is wrong with.
@@ -157,13 +164,15 @@ class FaultFinder {
   std::optional<ClearanceFinder> clearance_;
 };
 
-template <class Visit>
-void FaultFinder::for_each_wrong_corner(Visit&& visit) const {
+template <class Visit, class LeftOut>
+void FaultFinder::for_each_wrong_corner(Visit&& visit, LeftOut&& is_left_out) const {
   const auto visit_corners = [&](std::uint32_t t) {
     for (const auto v : surface_.triangles[t]) visit(v);
   };
-  for (const auto t : faces_) visit_corners(t);
+  for (const auto t : faces_)
+    if (!is_left_out(t)) visit_corners(t);
   for (const auto& [s, t] : crossings_) {
+    if (is_left_out(s) && is_left_out(t)) continue;
     visit_corners(s);
     visit_corners(t);
   }

@@ -75,6 +75,9 @@ constexpr std::uint64_t kAnew = 4;
 constexpr int kLeaps = 12;
 constexpr std::uint64_t kLeapers = 4;
 
+// Around what a precedent has mended, so many rings go along.
+constexpr int kFollowedRings = 1;
+
 // How much more of its way, per distance between them, a vertex may go than a pulled one beside it.
 constexpr double kSteepest = 2;
 
@@ -83,7 +86,7 @@ constexpr std::size_t kExpectedRounds = 32;
 class Limiter {
  public:
   Limiter(const Body& body, std::span<const Vec3d> source, const Distances& distances, Paths& paths,
-          FaultFinder& faults)
+          FaultFinder& faults, const Precedent* followed = nullptr)
       : body_(body),
         surface_(body.surface),
         source_(source),
@@ -94,14 +97,15 @@ class Limiter {
         stopped_(source.size(), 0),
         patch_(source.size(), kNone),
         gathered_(source.size()),
-        faults_(faults) {
+        faults_(faults),
+        followed_(followed) {
     statistics_.source_crossings = faults_.source_crossings().size();
+    statistics_.crossings_near_source = faults_.crossings_near_source();
+    statistics_.before = faults_.count();
   }
 
   void untangle(Progress& progress) {
-    faults_.look_everywhere([&](std::uint32_t v) { return place_of(v); }, &paths_);
-    statistics_.crossings_near_source = faults_.crossings_near_source();
-    statistics_.before = faults_.count();
+    if (followed_) follow();
     for (const Attempt& attempt : kAttempts)
       if (!untangle_with(attempt, progress)) break;
     free_collided(progress);
@@ -117,8 +121,9 @@ class Limiter {
     ease();
   }
 
-  /// Tells the paths what has become of them.
-  LimitStatistics finish() {
+  /// Tells the paths what has become of them, and who may follow.
+  LimitStatistics finish(Precedent* set = nullptr) {
+    std::vector<std::uint8_t> mended(set ? source_.size() : 0, 0);
     double lost = 0;
     std::size_t moving = 0;
     for (std::uint32_t v = 0; v < share_.size(); ++v) {
@@ -128,6 +133,7 @@ class Limiter {
       const bool stayed = paths_.displacement[v] == way(v);
       paths_.displacement[v] = way(v);
       if (stayed) continue;
+      if (set) mended[v] = 1;
       const double distance = faults_.distance_of(v);
       lost += std::max(0.0, paths_.achieved[v] - distance) / target;
       paths_.achieved[v] = distance;
@@ -140,11 +146,62 @@ class Limiter {
       }
     }
     statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
+    if (set) {
+      *set = {distances_, paths_.displacement, paths_.achieved, std::move(mended), {}, is_much_wrong()};
+      set->pulled.assign(source_.size(), 0);
+      for (const auto v : pulled_) set->pulled[v] = 1;
+    }
     return statistics_;
   }
 
  private:
   std::size_t fault_count() const { return faults_.count().total(); }
+  /// At first; as little is tried as where that was so before.
+  bool is_much_wrong() const {
+    return statistics_.before.total() > kManyFaults || (followed_ && followed_->much_wrong);
+  }
+  bool has_many_faults() const { return fault_count() > kManyFaults || (followed_ && followed_->much_wrong); }
+
+  /// Whether a vertex goes no farther than the one that was there before, to the same side.
+  bool may_follow(std::uint32_t v) const {
+    const double distance = distances_[v], farther = followed_->distances[v];
+    return may_slide(v) && distance * farther > 0 && std::abs(distance) <= std::abs(farther);
+  }
+
+  /// Begins with what became of a farther offset, where something is wrong with this one.
+  void follow() {
+    for (std::uint32_t v = 0; v < source_.size(); ++v)
+      if (followed_->mended[v] && may_follow(v)) gathered_.add(v);
+    if (gathered_.so_far().empty()) return;
+    Indices chosen = with_rings(gathered_.take(), kFollowedRings);
+    std::erase_if(chosen, [&](std::uint32_t v) { return !may_follow(v); });
+    std::vector<Indices> patches = find_patches(chosen);
+    const std::vector<Wrong> wrong = wrong_by_patch(patches);
+    drop(patches, chosen, [&](const Indices& patch) { return !wrong[patch_[patch.front()]].any(); });
+    try_out(patches, chosen, [&](const Indices& patch) {
+      for (const auto v : patch) begin_as_followed(v);
+    });
+    for (const auto v : chosen)
+      if (share_[v] != 1) pulled_.push_back(v);
+  }
+
+  /// On the straight way to where the vertex ended up there, if that is far enough, or not for having been pulled back;
+  /// else as far as that on its own way.
+  void begin_as_followed(std::uint32_t v) {
+    const Vec3d& way = followed_->way[v];
+    Vec3d& whole = whole_way_[v];
+    const double distance = std::abs(distances_[v]);
+    if (followed_->achieved[v] >= distance) whole = way_to_distance(body_, v, way, distance);
+    else if (!followed_->pulled[v]) whole = way;
+    else if (whole.lengthSqr() > way.lengthSqr()) share_[v] = way.length() / whole.length();
+  }
+
+  /// Whether a triangle is one of those that could not be freed before, as all of its corners had to be pulled back.
+  bool is_given_up(std::uint32_t t) const {
+    const auto& corners = surface_.triangles[t];
+    return followed_ && std::all_of(corners.begin(), corners.end(),
+                                    [&](std::uint32_t v) { return followed_->pulled[v] && distances_[v] * followed_->distances[v] > 0; });
+  }
 
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
   /// wrong, fronts have run through each other, and large patches take long for little. False if it is not worth
@@ -154,7 +211,7 @@ class Limiter {
     Indices last;
     for (const Growth& growth : attempt.growths) {
       if (!faults_.any()) return false;
-      if (growth.rings > kFewRings && fault_count() > kManyFaults) break;
+      if (growth.rings > kFewRings && has_many_faults()) break;
       Indices chosen = patch_vertices(growth.rings);
       if (chosen == last) break;
       untangle(chosen, attempt.options, growth);
@@ -162,7 +219,7 @@ class Limiter {
       progress.advance(1);
       last = std::move(chosen);
     }
-    return fault_count() <= kManyFaults || fault_count() < kWorthwhile * static_cast<double>(before);
+    return !has_many_faults() || fault_count() < kWorthwhile * static_cast<double>(before);
   }
 
   /// Lets what has collided slide to where it has its distance.
@@ -245,6 +302,7 @@ class Limiter {
   struct Wrong {
     std::size_t misplaced = 0, corners = 0, collided = 0;
     bool any_fault() const { return misplaced + corners > 0; }
+    bool any() const { return any_fault() || collided > 0; }
     bool is_less_than(const Wrong& other) const {
       return std::tie(misplaced, corners, collided) < std::tie(other.misplaced, other.corners, other.collided);
     }
@@ -274,10 +332,11 @@ class Limiter {
                        [&](std::uint32_t t) { return surface_.triangle_normals[t].lengthSqr() > 0; });
   }
 
-  /// The vertices that may slide, so many rings around what is wrong.
+  /// The vertices that may slide, so many rings around what is wrong and has not been given up.
   Indices patch_vertices(int rings) {
     // Corners are wrong many times over where fronts have run through each other.
-    faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); });
+    faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); },
+                                  [&](std::uint32_t t) { return is_given_up(t); });
     Indices chosen = with_rings(gathered_.take(), rings);
     std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
     return chosen;
@@ -286,16 +345,24 @@ class Limiter {
   /// Drops the patches that are not worth while.
   void leave_out(std::vector<Indices>& patches, Indices& chosen, const Growth& growth) {
     const std::size_t most = growth.most_vertices * (1 + source_.size() / kManyVertices);
-    const auto is_hopeless = [&](const Indices& patch) {
+    drop(patches, chosen, [&](const Indices& patch) {
       return patch.size() > most || count_collided(patch) > growth.most_collided;
-    };
-    for (const Indices& patch : patches)
-      if (is_hopeless(patch))
-        for (const auto v : patch) patch_[v] = kNone;
-    std::erase_if(patches, [&](const Indices& patch) { return patch_[patch.front()] == kNone; });
+    });
+  }
+
+  template <class Hopeless>
+  void drop(std::vector<Indices>& patches, Indices& chosen, Hopeless&& is_hopeless) {
+    std::vector<std::uint8_t> dropped;
+    for (const Indices& patch : patches) dropped.push_back(is_hopeless(patch));
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      for (const auto v : patches[i]) patch_[v] = dropped[i] ? kNone : kept;
+      if (dropped[i]) continue;
+      if (kept != i) patches[kept] = std::move(patches[i]);
+      ++kept;
+    }
+    patches.resize(kept);
     std::erase_if(chosen, [&](std::uint32_t v) { return patch_[v] == kNone; });
-    for (std::uint32_t i = 0; i < patches.size(); ++i)
-      for (const auto v : patches[i]) patch_[v] = i;
   }
 
   std::size_t count_collided(const Indices& patch) const {
@@ -307,11 +374,19 @@ class Limiter {
   void untangle(Indices chosen, const Untangler::Options& options, const Growth& growth) {
     std::vector<Indices> patches = find_patches(chosen);
     leave_out(patches, chosen, growth);
-    const std::vector<Wrong> before = wrong_by_patch(patches);
-    std::vector<Vec3d> old_way(chosen.size());
-    for (std::size_t i = 0; i < chosen.size(); ++i) old_way[i] = whole_way_[chosen[i]];
     const Untangler untangler(body_, distances_, options);
-    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { untangler(patches[i], whole_way_); });
+    try_out(patches, chosen, [&](const Indices& patch) { untangler(patch, whole_way_); });
+  }
+
+  /// Lets move(patch) change the ways and shares of the vertices of patches, `chosen` being those of all, in parallel;
+  /// then puts back the patches where that has made something worse, or nothing better where there was nothing wrong.
+  template <class Move>
+  void try_out(const std::vector<Indices>& patches, const Indices& chosen, Move&& move) {
+    const std::vector<Wrong> before = wrong_by_patch(patches);
+    std::vector<std::pair<Vec3d, double>> old;
+    old.reserve(chosen.size());
+    for (const auto v : chosen) old.emplace_back(whole_way_[v], share_[v]);
+    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { move(patches[i]); });
     faults_.try_out(chosen, [&](std::uint32_t v) { return place_of(v); });
     const std::vector<Wrong> after = wrong_by_patch(patches);
     Indices undone;
@@ -319,7 +394,7 @@ class Limiter {
       const std::uint32_t v = chosen[i];
       const Wrong &was = before[patch_[v]], &is = after[patch_[v]];
       if (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was)) continue;
-      whole_way_[v] = old_way[i];
+      std::tie(whole_way_[v], share_[v]) = old[i];
       undone.push_back(v);
     }
     for (const auto v : chosen) patch_[v] = kNone;
@@ -443,6 +518,7 @@ class Limiter {
   Indices patch_;                      // of each vertex while patches are being untangled, else kNone
   IndexGatherer gathered_;             // vertices
   FaultFinder& faults_;                // as things stand
+  const Precedent* followed_;
   LimitStatistics statistics_;
 };
 
@@ -457,12 +533,12 @@ LimitStatistics untangle(FaultFinder& faults, const Body& body, std::span<const 
 }
 
 LimitStatistics limit(FaultFinder& faults, const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                      Paths& paths, const ProgressCallback& callback) {
+                      Paths& paths, const ProgressCallback& callback, const Precedent* followed, Precedent* set) {
   Progress progress(callback, Stage::Limit, kExpectedRounds);
-  Limiter limiter(body, source, distances, paths, faults);
+  Limiter limiter(body, source, distances, paths, faults, followed);
   limiter.untangle(progress);
   limiter.pull_back_and_release(progress);
-  return limiter.finish();
+  return limiter.finish(set);
 }
 
 }  // namespace vdb_offset

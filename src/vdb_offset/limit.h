@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/faults.h"
+#include "vdb_offset/precedent.h"
 #include "vdb_offset/propagate.h"
 
 namespace vdb_offset {
@@ -23,9 +24,10 @@ struct LimitStatistics {
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew.
 ///
-/// What counts as wrong is told in faults.h. Patches around what is wrong are untangled first (Untangler), small ones,
-/// then larger ones and with smoother normals, and a patch keeps that where it makes nothing worse. That costs no
-/// distance; what has collided slides to where it has its distance in the same way, if there is such a place near. Then
+/// What counts as wrong is told in faults.h. Where a precedent is followed, patches that were mended there, and in which
+/// something is wrong here, begin with what became of them; what could not be freed there is not tried again. Then
+/// patches around what is wrong are untangled (Untangler), small ones, then larger ones and with smoother normals, and
+/// a patch keeps that where it makes nothing worse. That costs no distance; what has collided slides to where it has its distance in the same way, if there is such a place near. Then
 /// the vertices of a face that is wrong are pulled back towards where they came from, by a little in each round, until
 /// nothing is wrong; then those that were are let out again as far as nothing goes wrong, all together step by step,
 /// then a few at a time by leaps. A surface pulled back altogether is the source, so that it ends. Last, vertices
@@ -33,12 +35,13 @@ struct LimitStatistics {
 /// other, as far as nothing goes wrong. Pulled vertices are `Limited`, with the distance that they keep.
 ///
 /// `source` holds where the body's vertices stand in the input, world coordinates; `distances` and `paths` are theirs,
-/// and who is not on the front has no way to go. `faults` looks at the same. The result does not depend on the number
-/// of threads.
+/// and who is not on the front has no way to go. `faults` looks at the same, and has looked at the paths' ends.
+/// `set` is told what becomes of this offset. The result does not depend on the number of threads.
 LimitStatistics limit(FaultFinder& faults, const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                      Paths& paths, const ProgressCallback& progress = {});
+                      Paths& paths, const ProgressCallback& progress = {}, const Precedent* followed = nullptr,
+                      Precedent* set = nullptr);
 
-/// The first half of that alone: patches are untangled, nothing is pulled back. Faults may be left.
+/// The untangling of that alone: nothing is pulled back. Faults may be left.
 LimitStatistics untangle(FaultFinder& faults, const Body& body, std::span<const Vec3d> source,
                          const Distances& distances, Paths& paths, const ProgressCallback& progress = {});
 

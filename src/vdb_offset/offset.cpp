@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <numeric>
 #include <optional>
 
 #include "vdb_offset/closest.h"
@@ -14,6 +16,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/precedent.h"
 #include "vdb_offset/rasterise.h"
 #include "vdb_offset/run.h"
 #include "vdb_offset/slide.h"
@@ -169,27 +172,13 @@ class Pipeline {
     prepare(farthest, {.results = wanted.size()});
     // The body is complete by now, obstacles and all.
     for (const Distances& distances : wanted) distances_.push_back(on_body(distances));
-    std::vector<Paths> paths(wanted.size());
-    if (goes_anywhere(farthest)) paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
-    std::vector<OffsetResult> results;
-    results.resize(wanted.size());
-    const auto make = [&](std::size_t i, const ProgressCallback& progress) {
-      results[i] = goes_anywhere(farthest) ? finish(distances_[i], paths[i], progress) : stay(distances_[i]);
-    };
-    if (wanted.size() > 1 && options_.collision == Collision::Limit && goes_anywhere(farthest)) find_source_crossings();
-    const std::size_t outer = wanted.size() - options_.inner_skin_last;
-    if (options_.inner_skin_last) {
-      make(outer, options_.progress);
-      keep_as_inner_skin(results.back());
+    std::vector<OffsetResult> results(wanted.size());
+    if (goes_anywhere(farthest)) {
+      make(results);
+      if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
+    } else {
+      for (std::size_t i = 0; i < results.size(); ++i) results[i] = stay(distances_[i]);
     }
-    JointProgress progress(options_.progress, outer);
-    for (std::size_t first = 0; first < outer; first += kResultsTogether)
-      tbb::parallel_for(first, std::min(first + kResultsTogether, outer), [&](std::size_t i) {
-        // Who waits for work on one result is not to begin another meanwhile.
-        tbb::this_task_arena::isolate([&] { make(i, progress.of(i)); });
-      });
-    if (options_.keep_field && goes_anywhere(farthest))
-      results.front().field = std::make_shared<DistanceField>(std::move(field_));
     return results;
   }
 
@@ -207,6 +196,7 @@ class Pipeline {
     {
       const StageTimer timer(statistics.seconds, Stage::Limit);
       faults.emplace(body, source, distances_.front(), options_.precision);
+      faults->look_at_ends(paths.front());
       statistics.limit = untangle(*faults, body, source, distances_.front(), paths.front(), options_.progress);
     }
     std::optional<CellColumns> columns;
@@ -277,34 +267,100 @@ class Pipeline {
     return paths;
   }
 
-  /// That all results are compared with.
-  void find_source_crossings() {
-    const std::vector<Vec3d> source = work_.source(mesh_);
-    source_crossings_ = CrossingFinder(work_.surface(), source).all();
+  /// One of the results in the making.
+  struct Draft {
+    Body body;
+    const Distances& distances;
+    Paths& paths;
+    OffsetStatistics statistics;
+    std::optional<FaultFinder> faults;  // if it has to be valid
+    Precedent precedent;                // if others follow it
+  };
+
+  /// A few at a time; those that others follow go first.
+  void make(std::vector<OffsetResult>& results) {
+    std::vector<Paths> paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
+    source_ = work_.source(mesh_);
+    const bool to_be_valid = options_.collision == Collision::Limit;
+    if (results.size() > 1 && to_be_valid) source_crossings_ = CrossingFinder(work_.surface(), source_).all();
+    std::deque<Draft> drafts;
+    for (std::size_t i = 0; i < results.size(); ++i)
+      drafts.push_back({body_of_results(), distances_[i], paths[i], shared_, {}, {}});
+    const std::size_t outer = results.size() - options_.inner_skin_last;
+    if (options_.inner_skin_last) {
+      look(drafts[outer]);
+      make_valid(drafts[outer], options_.progress, nullptr, nullptr);
+      results[outer] = finish(drafts[outer]);
+      keep_as_inner_skin(results[outer]);
+      for (Draft& draft : drafts) draft.body.other_skin = inner_skin_;
+    }
+    std::vector<std::size_t> order(outer);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const std::vector<std::size_t> followed =
+        to_be_valid ? find_precedents(std::span(distances_).first(outer)) : order;
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return followed[i] == i; });
+    JointProgress progress(options_.progress, outer);
+    const auto make_valid_after = [&](std::size_t i) {
+      const bool sets = std::count(followed.begin(), followed.end(), i) > 1;
+      make_valid(drafts[i], progress.of(i), followed[i] == i ? nullptr : &drafts[followed[i]].precedent,
+                 sets ? &drafts[i].precedent : nullptr);
+    };
+    for (std::size_t first = 0; first < outer; first += kResultsTogether) {
+      const auto some = std::span(order).subspan(first, std::min(kResultsTogether, outer - first));
+      do_together(some, [&](std::size_t i) {
+        look(drafts[i]);
+        if (followed[i] == i) make_valid_after(i);
+      });
+      do_together(some, [&](std::size_t i) {
+        if (followed[i] != i) make_valid_after(i);
+        results[i] = finish(drafts[i]);
+      });
+    }
   }
 
-  /// Makes one of the results valid, and measures it.
-  OffsetResult finish(const Distances& distances, Paths& paths, const ProgressCallback& progress) const {
-    OffsetResult result = unmoved(mesh_);
-    result.statistics = shared_;
-    const Surface& surface = work_.surface();
+  template <class Work>
+  static void do_together(std::span<const std::size_t> results, Work&& work) {
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+      // Who waits for work on one result is not to begin another meanwhile.
+      tbb::this_task_arena::isolate([&] { work(results[i]); });
+    });
+  }
+
+  Body body_of_results() const {
     Body body = work_.body(*query_, keep_away(), options_.off_source);
     body.with_rim = options_.off_source;
-    body.other_skin = inner_skin_;
-    const std::vector<Vec3d> source = work_.source(mesh_);
-    if (options_.collision == Collision::Limit) {
-      const StageTimer timer(result.statistics.seconds, Stage::Limit);
-      FaultFinder faults(body, source, distances, options_.precision, source_crossings_);
-      result.statistics.limit = limit(faults, body, source, distances, paths, progress);
-    }
-    move_vertices(mesh_, surface, paths, result);
-    if (options_.keep_paths) hand_out_paths(surface, source, paths, result);
-    result.distances = distances_of_input(surface, distances);
-    std::vector<Vec3d> places = source;
-    for (std::size_t w = 0; w < places.size(); ++w) places[w] += paths.displacement[w];
+    return body;
+  }
+
+  /// What is wrong with a result, if it has to be valid.
+  void look(Draft& draft) const {
+    if (options_.collision != Collision::Limit) return;
+    const StageTimer timer(draft.statistics.seconds, Stage::Limit);
+    draft.faults.emplace(draft.body, source_, draft.distances, options_.precision, source_crossings_);
+    draft.faults->look_at_ends(draft.paths);
+  }
+
+  void make_valid(Draft& draft, const ProgressCallback& progress, const Precedent* followed, Precedent* set) const {
+    if (!draft.faults) return;
+    const StageTimer timer(draft.statistics.seconds, Stage::Limit);
+    draft.statistics.limit =
+        limit(*draft.faults, draft.body, source_, draft.distances, draft.paths, progress, followed, set);
+    draft.faults.reset();
+  }
+
+  /// What is told of a result, and handed out.
+  OffsetResult finish(Draft& draft) const {
+    OffsetResult result = unmoved(mesh_);
+    result.statistics = draft.statistics;
+    const Surface& surface = work_.surface();
+    move_vertices(mesh_, surface, draft.paths, result);
+    if (options_.keep_paths) hand_out_paths(surface, source_, draft.paths, result);
+    result.distances = distances_of_input(surface, draft.distances);
+    std::vector<Vec3d> places = source_;
+    for (std::size_t w = 0; w < places.size(); ++w) places[w] += draft.paths.displacement[w];
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
-      result.statistics.interior = measure_interior(body, places, distances, kInteriorTriangles);
+      result.statistics.interior = measure_interior(draft.body, places, draft.distances, kInteriorTriangles);
     }
     return result;
   }
@@ -312,7 +368,7 @@ class Pipeline {
   /// As it will be written.
   void keep_as_inner_skin(const OffsetResult& result) {
     const Surface& surface = work_.surface();
-    inner_skin_ = work_.source(mesh_);
+    inner_skin_ = source_;
     for (std::size_t w = 0; w < inner_skin_.size(); ++w) {
       const auto v = surface.representative[w];
       if (v != kNone && result.positions[v] != inner_skin_[w]) inner_skin_[w] = options_.precision(result.positions[v]);
@@ -396,7 +452,8 @@ class Pipeline {
   std::optional<ClosestQuery> query_, obstacles_;
   std::optional<Obstacles> keep_away_;
   std::optional<BorderSlides> slides_;
-  std::optional<std::vector<TrianglePair>> source_crossings_;
+  std::vector<Vec3d> source_;  // where the body's vertices stand, world coordinates
+  std::optional<std::vector<TrianglePair>> source_crossings_;  // that all of several results are compared with
   std::vector<Vec3d> inner_skin_;  // of the body's vertices, once it is made
 };
 
