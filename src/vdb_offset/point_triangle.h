@@ -25,45 +25,6 @@ inline bool is_needle(double normal_squared, double longest_squared) {
 
 namespace detail {
 
-inline TrianglePoint closest_on_segment(const Vec3d& x, const Vec3d& a, const Vec3d& b, Feature at_a, Feature at_b,
-                                        Feature between) {
-  const Vec3d ab = b - a;
-  const double length2 = ab.dot(ab), along = (x - a).dot(ab);
-  if (along <= 0 || length2 <= 0) return {a, (x - a).lengthSqr(), at_a};
-  if (along >= length2) return {b, (x - b).lengthSqr(), at_b};
-  const Vec3d p = a + ab * (along / length2);
-  return {p, (x - p).lengthSqr(), between};
-}
-
-inline TrianglePoint nearer(const TrianglePoint& one, const TrianglePoint& other) {
-  return other.squared_distance < one.squared_distance ? other : one;
-}
-
-}  // namespace detail
-
-namespace detail {
-
-/// For slivers: the sub-areas come from cross products at the nearest corner, the distance from the plane, which loses
-/// fewer digits than the general form; a triangle without area is the union of its edges.
-inline TrianglePoint closest_on_sliver(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  using enum Feature;
-  const Vec3d ab = b - a, bc = c - b, ca = a - c, normal = ab.cross(c - a);
-  const double area2 = normal.dot(normal);
-  const bool needle = is_needle(area2, std::max({ab.dot(ab), bc.dot(bc), ca.dot(ca)}));
-  const bool beyond_ab = needle || normal.dot(ab.cross(x - a)) <= 0,
-             beyond_bc = needle || normal.dot(bc.cross(x - b)) <= 0,
-             beyond_ca = needle || normal.dot(ca.cross(x - c)) <= 0;
-  if (!beyond_ab && !beyond_bc && !beyond_ca) {
-    const double height = (x - a).dot(normal);
-    return {x - normal * (height / area2), height * height / area2, Face};
-  }
-  TrianglePoint best{a, std::numeric_limits<double>::infinity(), Vertex0};
-  if (beyond_ab) best = closest_on_segment(x, a, b, Vertex0, Vertex1, Edge0);
-  if (beyond_bc) best = nearer(best, closest_on_segment(x, b, c, Vertex1, Vertex2, Edge1));
-  if (beyond_ca) best = nearer(best, closest_on_segment(x, c, a, Vertex2, Vertex0, Edge2));
-  return best;
-}
-
 /// Plain components: openvdb's vector operators copy their operands, which costs more than the arithmetic here.
 struct Components {
   double x, y, z;
@@ -82,6 +43,51 @@ inline TrianglePoint on_edge(const Vec3d& from, const Components& edge, const Co
                              Feature feature) {
   const Components along{edge.x * share, edge.y * share, edge.z * share}, rest = to_x - along;
   return {Vec3d(from[0] + along.x, from[1] + along.y, from[2] + along.z), rest.dot(rest), feature};
+}
+
+/// `ab` and `ax` lead from a to b and x, `bx` from b to x.
+inline TrianglePoint closest_on_segment(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Components& ab,
+                                        const Components& ax, const Components& bx, Feature at_a, Feature at_b,
+                                        Feature between) {
+  const double length2 = ab.dot(ab), along = ax.dot(ab);
+  if (along <= 0 || length2 <= 0) return at_corner(a, ax, at_a);
+  if (along >= length2) return at_corner(b, bx, at_b);
+  const double share = along / length2;
+  const Vec3d p(a[0] + ab.x * share, a[1] + ab.y * share, a[2] + ab.z * share);
+  const Components px = Components::of(x) - Components::of(p);
+  return {p, px.dot(px), between};
+}
+
+inline TrianglePoint closest_on_segment(const Vec3d& x, const Vec3d& a, const Vec3d& b, Feature at_a, Feature at_b,
+                                        Feature between) {
+  const Components to_x = Components::of(x), from_a = Components::of(a), from_b = Components::of(b);
+  return closest_on_segment(x, a, b, from_b - from_a, to_x - from_a, to_x - from_b, at_a, at_b, between);
+}
+
+/// For slivers: the sub-areas come from cross products at the nearest corner, the distance from the plane, which loses
+/// fewer digits than the general form; a triangle without area is the union of its edges.
+inline TrianglePoint closest_on_sliver(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  using enum Feature;
+  const Components to_x = Components::of(x), from_a = Components::of(a), from_b = Components::of(b),
+                   from_c = Components::of(c), ab = from_b - from_a, bc = from_c - from_b, ca = from_a - from_c,
+                   ax = to_x - from_a, bx = to_x - from_b, cx = to_x - from_c, normal = ab.cross(from_c - from_a);
+  const double area2 = normal.dot(normal);
+  const bool needle = is_needle(area2, std::max(std::max(ab.dot(ab), bc.dot(bc)), ca.dot(ca)));
+  const bool beyond_ab = needle || normal.dot(ab.cross(ax)) <= 0, beyond_bc = needle || normal.dot(bc.cross(bx)) <= 0,
+             beyond_ca = needle || normal.dot(ca.cross(cx)) <= 0;
+  if (!beyond_ab && !beyond_bc && !beyond_ca) {
+    const double height = ax.dot(normal), share = height / area2;
+    return {Vec3d(x[0] - normal.x * share, x[1] - normal.y * share, x[2] - normal.z * share), height * height / area2,
+            Face};
+  }
+  TrianglePoint best{a, std::numeric_limits<double>::infinity(), Vertex0};
+  const auto look_at = [&](const TrianglePoint& other) {
+    if (other.squared_distance < best.squared_distance) best = other;
+  };
+  if (beyond_ab) best = closest_on_segment(x, a, b, ab, ax, bx, Vertex0, Vertex1, Edge0);
+  if (beyond_bc) look_at(closest_on_segment(x, b, c, bc, bx, cx, Vertex1, Vertex2, Edge1));
+  if (beyond_ca) look_at(closest_on_segment(x, c, a, ca, cx, ax, Vertex2, Vertex0, Edge2));
+  return best;
 }
 
 }  // namespace detail
