@@ -23,9 +23,9 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   scale_ = reach > 0 ? std::ldexp(1.0, -std::ilogb(reach)) : 1.0;
   slack_ = static_cast<float>(reach * scale_ * 4e-7);
   constexpr std::size_t kSize = kLeafSize;
-  discs_.resize((surface_.triangles.size() + kSize - 1) / kSize);
-  tree_.build(discs_.size(), [&](std::size_t leaf) {
-    discs_[leaf] = discs_of(leaf);
+  rectangles_.resize((surface_.triangles.size() + kSize - 1) / kSize);
+  tree_.build(rectangles_.size(), [&](std::size_t leaf) {
+    rectangles_[leaf] = rectangles_of(leaf);
     FloatBox box;
     for (std::size_t t = leaf * kSize; t < std::min((leaf + 1) * kSize, surface_.triangles.size()); ++t)
       for (const auto v : surface_.triangles[t])
@@ -39,27 +39,37 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   });
 }
 
-ClosestQuery::Discs ClosestQuery::discs_of(std::size_t leaf) const {
+ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
   constexpr float kNowhere = 1e18f;
-  Discs discs{};
+  Rectangles some{};
   for (int i = 0; i < kLeafSize; ++i) {
     const std::size_t t = leaf * kLeafSize + static_cast<std::size_t>(i);
     if (t >= surface_.triangles.size()) {
-      discs.centre[0][i] = kNowhere;
+      some.centre[0][i] = kNowhere;
       continue;
     }
     Vec3d corner[3];
     for (std::size_t k = 0; k < 3; ++k) corner[k] = surface_.vertices[surface_.triangles[t][k]] * scale_;
-    const Vec3d centre = (corner[0] + corner[1] + corner[2]) / 3.0;
-    double radius = 0;
-    for (const Vec3d& p : corner) radius = std::max(radius, (p - centre).length());
+    std::size_t longest = 0;
+    double length = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double other = (corner[(k + 1) % 3] - corner[k]).length(); other > length) {
+        longest = k;
+        length = other;
+      }
+    const Vec3d middle = (corner[longest] + corner[(longest + 1) % 3]) / 2.0,
+                edge = length > 0 ? (corner[(longest + 1) % 3] - corner[longest]) / length : Vec3d(0.0),
+                to_third = corner[(longest + 2) % 3] - middle, across = to_third - edge * edge.dot(to_third),
+                centre = middle + across / 2.0;
     for (int k = 0; k < 3; ++k) {
-      discs.centre[k][i] = static_cast<float>(centre[k]);
-      discs.normal[k][i] = static_cast<float>(surface_.triangle_normals[t][k]);
+      some.centre[k][i] = static_cast<float>(centre[k]);
+      some.normal[k][i] = static_cast<float>(surface_.triangle_normals[t][k]);
+      some.edge[k][i] = static_cast<float>(edge[k]);
     }
-    discs.radius[i] = static_cast<float>(radius * (1 + 1e-6)) + slack_;
+    some.half_length[i] = static_cast<float>(length / 2 * (1 + 1e-6)) + slack_;
+    some.half_width[i] = static_cast<float>(across.length() / 2 * (1 + 1e-6)) + slack_;
   }
-  return discs;
+  return some;
 }
 
 /// Which of eight boxes are no farther from a point than the root of `limit`, as bits; and how far they all are,
@@ -81,29 +91,32 @@ unsigned ClosestQuery::near_siblings(const BoxTree::Siblings& box, const float* 
 
 namespace {
 
-/// Some discs as a point sees them: how high it is over their planes, how far beside their centres, and how far beside
-/// their rims.
-struct DiscView {
-  Lanes away[3], normal[3], radius, height, lateral, beyond, squared;  // squared distance, no larger than it is
+/// Some rectangles as a point sees them: how far it is from their centres, over their planes, along their edges and
+/// across, how far beyond their ends and sides.
+struct RectangleView {
+  Lanes away[3], normal[3], edge[3], height, along, across, beyond_end, beyond_side;
+  Lanes squared;  // distance, no larger than it is
 };
 
-/// Discs i .. i + kLanes - 1 of some. A triangle is no nearer than its disc: with height h over the plane and lateral
-/// distance l from the centre, h^2 + max(0, l - radius)^2. One millionth makes up for rounding.
-template <class Discs>
-DiscView look_at(const Discs& discs, int i, const float* local) {
-  DiscView view{};
+/// Rectangles i .. i + kLanes - 1 of some. One millionth makes up for rounding. Of a triangle without a normal, all
+/// that is not along its edge is across.
+template <class Rectangles>
+RectangleView look_at(const Rectangles& some, int i, const float* local) {
+  RectangleView view{};
   Lanes squared{};
   for (int k = 0; k < 3; ++k) {
-    view.away[k] = local[k] - load_lanes(discs.centre[k] + i);
-    view.normal[k] = load_lanes(discs.normal[k] + i);
+    view.away[k] = local[k] - load_lanes(some.centre[k] + i);
+    view.normal[k] = load_lanes(some.normal[k] + i);
+    view.edge[k] = load_lanes(some.edge[k] + i);
     squared += view.away[k] * view.away[k];
     view.height += view.away[k] * view.normal[k];
+    view.along += view.away[k] * view.edge[k];
   }
-  const Lanes height2 = view.height * view.height;
-  view.radius = load_lanes(discs.radius + i);
-  view.lateral = sqrt_lanes(max_lanes(squared * 0.999999f - height2, Lanes{}));
-  view.beyond = max_lanes(view.lateral - view.radius, Lanes{});
-  view.squared = (height2 + view.beyond * view.beyond) * 0.999999f;
+  const Lanes height2 = view.height * view.height, along2 = view.along * view.along;
+  view.across = sqrt_lanes(max_lanes(squared * 0.999999f - (height2 + along2), Lanes{}));
+  view.beyond_end = max_lanes(max_lanes(view.along, -view.along) - load_lanes(some.half_length + i), Lanes{});
+  view.beyond_side = max_lanes(view.across - load_lanes(some.half_width + i), Lanes{});
+  view.squared = (height2 + (view.beyond_end * view.beyond_end + view.beyond_side * view.beyond_side)) * 0.999999f;
   return view;
 }
 
@@ -111,10 +124,10 @@ DiscView look_at(const Discs& discs, int i, const float* local) {
 
 /// The triangles of a lowest box that may be nearer to a point, in the tree's units, than the root of `limit`, a bit
 /// for each; and how near they may be, squared.
-unsigned ClosestQuery::near_discs(const Discs& discs, const float* local, float limit, float* least_squared) {
+unsigned ClosestQuery::near_rectangles(const Rectangles& some, const float* local, float limit, float* least_squared) {
   unsigned near = 0;
   for (int i = 0; i < kLeafSize; i += kLanes) {
-    const DiscView view = look_at(discs, i, local);
+    const RectangleView view = look_at(some, i, local);
     store_lanes(least_squared + i, view.squared);
     near |= lane_bits(view.squared <= limit + Lanes{}) << i;
   }
@@ -126,24 +139,27 @@ struct ClosestQuery::Planes {
   float normal[3][kLeafSize], distance[kLeafSize];
 };
 
-/// As near_discs(), with the planes in front of the discs. Those in front of the rims of discs that are larger than
-/// they are far away would not be exact enough: these have their own planes.
-unsigned ClosestQuery::planes_before(const Discs& discs, const float* local, float limit, Planes& planes) {
+/// As near_rectangles(), with the planes in front of the rectangles. Those in front of the rims of what is longer than
+/// it is far away would not be exact enough: these have their own planes.
+unsigned ClosestQuery::planes_before(const Rectangles& some, const float* local, float limit, Planes& planes) {
   constexpr float kTiny = 1e-30f;
   unsigned near = 0;
   for (int i = 0; i < kLeafSize; i += kLanes) {
-    const DiscView view = look_at(discs, i, local);
+    const RectangleView view = look_at(some, i, local);
     const unsigned found = lane_bits(view.squared <= limit + Lanes{});
     if (found == 0) continue;
     near |= found << i;
     const Lanes distance = sqrt_lanes(view.squared), one = Lanes{} + 1.0f;
-    const IntLanes before_rim = view.radius <= distance;
-    const Lanes aside = view.beyond / max_lanes(view.lateral, Lanes{} + kTiny),
-                each = one / max_lanes(distance, Lanes{} + kTiny), up = view.height < Lanes{} ? -one : one;
-    const Lanes along_normal = before_rim ? view.height * (one - aside) * each : up,
-                along_way = before_rim ? aside * each : Lanes{};
+    const IntLanes before_rim = load_lanes(some.half_length + i) + load_lanes(some.half_width + i) <= distance;
+    const Lanes each = one / max_lanes(distance, Lanes{} + kTiny),
+                side = view.beyond_side / max_lanes(view.across, Lanes{} + kTiny),
+                end = (view.along < Lanes{} ? -view.beyond_end : view.beyond_end) - side * view.along,
+                up = view.height < Lanes{} ? -one : one;
+    const Lanes along_normal = before_rim ? view.height * (one - side) * each : up,
+                along_edge = before_rim ? end * each : Lanes{}, along_way = before_rim ? side * each : Lanes{};
     for (int k = 0; k < 3; ++k)
-      store_lanes(planes.normal[k] + i, view.normal[k] * along_normal + view.away[k] * along_way);
+      store_lanes(planes.normal[k] + i,
+                  view.normal[k] * along_normal + view.edge[k] * along_edge + view.away[k] * along_way);
     store_lanes(planes.distance + i, before_rim ? distance : view.height * up);
   }
   return near;
@@ -216,7 +232,8 @@ class ClosestQuery::Search {
 
   void look_at_triangles(std::uint32_t leaf) {
     float squared[kLeafSize];
-    for (unsigned near = near_discs(query_.discs_[leaf], local_, limit_, squared); near != 0; near &= near - 1) {
+    for (unsigned near = near_rectangles(query_.rectangles_[leaf], local_, limit_, squared); near != 0;
+         near &= near - 1) {
       const int at = std::countr_zero(near);
       if (squared[at] > limit_) continue;
       const std::uint32_t other = leaf * kLeafSize + static_cast<std::uint32_t>(at);
@@ -362,7 +379,7 @@ class ClosestQuery::Collector {
 
   void look_at_triangles(std::size_t leaf) {
     Planes planes;
-    for (unsigned near = planes_before(query_.discs_[leaf], local_, limit_, planes); near != 0; near &= near - 1) {
+    for (unsigned near = planes_before(query_.rectangles_[leaf], local_, limit_, planes); near != 0; near &= near - 1) {
       const auto at = static_cast<std::size_t>(std::countr_zero(near));
       near_.add(static_cast<std::uint32_t>(leaf * kLeafSize + at),
                 {planes.normal[0][at], planes.normal[1][at], planes.normal[2][at]},

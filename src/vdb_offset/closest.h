@@ -27,7 +27,7 @@ inline constexpr double kFreeShare = 0.9;
 ///
 /// The surface's triangles, which lie along a space-filling curve, are packed four at a time into an implicit tree of
 /// boxes with eight children each; there are no pointers and no per-triangle copies. A query cannot miss: the hint only
-/// bounds the search, so that a good one makes it short. Memory: about 35 bytes a triangle. Safe from any number of
+/// bounds the search, so that a good one makes it short. Memory: about 50 bytes a triangle. Safe from any number of
 /// threads.
 class ClosestQuery {
  public:
@@ -69,9 +69,10 @@ class ClosestQuery {
   static constexpr int kWidth = BoxTree::kWidth;
   static constexpr int kLeafSize = 8;  // triangles in a lowest box
 
-  /// What bounds the distance of a lowest box's triangles from below: a disc around each, in its plane.
-  struct Discs {
-    float centre[3][kLeafSize], normal[3][kLeafSize], radius[kLeafSize];
+  /// What bounds the distance of a lowest box's triangles from below: a rectangle around each, in its plane, along its
+  /// longest edge.
+  struct Rectangles {
+    float centre[3][kLeafSize], normal[3][kLeafSize], edge[3][kLeafSize], half_length[kLeafSize], half_width[kLeafSize];
   };
   class Search;
   class Group;
@@ -81,15 +82,15 @@ class ClosestQuery {
   static constexpr std::size_t kMostBlocks = 48;
   using Blocks = std::array<std::uint32_t, kMostBlocks>;
 
-  Discs discs_of(std::size_t leaf) const;
+  Rectangles rectangles_of(std::size_t leaf) const;
   std::size_t find_blocks(std::span<const Ball> balls, Blocks& blocks) const;
   static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);
-  static unsigned near_discs(const Discs& discs, const float* local, float limit, float* squared);
+  static unsigned near_rectangles(const Rectangles& some, const float* local, float limit, float* squared);
   struct Planes;
-  static unsigned planes_before(const Discs& discs, const float* local, float limit, Planes& planes);
+  static unsigned planes_before(const Rectangles& some, const float* local, float limit, Planes& planes);
 
   const Surface& surface_;
-  std::vector<Discs> discs_;
+  std::vector<Rectangles> rectangles_;
   BoxTree tree_;
   double scale_;  // power of two that brings the surface to size 1
   float slack_;   // more than the rounding of a box or a query point to float

@@ -199,8 +199,9 @@ class Limiter {
   /// Whether a triangle is one of those that could not be freed before, as all of its corners had to be pulled back.
   bool is_given_up(std::uint32_t t) const {
     const auto& corners = surface_.triangles[t];
-    return followed_ && std::all_of(corners.begin(), corners.end(),
-                                    [&](std::uint32_t v) { return followed_->pulled[v] && distances_[v] * followed_->distances[v] > 0; });
+    return followed_ && std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+             return followed_->pulled[v] && distances_[v] * followed_->distances[v] > 0;
+           });
   }
 
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
@@ -345,9 +346,8 @@ class Limiter {
   /// Drops the patches that are not worth while.
   void leave_out(std::vector<Indices>& patches, Indices& chosen, const Growth& growth) {
     const std::size_t most = growth.most_vertices * (1 + source_.size() / kManyVertices);
-    drop(patches, chosen, [&](const Indices& patch) {
-      return patch.size() > most || count_collided(patch) > growth.most_collided;
-    });
+    drop(patches, chosen,
+         [&](const Indices& patch) { return patch.size() > most || count_collided(patch) > growth.most_collided; });
   }
 
   template <class Hopeless>

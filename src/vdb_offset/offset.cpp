@@ -296,8 +296,7 @@ class Pipeline {
     }
     std::vector<std::size_t> order(outer);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const std::vector<std::size_t> followed =
-        to_be_valid ? find_precedents(std::span(distances_).first(outer)) : order;
+    const std::vector<std::size_t> followed = to_be_valid ? find_precedents(std::span(distances_).first(outer)) : order;
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return followed[i] == i; });
     JointProgress progress(options_.progress, outer);
     const auto make_valid_after = [&](std::size_t i) {
@@ -452,9 +451,9 @@ class Pipeline {
   std::optional<ClosestQuery> query_, obstacles_;
   std::optional<Obstacles> keep_away_;
   std::optional<BorderSlides> slides_;
-  std::vector<Vec3d> source_;  // where the body's vertices stand, world coordinates
+  std::vector<Vec3d> source_;                                  // where the body's vertices stand, world coordinates
   std::optional<std::vector<TrianglePair>> source_crossings_;  // that all of several results are compared with
-  std::vector<Vec3d> inner_skin_;  // of the body's vertices, once it is made
+  std::vector<Vec3d> inner_skin_;                              // of the body's vertices, once it is made
 };
 
 }  // namespace

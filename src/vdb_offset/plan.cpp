@@ -27,7 +27,7 @@ constexpr double kMaxVoxelsAcross = 8388608;
 // sweep's closest points; measured: 12,400.
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
-constexpr std::size_t kTriangleBytes = 240, kVertexBytes = 330;
+constexpr std::size_t kTriangleBytes = 256, kVertexBytes = 330;
 // Of a layer: places of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
 constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
 // Of another result: its places, paths and states; what it takes to make it valid, and what others
