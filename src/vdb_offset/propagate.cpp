@@ -82,6 +82,7 @@ class Marches {
   static constexpr std::size_t kBlock = 128;
 
   enum class Attempt { InHaste, FromThere, Anew };
+  enum class Look { Near, Everywhere };
   /// Where a vertex ended up on its way to a stop.
   struct End {
     std::uint32_t vertex;
@@ -98,18 +99,20 @@ class Marches {
     return largest;
   }
 
-  /// Tries straight ways for all sets; a component of which one vertex has none has none at all in that set.
+  /// Tries straight ways for all sets; a component of which one vertex has none has none at all in that set. That is
+  /// looked for among neighbours first.
   void go_straight() {
     const Components all(surface_.facts.components, 1);
     std::vector<FallingFlags> straight;
     for (std::size_t set = 0; set < distances_.size(); ++set) straight.emplace_back(all.begin(), all.end());
-    for_each_index(
-        block_count(), [&](std::size_t block) { go_straight(block, straight); }, 1);
+    for (const auto look : {Look::Near, Look::Everywhere})
+      for_each_index(
+          block_count(), [&](std::size_t block) { go_straight(block, look, straight); }, 1);
     for (const FallingFlags& flags : straight) known_.emplace_back(flags.begin(), flags.end());
   }
 
   /// One set and one component at a time, so that a flag that falls changes nothing for those that stay up.
-  void go_straight(std::size_t block, std::vector<FallingFlags>& straight) {
+  void go_straight(std::size_t block, Look look, std::vector<FallingFlags>& straight) {
     std::vector<std::uint32_t> vertices(end_of(block) - begin_of(block));
     std::iota(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(begin_of(block)));
     const auto component_of = [&](std::uint32_t v) { return surface_.component[v]; };
@@ -120,18 +123,20 @@ class Marches {
       while (last < vertices.size() && component_of(vertices[last]) == component) ++last;
       for (std::size_t set = 0; set < distances_.size(); ++set)
         if (auto& flag = straight[set][component]; flag.load(std::memory_order_relaxed))
-          if (!go_straight(set, std::span(vertices).subspan(first, last - first)))
+          if (!go_straight(set, look, std::span(vertices).subspan(first, last - first)))
             flag.store(0, std::memory_order_relaxed);
     }
   }
 
-  /// Whether all of these vertices have a straight way.
-  bool go_straight(std::size_t set, std::span<const std::uint32_t> vertices) {
+  /// Whether all of these vertices have a straight way, or may have one.
+  bool go_straight(std::size_t set, Look look, std::span<const std::uint32_t> vertices) {
     std::vector<StraightTry> tries;
     for (const auto v : vertices)
       if (const double distance = distances_[set][v]; distance != 0)
         tries.push_back({v, distance < 0 ? -1 : 1, std::abs(distance)});
-    const auto ends = StraightWays<Query>(query_, tries)();
+    StraightWays<Query> ways(query_, tries);
+    if (look == Look::Near) return ways.may_all_end();
+    const auto ends = ways();
     for (std::size_t i = 0; i < tries.size(); ++i) {
       if (!ends[i]) return false;
       arrival_[set][tries[i].vertex] = *ends[i];

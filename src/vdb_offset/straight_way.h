@@ -50,6 +50,19 @@ class StraightWays {
     }
   }
 
+  /// False if one of the tries has no end, for what the faces next to one another tell of the distance there: most of
+  /// those that have none show that soon.
+  bool may_all_end() const {
+    for (std::size_t i = 0; i < tries_.size(); ++i) {
+      const double t = tries_[i].distance, slope = lines_[i].slope;
+      std::uint32_t triangle = hints_[i];
+      if (slope < kLeastStraightSlope ||
+          is_too_near(std::sqrt(query_.near(point_of({i, t}), triangle).squared_distance), slope, t))
+        return false;
+    }
+    return true;
+  }
+
   /// The ends, in the order of the tries.
   std::vector<std::optional<KnownEnd>> operator()() {
     std::vector<std::optional<KnownEnd>> ends(tries_.size());
@@ -74,6 +87,9 @@ class StraightWays {
     std::size_t at;
     double t;
   };
+
+  /// Whether phi is less than what the faces around the vertex alone would have at t.
+  static bool is_too_near(double phi, double slope, double t) { return phi < slope * t * (1 - kStraightTolerance); }
 
   Vec3d point_of(const Place& place) const { return lines_[place.at].origin + lines_[place.at].normal * place.t; }
 
@@ -109,7 +125,7 @@ class StraightWays {
           continue;
         }
         auto& [last, last_phi] = before[i];
-        if (phi < slope * t * (1 - kStraightTolerance) || phi <= last_phi) continue;
+        if (is_too_near(phi, slope, t) || phi <= last_phi) continue;
         const double further = t + (target - phi) * (t - last) / (phi - last_phi);
         if (!(further > last) || further > target / slope * (1 + kStraightTolerance)) continue;
         last = t;
