@@ -110,10 +110,12 @@ class Patcher {
   }
   /// Where the readers see a word end: at white space, at a comment where the format has them, at a line that goes on.
   bool ends_number(std::uint64_t at) const {
+    const char c = source_.text()[at];
+    if (is_blank(c) || c == '\n') return true;
+    if (c == '#') return source_.format == Format::Obj || source_.format == Format::Off;
+    if (c != '\\' || source_.format != Format::Obj) return false;
     const std::string_view rest = source_.text().substr(at);
-    if (is_blank(rest[0]) || rest[0] == '\n') return true;
-    if (rest[0] == '#') return source_.format == Format::Obj || source_.format == Format::Off;
-    return source_.format == Format::Obj && (rest.starts_with("\\\n") || rest.starts_with("\\\r\n"));
+    return rest.starts_with("\\\n") || rest.starts_with("\\\r\n");
   }
 
   std::string in_binary(std::uint64_t begin, std::uint64_t end) const {
