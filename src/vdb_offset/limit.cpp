@@ -178,7 +178,7 @@ class Limiter {
     std::vector<Indices> patches = find_patches(chosen);
     const std::vector<Wrong> wrong = wrong_by_patch(patches);
     drop(patches, chosen, [&](const Indices& patch) { return !wrong[patch_[patch.front()]].any(); });
-    try_out(patches, chosen, [&](const Indices& patch) {
+    statistics_.followed_vertices = try_out(patches, chosen, [&](const Indices& patch) {
       for (const auto v : patch) begin_as_followed(v);
     });
     for (const auto v : chosen)
@@ -380,8 +380,9 @@ class Limiter {
 
   /// Lets move(patch) change the ways and shares of the vertices of patches, `chosen` being those of all, in parallel;
   /// then puts back the patches where that has made something worse, or nothing better where there was nothing wrong.
+  /// Returns how many vertices are not put back.
   template <class Move>
-  void try_out(const std::vector<Indices>& patches, const Indices& chosen, Move&& move) {
+  std::size_t try_out(const std::vector<Indices>& patches, const Indices& chosen, Move&& move) {
     const std::vector<Wrong> before = wrong_by_patch(patches);
     std::vector<std::pair<Vec3d, double>> old;
     old.reserve(chosen.size());
@@ -399,6 +400,7 @@ class Limiter {
     }
     for (const auto v : chosen) patch_[v] = kNone;
     if (!undone.empty()) faults_.take_back(undone);
+    return chosen.size() - undone.size();
   }
 
   /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.

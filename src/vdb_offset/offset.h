@@ -84,7 +84,9 @@ struct OffsetResult {
 OffsetResult offset(PolygonView mesh, const OffsetOptions& options);
 
 /// Several offsets of one mesh, for little more than one: one field and one march serve all. `options.distance` does
-/// not count. Directions are smoothed as for the farthest. Answers come in the order of `distances`.
+/// not count. Directions are smoothed as for the farthest, and with Collision::Limit nearer offsets begin, where they
+/// have to be mended, with what became of the farthest on their side (see precedent.h): there, one alone may end up
+/// elsewhere. Answers come in the order of `distances`.
 std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
                                          const OffsetOptions& options);
 

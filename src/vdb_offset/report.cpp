@@ -60,10 +60,15 @@ Json faults_json(const FaultCounts& counts) {
 }
 
 Json limit_json(const LimitStatistics& limit) {
-  return {{"before", faults_json(limit.before)},        {"left", faults_json(limit.left)},
-          {"source_crossings", limit.source_crossings}, {"crossings_near_source", limit.crossings_near_source},
-          {"untanglings", limit.untanglings},           {"rounds", limit.rounds},
-          {"vertices", limit.limited_vertices},         {"mean_thickness_lost", limit.thickness_lost}};
+  return {{"before", faults_json(limit.before)},
+          {"left", faults_json(limit.left)},
+          {"source_crossings", limit.source_crossings},
+          {"crossings_near_source", limit.crossings_near_source},
+          {"followed", limit.followed_vertices},
+          {"untanglings", limit.untanglings},
+          {"rounds", limit.rounds},
+          {"vertices", limit.limited_vertices},
+          {"mean_thickness_lost", limit.thickness_lost}};
 }
 
 Json achieved_json(const AchievedSummary& achieved) {
