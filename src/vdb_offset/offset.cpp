@@ -299,20 +299,21 @@ class Pipeline {
     const std::vector<std::size_t> followed = to_be_valid ? find_precedents(std::span(distances_).first(outer)) : order;
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return followed[i] == i; });
     JointProgress progress(options_.progress, outer);
-    const auto make_valid_after = [&](std::size_t i) {
-      const bool sets = std::count(followed.begin(), followed.end(), i) > 1;
-      make_valid(drafts[i], progress.of(i), followed[i] == i ? nullptr : &drafts[followed[i]].precedent,
-                 sets ? &drafts[i].precedent : nullptr);
+    const auto complete = [&](std::size_t i, const Precedent* precedent) {
+      const bool sets_one = std::count(followed.begin(), followed.end(), i) > 1;
+      make_valid(drafts[i], progress.of(i), precedent, sets_one ? &drafts[i].precedent : nullptr);
+      results[i] = finish(drafts[i]);
     };
     for (std::size_t first = 0; first < outer; first += kResultsTogether) {
       const auto some = std::span(order).subspan(first, std::min(kResultsTogether, outer - first));
+      std::vector<std::uint8_t> waits(outer, 0);
       do_together(some, [&](std::size_t i) {
         look(drafts[i]);
-        if (followed[i] == i) make_valid_after(i);
+        waits[i] = followed[i] != i && has_to_be_mended(drafts[i]);
+        if (!waits[i]) complete(i, nullptr);
       });
       do_together(some, [&](std::size_t i) {
-        if (followed[i] != i) make_valid_after(i);
-        results[i] = finish(drafts[i]);
+        if (waits[i]) complete(i, &drafts[followed[i]].precedent);
       });
     }
   }
@@ -337,6 +338,12 @@ class Pipeline {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.body, source_, draft.distances, options_.precision, source_crossings_);
     draft.faults->look_at_ends(draft.paths);
+  }
+
+  static bool has_to_be_mended(const Draft& draft) {
+    const auto& states = draft.paths.state;
+    return draft.faults &&
+           (draft.faults->any() || std::find(states.begin(), states.end(), VertexState::Collision) != states.end());
   }
 
   void make_valid(Draft& draft, const ProgressCallback& progress, const Precedent* followed, Precedent* set) const {
