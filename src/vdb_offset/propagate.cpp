@@ -100,18 +100,22 @@ class Marches {
   }
 
   /// Tries straight ways for all sets; a component of which one vertex has none has none at all in that set. That is
-  /// looked for among neighbours first.
+  /// looked for among neighbours first, and then everywhere, for all sets that are left of a component together.
   void go_straight() {
     const Components all(surface_.facts.components, 1);
-    std::vector<FallingFlags> straight;
-    for (std::size_t set = 0; set < distances_.size(); ++set) straight.emplace_back(all.begin(), all.end());
-    for (const auto look : {Look::Near, Look::Everywhere})
+    known_.assign(distances_.size(), all);
+    for (const auto look : {Look::Near, Look::Everywhere}) {
+      std::vector<FallingFlags> straight;
+      for (const Components& left : known_) straight.emplace_back(left.begin(), left.end());
       for_each_index(
           block_count(), [&](std::size_t block) { go_straight(block, look, straight); }, 1);
-    for (const FallingFlags& flags : straight) known_.emplace_back(flags.begin(), flags.end());
+      for (std::size_t set = 0; set < straight.size(); ++set)
+        known_[set].assign(straight[set].begin(), straight[set].end());
+    }
   }
 
-  /// One set and one component at a time, so that a flag that falls changes nothing for those that stay up.
+  /// One component at a time. A set that has fallen is of no more use, but changes what those find that it is looked
+  /// for with: it stays with them.
   void go_straight(std::size_t block, Look look, std::vector<FallingFlags>& straight) {
     std::vector<std::uint32_t> vertices(end_of(block) - begin_of(block));
     std::iota(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(begin_of(block)));
@@ -121,27 +125,52 @@ class Marches {
     for (std::size_t first = 0, last = 0; first < vertices.size(); first = last) {
       const std::uint32_t component = component_of(vertices[first]);
       while (last < vertices.size() && component_of(vertices[last]) == component) ++last;
-      for (std::size_t set = 0; set < distances_.size(); ++set)
-        if (auto& flag = straight[set][component]; flag.load(std::memory_order_relaxed))
-          if (!go_straight(set, look, std::span(vertices).subspan(first, last - first)))
-            flag.store(0, std::memory_order_relaxed);
+      const auto some = std::span(vertices).subspan(first, last - first);
+      const auto is_up = [&](std::size_t set) { return straight[set][component].load(std::memory_order_relaxed) != 0; };
+      std::vector<std::size_t> sets;
+      bool any_up = false;
+      for (std::size_t set = 0; set < distances_.size(); ++set) {
+        if (!known_[set][component]) continue;
+        if (look == Look::Near && !is_up(set)) continue;
+        sets.push_back(set);
+        any_up = any_up || is_up(set);
+      }
+      if (!any_up) continue;
+      for (const auto set : look == Look::Near ? without_near_ends(sets, some) : without_ends(sets, some))
+        straight[set][component].store(0, std::memory_order_relaxed);
     }
   }
 
-  /// Whether all of these vertices have a straight way, or may have one.
-  bool go_straight(std::size_t set, Look look, std::span<const std::uint32_t> vertices) {
+  void add_try(std::size_t set, std::uint32_t v, std::vector<StraightTry>& tries) const {
+    const double distance = distances_[set][v];
+    if (distance != 0) tries.push_back({v, distance < 0 ? -1 : 1, std::abs(distance)});
+  }
+
+  /// Those of the sets for which one of the vertices has no straight way, as its neighbours tell.
+  std::vector<std::size_t> without_near_ends(std::vector<std::size_t> sets, std::span<const std::uint32_t> vertices) {
+    std::erase_if(sets, [&](std::size_t set) {
+      std::vector<StraightTry> tries;
+      for (const auto v : vertices) add_try(set, v, tries);
+      return StraightWays<Query>(query_, tries).may_all_end();
+    });
+    return sets;
+  }
+
+  /// Those for which one has none. Notes the others' ends.
+  std::vector<std::size_t> without_ends(const std::vector<std::size_t>& sets, std::span<const std::uint32_t> vertices) {
     std::vector<StraightTry> tries;
+    std::vector<std::size_t> set_of;
     for (const auto v : vertices)
-      if (const double distance = distances_[set][v]; distance != 0)
-        tries.push_back({v, distance < 0 ? -1 : 1, std::abs(distance)});
-    StraightWays<Query> ways(query_, tries);
-    if (look == Look::Near) return ways.may_all_end();
-    const auto ends = ways();
-    for (std::size_t i = 0; i < tries.size(); ++i) {
-      if (!ends[i]) return false;
-      arrival_[set][tries[i].vertex] = *ends[i];
-    }
-    return true;
+      for (const auto set : sets) {
+        add_try(set, v, tries);
+        set_of.resize(tries.size(), set);
+      }
+    const auto ends = StraightWays<Query>(query_, tries)();
+    std::vector<std::size_t> without;
+    for (std::size_t i = 0; i < tries.size(); ++i)
+      if (ends[i]) arrival_[set_of[i]][tries[i].vertex] = *ends[i];
+      else without.push_back(set_of[i]);
+    return without;
   }
 
   /// Those of the components that have no straight ways; again all of their vertices, or none.

@@ -40,7 +40,8 @@ struct StraightTry {
 template <class Query>
 class StraightWays {
  public:
-  /// Tries are best of vertices near each other. The ends depend only on the tries together.
+  /// Tries are best of vertices near each other, with those of one vertex and side next to each other. The ends depend
+  /// only on the tries together.
   StraightWays(const Query& query, std::span<const StraightTry> tries) : query_(query), tries_(tries) {
     const auto& surface = query.surface();
     for (const StraightTry& one : tries) {
@@ -93,16 +94,25 @@ class StraightWays {
 
   Vec3d point_of(const Place& place) const { return lines_[place.at].origin + lines_[place.at].normal * place.t; }
 
-  /// What is closest to some places.
+  bool on_one_line(const Place& a, const Place& b) const {
+    return tries_[a.at].vertex == tries_[b.at].vertex && tries_[a.at].side == tries_[b.at].side;
+  }
+
+  /// What is closest to some places; those on one line that stand next to each other are looked for together.
   std::span<const Closest> look(std::span<const Place> places) {
     points_.clear();
-    place_hints_.clear();
-    for (const Place& place : places) {
-      points_.push_back(point_of(place));
-      place_hints_.push_back(hints_[place.at]);
+    line_hints_.clear();
+    begin_.clear();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      points_.push_back(point_of(places[i]));
+      if (i > 0 && on_one_line(places[i - 1], places[i])) continue;
+      begin_.push_back(i);
+      line_hints_.push_back(hints_[places[i].at]);
     }
+    begin_.push_back(places.size());
     closest_.resize(places.size());
-    query_.answer_together(points_, place_hints_, closest_);
+    if (line_hints_.size() == places.size()) query_.answer_together(points_, line_hints_, closest_);
+    else query_.answer_along_ways(points_, begin_, line_hints_, closest_);
     for (std::size_t i = 0; i < places.size(); ++i) hints_[places[i].at] = closest_[i].triangle;
     return closest_;
   }
@@ -167,7 +177,8 @@ class StraightWays {
   std::vector<Place> reached_;        // where phi is the distance that was asked for
   // What is asked in a round.
   std::vector<Vec3d> points_;
-  std::vector<std::uint32_t> place_hints_;
+  std::vector<std::size_t> begin_;  // of each line
+  std::vector<std::uint32_t> line_hints_;
   std::vector<Closest> closest_;
 };
 
