@@ -120,3 +120,62 @@ TEST_CASE("precedent: what could not be freed is held back at less, too, and tol
     CHECK(short_vertices(results[i]) < 1.2 * static_cast<double>(short_vertices(offset(mesh.view(), alone))));
   }
 }
+
+TEST_CASE("precedent: states are honest where much is held back and eased", "[precedent][several]") {
+  const Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
+  const std::vector<Distances> distances = {-0.06, -0.08, -0.1, -0.1};  // the last two are equal
+  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});
+  CHECK(short_vertices(results[2]) > 100);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    INFO(i);
+    CHECK(check_offset(mesh.view(), results[i].positions, {.distance = distances[i][0]}).faults.total() == 0);
+    const test::DistanceErrors errors = test::judge(mesh.view(), results[i], distances[i][0], 1, true);
+    CHECK(errors.worst_reached < 2e-6);
+    CHECK(errors.worst_beyond < 2e-6);
+    CHECK(errors.worst_told < 2e-6);
+  }
+  CHECK(short_vertices(results[3]) <= short_vertices(results[2]));
+}
+
+TEST_CASE("precedent: uneven offsets, parts in front of others, and skins off their source follow",
+          "[precedent][several]") {
+  std::vector<double> farther, nearer;
+  const Polygons bumpy = scene::bumpy_sphere(1, 0.6, 2.5, 5, 4);
+  for (const Vec3d& p : bumpy.positions) {
+    farther.push_back(-0.3 - 0.1 * p[2]);
+    nearer.push_back(farther.back() * (0.7 + 0.2 * p[0]));
+  }
+  const std::vector<Distances> uneven = {each(nearer), each(farther)};
+  const std::vector<OffsetResult> skins = offset_several(bumpy.view(), uneven, {});
+  CHECK(skins[0].statistics.limit.followed_vertices > 0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    INFO(i);
+    CHECK(skins[i].statistics.limit.left.total() == 0);
+    for (std::size_t v = 0; v < bumpy.positions.size(); v += 17) {
+      const double distance = test::brute_force_distance(bumpy.view(), skins[i].positions[v]),
+                   asked = std::abs(uneven[i][v]);
+      CHECK(distance == Approx(skins[i].achieved[v]).epsilon(1e-6));
+      if (skins[i].states[v] == VertexState::Reached) CHECK(distance == Approx(asked).epsilon(2e-6));
+    }
+  }
+
+  const Polygons plates = scene::plates(1, 0.1, 0.2, 12);
+  OffsetOptions options;
+  for (std::size_t f = 0; f < plates.face_count(); ++f) {
+    const auto face = plates.view().face(f);
+    options.only.push_back(
+        std::all_of(face.begin(), face.end(), [&](auto v) { return plates.positions[v][2] == -0.1; }));
+  }
+  const std::vector<Distances> distances = {0.25, 0.5, 0.4};
+  for (const OffsetResult& result : offset_several(plates.view(), distances, options)) {
+    CHECK(result.statistics.limit.left.total() == 0);
+    for (const Vec3d& p : result.positions) CHECK(p[2] <= 0.2 + 1e-12);
+  }
+
+  options = {};
+  options.off_source = true;
+  const Polygons wing = scene::naca_wing("2412", 1, 1, 40, 10);
+  const std::vector<Distances> inward = {-0.005, -0.02};
+  for (const OffsetResult& result : offset_several(wing.view(), inward, options))
+    CHECK(result.statistics.limit.left.total() == 0);
+}

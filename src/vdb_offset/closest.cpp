@@ -61,9 +61,13 @@ ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
                 edge = length > 0 ? (corner[(longest + 1) % 3] - corner[longest]) / length : Vec3d(0.0),
                 to_third = corner[(longest + 2) % 3] - middle, across = to_third - edge * edge.dot(to_third),
                 centre = middle + across / 2.0;
+    // Of a very thin triangle the normal may lean along its edge.
+    Vec3d normal = surface_.triangle_normals[t];
+    normal -= edge * edge.dot(normal);
+    if (normal.lengthSqr() > 0) normal.normalize();
     for (int k = 0; k < 3; ++k) {
       some.centre[k][i] = static_cast<float>(centre[k]);
-      some.normal[k][i] = static_cast<float>(surface_.triangle_normals[t][k]);
+      some.normal[k][i] = static_cast<float>(normal[k]);
       some.edge[k][i] = static_cast<float>(edge[k]);
     }
     some.half_length[i] = static_cast<float>(length / 2 * (1 + 1e-6)) + slack_;

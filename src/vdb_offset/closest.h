@@ -25,8 +25,8 @@ inline constexpr double kFreeShare = 0.9;
 
 /// Exact distance to a surface: phi(x) without a grid's error.
 ///
-/// The surface's triangles, which lie along a space-filling curve, are packed four at a time into an implicit tree of
-/// boxes with eight children each; there are no pointers and no per-triangle copies. A query cannot miss: the hint only
+/// The surface's triangles, which lie along a space-filling curve, are packed eight at a time into an implicit tree of
+/// boxes with eight children each; there are no pointers. A query cannot miss: the hint only
 /// bounds the search, so that a good one makes it short. Memory: about 50 bytes a triangle. Safe from any number of
 /// threads.
 class ClosestQuery {

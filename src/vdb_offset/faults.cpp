@@ -259,15 +259,19 @@ bool FaultFinder::faces_against_front(std::uint32_t t, const Vec3d& before, cons
   return any || now.dot(before) < 0;
 }
 
+void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of) {
+  look_everywhere(place_of, nullptr);
+}
+
+void FaultFinder::look_at_ends(const Paths& paths) {
+  look_everywhere([&](std::uint32_t v) { return source_[v] + paths.displacement[v]; }, &paths);
+}
+
 void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
   Indices everything(source_.size());
   std::iota(everything.begin(), everything.end(), 0u);
   crossings_near_source_ = 0;
   look(everything, place_of, ends, Crossings::All);
-}
-
-void FaultFinder::look_at_ends(const Paths& paths) {
-  look_everywhere([&](std::uint32_t v) { return source_[v] + paths.displacement[v]; }, &paths);
 }
 
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {

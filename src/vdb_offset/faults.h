@@ -59,7 +59,7 @@ class FaultFinder {
   /// face may have both one of them and one that stays out.
   void take_back(const Indices& vertices);
   /// The same as look(), for all vertices.
-  void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
+  void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of);
   /// Puts all vertices to the ends of their paths, and finds what is wrong there.
   void look_at_ends(const Paths& paths);
 
@@ -70,7 +70,7 @@ class FaultFinder {
   /// Pairs that meet where the source's do not, away from where those do.
   const std::vector<TrianglePair>& crossings() const { return crossings_; }
   /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another; not of those
-  /// that are left out (triangle), or of which both are.
+  /// that are left out (triangle), or of which both are, but always of what a rim meets.
   template <class Visit, class LeftOut>
   void for_each_wrong_corner(Visit&& visit, LeftOut&& is_left_out) const;
   template <class Visit>
@@ -116,6 +116,7 @@ class FaultFinder {
   void find_folded();
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
+  void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends);
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
             Crossings crossings);
   void measure(std::span<const std::uint32_t> vertices, const Paths* ends);

@@ -8,6 +8,7 @@
 
 #include "vdb_offset/faults.h"
 #include "vdb_offset/mix.h"
+#include "vdb_offset/parallel.h"
 #include "vdb_offset/untangle.h"
 
 namespace vdb_offset {
@@ -140,16 +141,17 @@ class Limiter {
       paths_.closest[v] = faults_.closest_to(v);
       if (std::abs(distance - target) <= kReachedTolerance * target + faults_.rounding(v)) {
         paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
-      } else if (share_[v] != 1) {
+      } else if (share_[v] != 1 || paths_.state[v] == VertexState::Reached) {
         paths_.state[v] = VertexState::Limited;
         ++statistics_.limited_vertices;
       }
     }
     statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
     if (set) {
-      *set = {distances_, paths_.displacement, paths_.achieved, std::move(mended), {}, is_much_wrong()};
-      set->pulled.assign(source_.size(), 0);
+      const std::vector<std::uint8_t> none(source_.size(), 0);
+      *set = {distances_, paths_.displacement, paths_.achieved, std::move(mended), none, none, is_much_wrong()};
       for (const auto v : pulled_) set->pulled[v] = 1;
+      for (std::size_t v = 0; v < share_.size(); ++v) set->held[v] = share_[v] != 1;
     }
     return statistics_;
   }
@@ -179,29 +181,36 @@ class Limiter {
     const std::vector<Wrong> wrong = wrong_by_patch(patches);
     drop(patches, chosen, [&](const Indices& patch) { return !wrong[patch_[patch.front()]].any(); });
     statistics_.followed_vertices = try_out(patches, chosen, [&](const Indices& patch) {
-      for (const auto v : patch) begin_as_followed(v);
+      for_each_index(
+          patch.size(), [&](std::size_t i) { begin_as_followed(patch[i]); }, 16);
     });
     for (const auto v : chosen)
       if (share_[v] != 1) pulled_.push_back(v);
   }
 
-  /// On the straight way to where the vertex ended up there, if that is far enough, or not for having been pulled back;
-  /// else as far as that on its own way.
+  /// On the straight way to where the vertex ended up there, if that is far enough, or both have collided; or, if it
+  /// was held back there, as far as that on its own way.
   void begin_as_followed(std::uint32_t v) {
     const Vec3d& way = followed_->way[v];
     Vec3d& whole = whole_way_[v];
     const double distance = std::abs(distances_[v]);
-    if (followed_->achieved[v] >= distance) whole = way_to_distance(body_, v, way, distance);
-    else if (!followed_->pulled[v]) whole = way;
-    else if (whole.lengthSqr() > way.lengthSqr()) share_[v] = way.length() / whole.length();
+    if (followed_->achieved[v] >= distance * (1 - kReachedTolerance) - faults_.rounding(v))
+      whole = way_to_distance(body_, v, way, distance);
+    else if (followed_->held[v] && whole.lengthSqr() > 0)
+      share_[v] = std::clamp(way.length() / whole.length(), kLastShare, 1.0);
+    else if (paths_.state[v] == VertexState::Collision) whole = way;
   }
 
-  /// Whether a triangle is one of those that could not be freed before, as all of its corners had to be pulled back.
+  /// Whether a triangle is one of those that could not be freed before: all of its corners had to be pulled back, and
+  /// not all could be let out again.
   bool is_given_up(std::uint32_t t) const {
-    const auto& corners = surface_.triangles[t];
-    return followed_ && std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-             return followed_->pulled[v] && distances_[v] * followed_->distances[v] > 0;
-           });
+    if (!followed_) return false;
+    bool any_held = false;
+    for (const auto v : surface_.triangles[t]) {
+      if (!followed_->pulled[v] || !(distances_[v] * followed_->distances[v] > 0)) return false;
+      any_held = any_held || followed_->held[v];
+    }
+    return any_held;
   }
 
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is

@@ -288,7 +288,7 @@ class Pipeline {
       drafts.push_back({body_of_results(), distances_[i], paths[i], shared_, {}, {}});
     const std::size_t outer = results.size() - options_.inner_skin_last;
     if (options_.inner_skin_last) {
-      look(drafts[outer]);
+      look(drafts[outer], options_.progress);
       make_valid(drafts[outer], options_.progress, nullptr, nullptr);
       results[outer] = finish(drafts[outer]);
       keep_as_inner_skin(results[outer]);
@@ -308,7 +308,7 @@ class Pipeline {
       const auto some = std::span(order).subspan(first, std::min(kResultsTogether, outer - first));
       std::vector<std::uint8_t> waits(outer, 0);
       do_together(some, [&](std::size_t i) {
-        look(drafts[i]);
+        look(drafts[i], progress.of(i));
         waits[i] = followed[i] != i && has_to_be_mended(drafts[i]);
         if (!waits[i]) complete(i, nullptr);
       });
@@ -333,8 +333,9 @@ class Pipeline {
   }
 
   /// What is wrong with a result, if it has to be valid.
-  void look(Draft& draft) const {
+  void look(Draft& draft, const ProgressCallback& callback) const {
     if (options_.collision != Collision::Limit) return;
+    const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.body, source_, draft.distances, options_.precision, source_crossings_);
     draft.faults->look_at_ends(draft.paths);

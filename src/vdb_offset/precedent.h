@@ -16,7 +16,8 @@ struct Precedent {
   std::vector<Vec3d> way;            ///< To where each has ended up; world units.
   std::vector<double> achieved;      ///< The distance there.
   std::vector<std::uint8_t> mended;  ///< 1 if that is not where its path had led.
-  std::vector<std::uint8_t> pulled;  ///< 1 if it was pulled back at some time.
+  std::vector<std::uint8_t> pulled;  ///< 1 if it was pulled back at some time, as part of what was wrong,
+  std::vector<std::uint8_t> held;    ///< 1 if it does not go its whole way.
   bool much_wrong = false;           ///< There was too much wrong to try everything.
 };
 
@@ -25,7 +26,8 @@ struct Precedent {
 std::vector<std::size_t> find_precedents(std::span<const Distances> distances);
 
 /// The way of one of the body's vertices to where, on its straight way to another place, it has an exact distance
-/// (world units, > 0) from the front; all of it if it comes no farther than that.
+/// (world units, > 0) from the front; all of it if it comes no farther than that. Should that place not be found, one
+/// at the distance on the line from the front to the end. What lies on the way is not looked at.
 Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, double distance);
 
 }  // namespace vdb_offset
