@@ -361,8 +361,8 @@ class Limiter {
 
   template <class Hopeless>
   void drop(std::vector<Indices>& patches, Indices& chosen, Hopeless&& is_hopeless) {
-    std::vector<std::uint8_t> dropped;
-    for (const Indices& patch : patches) dropped.push_back(is_hopeless(patch));
+    std::vector<std::uint8_t> dropped(patches.size());
+    std::transform(patches.begin(), patches.end(), dropped.begin(), is_hopeless);
     std::uint32_t kept = 0;
     for (std::size_t i = 0; i < patches.size(); ++i) {
       for (const auto v : patches[i]) patch_[v] = dropped[i] ? kNone : kept;
