@@ -201,16 +201,13 @@ class Limiter {
     else if (paths_.state[v] == VertexState::Collision) whole = way;
   }
 
-  /// Whether a triangle is one of those that could not be freed before: all of its corners had to be pulled back, and
-  /// not all could be let out again.
+  /// Whether a triangle is one of those that untangling alone could not free before: all of its corners had to be
+  /// pulled back, whether or not they could be let out again.
   bool is_given_up(std::uint32_t t) const {
-    if (!followed_) return false;
-    bool any_held = false;
-    for (const auto v : surface_.triangles[t]) {
-      if (!followed_->pulled[v] || !(distances_[v] * followed_->distances[v] > 0)) return false;
-      any_held = any_held || followed_->held[v];
-    }
-    return any_held;
+    const auto& corners = surface_.triangles[t];
+    return followed_ && std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+             return followed_->pulled[v] && distances_[v] * followed_->distances[v] > 0;
+           });
   }
 
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
