@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "vdb_offset/false_position.h"
 #include "vdb_offset/propagate.h"
 
 namespace vdb_offset {
@@ -53,21 +54,16 @@ Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, 
   };
   const Closest end = look(1);
   if (!(end.distance > distance)) return way;
-  const auto off_at = [&](double share) { return look(share).distance - distance; };
-  double a = std::min(1.0, distance / way.length()), off_a = off_at(a), b = 1, off_b = end.distance - distance;
-  if (std::abs(off_a) <= kSettled * distance) return round_way(way * a, distance);
-  for (int i = 0; i < kMostSteps && std::abs(off_b) > kSettled * distance; ++i) {
-    const double c = (a * off_b - b * off_a) / (off_b - off_a), off_c = off_at(c);
-    if ((off_c > 0) == (off_b > 0)) {
-      off_a /= 2;
-    } else {
-      a = b;
-      off_a = off_b;
-    }
-    b = c;
-    off_b = off_c;
+  double off = 0;
+  const auto off_at = [&](double share) { return off = look(share).distance - distance; };
+  const auto settled = [&](double by) { return std::abs(by) <= kSettled * distance; };
+  double share = std::min(1.0, distance / way.length());
+  const double off_near = off_at(share);
+  if (!settled(off_near)) {
+    off = end.distance - distance;
+    share = false_position(share, off_near, 1, off, kMostSteps, off_at, settled);
   }
-  if (std::abs(off_b) <= kSettled * distance) return round_way(way * b, distance);
+  if (settled(off)) return round_way(way * share, distance);
   const Vec3d to_end = start + way - end.point;
   return round_way(end.point + to_end * (distance / end.distance) - start, distance);
 }

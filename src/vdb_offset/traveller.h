@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/false_position.h"
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/ridge_way.h"
 #include "vdb_offset/start.h"
@@ -332,24 +333,13 @@ class Traveller {
 
   /// Between a point short of the target and one at or past it: Illinois' false position on the exact distance.
   Vec3d cut(const Sample& near, const Sample& far) {
-    double a = 0, b = 1, fa = near.phi - target_, fb = far.phi - target_;
     Vec3d x = far.x;
-    for (int i = 0; i < 100 && !arrived(fb + target_); ++i) {
-      const double t = (a * fb - b * fa) / (fb - fa);
+    const auto off_at = [&](double t) {
       x = near.x + (far.x - near.x) * t;
-      const double f = measure(x).phi - target_;
-      if (arrived(f + target_)) return x;
-      if ((f > 0) == (fb > 0)) {
-        b = t;
-        fb = f;
-        fa /= 2;
-      } else {
-        a = b;
-        fa = fb;
-        b = t;
-        fb = f;
-      }
-    }
+      return measure(x).phi - target_;
+    };
+    false_position(0, near.phi - target_, 1, far.phi - target_, 100, off_at,
+                   [&](double off) { return arrived(off + target_); });
     return x;
   }
 
