@@ -165,7 +165,7 @@ TEST_CASE("several: the same bits for any number of threads, told as one run, ca
   }
   CHECK(ordered);
   CHECK(last > 0);
-  all.progress = [&](Stage stage, double share) { return stage != Stage::Limit || share < 0.2; };
+  all.progress = [&](Stage stage, double share) { return stage != Stage::Limit || share < last / 2; };
   CHECK_THROWS_AS(offset_several(mesh.view(), distances, all), Cancelled);
 }
 

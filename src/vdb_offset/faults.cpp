@@ -39,6 +39,7 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       fault_(surface_.triangles.size(), Fault::None),
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
+      position_(source.size(), Position::AsBefore),
       finder_(surface_, place_) {
   if (body.off_source) source_finder_.emplace(surface_, source_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
@@ -92,8 +93,10 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
   const bool first = touched.size() == surface_.triangles.size();
   forget_crossings_of_updated();
   if (crossings == Crossings::OneOfEach) {
-    for (const TrianglePair& pair : finder_.one_of_each_updated(
-             [&](std::uint32_t t) { return matters(t); }, [&](const TrianglePair& each) { return is_fault(each); }))
+    mark_to_take_back();
+    for (const TrianglePair& pair :
+         finder_.one_of_each_updated([&](std::uint32_t t) { return matters(t) && !is_to_take_back(t); },
+                                     [&](const TrianglePair& each) { return is_fault(each); }))
       crossings_.push_back(pair);
   } else if (first) {
     for (const TrianglePair& pair : finder_.all())
@@ -278,10 +281,6 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
   look(moved, place_of, ends, Crossings::All);
 }
 
-void FaultFinder::glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
-  look(moved, place_of, nullptr, Crossings::OneOfEach);
-}
-
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
                        Crossings crossings) {
   constexpr std::size_t kBlock = 64;
@@ -303,12 +302,49 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
 }
 
 void FaultFinder::try_out(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
+  remember(moved);
+  look(moved, place_of, nullptr, Crossings::All);
+}
+
+void FaultFinder::glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
+  remember(moved);
+  look(moved, place_of, nullptr, Crossings::OneOfEach);
+}
+
+void FaultFinder::remember(const Indices& moved) {
+  for (const auto v : before_.vertices) position_[v] = Position::AsBefore;
   before_ = {moved, triangles_around(moved), {}, {}, crossings_};
   before_.stands.reserve(moved.size());
-  for (const auto v : moved) before_.stands.push_back({place_[v], away_[v], distance_[v], closest_[v], right_side_[v]});
+  for (const auto v : moved) {
+    before_.stands.push_back({place_[v], away_[v], distance_[v], closest_[v], right_side_[v]});
+    position_[v] = Position::Out;
+  }
   before_.faults.reserve(before_.triangles.size());
   for (const auto t : before_.triangles) before_.faults.push_back(fault_[t]);
-  look(moved, place_of);
+}
+
+/// Whether any corner stands elsewhere than before.
+bool FaultFinder::is_out(std::uint32_t t) const {
+  const auto& corners = surface_.triangles[t];
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](std::uint32_t v) { return position_[v] != Position::AsBefore; });
+}
+
+/// What has moved and is part of a face that is wrong by itself, or in the wrong place.
+void FaultFinder::mark_to_take_back() {
+  const auto mark = [&](std::uint32_t v) {
+    if (position_[v] == Position::Out) position_[v] = Position::ToTakeBack;
+  };
+  for (const auto t : faces_)
+    for (const auto v : surface_.triangles[t]) mark(v);
+  for (const auto v : misplaced_) mark(v);
+}
+
+/// Whether any corner has to be taken back.
+bool FaultFinder::is_to_take_back(std::uint32_t t) const {
+  const auto& corners = surface_.triangles[t];
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](std::uint32_t v) { return position_[v] == Position::ToTakeBack; });
 }
 
 void FaultFinder::take_back(const Indices& vertices) {
@@ -322,9 +358,14 @@ void FaultFinder::take_back(const Indices& vertices) {
     distance_[v] = stand.distance;
     closest_[v] = stand.closest;
     right_side_[v] = stand.right_side;
+    position_[v] = Position::AsBefore;
   }
   const Indices touched = triangles_around(vertices);
-  for (const auto t : touched) fault_[t] = before_.faults[index_of(before_.triangles, t)];
+  const auto judge_again = [&](std::size_t i) {
+    const std::uint32_t t = touched[i];
+    fault_[t] = is_out(t) ? judge(t) : before_.faults[index_of(before_.triangles, t)];
+  };
+  for_each_index(touched.size(), judge_again, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, vertices, [&](std::uint32_t v) { return is_misplaced(v); });
   finder_.update(touched);
@@ -337,18 +378,16 @@ void FaultFinder::take_back(const Indices& vertices) {
 /// that has fewer triangles.
 void FaultFinder::take_back_crossings(const Indices& touched) {
   Indices out;
-  std::set_difference(before_.triangles.begin(), before_.triangles.end(), touched.begin(), touched.end(),
-                      std::back_inserter(out));
+  std::copy_if(before_.triangles.begin(), before_.triangles.end(), std::back_inserter(out),
+               [&](std::uint32_t t) { return is_out(t); });
   if (out.size() >= touched.size()) {
     add_crossings_of_updated();
     return;
   }
-  const auto is_in = [](const Indices& some, const TrianglePair& pair) {
-    return std::binary_search(some.begin(), some.end(), pair.first) ||
-           std::binary_search(some.begin(), some.end(), pair.second);
-  };
   for (const TrianglePair& pair : before_.crossings)
-    if (is_in(touched, pair) && !is_in(out, pair)) crossings_.push_back(pair);
+    if ((finder_.is_updated(pair.first) || finder_.is_updated(pair.second)) && !is_out(pair.first) &&
+        !is_out(pair.second))
+      crossings_.push_back(pair);
   if (out.empty()) return;
   finder_.update(out);
   forget_crossings_of_updated();

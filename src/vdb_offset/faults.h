@@ -50,13 +50,14 @@ class FaultFinder {
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them. Where they stand at the ends of paths, what is known of those need not be found again.
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends = nullptr);
-  /// The same, but of the crossings of each face around them at least one is found, not all: enough to tell which of
-  /// these vertices have to go back. Those are to be looked at again, so that none is missed in the end.
-  void glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
-  /// The same as look(), for vertices of which some may be taken back.
+  /// The same, for vertices of which some may be taken back.
   void try_out(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
-  /// Puts some of those that were last tried out back where they were before, and knows again what was wrong there; no
-  /// face may have both one of them and one that stays out.
+  /// The same, but of the crossings of each face around them at least one is found, not all; none of what has to be
+  /// taken back for other faults. Enough to tell which of these vertices have to go back: those are to be taken back,
+  /// so that none is missed in the end.
+  void glance(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of);
+  /// Puts some of those that were last tried out, or glanced at, back where they were before, and knows again what was
+  /// wrong there.
   void take_back(const Indices& vertices);
   /// The same as look(), for all vertices.
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of);
@@ -76,6 +77,13 @@ class FaultFinder {
   template <class Visit>
   void for_each_wrong_corner(Visit&& visit) const {
     for_each_wrong_corner(visit, [](std::uint32_t) { return false; });
+  }
+  /// Calls visit(s, t) for each pair of triangles that cross, and visit(t, t) for each that is wrong by itself; not for
+  /// what a rim meets.
+  template <class Visit>
+  void for_each_fault(Visit&& visit) const {
+    for (const auto t : faces_) visit(t, t);
+    for (const auto& [s, t] : crossings_) visit(s, t);
   }
   /// Folded vertices (see is_folded()) whose faces meet the source around them, which only ends where they stay on it.
   Indices caught();
@@ -105,7 +113,7 @@ class FaultFinder {
     std::uint32_t closest;
     std::uint8_t right_side;
   };
-  /// How things were before vertices were tried out. Sorted, as are the triangles around them.
+  /// How things were before vertices were moved. Sorted, as are the triangles around them.
   struct Before {
     Indices vertices, triangles;
     std::vector<Stand> stands;
@@ -116,9 +124,11 @@ class FaultFinder {
   void find_folded();
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
+  enum class Position : std::uint8_t { AsBefore, Out, ToTakeBack };
   void look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends);
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
             Crossings crossings);
+  void remember(const Indices& moved);
   void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest);
@@ -133,6 +143,9 @@ class FaultFinder {
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   bool is_fault(const TrianglePair& pair) const;
   bool matters(std::uint32_t triangle) const;
+  bool is_out(std::uint32_t triangle) const;
+  void mark_to_take_back();
+  bool is_to_take_back(std::uint32_t triangle) const;
   void forget_crossings_of_updated();
   void add_crossings_of_updated();
   void look_at_rim(const Indices& moved, const Indices& touched);
@@ -157,6 +170,7 @@ class FaultFinder {
   std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;
   Before before_;
+  std::vector<Position> position_;  // of each vertex, beside what was before
   CrossingFinder finder_;
   std::optional<NearCrossings> source_crossings_;
   std::optional<CrossingFinder> source_finder_;      // where what has moved must not meet the source

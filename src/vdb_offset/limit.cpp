@@ -16,7 +16,7 @@ namespace {
 
 // How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none. That share is
 // small, as the skins of a shell touch where a vertex has not moved at all.
-constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
+constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1;
 
 // Patches are tried in these ways, the first to its end, with ever more rings around what is wrong. What frees one
 // patch fails in the next; borders leave their planes only for what else does not free. The last ways are for small
@@ -24,7 +24,10 @@ constexpr double kKept = 0.85, kLastShare = 1e-4, kBent = 0.1;
 // of more vertices than so many, or in which more have collided, are left out: of 23,000 patches of fifteen models
 // these took more than half of the time, and hardly any of them was freed. Larger meshes than all of those may have
 // patches as many times larger as they have kManyVertices, rounded up.
+// Where faces stay wrong so many times over in the first way, fronts have run through each other, and there is no way
+// out: of 240 patches that were larger than that, which took half of the time on fifteen models, two were freed.
 constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
+constexpr std::size_t kHopelessVertices = 100, kHopelessCorners = 8;  // of these for each vertex
 struct Growth {
   int rings;
   std::size_t most_vertices, most_collided = kAnyNumber;
@@ -58,6 +61,8 @@ constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAnyNumber}},
                                  {{1, 30, false}, {0, 300}},
                                  {{0.01, 10, false}, {0, 300}}};
 constexpr double kHopeless = 0.99;
+// Larger patches have hardly been freed where the farthest offset was made valid before.
+constexpr std::size_t kFollowed = 30;
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
@@ -65,15 +70,13 @@ constexpr int kFewRings = 3;
 constexpr std::size_t kManyFaults = 2000;
 constexpr double kWorthwhile = 0.8;
 
-// Rounds in which pulled vertices are let out again, each by one step: what it keeps is this share of what it goes
-// then.
-constexpr int kReleases = 16;
-constexpr double kReleased = 0.65;
-// Those that have got into each other's way would do so again if they went together: one of so many of them goes in a
-// round.
-constexpr std::uint64_t kAnew = 4;
-// Rounds after that in which one of so many is let out by more.
-constexpr int kLeaps = 12;
+// In each of so many rounds, one of kLeapers pulled vertices is let out again, by this part of what is left of its way.
+// Those that have got into each other's way would do so again if they all went together.
+struct Leaps {
+  double part;
+  int rounds;
+};
+constexpr Leaps kLeaps[] = {{1, 20}, {0.5, 20}};
 constexpr std::uint64_t kLeapers = 4;
 
 // Around what a precedent has mended, so many rings go along.
@@ -81,6 +84,8 @@ constexpr int kFollowedRings = 1;
 
 // How much more of its way, per distance between them, a vertex may go than a pulled one beside it.
 constexpr double kSteepest = 2;
+// What cannot be taken back with all others often can afterwards.
+constexpr int kEasings = 2;
 
 constexpr std::size_t kExpectedRounds = 32;
 
@@ -95,7 +100,6 @@ class Limiter {
         paths_(paths),
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
-        stopped_(source.size(), 0),
         patch_(source.size(), kNone),
         gathered_(source.size()),
         faults_(faults),
@@ -107,19 +111,17 @@ class Limiter {
 
   void untangle(Progress& progress) {
     if (followed_) follow();
+    // What a precedent and the first way leave, the others hardly free.
     for (const Attempt& attempt : kAttempts)
-      if (!untangle_with(attempt, progress)) break;
+      if (!untangle_with(attempt, progress) || followed_) break;
     free_collided(progress);
   }
 
-  void pull_back_and_release(Progress& progress) {
+  void pull_back_and_let_out(Progress& progress) {
     while (pull_back()) progress.advance(1);
     statistics_.left = faults_.count();
-    const auto a_step = [](double share) { return share / kReleased; };
-    const auto may_go = [&](std::uint32_t v) { return !stopped_[v] || is_drawn(v, kAnew); };
-    for (; turn_ < kReleases && release(may_go, a_step); ++turn_) progress.advance(1);
     leap(progress);
-    ease();
+    for (int i = 0; i < kEasings; ++i) ease();
   }
 
   /// Tells the paths what has become of them, and who may follow.
@@ -241,7 +243,8 @@ class Limiter {
       if (many && growth.rings > 0) continue;
       Indices chosen = with_rings(open, growth.rings);
       std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
-      untangle(chosen, options, growth);
+      untangle(chosen, options,
+               {growth.rings, followed_ ? std::min(growth.most_vertices, kFollowed) : growth.most_vertices});
       ++statistics_.untanglings;
       progress.advance(1);
       std::erase_if(open, [&](std::uint32_t v) { return !is_short(v); });
@@ -352,8 +355,14 @@ class Limiter {
   /// Drops the patches that are not worth while.
   void leave_out(std::vector<Indices>& patches, Indices& chosen, const Growth& growth) {
     const std::size_t most = growth.most_vertices * (1 + source_.size() / kManyVertices);
-    drop(patches, chosen,
-         [&](const Indices& patch) { return patch.size() > most || count_collided(patch) > growth.most_collided; });
+    const std::vector<Wrong> wrong = wrong_by_patch(patches);
+    const bool is_first = statistics_.untanglings == 0 && !followed_;
+    drop(patches, chosen, [&](const Indices& patch) {
+      const std::size_t n = patch.size();
+      const Wrong& is = wrong[patch_[patch.front()]];
+      return n > most || is.collided > growth.most_collided ||
+             (!is_first && n > kHopelessVertices && is.corners > kHopelessCorners * n);
+    });
   }
 
   template <class Hopeless>
@@ -431,30 +440,80 @@ class Limiter {
   /// Vertices and the shares that they had, sorted by vertex.
   using OldShares = std::vector<std::pair<std::uint32_t, double>>;
 
-  /// Lets those of the pulled vertices that are chosen(v) out to further(share). False if none could be let out.
-  template <class Chosen, class Further>
-  bool release(Chosen&& chosen, Further&& further) {
-    OldShares before;
-    for (const auto v : pulled_) {
-      if (share_[v] == 0 || share_[v] == 1 || !chosen(v)) continue;
-      before.emplace_back(v, share_[v]);
-      share_[v] = std::min(1.0, further(share_[v]));
-    }
-    return keep_valid(before) > 0;
+  /// What a vertex has met by itself when it was last let out, everything else being where it was.
+  struct Refusal {
+    double share = 0;  // that it was let out to
+    std::uint32_t first = kNone,
+                  second = kNone;  // triangles that were wrong together, or one twice; kNone if it was the place itself
+    std::uint32_t looked = 0;      // when that was
+    std::uint32_t changed = 0;     // when the vertex was last let out for good
+  };
+
+  /// Whether a vertex would meet the same again.
+  bool is_refused(std::uint32_t v, double share) const {
+    const Refusal& refusal = refusal_[v];
+    if (refusal.share != share) return false;
+    if (refusal.first == kNone) return true;
+    const auto stands = [&](std::uint32_t w) { return w == v || refusal_[w].changed < refusal.looked; };
+    const auto &first = surface_.triangles[refusal.first], &second = surface_.triangles[refusal.second];
+    return std::all_of(first.begin(), first.end(), stands) && std::all_of(second.begin(), second.end(), stands);
   }
 
-  /// One of so many vertices, others in each turn.
-  bool is_drawn(std::uint32_t v, std::uint64_t of) const { return mix(turn_ << 32 | v) % of == 0; }
+  /// Remembers what vertices that have just been let out have met.
+  void note_refusals(const OldShares& before) {
+    ++looks_;
+    const auto has_moved = [&](std::uint32_t v) {
+      const auto at = std::lower_bound(before.begin(), before.end(), std::pair(v, 0.0));
+      return at != before.end() && at->first == v;
+    };
+    const auto note = [&](std::uint32_t v, std::uint32_t s, std::uint32_t t) {
+      Refusal& refusal = refusal_[v];
+      refusal = {share_[v], s, t, looks_, refusal.changed};
+    };
+    faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+      std::uint32_t only = kNone;
+      for (const auto triangle : {s, t})
+        for (const auto v : surface_.triangles[triangle]) {
+          if (v == only || !has_moved(v)) continue;
+          if (only != kNone) return;
+          only = v;
+        }
+      if (only != kNone) note(only, s, t);
+    });
+    for (const auto v : faults_.misplaced())
+      if (has_moved(v)) note(v, kNone, kNone);
+  }
 
-  /// Lets a few of the pulled vertices at a time out the whole way, then half of what is left of it. Of a wrong face's
-  /// corners often one alone is in the wrong place; the others can go once they do not go along with it.
+  /// Lets a few of the pulled vertices at a time out the whole way, then ever less of what is left of it. Of a wrong
+  /// face's corners often one alone is in the wrong place; the others can go once they do not go along with it.
   void leap(Progress& progress) {
-    for (const double part : {1.0, 0.5})
-      for (int i = 0; i < kLeaps; ++i, ++turn_) {
-        release([&](std::uint32_t v) { return is_drawn(v, kLeapers); },
-                [&](double share) { return share + (1 - share) * part; });
+    if (pulled_.empty()) return;
+    refusal_.resize(source_.size());
+    for (const auto& [part, rounds] : kLeaps)
+      for (int i = 0; i < rounds; ++i) {
+        let_out(part);
         progress.advance(1);
       }
+  }
+
+  /// Of the share of its way that a vertex may go, from one beside it.
+  double steepest_change(std::uint32_t v, std::uint32_t beside) const {
+    return kSteepest * (source_[v] - source_[beside]).length() / std::abs(distances_[v]);
+  }
+
+  /// Lets one of so many of the pulled vertices, others in each turn, out by a part of what is left of its way; not
+  /// those that would meet what they have met before.
+  void let_out(double part) {
+    ++turn_;
+    OldShares before;
+    for (const auto v : pulled_) {
+      if (share_[v] == 0 || share_[v] == 1 || mix(turn_ << 32 | v) % kLeapers != 0) continue;
+      const double share = share_[v] + (1 - share_[v]) * part;
+      if (!(share > share_[v]) || is_refused(v, share)) continue;
+      before.emplace_back(v, share_[v]);
+      share_[v] = share;
+    }
+    keep_valid(before);
   }
 
   /// Takes those around a pulled vertex back as well, as far as its dip is too steep; who stays pulled altogether need
@@ -469,8 +528,7 @@ class Limiter {
       for (const auto t : surface_.triangles_around(v))
         for (const auto w : surface_.triangles[t]) {
           if (distances_[w] == 0 || !body_.on_front(w)) continue;
-          const double length = (source_[w] - source_[v]).length();
-          const double most = share_[v] + kSteepest * length / std::abs(distances_[w]);
+          const double most = share_[v] + steepest_change(w, v);
           if (!(share_[w] > most)) continue;
           share_[w] = most;
           eased.push_back(w);
@@ -483,22 +541,21 @@ class Limiter {
     keep_valid(old);
   }
 
-  /// Gives what is wrong, now that these vertices have moved, its old share again, for as long as anything is. Returns
-  /// how many have kept their new one. Who has none at first is stopped by others that have moved, and go back as well,
-  /// or by what has not; the others only follow.
-  std::size_t keep_valid(const OldShares& before) {
-    if (before.empty()) return 0;
+  /// Gives what is wrong, now that these vertices have moved, its old share again, for as long as anything is. Who has
+  /// none at first is stopped by others that have moved, and go back as well, or by what has not.
+  void keep_valid(const OldShares& before) {
+    if (before.empty()) return;
     Indices moved;
     for (const auto& [v, share] : before) moved.push_back(v);
     faults_.glance(moved, [&](std::uint32_t v) { return place_of(v); });
-    for (std::size_t kept = before.size();; kept -= moved.size()) {
-      ++statistics_.rounds;
+    note_refusals(before);
+    do {
       moved = take_back_wrong(before);
-      if (moved.empty()) return kept;
-      if (kept == before.size())
-        for (const auto v : moved) stopped_[v] = 1;
-      look(moved);
-    }
+      faults_.take_back(moved);
+      ++statistics_.rounds;
+    } while (!moved.empty());
+    for (const auto& [v, share] : before)
+      if (share_[v] != share) refusal_[v].changed = looks_;
   }
 
   /// Gives those that something is wrong with their old share, if they have another. Returns them.
@@ -519,13 +576,14 @@ class Limiter {
   const Distances& distances_;
   Paths& paths_;
   std::vector<Vec3d> whole_way_;
-  std::vector<double> share_;          // of the way that a vertex goes
-  std::vector<std::uint8_t> stopped_;  // vertices that have met others when they were let out
-  std::uint64_t turn_ = 0;             // of letting out
-  Indices pulled_;                     // vertices that have been pulled back at some time
-  Indices patch_;                      // of each vertex while patches are being untangled, else kNone
-  IndexGatherer gathered_;             // vertices
-  FaultFinder& faults_;                // as things stand
+  std::vector<double> share_;     // of the way that a vertex goes
+  std::vector<Refusal> refusal_;  // of each vertex, if any was pulled back
+  std::uint32_t looks_ = 0;       // at what has been let out
+  std::uint64_t turn_ = 0;        // of letting out
+  Indices pulled_;                // vertices that have been pulled back at some time
+  Indices patch_;                 // of each vertex while patches are being untangled, else kNone
+  IndexGatherer gathered_;        // vertices
+  FaultFinder& faults_;           // as things stand
   const Precedent* followed_;
   LimitStatistics statistics_;
 };
@@ -545,7 +603,7 @@ LimitStatistics limit(FaultFinder& faults, const Body& body, std::span<const Vec
   Progress progress(callback, Stage::Limit, kExpectedRounds);
   Limiter limiter(body, source, distances, paths, faults, followed);
   limiter.untangle(progress);
-  limiter.pull_back_and_release(progress);
+  limiter.pull_back_and_let_out(progress);
   return limiter.finish(set);
 }
 

@@ -31,10 +31,10 @@ struct LimitStatistics {
 /// and a patch keeps that where it makes nothing worse. That costs no distance; what has collided slides to where it
 /// has its distance in the same way, if there is such a place near. Then the vertices of a face that is wrong are
 /// pulled back towards where they came from, by a little in each round, until nothing is wrong; then those that were
-/// are let out again as far as nothing goes wrong, all together step by step, then a few at a time by leaps. A surface
-/// pulled back altogether is the source, so that it ends. Last, vertices around the pulled ones follow these, where
-/// thickness would else change by more than twice the way from one to the other, as far as nothing goes wrong. Pulled
-/// vertices are `Limited`, with the distance that they keep.
+/// are let out again as far as nothing goes wrong, a few at a time by leaps; who was stopped by what has not moved
+/// since does not try the same again. A surface pulled back altogether is the source, so that it ends. Last, vertices
+/// around the pulled ones follow these, where thickness would else change by more than twice the way from one to the
+/// other, as far as nothing goes wrong. Pulled vertices are `Limited`, with the distance that they keep.
 ///
 /// `source` holds where the body's vertices stand in the input, world coordinates; `distances` and `paths` are theirs,
 /// and who is not on the front has no way to go. `faults` looks at the same, and has looked at the paths' ends.

@@ -27,11 +27,11 @@ constexpr double kMaxVoxelsAcross = 8388608;
 // sweep's closest points; measured: 12,400.
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
-constexpr std::size_t kTriangleBytes = 256, kVertexBytes = 330;
+constexpr std::size_t kTriangleBytes = 256, kVertexBytes = 355;
 // Of a layer: places of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
 constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
 // Of another result: its places, paths and states, and what nearer ones begin with; what it takes to make it valid.
-constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 70;
+constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 95;
 // The process itself: code, libraries, allocator.
 constexpr double kProcessBytes = 48 << 20;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles; only for the estimate that is shown.
