@@ -84,6 +84,9 @@ class Plane {
     return static_cast<int>(height > margin) - static_cast<int>(height < -margin);
   }
 
+  /// True if the triangle clearly has an area.
+  bool is_clear() const { return std::max({std::abs(normal_[0]), std::abs(normal_[1]), std::abs(normal_[2])}) > size_; }
+
  private:
   Vec3d point_, normal_;
   double size_;
@@ -95,9 +98,8 @@ bool misses(const Plane& plane, const std::array<Vec3d, 3>& triangle) {
   return side != 0 && plane.side(triangle[1]) == side && plane.side(triangle[2]) == side;
 }
 
-/// True if the corners of `b` that are not shared lie clearly on one side of the plane of `a`.
-bool on_one_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b, int shared) {
-  const Plane plane(a);
+/// True if the corners of a triangle after those that are shared lie clearly on one side of the plane of the other.
+bool on_one_side(const Plane& plane, const std::array<Vec3d, 3>& b, int shared) {
   int sum = 0;
   for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) sum += plane.side(b[k]);
   return std::abs(sum) == 3 - shared;
@@ -133,21 +135,19 @@ bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b
 }
 
 /// Most pairs are clearly apart; no more than rounding is left to the exact predicates.
-bool clearly_apart(const Couple& pair) {
-  if (on_one_side(pair.a, pair.b, pair.shared) || on_one_side(pair.b, pair.a, pair.shared)) return true;
-  return pair.shared == 1 && on_either_side(pair.a, pair.b);
-}
-
 bool meet(const Couple& pair) {
   if (pair.shared == 3) return false;  // the same triangle twice, or a sheet's two sides
-  if (clearly_apart(pair)) return false;
+  const Plane plane_of_a(pair.a), plane_of_b(pair.b);
+  if (on_one_side(plane_of_a, pair.b, pair.shared) || on_one_side(plane_of_b, pair.a, pair.shared)) return false;
+  if (pair.shared == 1 && on_either_side(pair.a, pair.b)) return false;
   std::array<Point, 3> a, b;
   for (std::size_t k = 0; k < 3; ++k) {
     a[k] = {pair.a[k][0], pair.a[k][1], pair.a[k][2]};
     b[k] = {pair.b[k][0], pair.b[k][1], pair.b[k][2]};
   }
   const Triangle of_a(a[0], a[1], a[2]), of_b(b[0], b[1], b[2]);
-  if (of_a.is_degenerate() || of_b.is_degenerate()) return false;
+  if (!plane_of_a.is_clear() && of_a.is_degenerate()) return false;
+  if (!plane_of_b.is_clear() && of_b.is_degenerate()) return false;
   if (pair.shared == 0) return CGAL::do_intersect(of_a, of_b);
   if (pair.shared == 1)
     return CGAL::do_intersect(Segment(a[1], a[2]), of_b) || CGAL::do_intersect(Segment(b[1], b[2]), of_a);

@@ -27,6 +27,8 @@ constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1;
 // Where faces stay wrong so many times over in the first way, fronts have run through each other, and there is no way
 // out: of 240 patches that were larger than that, which took half of the time on fifteen models, two were freed.
 constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
+// Where a precedent is followed, hardly any patch of more vertices than so many is freed that has not been already.
+constexpr std::size_t kFollowedVertices = 60;
 constexpr std::size_t kHopelessVertices = 100, kHopelessCorners = 8;  // of these for each vertex
 struct Growth {
   int rings;
@@ -61,8 +63,6 @@ constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAnyNumber}},
                                  {{1, 30, false}, {0, 300}},
                                  {{0.01, 10, false}, {0, 300}}};
 constexpr double kHopeless = 0.99;
-// Larger patches have hardly been freed where the farthest offset was made valid before.
-constexpr std::size_t kFollowed = 30;
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
@@ -243,8 +243,7 @@ class Limiter {
       if (many && growth.rings > 0) continue;
       Indices chosen = with_rings(open, growth.rings);
       std::erase_if(chosen, [&](std::uint32_t v) { return !may_slide(v); });
-      untangle(chosen, options,
-               {growth.rings, followed_ ? std::min(growth.most_vertices, kFollowed) : growth.most_vertices});
+      untangle(chosen, options, growth);
       ++statistics_.untanglings;
       progress.advance(1);
       std::erase_if(open, [&](std::uint32_t v) { return !is_short(v); });
@@ -354,7 +353,8 @@ class Limiter {
 
   /// Drops the patches that are not worth while.
   void leave_out(std::vector<Indices>& patches, Indices& chosen, const Growth& growth) {
-    const std::size_t most = growth.most_vertices * (1 + source_.size() / kManyVertices);
+    const std::size_t most = followed_ ? std::min(growth.most_vertices, kFollowedVertices)
+                                       : growth.most_vertices * (1 + source_.size() / kManyVertices);
     const std::vector<Wrong> wrong = wrong_by_patch(patches);
     const bool is_first = statistics_.untanglings == 0 && !followed_;
     drop(patches, chosen, [&](const Indices& patch) {
