@@ -27,8 +27,8 @@ std::vector<std::size_t> find_precedents(std::span<const Distances> distances);
 
 /// The way of one of the body's vertices to where, on its straight way to another place, it has an exact distance
 /// (world units, > 0) from the front; all of it if it ends no farther than that, unless such a place is found before.
-/// Should that place not be found, one
-/// at the distance on the line from the front to the end. What lies on the way is not looked at.
+/// Should that place not be found, one at the distance on the line from the front to the end. What lies on the way is
+/// not looked at.
 Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, double distance);
 
 }  // namespace vdb_offset
