@@ -25,11 +25,9 @@ constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1;
 // these took more than half of the time, and hardly any of them was freed. Larger meshes than all of those may have
 // patches as many times larger as they have kManyVertices, rounded up.
 // Where faces stay wrong so many times over in the first way, fronts have run through each other, and there is no way
-// out: of 240 patches that were larger than that, which took half of the time on fifteen models, two were freed.
+// out: of 380 such patches, which took almost half of the time on thirteen models, two were freed.
 constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
-// Where a precedent is followed, hardly any patch of more vertices than so many is freed that has not been already.
-constexpr std::size_t kFollowedVertices = 60;
-constexpr std::size_t kHopelessVertices = 100, kHopelessCorners = 8;  // of these for each vertex
+constexpr std::size_t kHopelessVertices = 100, kHopelessCorners = 8;  // more of the latter for each of the former
 struct Growth {
   int rings;
   std::size_t most_vertices, most_collided = kAnyNumber;
@@ -50,6 +48,9 @@ constexpr Attempt kAttempts[] = {
     {{0.01, 10, false}, kNearestGrowths}, {{1, 60, false}, kSmoothGrowths},  {{1, 10, true}, kHopefulGrowths},
     {{0.3, 2, true}, kHopefulGrowths},    {{3, 4, true}, kHopefulGrowths},   {{0.03, 30, true}, kHopefulGrowths},
     {{1, 2, true}, kHopefulGrowths},      {{0.1, 4, false}, kHopefulGrowths}};
+
+// Where a precedent is followed, hardly any patch of more vertices than so many is freed that has not been already.
+constexpr std::size_t kFollowedVertices = 60;
 
 // Then what has collided is tried in these, with so many rings around. If it is much, and one of them leaves more than
 // this share of it where it is, fronts have met, and there is no way out.
@@ -443,10 +444,10 @@ class Limiter {
   /// What a vertex has met by itself when it was last let out, everything else being where it was.
   struct Refusal {
     double share = 0;  // that it was let out to
-    std::uint32_t first = kNone,
-                  second = kNone;  // triangles that were wrong together, or one twice; kNone if it was the place itself
-    std::uint32_t looked = 0;      // when that was
-    std::uint32_t changed = 0;     // when the vertex was last let out for good
+    // Triangles that were wrong together, or one twice; kNone if it was the place itself.
+    std::uint32_t first = kNone, second = kNone;
+    std::uint32_t looked = 0;   // when that was
+    std::uint32_t changed = 0;  // when the vertex was last let out for good
   };
 
   /// Whether a vertex would meet the same again.
