@@ -90,10 +90,11 @@ TEST_CASE("closest: points on ways up from the surface have the answers of one b
     // Some go straight up, in any order; some anywhere, and into hollows where another part of the surface is closest.
     const int count = 1 + static_cast<int>(random() % 5);
     const Vec3d n = surface.vertex_normals[v].unit(), aside = Vec3d(unit(random), unit(random), unit(random)) * 0.3;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; ++i) {
       points.push_back(surface.vertices[v] + n * unit(random) + (v % 2 ? aside * unit(random) : Vec3d(0.0)));
+      hints.push_back(v % 5 ? surface.triangles_around(v).front() : 0);
+    }
     begin.push_back(points.size());
-    hints.push_back(v % 5 ? surface.triangles_around(v).front() : 0);
   }
   std::vector<Closest> answers(points.size());
   query.answer_along_ways(points, begin, hints, answers);

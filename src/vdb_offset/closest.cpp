@@ -409,7 +409,7 @@ class ClosestQuery::Ways {
   Ways(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::size_t> begin,
        std::span<const std::uint32_t> hints, std::span<Closest> answers)
       : query_(query), points_(points), answers_(answers), walked_(points.size()) {
-    for (std::size_t way = 0; way + 1 < begin.size(); ++way) add_way(begin[way], begin[way + 1], hints[way]);
+    for (std::size_t way = 0; way + 1 < begin.size(); ++way) add_way(begin[way], begin[way + 1], hints);
   }
 
   void answer() const {
@@ -421,11 +421,11 @@ class ClosestQuery::Ways {
  private:
   /// Nothing nearer to one of the points than what was found beside it lies outside of the ball around the farthest
   /// that holds all their balls. If that is hardly larger than the largest of them, it serves for all.
-  void add_way(std::size_t first, std::size_t last, std::uint32_t hint) {
+  void add_way(std::size_t first, std::size_t last, std::span<const std::uint32_t> hints) {
     constexpr double kHardlyLarger = 1.05;
     std::size_t farthest = first;
     for (std::size_t p = first; p < last; ++p) {
-      std::uint32_t triangle = hint;
+      std::uint32_t triangle = hints[p];
       const TrianglePoint walked = query_.surface_.walk_to_closest(points_[p], triangle);
       walked_[p] = {std::sqrt(walked.squared_distance), triangle, walked.feature, walked.point};
       if (walked_[p].distance > walked_[farthest].distance) farthest = p;

@@ -48,8 +48,8 @@ class ClosestQuery {
                        std::span<Closest> answers) const;
 
   /// The same where some of the points lie on one way up from the surface, as the places of a vertex at several
-  /// distances do: what is close to one of them is looked for once. Way i has points begin[i] .. begin[i + 1] - 1, and
-  /// a hint. The answers depend only on the points together, the hints and the surface.
+  /// distances do: what is close to one of them is looked for once. Way i has points begin[i] .. begin[i + 1] - 1. The
+  /// answers depend only on the points together, the hints and the surface.
   void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
                          std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 

@@ -106,10 +106,9 @@ void CurveQuery::answer_together(std::span<const Vec3d> points, std::span<const 
   for (std::size_t i = 0; i < points.size(); ++i) answers[i] = (*this)(points[i], hints[i]);
 }
 
-void CurveQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+void CurveQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t>,
                                    std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
-  for (std::size_t way = 0; way + 1 < begin.size(); ++way)
-    for (std::size_t i = begin[way]; i < begin[way + 1]; ++i) answers[i] = (*this)(points[i], hints[way]);
+  answer_together(points, hints, answers);
 }
 
 }  // namespace vdb_offset

@@ -35,6 +35,8 @@ struct Polyline {
     return conormals.empty() ? v : v - conormals[vertex] * conormals[vertex].dot(v);
   }
   TrianglePoint closest_on(std::uint32_t segment, const Vec3d& x) const;
+  /// See Surface::across.
+  Vec3d across(std::uint32_t segment, Feature feature, const Vec3d& away, const Vec3d& way) const;
   /// See Surface::pseudonormal.
   Vec3d pseudonormal(std::uint32_t segment, Feature feature) const;
 };

@@ -65,7 +65,7 @@ class Marches {
     DirectionSampler sampler(directions_);
     std::vector<Stop> stops;
     std::vector<End> ends;
-    for (const auto attempt : {Attempt::InHaste, Attempt::FromThere, Attempt::Anew}) {
+    for (const auto attempt : {Attempt::InHaste, Attempt::FromThere, Attempt::FromThere, Attempt::Anew}) {
       ends.clear();
       for (std::size_t v = begin_of(block); v < end_of(block); ++v)
         for (const int side : {1, -1}) {
@@ -208,7 +208,7 @@ class Marches {
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
     if (distance * side <= 0 || (again && (is_known(set, v) || paths_[set].state[v] == VertexState::Reached))) return;
     if (!is_known(set, v)) stops.push_back(stop);
-    else if (!end_known(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v)}});
+    else if (!end_known(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v), arrival_[set][v].triangle}});
   }
 
   static VertexState state_at(double distance, const Stop& stop) {
@@ -239,18 +239,24 @@ class Marches {
              std::vector<End>& ends) const {
     std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
     const auto vertex = static_cast<std::uint32_t>(v);
-    const auto pace = attempt == Attempt::InHaste ? Pace::Hasty : Pace::Careful;
+    const auto pace = attempt == Attempt::Anew ? Pace::Careful : Pace::Hasty;
     Traveller<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
-    const Paths& nearest = paths_[stops.front().set];
-    const bool keep = options_.traces == Traces::Keep, anew = attempt != Attempt::FromThere;
-    if (keep) traveller.keep_trace(anew ? std::vector<Vec3d>() : nearest.trace[v]);
+    const bool keep = options_.traces == Traces::Keep;
     const auto tell = [&](const Stop& stop, const Arrival& end) {
       ends.push_back({vertex, stop, end});
       if (keep) paths_[stop.set].trace[v] = traveller.trace();
     };
-    if (anew) traveller.march(stops, tell);
-    else if (nearest.achieved[v] > kOnTheWay * stops.front().distance)
-      traveller.march_from(surface_.vertices[v] + nearest.displacement[v], nearest.closest[v], stops, tell);
+    if (attempt != Attempt::FromThere) {
+      if (keep) traveller.keep_trace({});
+      traveller.march(stops, tell);
+      return;
+    }
+    for (const Stop& stop : stops) {
+      const Paths& paths = paths_[stop.set];
+      if (!(paths.achieved[v] > kOnTheWay * stop.distance)) continue;
+      if (keep) traveller.keep_trace(paths.trace[v]);
+      traveller.march_from(surface_.vertices[v] + paths.displacement[v], paths.closest[v], stop, tell);
+    }
   }
 
   /// Tells how far the ends are from the surface, and what that makes of their vertices.
@@ -280,12 +286,13 @@ class Marches {
     std::vector<std::size_t> begin;
     const auto is_inward = [&](const End& end) { return distances_[end.stop.set][end.vertex] < 0; };
     for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (i > 0 && ends[i].vertex == ends[i - 1].vertex && is_inward(ends[i]) == is_inward(ends[i - 1])) continue;
-      hints.push_back(surface_.triangles_around(ends[i].vertex).front());
-      begin.push_back(i);
+      hints.push_back(ends[i].arrival.triangle);
+      if (i == 0 || ends[i].vertex != ends[i - 1].vertex || is_inward(ends[i]) != is_inward(ends[i - 1]))
+        begin.push_back(i);
     }
+    const bool one_each = begin.size() == ends.size();
     begin.push_back(ends.size());
-    if (hints.size() == ends.size()) query_.answer_together(points, hints, closest);
+    if (one_each) query_.answer_together(points, hints, closest);
     else query_.answer_along_ways(points, begin, hints, closest);
     return closest;
   }

@@ -101,18 +101,18 @@ class StraightWays {
   /// What is closest to some places; those on one line that stand next to each other are looked for together.
   std::span<const Closest> look(std::span<const Place> places) {
     points_.clear();
-    line_hints_.clear();
+    asked_hints_.clear();
     begin_.clear();
     for (std::size_t i = 0; i < places.size(); ++i) {
       points_.push_back(point_of(places[i]));
-      if (i > 0 && on_one_line(places[i - 1], places[i])) continue;
-      begin_.push_back(i);
-      line_hints_.push_back(hints_[places[i].at]);
+      asked_hints_.push_back(hints_[places[i].at]);
+      if (i == 0 || !on_one_line(places[i - 1], places[i])) begin_.push_back(i);
     }
-    begin_.push_back(places.size());
     closest_.resize(places.size());
-    if (line_hints_.size() == places.size()) query_.answer_together(points_, line_hints_, closest_);
-    else query_.answer_along_ways(points_, begin_, line_hints_, closest_);
+    const bool one_each = begin_.size() == places.size();
+    begin_.push_back(places.size());
+    if (one_each) query_.answer_together(points_, asked_hints_, closest_);
+    else query_.answer_along_ways(points_, begin_, asked_hints_, closest_);
     for (std::size_t i = 0; i < places.size(); ++i) hints_[places[i].at] = closest_[i].triangle;
     return closest_;
   }
@@ -177,8 +177,8 @@ class StraightWays {
   std::vector<Place> reached_;        // where phi is the distance that was asked for
   // What is asked in a round.
   std::vector<Vec3d> points_;
+  std::vector<std::uint32_t> asked_hints_;
   std::vector<std::size_t> begin_;  // of each line
-  std::vector<std::uint32_t> line_hints_;
   std::vector<Closest> closest_;
 };
 

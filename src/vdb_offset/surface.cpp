@@ -240,6 +240,15 @@ Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
   return sum;
 }
 
+Vec3d Surface::across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& way) const {
+  if (feature == Feature::Face) return away * (away.dot(way) / away.lengthSqr());
+  const auto f = static_cast<std::uint32_t>(feature);
+  if (f < 3) return way;
+  const auto& corners = triangles[triangle];
+  const Vec3d edge = vertices[corners[(f - 2) % 3]] - vertices[corners[f - 3]];
+  return way - edge * (edge.dot(way) / edge.lengthSqr());
+}
+
 TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const {
   TrianglePoint best = closest_on(triangle, x);
   const auto is_nearer = [&](std::uint32_t other) {

@@ -102,6 +102,9 @@ struct Surface {
   Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
     return conormals.empty() ? v : v - conormals[vertex] * conormals[vertex].dot(v);
   }
+  /// The part of a way that changes the distance from what is closest, `away` from there: all of it off a corner, what
+  /// is across an edge, what is along `away` off a face.
+  Vec3d across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& way) const;
   /// Not normalised; its dot product with x - closest point has the sign of the side that x lies on
   /// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005).
   Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;

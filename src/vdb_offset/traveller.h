@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/false_position.h"
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/ridge_way.h"
 #include "vdb_offset/start.h"
@@ -55,6 +54,7 @@ enum class Pace { Careful, Hasty };
 /// Where a vertex ended up on its way.
 struct Arrival {
   Vec3d position;
+  std::uint32_t triangle;  ///< One that is close to it.
   bool outside_field = false;
 };
 
@@ -92,7 +92,7 @@ class Traveller {
     const auto first = leave_along_ridge(tolerance);
     if (!first) return std::nullopt;
     const RidgeWay way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
-        first->x, {first->phi, hint_, feature_, first->x - first->away});
+        first->x, {first->phi, first->triangle, first->feature, first->x - first->away});
     if (!way.found) return std::nullopt;
     if (trace_) {
       trace_->push_back(first->x - origin_);
@@ -109,7 +109,7 @@ class Traveller {
     const auto first = leave_surface(first_step());
     target_ = stops.front().distance;
     if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
-      for (const Stop& stop : stops) tell(stop, Arrival{origin_});
+      for (const Stop& stop : stops) tell(stop, Arrival{origin_, hint_});
       return;
     }
     march_on(*first, stops, tell);
@@ -120,13 +120,13 @@ class Traveller {
   /// Ways to the places come by, up to the last that was told.
   const std::vector<Vec3d>& trace() const { return *trace_; }
 
-  /// The same from a place on the way, if the distance still rises there, so that no ridge has been passed, and there
-  /// is nothing between that and the vertex; else tells of no stop.
-  /// `triangle` is one near the place.
+  /// The same to one stop from a place on the way, if the distance still rises there, so that no ridge has been passed,
+  /// and there is nothing between that and the vertex; else tells of none. `triangle` is the closest to the place.
   template <class Tell>
-  void march_from(const Vec3d& place, std::uint32_t triangle, std::span<const Stop> stops, Tell&& tell) {
-    target_ = stops.front().distance;
+  void march_from(const Vec3d& place, std::uint32_t triangle, const Stop& stop, Tell&& tell) {
+    target_ = stop.distance;
     hint_ = triangle;
+    outside_ = false;
     const Sample first = measure(place);
     const double length = (place - origin_).length();
     if (!(length > 0)) return;
@@ -136,7 +136,7 @@ class Traveller {
         !is_way_free(way, slope, length - first.phi, first_step()))
       return;
     hint_ = triangle;
-    march_on(first, stops, tell);
+    march_on(first, {&stop, 1}, tell);
   }
 
  private:
@@ -169,6 +169,8 @@ class Traveller {
     Vec3d x;
     double phi;
     Vec3d away;  // from the closest point to x, not normalised
+    std::uint32_t triangle;
+    Feature feature;
   };
   /// The largest distance on a path, and the steps before and after it.
   struct Peak {
@@ -179,13 +181,13 @@ class Traveller {
   void march_on(const Sample& first, std::span<const Stop> stops, Tell&& tell) {
     const double last = stops.back().distance;
     std::size_t passed = 0;
-    Sample before{origin_, 0, normal_}, here = first;
+    Sample before{origin_, 0, Vec3d(0.0), hint_, Feature::Face}, here = first;
     Peak peak{before, here, here};
     double since_peak = 0;
     std::size_t noted_at_peak = trace_ ? trace_->size() : 0;
     for (int i = 0;; ++i) {
       for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
-        tell(stops[passed], Arrival{arrived(here.phi) ? here.x : cut(before, here), outside_});
+        tell_of(arrived(here.phi) ? here : cut(before, here), stops[passed], tell);
         if (++passed == stops.size()) return;
       }
       if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
@@ -194,13 +196,14 @@ class Traveller {
       double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
                               std::max(kStepVoxels * h_, kStepShare * last),
                               std::max(last - here.phi, kLeastStep * std::min(h_, last))});
-      Sample next = measure(runge_kutta(here, step));
-      bool in_the_way = false;
-      if (obstacles_) {
-        const Vec3d end = stop_at_obstacle(*obstacles_, here.x, next.x);
-        in_the_way = end != next.x;
-        if (in_the_way) next = measure(end);
+      const Vec3d ahead = runge_kutta(here, step), to = obstacles_ ? stop_at_obstacle(*obstacles_, here.x, ahead) : ahead;
+      const bool in_the_way = to != ahead;
+      for (auto stop = stop_before(to, here); stop; stop = stop_before(to, *stop)) {
+        tell_of(*stop, stops[passed], tell);
+        if (++passed == stops.size()) return;
+        target_ = stops[passed].distance;
       }
+      const Sample next = measure(to);
       since_peak += step;
       if (peak.at.x == here.x) peak.after = next;
       if (next.phi > peak.at.phi) {
@@ -212,9 +215,30 @@ class Traveller {
       here = next;
       if (in_the_way) return tell_blocked(before, here, stops.subspan(passed), tell);
     }
-    const Vec3d end = climb(peak);
+    const Sample end = climb(peak);
     if (trace_) trace_->resize(noted_at_peak);
-    for (const Stop& stop : stops.subspan(passed)) tell(stop, Arrival{end, outside_});
+    for (const Stop& stop : stops.subspan(passed)) tell_of(end, stop, tell);
+  }
+
+  /// The place on the way from one short of the target that is at it, if what is closest tells that there is one before
+  /// the end.
+  std::optional<Sample> stop_before(const Vec3d& end, Sample at) {
+    constexpr int kMostSteps = 4;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const Vec3d way = end - at.x;
+      const auto share = to_target(at, way);
+      if (!share || !(*share < 1)) return std::nullopt;
+      const Sample next = measure(at.x + way * *share);
+      if (arrived(next.phi)) return next;
+      if (next.phi > target_) return cut(at, next);
+      at = next;
+    }
+    return std::nullopt;
+  }
+
+  template <class Tell>
+  void tell_of(const Sample& end, const Stop& stop, Tell&& tell) const {
+    tell(stop, Arrival{end.x, end.triangle, outside_});
   }
 
   /// An obstacle ends the way at `end`; some stops may lie before that.
@@ -222,7 +246,7 @@ class Traveller {
   void tell_blocked(const Sample& before, const Sample& end, std::span<const Stop> stops, Tell&& tell) {
     for (const Stop& stop : stops) {
       target_ = stop.distance;
-      tell(stop, Arrival{end.phi > target_ ? cut(before, end) : end.x, outside_});
+      tell_of(end.phi > target_ ? cut(before, end) : end, stop, tell);
     }
   }
 
@@ -230,12 +254,10 @@ class Traveller {
     if (pace_ == Pace::Careful) {
       const Closest closest = query_(x, hint_);
       hint_ = closest.triangle;
-      feature_ = closest.feature;
-      return {x, closest.distance, x - closest.point};
+      return {x, closest.distance, x - closest.point, hint_, closest.feature};
     }
     const TrianglePoint nearest = query_.near(x, hint_);
-    feature_ = nearest.feature;
-    return {x, std::sqrt(nearest.squared_distance), x - nearest.point};
+    return {x, std::sqrt(nearest.squared_distance), x - nearest.point, hint_, nearest.feature};
   }
   double first_step() const { return 0.1 * std::min(target_, h_); }
   bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
@@ -245,7 +267,9 @@ class Traveller {
   /// it lies in the ball around its end.
   bool is_way_free(const Vec3d& way, double slope, double from, double to) {
     while (from > to) {
-      const double phi = measure(origin_ + way * from).phi;
+      const Closest closest = query_(origin_ + way * from, hint_);
+      const double phi = closest.distance;
+      hint_ = closest.triangle;
       if (phi < kFreeShare * slope * from) return false;
       from -= phi * (1 - 1e-12);
     }
@@ -257,7 +281,7 @@ class Traveller {
     for (double step = longest; step > 1e-7 * target_; step *= 0.25) {
       const Sample sample = measure(origin_ + normal_ * step);
       const bool free = sample.phi > kFreeShare * std::max(slope_, 0.02) * step;
-      const bool right = !sided_ || side_ * surface_.pseudonormal(hint_, feature_).dot(sample.away) > 0;
+      const bool right = !sided_ || side_ * surface_.pseudonormal(sample.triangle, sample.feature).dot(sample.away) > 0;
       if (free && right) return sample;
     }
     return std::nullopt;
@@ -331,21 +355,39 @@ class Traveller {
     }
   }
 
-  /// Between a point short of the target and one at or past it: Illinois' false position on the exact distance.
-  Vec3d cut(const Sample& near, const Sample& far) {
-    Vec3d x = far.x;
-    const auto off_at = [&](double t) {
-      x = near.x + (far.x - near.x) * t;
-      return measure(x).phi - target_;
-    };
-    false_position(0, near.phi - target_, 1, far.phi - target_, 100, off_at,
-                   [&](double off) { return arrived(off + target_); });
-    return x;
+  /// How far along `way` from a place what is closest to it there is at the target, in ways, if it ever is.
+  std::optional<double> to_target(const Sample& from, const Vec3d& way) const {
+    const Vec3d across = surface_.across(from.triangle, from.feature, from.away, way);
+    const double rise = from.away.dot(across), above = (from.phi - target_) * (from.phi + target_),
+                 root = rise * rise - above * across.lengthSqr();
+    if (!(rise > 0 && root >= 0)) return std::nullopt;
+    return -above / (rise + std::sqrt(root));
+  }
+
+  /// Between a point short of the target and one at or past it: where what is closest to the one that is the nearer to
+  /// the target comes to be there, then the same from that place: what is closest on the way is one thing, or few. False
+  /// position, and by halves, where that leads out of what is left.
+  Sample cut(const Sample& near, const Sample& far) {
+    constexpr int kMostSteps = 100, kLetFall = 8;
+    const Vec3d way = far.x - near.x;
+    double low = 0, below = near.phi - target_, high = 1, above = far.phi - target_;
+    bool from_low = -below < above;
+    Sample at = from_low ? near : far;
+    for (int i = 0; i < kMostSteps && !arrived(at.phi); ++i) {
+      const auto to = to_target(at, way);
+      double t = (from_low ? low : high) + to.value_or(high - low);
+      if (!(t > low && t < high)) t = i < kLetFall ? (low * above - high * below) / (above - below) : (low + high) / 2;
+      at = measure(near.x + way * t);
+      from_low = at.phi < target_;
+      (from_low ? low : high) = t;
+      (from_low ? below : above) = at.phi - target_;
+    }
+    return at;
   }
 
   /// The ridge between the steps around the largest distance seen, by golden section: near it the distance rises to
   /// one side and falls to the other. Ends beyond the peak only if that is no nearer.
-  Vec3d climb(const Peak& peak) {
+  Sample climb(const Peak& peak) {
     const auto on_path = [&](double t) {  // -1 .. 0 .. 1 from before through at to after
       return t < 0 ? peak.at.x + (peak.before.x - peak.at.x) * -t : peak.at.x + (peak.after.x - peak.at.x) * t;
     };
@@ -369,7 +411,7 @@ class Traveller {
       for (const Sample& sample : {at_a, at_b})
         if (sample.phi > best.phi && sample.phi <= target_ * (1 + kStopTolerance)) best = sample;
     }
-    return best.x;
+    return best;
   }
 
   const Query& query_;
@@ -384,7 +426,6 @@ class Traveller {
   double slope_;
   std::uint32_t hint_;
   Pace pace_;
-  Feature feature_ = Feature::Face;
   bool outside_ = false;
   std::optional<std::vector<Vec3d>> trace_;
 };
