@@ -208,7 +208,8 @@ class Marches {
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
     if (distance * side <= 0 || (again && (is_known(set, v) || paths_[set].state[v] == VertexState::Reached))) return;
     if (!is_known(set, v)) stops.push_back(stop);
-    else if (!end_known(stop, v)) ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v), arrival_[set][v].triangle}});
+    else if (!end_known(stop, v))
+      ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v), arrival_[set][v].triangle}});
   }
 
   static VertexState state_at(double distance, const Stop& stop) {

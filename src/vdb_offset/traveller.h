@@ -196,7 +196,8 @@ class Traveller {
       double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
                               std::max(kStepVoxels * h_, kStepShare * last),
                               std::max(last - here.phi, kLeastStep * std::min(h_, last))});
-      const Vec3d ahead = runge_kutta(here, step), to = obstacles_ ? stop_at_obstacle(*obstacles_, here.x, ahead) : ahead;
+      const Vec3d ahead = runge_kutta(here, step),
+                  to = obstacles_ ? stop_at_obstacle(*obstacles_, here.x, ahead) : ahead;
       const bool in_the_way = to != ahead;
       for (auto stop = stop_before(to, here); stop; stop = stop_before(to, *stop)) {
         tell_of(*stop, stops[passed], tell);
@@ -365,8 +366,8 @@ class Traveller {
   }
 
   /// Between a point short of the target and one at or past it: where what is closest to the one that is the nearer to
-  /// the target comes to be there, then the same from that place: what is closest on the way is one thing, or few. False
-  /// position, and by halves, where that leads out of what is left.
+  /// the target comes to be there, then the same from that place: what is closest on the way is one thing, or few.
+  /// False position, and by halves, where that leads out of what is left.
   Sample cut(const Sample& near, const Sample& far) {
     constexpr int kMostSteps = 100, kLetFall = 8;
     const Vec3d way = far.x - near.x;
