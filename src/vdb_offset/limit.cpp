@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include <tbb/parallel_for.h>
@@ -9,6 +10,8 @@
 #include "vdb_offset/faults.h"
 #include "vdb_offset/mix.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/patches.h"
+#include "vdb_offset/refusals.h"
 #include "vdb_offset/untangle.h"
 
 namespace vdb_offset {
@@ -101,7 +104,7 @@ class Limiter {
         paths_(paths),
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
-        patch_(source.size(), kNone),
+        patches_(body.surface),
         gathered_(source.size()),
         faults_(faults),
         followed_(followed) {
@@ -180,14 +183,15 @@ class Limiter {
     if (gathered_.so_far().empty()) return;
     Indices chosen = with_rings(gathered_.take(), kFollowedRings);
     std::erase_if(chosen, [&](std::uint32_t v) { return !may_follow(v); });
-    std::vector<Indices> patches = find_patches(chosen);
-    const std::vector<Wrong> wrong = wrong_by_patch(patches);
-    drop(patches, chosen, [&](const Indices& patch) { return !wrong[patch_[patch.front()]].any(); });
-    statistics_.followed_vertices = try_out(patches, chosen, [&](const Indices& patch) {
+    patches_.split(chosen);
+    const std::vector<Wrong> wrong = wrong_by_patch();
+    patches_.drop_if([&](const Indices&, std::uint32_t number) { return !wrong[number].any(); });
+    const Indices began = patches_.vertices();
+    statistics_.followed_vertices = try_out([&](const Indices& patch) {
       for_each_index(
           patch.size(), [&](std::size_t i) { begin_as_followed(patch[i]); }, 16);
     });
-    for (const auto v : chosen)
+    for (const auto v : began)
       if (share_[v] != 1) pulled_.push_back(v);
   }
 
@@ -286,28 +290,6 @@ class Limiter {
     return gathered_.take();
   }
 
-  /// Splits vertices into patches that share no face; patch_ tells the patch of each.
-  std::vector<Indices> find_patches(const Indices& vertices) {
-    constexpr std::uint32_t kOpen = kNone - 1;
-    for (const auto v : vertices) patch_[v] = kOpen;
-    std::vector<Indices> patches;
-    for (const auto seed : vertices) {
-      if (patch_[seed] != kOpen) continue;
-      const auto number = static_cast<std::uint32_t>(patches.size());
-      Indices& patch = patches.emplace_back(1, seed);
-      patch_[seed] = number;
-      for (std::size_t i = 0; i < patch.size(); ++i)
-        for (const auto t : surface_.triangles_around(patch[i]))
-          for (const auto w : surface_.triangles[t])
-            if (patch_[w] == kOpen) {
-              patch_[w] = number;
-              patch.push_back(w);
-            }
-      std::sort(patch.begin(), patch.end());
-    }
-    return patches;
-  }
-
   /// What is wrong in a patch, the worse first.
   struct Wrong {
     std::size_t misplaced = 0, corners = 0, collided = 0;
@@ -317,14 +299,14 @@ class Limiter {
       return std::tie(misplaced, corners, collided) < std::tie(other.misplaced, other.corners, other.collided);
     }
   };
-  std::vector<Wrong> wrong_by_patch(const std::vector<Indices>& patches) const {
-    std::vector<Wrong> wrong(patches.size());
+  std::vector<Wrong> wrong_by_patch() const {
+    std::vector<Wrong> wrong(patches_.count());
     faults_.for_each_wrong_corner([&](std::uint32_t v) {
-      if (patch_[v] != kNone) ++wrong[patch_[v]].corners;
+      if (patches_.of(v) != kNone) ++wrong[patches_.of(v)].corners;
     });
     for (const auto v : faults_.misplaced())
-      if (patch_[v] != kNone) ++wrong[patch_[v]].misplaced;
-    for (std::size_t i = 0; i < patches.size(); ++i) wrong[i].collided = count_collided(patches[i]);
+      if (patches_.of(v) != kNone) ++wrong[patches_.of(v)].misplaced;
+    for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i].collided = count_collided(patches_[i]);
     return wrong;
   }
 
@@ -353,32 +335,17 @@ class Limiter {
   }
 
   /// Drops the patches that are not worth while.
-  void leave_out(std::vector<Indices>& patches, Indices& chosen, const Growth& growth) {
+  void leave_out(const Growth& growth) {
     const std::size_t most = followed_ ? std::min(growth.most_vertices, kFollowedVertices)
                                        : growth.most_vertices * (1 + source_.size() / kManyVertices);
-    const std::vector<Wrong> wrong = wrong_by_patch(patches);
+    const std::vector<Wrong> wrong = wrong_by_patch();
     const bool is_first = statistics_.untanglings == 0 && !followed_;
-    drop(patches, chosen, [&](const Indices& patch) {
+    patches_.drop_if([&](const Indices& patch, std::uint32_t number) {
       const std::size_t n = patch.size();
-      const Wrong& is = wrong[patch_[patch.front()]];
+      const Wrong& is = wrong[number];
       return n > most || is.collided > growth.most_collided ||
              (!is_first && n > kHopelessVertices && is.corners > kHopelessCorners * n);
     });
-  }
-
-  template <class Hopeless>
-  void drop(std::vector<Indices>& patches, Indices& chosen, Hopeless&& is_hopeless) {
-    std::vector<std::uint8_t> dropped(patches.size());
-    std::transform(patches.begin(), patches.end(), dropped.begin(), is_hopeless);
-    std::uint32_t kept = 0;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      for (const auto v : patches[i]) patch_[v] = dropped[i] ? kNone : kept;
-      if (dropped[i]) continue;
-      if (kept != i) patches[kept] = std::move(patches[i]);
-      ++kept;
-    }
-    patches.resize(kept);
-    std::erase_if(chosen, [&](std::uint32_t v) { return patch_[v] == kNone; });
   }
 
   std::size_t count_collided(const Indices& patch) const {
@@ -387,36 +354,38 @@ class Limiter {
   }
 
   /// Untangles patches of vertices, all at their distance, and keeps those where that makes nothing worse.
-  void untangle(Indices chosen, const Untangler::Options& options, const Growth& growth) {
-    std::vector<Indices> patches = find_patches(chosen);
-    leave_out(patches, chosen, growth);
+  void untangle(const Indices& chosen, const Untangler::Options& options, const Growth& growth) {
+    patches_.split(chosen);
+    leave_out(growth);
     const Untangler untangler(body_, distances_, options);
-    try_out(patches, chosen, [&](const Indices& patch) { untangler(patch, whole_way_); });
+    try_out([&](const Indices& patch) { untangler(patch, whole_way_); });
   }
 
-  /// Lets move(patch) change the ways and shares of the vertices of patches, `chosen` being those of all, in parallel;
-  /// then puts back the patches where that has made something worse, or nothing better where there was nothing wrong.
-  /// Returns how many vertices are not put back.
+  /// Lets move(patch) change the ways and shares of the vertices of the patches, in parallel; then puts back the
+  /// patches where that has made something worse, or nothing better where there was nothing wrong. Returns how many
+  /// vertices are not put back.
   template <class Move>
-  std::size_t try_out(const std::vector<Indices>& patches, const Indices& chosen, Move&& move) {
-    const std::vector<Wrong> before = wrong_by_patch(patches);
+  std::size_t try_out(Move&& move) {
+    const Indices& chosen = patches_.vertices();
+    const std::vector<Wrong> before = wrong_by_patch();
     std::vector<std::pair<Vec3d, double>> old;
     old.reserve(chosen.size());
     for (const auto v : chosen) old.emplace_back(whole_way_[v], share_[v]);
-    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) { move(patches[i]); });
+    tbb::parallel_for(std::size_t{0}, patches_.count(), [&](std::size_t i) { move(patches_[i]); });
     faults_.try_out(chosen, [&](std::uint32_t v) { return place_of(v); });
-    const std::vector<Wrong> after = wrong_by_patch(patches);
+    const std::vector<Wrong> after = wrong_by_patch();
     Indices undone;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const std::uint32_t v = chosen[i];
-      const Wrong &was = before[patch_[v]], &is = after[patch_[v]];
+      const Wrong &was = before[patches_.of(v)], &is = after[patches_.of(v)];
       if (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was)) continue;
       std::tie(whole_way_[v], share_[v]) = old[i];
       undone.push_back(v);
     }
-    for (const auto v : chosen) patch_[v] = kNone;
+    const std::size_t kept = chosen.size() - undone.size();
+    patches_.clear();
     if (!undone.empty()) faults_.take_back(undone);
-    return chosen.size() - undone.size();
+    return kept;
   }
 
   /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.
@@ -440,56 +409,16 @@ class Limiter {
 
   /// Vertices and the shares that they had, sorted by vertex.
   using OldShares = std::vector<std::pair<std::uint32_t, double>>;
-
-  /// What a vertex has met by itself when it was last let out, everything else being where it was.
-  struct Refusal {
-    double share = 0;  // that it was let out to
-    // Triangles that were wrong together, or one twice; kNone if it was the place itself.
-    std::uint32_t first = kNone, second = kNone;
-    std::uint32_t looked = 0;   // when that was
-    std::uint32_t changed = 0;  // when the vertex was last let out for good
-  };
-
-  /// Whether a vertex would meet the same again.
-  bool is_refused(std::uint32_t v, double share) const {
-    const Refusal& refusal = refusal_[v];
-    if (refusal.share != share) return false;
-    if (refusal.first == kNone) return true;
-    const auto stands = [&](std::uint32_t w) { return w == v || refusal_[w].changed < refusal.looked; };
-    const auto &first = surface_.triangles[refusal.first], &second = surface_.triangles[refusal.second];
-    return std::all_of(first.begin(), first.end(), stands) && std::all_of(second.begin(), second.end(), stands);
-  }
-
-  /// Remembers what vertices that have just been let out have met.
-  void note_refusals(const OldShares& before) {
-    ++looks_;
-    const auto has_moved = [&](std::uint32_t v) {
-      const auto at = std::lower_bound(before.begin(), before.end(), std::pair(v, 0.0));
-      return at != before.end() && at->first == v;
-    };
-    const auto note = [&](std::uint32_t v, std::uint32_t s, std::uint32_t t) {
-      Refusal& refusal = refusal_[v];
-      refusal = {share_[v], s, t, looks_, refusal.changed};
-    };
-    faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
-      std::uint32_t only = kNone;
-      for (const auto triangle : {s, t})
-        for (const auto v : surface_.triangles[triangle]) {
-          if (v == only || !has_moved(v)) continue;
-          if (only != kNone) return;
-          only = v;
-        }
-      if (only != kNone) note(only, s, t);
-    });
-    for (const auto v : faults_.misplaced())
-      if (has_moved(v)) note(v, kNone, kNone);
+  static OldShares::const_iterator find(const OldShares& shares, std::uint32_t v) {
+    const auto at = std::lower_bound(shares.begin(), shares.end(), std::pair(v, 0.0));
+    return at != shares.end() && at->first == v ? at : shares.end();
   }
 
   /// Lets a few of the pulled vertices at a time out the whole way, then ever less of what is left of it. Of a wrong
   /// face's corners often one alone is in the wrong place; the others can go once they do not go along with it.
   void leap(Progress& progress) {
     if (pulled_.empty()) return;
-    refusal_.resize(source_.size());
+    refusals_.emplace(surface_);
     for (const auto& [part, rounds] : kLeaps)
       for (int i = 0; i < rounds; ++i) {
         let_out(part);
@@ -510,7 +439,7 @@ class Limiter {
     for (const auto v : pulled_) {
       if (share_[v] == 0 || share_[v] == 1 || mix(turn_ << 32 | v) % kLeapers != 0) continue;
       const double share = share_[v] + (1 - share_[v]) * part;
-      if (!(share > share_[v]) || is_refused(v, share)) continue;
+      if (!(share > share_[v]) || refusals_->expects(v, share)) continue;
       before.emplace_back(v, share_[v]);
       share_[v] = share;
     }
@@ -549,22 +478,24 @@ class Limiter {
     Indices moved;
     for (const auto& [v, share] : before) moved.push_back(v);
     faults_.glance(moved, [&](std::uint32_t v) { return place_of(v); });
-    note_refusals(before);
+    refusals_->note(
+        faults_, [&](std::uint32_t v) { return find(before, v) != before.end(); },
+        [&](std::uint32_t v) { return share_[v]; });
     do {
       moved = take_back_wrong(before);
       faults_.take_back(moved);
       ++statistics_.rounds;
     } while (!moved.empty());
     for (const auto& [v, share] : before)
-      if (share_[v] != share) refusal_[v].changed = looks_;
+      if (share_[v] != share) refusals_->note_change(v);
   }
 
   /// Gives those that something is wrong with their old share, if they have another. Returns them.
   Indices take_back_wrong(const OldShares& before) {
     Indices wrong = faults_.wrong_vertices();
     std::erase_if(wrong, [&](std::uint32_t v) {
-      const auto at = std::lower_bound(before.begin(), before.end(), std::pair(v, 0.0));
-      if (at == before.end() || at->first != v || at->second == share_[v]) return true;
+      const auto at = find(before, v);
+      if (at == before.end() || at->second == share_[v]) return true;
       share_[v] = at->second;
       return false;
     });
@@ -577,14 +508,13 @@ class Limiter {
   const Distances& distances_;
   Paths& paths_;
   std::vector<Vec3d> whole_way_;
-  std::vector<double> share_;     // of the way that a vertex goes
-  std::vector<Refusal> refusal_;  // of each vertex, if any was pulled back
-  std::uint32_t looks_ = 0;       // at what has been let out
-  std::uint64_t turn_ = 0;        // of letting out
-  Indices pulled_;                // vertices that have been pulled back at some time
-  Indices patch_;                 // of each vertex while patches are being untangled, else kNone
-  IndexGatherer gathered_;        // vertices
-  FaultFinder& faults_;           // as things stand
+  std::vector<double> share_;         // of the way that a vertex goes
+  std::optional<Refusals> refusals_;  // if any was pulled back
+  std::uint64_t turn_ = 0;            // of letting out
+  Indices pulled_;                    // vertices that have been pulled back at some time
+  Patches patches_;                   // that are being untangled
+  IndexGatherer gathered_;            // vertices
+  FaultFinder& faults_;               // as things stand
   const Precedent* followed_;
   LimitStatistics statistics_;
 };

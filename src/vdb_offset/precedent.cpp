@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "vdb_offset/false_position.h"
+#include "vdb_offset/distance_cut.h"
 #include "vdb_offset/propagate.h"
 
 namespace vdb_offset {
@@ -39,41 +39,37 @@ std::vector<std::size_t> find_precedents(std::span<const Distances> distances) {
   return followed;
 }
 
-/// Illinois' false position, from where the way is as long as the distance, so that it is no farther, to its end. The
-/// triangles around the vertex, then around the last answer, are asked first, as they are no nearer than the closest:
-/// mostly all that is left to ask is whether they are the closest there. Where that does not settle, the straight line
-/// from the closest point to the end of the way is as good: along it the distance is its length.
+/// From where the way is as long as the distance, so that it is no farther, to its end. The triangles around the
+/// vertex, then around the last answer, are asked first, as they are no nearer than the closest: mostly all that is
+/// left to ask is whether they are the closest there. Where that does not settle, the straight line from the closest
+/// point to the end of the way is as good: along it the distance is its length.
 Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, double distance) {
-  constexpr int kMostSteps = 60;
   constexpr double kSettled = 1e-9;
   const Vec3d& start = body.surface.vertices[vertex];
   std::uint32_t hint = body.hint(vertex);
-  const auto off_beside = [&](double share) {
-    return std::sqrt(body.front.near(start + way * share, hint).squared_distance) - distance;
+  const auto beside = [&](const Vec3d& x) {
+    const TrianglePoint nearest = body.front.near(x, hint);
+    return sample_at(x, hint, nearest);
   };
-  const auto look = [&](double share) {
-    const Closest closest = body.front(start + way * share, hint);
+  const auto exactly = [&](const Vec3d& x) {
+    const Closest closest = body.front(x, hint);
     hint = closest.triangle;
-    return closest;
+    return sample_at(x, closest);
   };
-  const auto settled = [&](double by) { return std::abs(by) <= kSettled * distance; };
-  double share = std::min(1.0, distance / way.length());
-  const double off_near = off_beside(share), off_end = off_beside(1);
-  if (!(off_end > 0)) return way;
-  if (off_near < 0 && !settled(off_near))
-    share = false_position(share, off_near, 1, off_end, kMostSteps, off_beside, settled);
-  double off = look(share).distance - distance;
-  if (!settled(off)) {
-    const Closest end = look(1);
-    if (!(end.distance > distance)) return way;
-    const auto off_at = [&](double at) { return off = look(at).distance - distance; };
-    share = false_position(share, off, 1, end.distance - distance, kMostSteps, off_at, settled);
-    if (!settled(off)) {
-      const Vec3d to_end = start + way - end.point;
-      return round_way(end.point + to_end * (distance / end.distance) - start, distance);
-    }
+  const auto settled = [&](const Sample& at) { return std::abs(at.phi - distance) <= kSettled * distance; };
+  const auto cut = [&](const Sample& near, const Sample& far, const auto& measure) {
+    return cut_at_distance(body.front.surface(), near, far, distance, measure, settled);
+  };
+  const Sample first = beside(start + way * std::min(1.0, distance / way.length())), last = beside(start + way);
+  if (!(last.phi > distance)) return way;
+  Sample at = exactly(first.phi < distance ? cut(first, last, beside).x : first.x);
+  if (!settled(at)) {
+    const Sample end = exactly(start + way);
+    if (!(end.phi > distance)) return way;
+    at = cut(at, end, exactly);
+    if (!settled(at)) return round_way(end.x - end.away * (1 - distance / end.phi) - start, distance);
   }
-  return round_way(way * share, distance);
+  return round_way(at.x - start, distance);
 }
 
 }  // namespace vdb_offset

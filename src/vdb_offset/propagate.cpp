@@ -59,8 +59,9 @@ class Marches {
   static std::size_t begin_of(std::size_t block) { return block * kBlock; }
   std::size_t end_of(std::size_t block) const { return std::min((block + 1) * kBlock, surface_.vertices.size()); }
 
-  /// Moves the vertices of a block: all in haste, then those that did not arrive by that carefully, first from where
-  /// haste has brought them, which is a place on the way if the surface is only a little nearer than believed.
+  /// Moves the vertices of a block: all in haste; those that did not arrive by that go on from there, now that is known
+  /// what is closest, as it is a place on the way if the surface is only a little nearer than believed; twice, as
+  /// something else may be closest where they arrive. Then carefully from the start.
   void operator()(std::size_t block) const {
     DirectionSampler sampler(directions_);
     std::vector<Stop> stops;

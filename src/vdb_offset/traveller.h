@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/distance_cut.h"
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/ridge_way.h"
 #include "vdb_offset/start.h"
@@ -165,13 +166,6 @@ class Traveller {
   // How near, in voxels, that agreement matters. Farther out the two may well differ, at a medial axis for one.
   static constexpr double kLeakVoxels = 0.3;
 
-  struct Sample {
-    Vec3d x;
-    double phi;
-    Vec3d away;  // from the closest point to x, not normalised
-    std::uint32_t triangle;
-    Feature feature;
-  };
   /// The largest distance on a path, and the steps before and after it.
   struct Peak {
     Sample before, at, after;
@@ -227,7 +221,7 @@ class Traveller {
     constexpr int kMostSteps = 4;
     for (int i = 0; i < kMostSteps; ++i) {
       const Vec3d way = end - at.x;
-      const auto share = to_target(at, way);
+      const auto share = share_to_distance(surface_, at, way, target_);
       if (!share || !(*share < 1)) return std::nullopt;
       const Sample next = measure(at.x + way * *share);
       if (arrived(next.phi)) return next;
@@ -255,10 +249,10 @@ class Traveller {
     if (pace_ == Pace::Careful) {
       const Closest closest = query_(x, hint_);
       hint_ = closest.triangle;
-      return {x, closest.distance, x - closest.point, hint_, closest.feature};
+      return sample_at(x, closest);
     }
     const TrianglePoint nearest = query_.near(x, hint_);
-    return {x, std::sqrt(nearest.squared_distance), x - nearest.point, hint_, nearest.feature};
+    return sample_at(x, hint_, nearest);
   }
   double first_step() const { return 0.1 * std::min(target_, h_); }
   bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
@@ -356,34 +350,10 @@ class Traveller {
     }
   }
 
-  /// How far along `way` from a place what is closest to it there is at the target, in ways, if it ever is.
-  std::optional<double> to_target(const Sample& from, const Vec3d& way) const {
-    const Vec3d across = surface_.across(from.triangle, from.feature, from.away, way);
-    const double rise = from.away.dot(across), above = (from.phi - target_) * (from.phi + target_),
-                 root = rise * rise - above * across.lengthSqr();
-    if (!(rise > 0 && root >= 0)) return std::nullopt;
-    return -above / (rise + std::sqrt(root));
-  }
-
-  /// Between a point short of the target and one at or past it: where what is closest to the one that is the nearer to
-  /// the target comes to be there, then the same from that place: what is closest on the way is one thing, or few.
-  /// False position, and by halves, where that leads out of what is left.
   Sample cut(const Sample& near, const Sample& far) {
-    constexpr int kMostSteps = 100, kLetFall = 8;
-    const Vec3d way = far.x - near.x;
-    double low = 0, below = near.phi - target_, high = 1, above = far.phi - target_;
-    bool from_low = -below < above;
-    Sample at = from_low ? near : far;
-    for (int i = 0; i < kMostSteps && !arrived(at.phi); ++i) {
-      const auto to = to_target(at, way);
-      double t = (from_low ? low : high) + to.value_or(high - low);
-      if (!(t > low && t < high)) t = i < kLetFall ? (low * above - high * below) / (above - below) : (low + high) / 2;
-      at = measure(near.x + way * t);
-      from_low = at.phi < target_;
-      (from_low ? low : high) = t;
-      (from_low ? below : above) = at.phi - target_;
-    }
-    return at;
+    return cut_at_distance(
+        surface_, near, far, target_, [&](const Vec3d& x) { return measure(x); },
+        [&](const Sample& at) { return arrived(at.phi); });
   }
 
   /// The ridge between the steps around the largest distance seen, by golden section: near it the distance rises to
