@@ -177,14 +177,19 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
 
 CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
     : surface_(surface), positions_(positions), is_updated_(surface.triangles.size(), 0) {
-  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_of(corners(t, positions_)); });
+  build();
+}
+
+void CrossingFinder::build() {
+  tree_.build(surface_.triangles.size(), [&](std::size_t t) { return box_of(corners(t, positions_)); });
 }
 
 void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
   for (const auto t : updated_) is_updated_[t] = 0;
   updated_.assign(triangles.begin(), triangles.end());
   for (const auto t : updated_) is_updated_[t] = 1;
-  tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
+  if (triangles.size() == surface_.triangles.size()) build();
+  else tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
 }
 
 std::array<Vec3d, 3> CrossingFinder::corners(std::size_t t, std::span<const Vec3d> places) const {

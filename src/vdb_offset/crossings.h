@@ -47,6 +47,7 @@ class CrossingFinder {
       const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const;
 
  private:
+  void build();
   std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> places) const;
   FloatBox box_of(const std::array<Vec3d, 3>& corners) const;
   std::vector<std::uint32_t> updated_runs() const;

@@ -39,13 +39,16 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       fault_(surface_.triangles.size(), Fault::None),
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
-      position_(source.size(), Position::AsBefore),
-      finder_(surface_, place_) {
+      position_(source.size(), Position::AsBefore) {
   if (body.off_source) source_finder_.emplace(surface_, source_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
   if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
   if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, place_, distances_);
-  source_crossings_.emplace(surface_, source_crossings ? std::move(*source_crossings) : finder_.all());
+  if (!source_crossings) {
+    finder_.emplace(surface_, place_);
+    source_crossings = finder_->all();
+  }
+  source_crossings_.emplace(surface_, std::move(*source_crossings));
 }
 
 void FaultFinder::find_folded() {
@@ -78,28 +81,34 @@ bool FaultFinder::is_fault(const TrianglePair& pair) const {
 bool FaultFinder::matters(std::uint32_t t) const { return !source_crossings_->is_near(t); }
 
 void FaultFinder::add_crossings_of_updated() {
-  for (const TrianglePair& pair : finder_.of_updated([&](std::uint32_t t) { return matters(t); }))
+  for (const TrianglePair& pair : finder_->of_updated([&](std::uint32_t t) { return matters(t); }))
     if (is_fault(pair)) crossings_.push_back(pair);
 }
 
 void FaultFinder::forget_crossings_of_updated() {
   std::erase_if(crossings_, [&](const TrianglePair& pair) {
-    return finder_.is_updated(pair.first) || finder_.is_updated(pair.second);
+    return finder_->is_updated(pair.first) || finder_->is_updated(pair.second);
   });
 }
 
+void FaultFinder::update_finder(const Indices& touched) {
+  const bool knows_all = !finder_ && touched.size() == surface_.triangles.size();
+  if (!finder_) finder_.emplace(surface_, place_);
+  if (!knows_all) finder_->update(touched);
+}
+
 void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings) {
-  finder_.update(touched);
+  update_finder(touched);
   const bool first = touched.size() == surface_.triangles.size();
   forget_crossings_of_updated();
   if (crossings == Crossings::OneOfEach) {
     mark_to_take_back();
     for (const TrianglePair& pair :
-         finder_.one_of_each_updated([&](std::uint32_t t) { return matters(t) && !is_to_take_back(t); },
-                                     [&](const TrianglePair& each) { return is_fault(each); }))
+         finder_->one_of_each_updated([&](std::uint32_t t) { return matters(t) && !is_to_take_back(t); },
+                                      [&](const TrianglePair& each) { return is_fault(each); }))
       crossings_.push_back(pair);
   } else if (first) {
-    for (const TrianglePair& pair : finder_.all())
+    for (const TrianglePair& pair : finder_->all())
       if (!is_fault(pair)) continue;
       else if (matters(pair.first) && matters(pair.second)) crossings_.push_back(pair);
       else ++crossings_near_source_;
@@ -111,7 +120,7 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
 
 void FaultFinder::look_at_rim(const Indices& moved, const Indices& touched) {
   if (!rim_) return;
-  rim_->look(moved, touched, finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
+  rim_->look(moved, touched, *finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
 }
 
 /// Whether a vertex stands where its path ended, rounded: then what was found there holds here to as much, phi being
@@ -368,7 +377,7 @@ void FaultFinder::take_back(const Indices& vertices) {
   for_each_index(touched.size(), judge_again, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, vertices, [&](std::uint32_t v) { return is_misplaced(v); });
-  finder_.update(touched);
+  finder_->update(touched);
   forget_crossings_of_updated();
   look_at_rim(vertices, touched);
   take_back_crossings(touched);
@@ -385,11 +394,11 @@ void FaultFinder::take_back_crossings(const Indices& touched) {
     return;
   }
   for (const TrianglePair& pair : before_.crossings)
-    if ((finder_.is_updated(pair.first) || finder_.is_updated(pair.second)) && !is_out(pair.first) &&
+    if ((finder_->is_updated(pair.first) || finder_->is_updated(pair.second)) && !is_out(pair.first) &&
         !is_out(pair.second))
       crossings_.push_back(pair);
   if (out.empty()) return;
-  finder_.update(out);
+  finder_->update(out);
   forget_crossings_of_updated();
   add_crossings_of_updated();
 }

@@ -146,6 +146,7 @@ class FaultFinder {
   bool is_out(std::uint32_t triangle) const;
   void mark_to_take_back();
   bool is_to_take_back(std::uint32_t triangle) const;
+  void update_finder(const Indices& touched);
   void forget_crossings_of_updated();
   void add_crossings_of_updated();
   void look_at_rim(const Indices& moved, const Indices& touched);
@@ -170,8 +171,8 @@ class FaultFinder {
   std::vector<TrianglePair> crossings_;
   std::size_t crossings_near_source_ = 0;
   Before before_;
-  std::vector<Position> position_;  // of each vertex, beside what was before
-  CrossingFinder finder_;
+  std::vector<Position> position_;        // of each vertex, beside what was before
+  std::optional<CrossingFinder> finder_;  // from the first look on
   std::optional<NearCrossings> source_crossings_;
   std::optional<CrossingFinder> source_finder_;      // where what has moved must not meet the source
   std::optional<CrossingFinder> other_skin_finder_;  // where a shell's other skin is not the source
