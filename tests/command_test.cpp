@@ -561,7 +561,7 @@ TEST_CASE("command: curves are offset, reported, and refuse what is for meshes",
   std::ofstream(shell.file("square.dat")) << "A square\n1 0\n1 1\n0 1\n0 0\n1 0\n";
   const Run run = shell("square.dat out.dat --distance 0.5 --report r.json --states s.csv");
   REQUIRE(run.code == 0);
-  CHECK_THAT(run.out, Catch::Contains("5 vertices at 0.5: 100.000 % reached"));
+  CHECK_THAT(run.out, Catch::Contains("5 points at 0.5: 100.000 % reached"));
   std::ifstream out(shell.file("out.dat"));
   std::string title, line;
   std::getline(out, title);

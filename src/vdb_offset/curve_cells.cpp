@@ -144,6 +144,8 @@ LayerQuality measure_curve_cells(const CurveCells& cells, const LayersResult& la
     const auto segment = cells.segments.view().face(s);
     const auto a = layers.stacks.of(segment[0]), b = layers.stacks.of(segment[1]);
     quality.wall_angle.push_back(static_cast<float>(wall_angle(std::array{a[0], b[0]}, std::array{a[1], b[1]})));
+    for (std::size_t k = 1; k < a.size(); ++k)
+      quality.least_segment = std::min(quality.least_segment, (b[k] - a[k]).length() / (b[0] - a[0]).length());
   }
   return quality;
 }

@@ -34,6 +34,7 @@ CurveFaults::CurveFaults(const PlaneCurves& curves)
       place_(curves.source.begin(), curves.source.end()),
       away_(curves.source.size(), Vec2d(0.0)),
       distance_(curves.source.size(), 0.0),
+      wrong_side_(curves.source.size(), 0),
       misplaced_at_(curves.source.size(), 0),
       fault_(curves.line().segments.size(), Fault::None),
       finder_(curves.line().segments, place_) {
@@ -83,8 +84,8 @@ void CurveFaults::measure(std::uint32_t point) {
   const double towards = line.pseudonormal(closest.triangle, closest.feature).dot(x - closest.point);
   const Vec2d& p = place_[point];
   const double rounding = curves_.precision.epsilon() * std::max(std::abs(p[0]), std::abs(p[1]));
-  misplaced_at_[point] =
-      closest.distance > target * (1 + kReachedTolerance) + rounding || (sided && towards * curves_.side(point) < 0);
+  wrong_side_[point] = sided && towards * curves_.side(point) < 0;
+  misplaced_at_[point] = wrong_side_[point] || closest.distance > target * (1 + kReachedTolerance) + rounding;
 }
 
 CurveFaults::Fault CurveFaults::judge(std::uint32_t segment) const {

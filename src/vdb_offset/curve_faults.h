@@ -52,6 +52,8 @@ class CurveFaults {
 
   const Vec2d& place(std::uint32_t point) const { return place_[point]; }
   double distance_of(std::uint32_t point) const { return distance_[point]; }
+  /// Of closed curves alone.
+  bool on_wrong_side(std::uint32_t point) const { return wrong_side_[point]; }
   std::size_t source_crossings() const { return source_crossings_.size(); }
   /// New pairs that have only slid along from one of those.
   std::size_t crossings_near_source() const { return slid_.count; }
@@ -78,8 +80,8 @@ class CurveFaults {
   const PlaneCurves& curves_;
   std::vector<Vec2d> place_, away_;  // of each point: where it stands, and the way there from the closest one
   std::vector<double> distance_;
-  std::vector<std::uint8_t> misplaced_at_;  // of each point
-  std::vector<Fault> fault_;                // of each segment
+  std::vector<std::uint8_t> wrong_side_, misplaced_at_;  // of each point
+  std::vector<Fault> fault_;                             // of each segment
   SegmentCrossings finder_;
   std::size_t wrong_segments_ = 0, misplaced_ = 0;
   Pairs crossing_, slid_;

@@ -22,9 +22,10 @@ constexpr int kLettings = 10;
 
 class CurveLimiter {
  public:
-  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback)
+  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback, Spacing spacing)
       : curves_(curves),
         paths_(paths),
+        spacing_(spacing),
         faults_(curves),
         way_(curves.source.size(), Vec2d(0.0)),
         share_(curves.source.size(), 1.0),
@@ -35,7 +36,7 @@ class CurveLimiter {
   }
 
   LimitStatistics run() {
-    statistics_.untanglings += put_in_order(curves_, paths_, way_) > 0;
+    statistics_.untanglings += put_in_order(curves_, paths_, way_, spacing_) > 0;
     place(points_);
     statistics_.before = faults_.count();
     statistics_.source_crossings = faults_.source_crossings();
@@ -240,6 +241,7 @@ class CurveLimiter {
 
   const PlaneCurves& curves_;
   Paths& paths_;
+  Spacing spacing_;
   CurveFaults faults_;
   Indices points_;
   std::vector<Vec2d> way_;     // of each point, from its source
@@ -250,8 +252,9 @@ class CurveLimiter {
 
 }  // namespace
 
-LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress) {
-  return CurveLimiter(curves, paths, progress).run();
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress,
+                             Spacing spacing) {
+  return CurveLimiter(curves, paths, progress, spacing).run();
 }
 
 }  // namespace vdb_offset

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "vdb_offset/curve_faults.h"
+#include "vdb_offset/curve_order.h"
 #include "vdb_offset/limit.h"
 #include "vdb_offset/progress.h"
 #include "vdb_offset/propagate.h"
@@ -22,6 +23,7 @@ namespace vdb_offset {
 ///
 /// `paths` are those of the ribbon's vertices; ways stay in the plane. The result does not depend on the number of
 /// threads.
-LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress = {});
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress = {},
+                             Spacing spacing = Spacing::AsItIs);
 
 }  // namespace vdb_offset

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "vdb_offset/curve_limit.h"
+#include "vdb_offset/curve_line.h"
 #include "vdb_offset/curve_stack.h"
 #include "vdb_offset/directions.h"
 #include "vdb_offset/error.h"
@@ -24,22 +25,12 @@ constexpr double kRibbonVoxels = kLeafWidth - 1;
 // What a point takes in each layer: its places, beside what cells are made of it.
 constexpr std::size_t kLayerPointBytes = 180;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The pipeline of curves: joined, stood up as a ribbon, then what surfaces go through.
 class CurvePipeline {
  public:
   CurvePipeline(CurvesView curves, const OffsetOptions& options, int threads, std::size_t layers = 0)
-      : curves_(curves), options_(options), layers_(layers), frame_(plane_of(curves)) {
+      : curves_(curves), options_(options), layers_(layers), plane_(chains_in_plane(curves)) {
     shared_.threads = threads;
-    points_.reserve(curves.positions.size());
-    for (const Vec3d& p : curves.positions) points_.push_back(frame_.to_plane(p));
-    chains_ = join_curves(curves, points_);
-    if (chains_.segments.empty()) throw InvalidInput("curves: expected a segment, got single points alone");
   }
 
   /// Facts and plan, of which all that follows makes use. False if nobody goes anywhere.
@@ -47,7 +38,7 @@ class CurvePipeline {
     Reach farthest{0, 0};
     for (const Distances& d : wanted)
       farthest = {std::max(farthest.inside, d.inward()), std::max(farthest.outside, d.outward())};
-    tell_facts();
+    shared_.facts = facts_of(curves_, plane_);
     const bool goes = farthest.inside > 0 || farthest.outside > 0;
     if (goes) stand_up(farthest);
     return goes;
@@ -61,7 +52,7 @@ class CurvePipeline {
       return results;
     }
     make_field();
-    draw_line();
+    draw();
     for (const Distances& d : wanted) distances_.push_back(on_line(d));
     std::vector<Paths> paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
     for (std::size_t i = 0; i < wanted.size(); ++i) results.push_back(finish(wanted[i], distances_[i], paths[i]));
@@ -72,19 +63,20 @@ class CurvePipeline {
   LayersResult grow(std::span<const Distances> heights) {
     prepare(heights.last(1));
     make_field();
-    draw_line();
+    draw();
     std::vector<Distances> on_points;
     for (const Distances& each : heights) on_points.push_back(on_line(each));
     distances_.push_back(on_points.back());
     std::vector<Paths> paths = march(Ridges::Smooth);
     OffsetStatistics statistics = shared_;
-    limit(on_points.back(), paths.front(), statistics);
+    limit(on_points.back(), paths.front(), statistics, Spacing::Even);
     LayerStack stack;
     {
       const StageTimer timer(statistics.seconds, Stage::Layers);
-      stack = stack_curves({*query_, source_, on_points.back(), options_.precision}, on_points, paths.front(),
+      stack = stack_curves({*query_, drawn_.source, on_points.back(), options_.precision}, on_points, paths.front(),
                            options_.progress);
     }
+    statistics.room = room(on_points.back(), paths.front());
     return hand_over(std::move(statistics), on_points, paths.front(), stack);
   }
 
@@ -95,78 +87,38 @@ class CurvePipeline {
     const MeshFacts& facts = shared_.facts;
     const VoxelSize chosen = choose_voxel_size(facts.median_edge, facts.diagonal,
                                                std::max(farthest.inside, farthest.outside), options_.grid);
-    ribbon_ = build_surface(make_ribbon(chains_.segments, points_, kRibbonVoxels * chosen.size).view(), {});
+    ribbon_ = build_surface(make_ribbon(plane_.chains.segments, plane_.points, kRibbonVoxels * chosen.size).view(), {});
     // The rims only stand for what goes on for ever.
-    ribbon_.facts.boundary_left = 2 * chains_.ends;
+    ribbon_.facts.boundary_left = 2 * plane_.chains.ends;
     GridOptions grid;
     grid.voxel_size = chosen.size;
     shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads,
-                             {layers_ * points_.size() * kLayerPointBytes, true});
+                             {layers_ * plane_.points.size() * kLayerPointBytes, true});
     shared_.plan.reason = chosen.reason;
   }
 
-  std::vector<double> lengths() const {
-    std::vector<double> lengths;
-    for (const auto& [a, b] : chains_.segments) lengths.push_back((points_[b] - points_[a]).length());
-    return lengths;
-  }
-
-  void tell_facts() {
-    MeshFacts& facts = shared_.facts;
-    facts.vertices = points_.size();
-    facts.unused_vertices = static_cast<std::size_t>(std::count(chains_.place.begin(), chains_.place.end(), kNone));
-    for (std::uint32_t p = 0; p < points_.size(); ++p) facts.welded_vertices += chains_.place[p] == p;
-    facts.faces_by_corners[2] = chains_.segments.size();
-    facts.components = chains_.chains;
-    facts.closed_components = chains_.closed;
-    facts.boundary_edges = facts.boundary_left = chains_.ends;
-    facts.non_manifold_edges = facts.non_manifold_left = chains_.branchings;
-    facts.median_edge = median(lengths());
-    facts.lower = facts.upper = curves_.positions[curves_.corners.front()];
-    for (const auto p : curves_.corners) {
-      facts.lower = openvdb::math::minComponent(facts.lower, curves_.positions[p]);
-      facts.upper = openvdb::math::maxComponent(facts.upper, curves_.positions[p]);
-    }
-    facts.diagonal = (facts.upper - facts.lower).length();
-  }
-
   /// The curves in the ribbon's frame, half way up.
-  void draw_line() {
-    vertex_.assign(points_.size(), kNone);
-    std::vector<Vec3d> vertices;
+  void draw() {
     const double middle = kRibbonVoxels / 2 * shared_.plan.voxel_size - ribbon_.origin[2];
-    std::vector<Segment> segments = chains_.segments;
-    for (Segment& segment : segments)
-      for (auto& p : segment) {
-        if (vertex_[p] == kNone) {
-          vertex_[p] = static_cast<std::uint32_t>(source_.size());
-          source_.push_back(points_[p]);
-          vertices.emplace_back(points_[p][0] - ribbon_.origin[0], points_[p][1] - ribbon_.origin[1], middle);
-        }
-        p = vertex_[p];
-      }
-    for (std::uint32_t p = 0; p < points_.size(); ++p)
-      if (chains_.place[p] != kNone) vertex_[p] = vertex_[chains_.place[p]];
-    line_ = make_polyline(std::move(vertices), std::move(segments), chains_);
-    line_.origin = ribbon_.origin;
-    query_.emplace(line_);
+    drawn_ = draw_line(plane_, ribbon_.origin, middle);
+    query_.emplace(drawn_.line);
   }
 
   /// The distances of the line's vertices: points at one place go as one, by the mean.
   Distances on_line(const Distances& of_points) {
     shared_.disagreeing_distances = 0;
     if (of_points.uniform()) return of_points;
-    std::vector<double> sum(source_.size(), 0.0);
+    std::vector<double> sum(drawn_.source.size(), 0.0);
     std::vector<std::uint32_t> copies(sum.size(), 0), apart(sum.size(), 0);
-    for (std::uint32_t p = 0; p < points_.size(); ++p) {
-      if (vertex_[p] == kNone) continue;
-      sum[vertex_[p]] += of_points[p];
-      ++copies[vertex_[p]];
-      apart[vertex_[p]] += of_points[p] != of_points[chains_.place[p]];
+    for (std::uint32_t p = 0; p < plane_.points.size(); ++p) {
+      if (drawn_.vertex[p] == kNone) continue;
+      sum[drawn_.vertex[p]] += of_points[p];
+      ++copies[drawn_.vertex[p]];
+      apart[drawn_.vertex[p]] += of_points[p] != of_points[plane_.chains.place[p]];
     }
-    for (std::uint32_t p = 0; p < points_.size(); ++p) {
-      if (vertex_[p] == kNone || chains_.place[p] != p) continue;
-      const auto v = vertex_[p];
+    for (std::uint32_t p = 0; p < plane_.points.size(); ++p) {
+      if (drawn_.vertex[p] == kNone || plane_.chains.place[p] != p) continue;
+      const auto v = drawn_.vertex[p];
       shared_.disagreeing_distances += apart[v];
       sum[v] = apart[v] ? sum[v] / copies[v] : of_points[p];
     }
@@ -204,26 +156,35 @@ class CurvePipeline {
     OffsetResult result;
     result.statistics = shared_;
     if (options_.collision == Collision::Limit) limit(distances, paths, result.statistics);
+    result.statistics.room = room(distances, paths);
     result.statistics.interior = measure_segments(distances, paths);
     hand_over(distances, paths, result);
     if (wanted.uniform()) result.distances = wanted;
     return result;
   }
 
-  void limit(const Distances& distances, Paths& paths, OffsetStatistics& statistics) const {
+  void limit(const Distances& distances, Paths& paths, OffsetStatistics& statistics,
+             Spacing spacing = Spacing::AsItIs) const {
     const StageTimer timer(statistics.seconds, Stage::Limit);
-    statistics.limit = limit_curves({*query_, source_, distances, options_.precision}, paths, options_.progress);
+    statistics.limit =
+        limit_curves({*query_, drawn_.source, distances, options_.precision}, paths, options_.progress, spacing);
+  }
+
+  /// Of open curves, where much falls short.
+  SideRoom room(const Distances& distances, const Paths& paths) const {
+    if (plane_.chains.ends == 0 || !falls_short(paths.state)) return {};
+    return room_on_sides(*query_, distances);
   }
 
   /// How far off segments are at their middles, relative to what their ends are asked for.
   InteriorError measure_segments(const Distances& distances, const Paths& paths) const {
-    std::vector<double> errors(line_.segments.size(), -1);
+    std::vector<double> errors(drawn_.line.segments.size(), -1);
     for_each_index(errors.size(), [&](std::size_t s) {
-      const auto [a, b] = line_.segments[s];
+      const auto [a, b] = drawn_.line.segments[s];
       const double target = std::abs(distances[a] + distances[b]) / 2;
       if (target <= 1e-3 * distances.scale()) return;
       const Vec3d middle =
-          (line_.vertices[a] + paths.displacement[a] + line_.vertices[b] + paths.displacement[b]) * 0.5;
+          (drawn_.line.vertices[a] + paths.displacement[a] + drawn_.line.vertices[b] + paths.displacement[b]) * 0.5;
       errors[s] = std::abs((*query_)(middle, static_cast<std::uint32_t>(s)).distance - target) / target;
     });
     std::erase(errors, -1);
@@ -231,16 +192,16 @@ class CurvePipeline {
   }
 
   void hand_over(const Distances& distances, const Paths& paths, OffsetResult& result) const {
-    const std::size_t count = points_.size();
+    const std::size_t count = plane_.points.size();
     result.positions.assign(curves_.positions.begin(), curves_.positions.end());
     result.states.assign(count, VertexState::Unused);
     result.achieved.assign(count, 0.0);
     std::vector<double> asked(count, 0.0);
     for (std::uint32_t p = 0; p < count; ++p) {
-      const auto v = vertex_[p];
+      const auto v = drawn_.vertex[p];
       if (v == kNone) continue;
       const Vec3d& way = paths.displacement[v];
-      if (way[0] != 0 || way[1] != 0) result.positions[p] += frame_.to_space({way[0], way[1]});
+      if (way[0] != 0 || way[1] != 0) result.positions[p] += plane_.frame.to_space({way[0], way[1]});
       result.states[p] = paths.state[v];
       result.achieved[p] = paths.achieved[v];
       asked[p] = distances[v];
@@ -251,10 +212,10 @@ class CurvePipeline {
   }
 
   void hand_out_paths(const Paths& paths, OffsetResult& result) const {
-    const auto to_space = [&](const Vec3d& way) { return frame_.to_space({way[0], way[1]}); };
-    result.paths.resize(points_.size());
-    for_each_index(points_.size(), [&](std::size_t p) {
-      const auto v = vertex_[p];
+    const auto to_space = [&](const Vec3d& way) { return plane_.frame.to_space({way[0], way[1]}); };
+    result.paths.resize(plane_.points.size());
+    for_each_index(plane_.points.size(), [&](std::size_t p) {
+      const auto v = drawn_.vertex[p];
       result.paths[p] = {curves_.positions[p]};
       if (v == kNone) return;
       std::vector<Vec3d> trace;
@@ -273,13 +234,13 @@ class CurvePipeline {
     result.layer_statistics = stack.statistics;
     result.states = std::move(outermost.states);
     result.achieved = std::move(outermost.achieved);
-    const std::size_t count = points_.size();
+    const std::size_t count = plane_.points.size();
     result.share.assign(count, 0.0);
     result.first_achieved.assign(count, 0.0);
     Stacks stacks(count, heights.size());
     std::vector<std::vector<double>> asked(heights.size(), std::vector<double>(count, 0.0));
     for (std::uint32_t p = 0; p < count; ++p) {
-      const auto v = vertex_[p];
+      const auto v = drawn_.vertex[p];
       const auto to = stacks.of(p);
       std::fill(to.begin(), to.end(), curves_.positions[p]);
       if (v == kNone) continue;
@@ -290,7 +251,7 @@ class CurvePipeline {
         asked[k][p] = heights[k][v];
         if (stack.stacks.is_flat(v)) continue;
         const Vec3d way = places[k + 1] - places[0];
-        to[k + 1] += frame_.to_space({way[0], way[1]});
+        to[k + 1] += plane_.frame.to_space({way[0], way[1]});
       }
     }
     std::vector<std::uint32_t> own(count);
@@ -305,8 +266,8 @@ class CurvePipeline {
     OffsetResult result;
     result.statistics = shared_;
     result.positions.assign(curves_.positions.begin(), curves_.positions.end());
-    result.achieved.assign(points_.size(), 0.0);
-    for (const auto place : chains_.place)
+    result.achieved.assign(plane_.points.size(), 0.0);
+    for (const auto place : plane_.chains.place)
       result.states.push_back(place == kNone ? VertexState::Unused : VertexState::Reached);
     result.distances = distances;
     if (options_.keep_paths)
@@ -318,15 +279,11 @@ class CurvePipeline {
   CurvesView curves_;
   const OffsetOptions& options_;
   std::size_t layers_;
-  PlaneFrame frame_;
+  PlaneChains plane_;
   OffsetStatistics shared_;  // by all results
-  std::vector<Vec2d> points_;
-  CurveChains chains_;
   Surface ribbon_;
-  Polyline line_;
-  std::vector<std::uint32_t> vertex_;  // of each point: the line's; kNone if it is on no curve
-  std::vector<Vec2d> source_;          // of each of those, in the plane
-  std::vector<Distances> distances_;   // of the same, one set for each result
+  DrawnLine drawn_;
+  std::vector<Distances> distances_;  // of the line's vertices, one set for each result
   DistanceField field_;
   std::optional<CurveQuery> query_;
 };

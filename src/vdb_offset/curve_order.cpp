@@ -38,8 +38,8 @@ std::vector<Chain> chains_of(const Polyline& line) {
 /// One curve's points, in its order. Lengths are those of the source, or of the front.
 class ChainOrder {
  public:
-  ChainOrder(const PlaneCurves& curves, const Paths& paths, const Chain& chain, std::span<Vec2d> way)
-      : curves_(curves), paths_(paths), chain_(chain), way_(way), arrived_(chain.points()) {
+  ChainOrder(const PlaneCurves& curves, const Paths& paths, const Chain& chain, std::span<Vec2d> way, Spacing spacing)
+      : curves_(curves), paths_(paths), chain_(chain), way_(way), spacing_(spacing), arrived_(chain.points()) {
     for (std::uint32_t i = 0; i < chain.points(); ++i)
       points_.push_back(i < chain.count ? segment(i)[0] : segment(chain.count - 1)[1]);
     along_.push_back(0);
@@ -53,7 +53,7 @@ class ChainOrder {
         points_.size(), [&](std::size_t i) { arrived_[i] = look(i); }, 64);
     if (chain_.closed && !cut()) return 0;
     sort_front();
-    if (std::is_sorted(order_.begin(), order_.end())) return 0;
+    if (spacing_ == Spacing::AsItIs && std::is_sorted(order_.begin(), order_.end())) return 0;
     space();
     const std::vector<Block> blocks = pool();
     std::atomic<std::size_t> moved = 0;
@@ -162,14 +162,14 @@ class ChainOrder {
   }
 
   /// Points have to be apart by a share of what they are on the source, which all of the front has room for twice;
-  /// those in order by no more than they are. Those that have not arrived take up no room.
+  /// those in order by no more than they are, unless they are to be even. Those that have not arrived take up no room.
   void space() {
     const double share = std::min(kLeastSpacing, 0.5 * along_front_.back() / along_.back());
     spaced_.push_back(0);
     for (std::size_t i = 1; i < points_.size(); ++i) {
       const Arrived &before = arrived_[i - 1], &here = arrived_[i];
       double apart = before.on_front ? share * (along_[i] - along_[i - 1]) : 0;
-      if (before.on_front && here.on_front && here.front > before.front)
+      if (spacing_ == Spacing::AsItIs && before.on_front && here.on_front && here.front > before.front)
         apart = std::min(apart, here.front - before.front);
       spaced_.push_back(spaced_.back() + apart);
     }
@@ -217,6 +217,7 @@ class ChainOrder {
   const Paths& paths_;
   Chain chain_;
   std::span<Vec2d> way_;
+  Spacing spacing_;
   Indices points_;
   std::vector<double> along_;   // of each point, along the source
   std::vector<double> spaced_;  // of each point, how far from the first it has to be along the front
@@ -248,9 +249,9 @@ std::optional<Vec2d> place_on_front(const PlaneCurves& curves, Vec2d x, std::uin
   return std::nullopt;
 }
 
-std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> way) {
+std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> way, Spacing spacing) {
   std::size_t moved = 0;
-  for (const Chain& chain : chains_of(curves.line())) moved += ChainOrder(curves, paths, chain, way).run();
+  for (const Chain& chain : chains_of(curves.line())) moved += ChainOrder(curves, paths, chain, way, spacing).run();
   return moved;
 }
 

@@ -11,6 +11,9 @@ namespace vdb_offset {
 // As far from where it came from, in distances, a point may be put when it is spread over the front.
 inline constexpr double kFarthestSpread = 8;
 
+/// How near to each other points in order may be.
+enum class Spacing { AsItIs, Even };
+
 /// The place at a point's distance that lies straight over or under `x`, if that is on the side asked for and no
 /// farther than kFarthestSpread from the point.
 std::optional<Vec2d> place_on_front(const PlaneCurves& curves, Vec2d x, std::uint32_t point);
@@ -26,9 +29,13 @@ std::optional<Vec2d> place_on_front(const PlaneCurves& curves, Vec2d x, std::uin
 /// sorting. Points that have not arrived stay where they are, as do those that would have to go too far: the result may
 /// have faults.
 ///
+/// With Spacing::Even those in order are treated alike: where the front turns in on itself, and they have crowded at
+/// its corner without overtaking each other, they go apart by that share, too.
+///
 /// `way` leads from each point's source to its place. Curves with points that stay put, or with both signs of distance,
 /// are left alone. Returns how many points have been put elsewhere. The result does not depend on the number of
 /// threads.
-std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> way);
+std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> way,
+                         Spacing spacing = Spacing::AsItIs);
 
 }  // namespace vdb_offset

@@ -404,7 +404,15 @@ void FaultFinder::take_back_crossings(const Indices& touched) {
 }
 
 bool FaultFinder::is_misplaced(std::uint32_t v) const {
+  if (is_beyond_wall(v)) return true;
   return !right_side_[v] || distance_[v] > std::abs(distances_[v]) * (1 + kReachedTolerance) + rounding(v);
+}
+
+bool FaultFinder::is_beyond_wall(std::uint32_t v) const {
+  const Surface& front = body_.front.surface();
+  if (front.walls.empty() || !body_.on_front(v) || place_[v] == source_[v]) return false;
+  const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
+  return vdb_offset::is_beyond_wall(front, on_front, place_[v] - front.origin, rounding(v));
 }
 
 FaultCounts FaultFinder::count() const {

@@ -66,7 +66,7 @@ class FaultFinder {
 
   bool any() const { return !faces_.empty() || !crossings_.empty() || (rim_ && rim_->count() > 0); }
   FaultCounts count() const;
-  /// Vertices that are too far from the surface, or on the wrong side of it.
+  /// Vertices that are too far from the surface, or on the wrong side of it or of a wall (see border_planes.h).
   const Indices& misplaced() const { return misplaced_; }
   /// Pairs that meet where the source's do not, away from where those do.
   const std::vector<TrianglePair>& crossings() const { return crossings_; }
@@ -133,6 +133,7 @@ class FaultFinder {
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest);
   bool is_misplaced(std::uint32_t vertex) const;
+  bool is_beyond_wall(std::uint32_t vertex) const;
   Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
   Fault judge(std::uint32_t triangle) const;
   bool has_bound(std::uint32_t triangle) const;

@@ -16,6 +16,8 @@ struct LayerQuality {
   double volume = 0;              ///< Of all cells, world units^3; of those in a plane their area, ^2.
   std::size_t points = 0;
   bool plane = false;
+  /// On curves: the shortest segment of any layer, as a share of the one that it stands on.
+  double least_segment = 1;
 };
 
 /// Measures cells as they follow from their columns, without making them: where prisms stand on each other, each

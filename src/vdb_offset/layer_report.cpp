@@ -242,6 +242,7 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
   }
   report.volume = quality.volume;
   report.plane = quality.plane;
+  report.least_segment = quality.least_segment;
   report.points = quality.points;
   report.growing = layers.layer_statistics;
   report.turned_faces = facts.turned_faces;
@@ -266,6 +267,9 @@ std::string summary(const LayerReport& report) {
       "{:.3g})\n",
       all.scaled_jacobian.median, all.scaled_jacobian.quantile_01, all.scaled_jacobian.least, all.inverted_cells,
       all.aspect_ratio.median, all.aspect_ratio.most);
+  if (report.plane)
+    text += fmt::format("segments of layers have {:.3g} of the length of those on the wall at least\n",
+                        report.least_segment);
   if (all.transition_cells > 0 || left_out(all) > 0)
     text += fmt::format("{} transition cells where layers end, {} {} left out\n", all.transition_cells, left_out(all),
                         report.plane ? "segments" : "faces");

@@ -32,6 +32,7 @@ struct LayerReport {
   LayerFigures all;
   std::vector<LayerFigures> patches;  ///< In the order of the walls in VolumeMesh::patches.
   bool plane = false;                 ///< Layers on curves.
+  double least_segment = 1;           ///< See LayerQuality.
   double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
   std::size_t points = 0;
   LayerStatistics growing;

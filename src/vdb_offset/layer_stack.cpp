@@ -128,6 +128,7 @@ class SurfaceStacker final : public Stacker {
 
   /// False if a vertex gets to one of its heights not by sliding there.
   bool put_along_border(std::uint32_t v) {
+    if (!slides_->lead(v)) return false;
     const auto stack = stack_.stacks.of(v);
     for (std::size_t k = heights_.size(); k-- > 0;) {
       const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);

@@ -208,6 +208,8 @@ class Pipeline {
                            options_.progress);
     }
     statistics.limit.left = faults->count();
+    statistics.borders = borders(paths.front());
+    statistics.room = room(paths.front(), distances_.front());
     return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
   }
 
@@ -232,7 +234,7 @@ class Pipeline {
     {
       const StageTimer timer(shared_.seconds, Stage::Rasterise);
       shared_.plan = plan(work_, mesh_, farthest, options_, threads_, yield);
-      place(work_, shared_.plan.voxel_size);
+      place(work_, shared_.plan.voxel_size, options_.symmetry, std::max(farthest.inside, farthest.outside));
       front = rasterise(work_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
     }
     const StageTimer timer(shared_.seconds, Stage::Sweep);
@@ -363,6 +365,8 @@ class Pipeline {
     move_vertices(mesh_, surface, draft.paths, result);
     if (options_.keep_paths) hand_out_paths(surface, source_, draft.paths, result);
     result.distances = distances_of_input(surface, draft.distances);
+    result.statistics.borders = borders(draft.paths);
+    result.statistics.room = room(draft.paths, draft.distances);
     std::vector<Vec3d> places = source_;
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += draft.paths.displacement[w];
     {
@@ -370,6 +374,25 @@ class Pipeline {
       result.statistics.interior = measure_interior(draft.body, places, draft.distances, kInteriorTriangles);
     }
     return result;
+  }
+
+  /// Of what is open, where much falls short.
+  SideRoom room(const Paths& of_body, const Distances& distances) const {
+    if (work_.front.facts.closed() || !falls_short(of_body.state)) return {};
+    return room_on_sides(*query_, distances_on_front(work_, distances));
+  }
+
+  BorderFacts borders(const Paths& of_body) const {
+    if (work_.front_vertex.empty()) return border_facts(work_.front, of_body.displacement, {});
+    std::vector<Vec3d> way(work_.front.vertices.size(), Vec3d(0.0));
+    std::vector<std::uint8_t> sliding(way.size(), 0);
+    for (std::size_t w = 0; w < work_.front_vertex.size(); ++w) {
+      const auto f = work_.front_vertex[w];
+      if (f == kNone) continue;
+      way[f] = of_body.displacement[w];
+      sliding[f] = slides_ && work_.at_border[w];
+    }
+    return border_facts(work_.front, way, sliding);
   }
 
   /// As it will be written.

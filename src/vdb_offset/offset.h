@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "vdb_offset/border_facts.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/interior.h"
 #include "vdb_offset/limit.h"
@@ -12,6 +13,7 @@
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/progress.h"
 #include "vdb_offset/propagate.h"
+#include "vdb_offset/side_room.h"
 #include "vdb_offset/surface.h"
 #include "vdb_offset/sweep.h"
 #include "vdb_offset/workpiece.h"
@@ -33,6 +35,7 @@ struct OffsetOptions {
   /// Empty: all are.
   std::vector<std::uint8_t> only;
   Border border = Border::Slide;  ///< What the edge of that part does.
+  SymmetryOptions symmetry;       ///< Which vertices stay in planes.
   PolygonView obstacles;          ///< Other geometry that nothing may touch, or come nearer to than `clearance`.
   double clearance = 0;           ///< World units, >= 0.
   bool off_source = false;        ///< For shells: neither the result nor the rim may meet the surface they come from.
@@ -61,6 +64,8 @@ struct OffsetStatistics {
   std::size_t straight_vertices = 0;
   std::size_t disagreeing_distances = 0;  ///< Vertices that move with one of which another distance was asked.
   LimitStatistics limit;
+  BorderFacts borders;
+  SideRoom room;
   InteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
 };
 

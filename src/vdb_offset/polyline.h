@@ -34,6 +34,8 @@ struct Polyline {
   Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
     return conormals.empty() ? v : v - conormals[vertex] * conormals[vertex].dot(v);
   }
+  /// See Surface::is_held.
+  bool is_held(std::uint32_t) const { return false; }
   TrianglePoint closest_on(std::uint32_t segment, const Vec3d& x) const;
   /// See Surface::across.
   Vec3d across(std::uint32_t segment, Feature feature, const Vec3d& away, const Vec3d& way) const;

@@ -67,7 +67,10 @@ Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, 
     const Sample end = exactly(start + way);
     if (!(end.phi > distance)) return way;
     at = cut(at, end, exactly);
-    if (!settled(at)) return round_way(end.x - end.away * (1 - distance / end.phi) - start, distance);
+    const Surface& front = body.front.surface();
+    const std::uint32_t on_front = body.front_vertex.empty() ? vertex : body.front_vertex[vertex];
+    if (!settled(at) && !front.is_held(on_front))
+      return round_way(end.x - end.away * (1 - distance / end.phi) - start, distance);
   }
   return round_way(at.x - start, distance);
 }

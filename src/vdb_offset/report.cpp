@@ -59,6 +59,22 @@ Json faults_json(const FaultCounts& counts) {
           {"crossings", counts.crossings}};
 }
 
+Json room_json(const SideRoom& room) {
+  return room.known ? Json{{"here", room.here}, {"other_side", room.there}} : Json();
+}
+
+Json borders_json(const BorderFacts& borders) {
+  Json planes = Json::array();
+  for (const auto& [normal, offset] : borders.planes)
+    planes.push_back({{"normal", {normal[0], normal[1], normal[2]}}, {"offset", offset}});
+  return {{"planes", planes},
+          {"held", borders.held_vertices},
+          {"beyond", borders.beyond},
+          {"across", borders.across_vertices},
+          {"strayed", borders.strayed_vertices},
+          {"worst_angle", borders.worst_angle}};
+}
+
 Json limit_json(const LimitStatistics& limit) {
   return {{"before", faults_json(limit.before)},
           {"left", faults_json(limit.left)},
@@ -144,6 +160,7 @@ Json layers_json(const LayerReport& layers) {
   report.erase("name");
   report["count"] = layers.layers;
   report["volume"] = layers.volume;
+  if (layers.plane) report["least_segment"] = layers.least_segment;
   report["points"] = layers.points;
   report["growing"] = {{"wrong_columns", layers.growing.wrong_columns},
                        {"straightened", layers.growing.straightened},
@@ -228,6 +245,8 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"vertices_by_state", states},
                  {"vertices_straight", statistics.straight_vertices},
                  {"limit", limit_json(statistics.limit)},
+                 {"borders", borders_json(statistics.borders)},
+                 {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)},
                  {"face_interior_error", interior_json(statistics.interior)}};
   if (run.shell) report["shell"] = shell_json(*run.shell);

@@ -32,11 +32,12 @@ class BorderVertex {
         front_(front),
         rest_(rest),
         vertex_(vertex),
-        hint_(front.surface().triangles_around(work.front_vertex[vertex]).front()),
+        on_front_(work.front_vertex[vertex]),
+        hint_(front.surface().triangles_around(on_front_).front()),
         origin_(whole_.vertices[vertex]),
         target_(std::abs(distance)),
         side_(distance < 0 ? -1 : 1),
-        part_normal_(front.surface().vertex_normals[work.front_vertex[vertex]] * side_) {}
+        part_normal_(front.surface().vertex_normals[on_front_] * side_) {}
 
   /// Where it comes to a stop: at its distance, if it gets there.
   Vec3d slide() {
@@ -68,10 +69,27 @@ class BorderVertex {
   Vec3d go(const Vec3d& from, const Vec3d& direction, double step, bool on_surface) {
     const Vec3d x = from + direction * step;
     if (!on_surface) return x;
+    const Vec3d there = on_rest(x);
+    if (!front_.surface().is_held(on_front_)) return there;
+    constexpr int kMostTurns = 30;
+    Vec3d held = in_planes(there);
+    for (int i = 0; i < kMostTurns; ++i) {
+      const Vec3d next = in_planes(on_rest(held));
+      const bool settled = (next - held).length() <= kSlideTolerance * target_;
+      held = next;
+      if (settled) break;
+    }
+    return held;
+  }
+
+  Vec3d on_rest(const Vec3d& x) {
     const Closest closest = rest_(x, rest_hint_);
     rest_hint_ = closest.triangle;
     return closest.point;
   }
+
+  /// The closest place to this in the planes that hold the vertex, if any do.
+  Vec3d in_planes(const Vec3d& x) const { return origin_ + front_.surface().along_border(on_front_, x - origin_); }
 
   /// Bisection on the length of the last step.
   Vec3d cut(const Vec3d& here, const Vec3d& direction, double step, bool on_surface) {
@@ -126,6 +144,7 @@ class BorderVertex {
       mean.normalize();
       away -= mean * away.dot(mean);
     }
+    if (front_.surface().is_held(on_front_)) away = front_.surface().along_border(on_front_, away);
     if (!(away.lengthSqr() > 0) || !(part_normal_.lengthSqr() > 0)) return std::nullopt;
     away.normalize();
     const bool turns_away = away.dot(part_normal_.unit()) < kTurnsAway;
@@ -136,7 +155,7 @@ class BorderVertex {
   const std::vector<std::uint8_t>& off_front_;
   const ClosestQuery& front_;
   const ClosestQuery& rest_;
-  std::uint32_t vertex_, hint_, rest_hint_ = 0;
+  std::uint32_t vertex_, on_front_, hint_, rest_hint_ = 0;
   Vec3d origin_;
   double target_;
   int side_;
@@ -152,11 +171,23 @@ Vec3d BorderSlides::operator()(std::uint32_t vertex, double distance) const {
   return BorderVertex(work_, front_, rest_, vertex, distance).slide();
 }
 
+bool BorderSlides::lead(std::uint32_t vertex) const {
+  constexpr double kInPlane = 1e-6;  // of a normal's cosine
+  const Surface& front = front_.surface();
+  const std::uint32_t on_front = work_.front_vertex[vertex];
+  if (!front.is_held(on_front)) return true;
+  const auto around = work_.whole->triangles_around(vertex);
+  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Vec3d& n = work_.whole->triangle_normals[t];
+    return work_.off_front[t] && n.lengthSqr() > 0 && std::abs(n.dot(front.conormals[on_front])) < 1 - kInPlane;
+  });
+}
+
 void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
                    Paths& paths) {
   std::vector<std::uint32_t> border;
   for (std::uint32_t v = 0; v < work.at_border.size(); ++v)
-    if (work.at_border[v] && distances[work.front_vertex[v]] != 0) border.push_back(v);
+    if (work.at_border[v] && distances[work.front_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
   work.bound.assign(work.at_border.begin(), work.at_border.end());
   const auto move = [&](std::size_t i) {
     const std::uint32_t v = border[i], f = work.front_vertex[v];

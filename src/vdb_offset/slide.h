@@ -12,6 +12,8 @@ namespace vdb_offset {
 /// part goes to by more than 30 degrees, as the sides of a box do from its lid, along their extension instead. Where
 /// they meet in one crease at the vertex it follows that, and where in more, it stays. On the faces it follows the
 /// surface's bends (steps along the tangent and back to the closest point); along an extension it goes straight.
+/// Vertices that planes hold (see border_planes.h) slide where the faces cut those; where the faces lie in such a plane
+/// as well, they go in it as the part alone asks for.
 class BorderSlides {
  public:
   /// Keeps references to both. \pre something of the mesh stays.
@@ -20,6 +22,8 @@ class BorderSlides {
   /// Where a vertex of the whole mesh, on the border, is at this distance from the part, negative inward; or as near to
   /// that as it gets. In the front's frame.
   Vec3d operator()(std::uint32_t vertex, double distance) const;
+  /// Whether a vertex on the border goes that way at all.
+  bool lead(std::uint32_t vertex) const;
 
  private:
   const Workpiece& work_;

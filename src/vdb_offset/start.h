@@ -29,13 +29,14 @@ double least_cosine(const Shape& surface, std::uint32_t vertex, const Vec3d& n, 
 
 /// The angle-weighted normal, at a border along the border's plane; where faces turn away from it, a direction that
 /// more of them face (the most visible one, found by leaning towards the worst face in ever smaller steps); where faces
-/// cancel, the first face's normal.
+/// cancel, the first face's normal; none if a plane holds the vertex that this leads out of.
 template <class Shape>
 Start start_of(const Shape& surface, std::uint32_t vertex) {
   Vec3d n = surface.along_border(vertex, surface.vertex_normals[vertex]);
   if (!(n.lengthSqr() > 1e-12)) {
     for (const auto t : surface.triangles_around(vertex))
-      if (surface.triangle_normals[t].lengthSqr() > 0) return {surface.triangle_normals[t], 0};
+      if (surface.triangle_normals[t].lengthSqr() > 0 && !surface.is_held(vertex))
+        return {surface.triangle_normals[t], 0};
     return {Vec3d(0.0), 0};
   }
   n.normalize();

@@ -366,6 +366,13 @@ void place_in_frame(Surface& surface, const Vec3d& origin) {
   find_conormals(surface);
 }
 
+Vec3d Surface::along_line(std::uint32_t vertex, const Vec3d& v) const {
+  if (held[vertex] > 2) return Vec3d(0.0);
+  const auto second = std::lower_bound(second_conormals.begin(), second_conormals.end(), vertex,
+                                       [](const auto& each, std::uint32_t at) { return each.first < at; });
+  return v - second->second * second->second.dot(v);
+}
+
 std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld, Orient orient) {
   Surface surface = build_surface(polygons, weld, orient);
   find_normals(surface);

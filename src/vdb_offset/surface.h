@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "vdb_offset/border_planes.h"
 #include "vdb_offset/point_triangle.h"
 #include "vdb_offset/polygons.h"
 
@@ -75,8 +78,16 @@ struct Surface {
   std::vector<Vec3d> triangle_normals;  ///< Unit length; zero for a needle (see is_needle).
   std::vector<Vec3d> vertex_normals;    ///< Sum of the incident triangles' normals times their angles there.
   /// For a vertex on a border, the unit vector that leads from the surface over the border's edges there, in the plane
-  /// of their faces; zero for the others, and where borders meet. Empty if nothing has a border.
+  /// of their faces; zero for the others, and where borders meet. For a vertex that stays in a plane that plane's
+  /// normal, either way round. Empty if nothing has a border, or stays in a plane.
   std::vector<Vec3d> conormals;
+  /// Planes that vertices stay in (see border_planes.h), in this frame; of each vertex, how many of them hold it, 0 ..
+  /// 3 (empty if there are none); for those that two hold, a second conormal, at right angles to the first one, sorted
+  /// by vertex; and the walls, sorted by vertex.
+  std::vector<SymmetryPlane> planes;
+  std::vector<std::uint8_t> held;
+  std::vector<std::pair<std::uint32_t, Vec3d>> second_conormals;
+  std::vector<Wall> walls;
   /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
   std::vector<std::uint32_t> incident, incident_begin;
   std::vector<std::uint32_t> component;       ///< Of each surface vertex, 0 .. facts.components - 1.
@@ -98,10 +109,16 @@ struct Surface {
   /// as that leads nearer to x: a local minimum of the distance. `triangle` is where to start, and becomes where the
   /// walk ended.
   TrianglePoint walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const;
-  /// Takes from a vector at a vertex what leads over the border there, if it is on one.
+  /// Takes from a vector at a vertex what leads over the border there, if it is on one, or out of planes that hold it.
   Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
-    return conormals.empty() ? v : v - conormals[vertex] * conormals[vertex].dot(v);
+    if (conormals.empty()) return v;
+    const Vec3d along = v - conormals[vertex] * conormals[vertex].dot(v);
+    return held.empty() || held[vertex] < 2 ? along : along_line(vertex, along);
   }
+  /// Whether a vertex must not leave the plane that along_border() keeps to.
+  bool is_held(std::uint32_t vertex) const { return !held.empty() && held[vertex] > 0; }
+  /// What is left of a vector in one of the planes that hold a vertex, in all of them.
+  Vec3d along_line(std::uint32_t vertex, const Vec3d& v) const;
   /// The part of a way that changes the distance from what is closest, `away` from there: all of it off a corner, what
   /// is across an edge, what is along `away` off a face.
   Vec3d across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& way) const;

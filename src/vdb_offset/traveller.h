@@ -335,7 +335,8 @@ class Traveller {
 
   /// Shortens a step of more voxels than one that the way bends on.
   Vec3d runge_kutta(const Sample& from, double& step) {
-    const Vec3d fallback = from.phi > 0 ? from.away / from.phi : normal_;
+    const Vec3d away = from.phi > 0 ? from.away / from.phi : normal_,
+                fallback = surface_.is_held(vertex_) ? surface_.along_border(vertex_, away) : away;
     const Vec3d k1 = course(from.x, from.phi, fallback);
     while (true) {
       const auto bends = [&](const Vec3d& k) { return step > kStepVoxels * h_ && k1.dot(k) < kStraightCourse; };

@@ -119,7 +119,8 @@ class Patch {
     for (int i = 0; i < kRenewals && (i == 0 || fewest > 0) && fruitless < most_fruitless; ++i) {
       const std::vector<Vec3d> before = places();
       slide();
-      for (std::size_t k = 0; k < free_; ++k) return_to_distance(points_[k], before[k]);
+      for (std::size_t k = 0; k < free_; ++k)
+        if (!points_[k].stuck) return_to_distance(points_[k], before[k]);
       renew_planes();
       fruitless = folded_ < fewest ? 0 : fruitless + 1;
       if (i > 0 && folded_ > fewest) continue;
@@ -142,6 +143,7 @@ class Patch {
     double distance;               // to the front when planes were renewed
     Vec3d x, normal;               // local frame; outward from the front, smoothed over the neighbours
     std::array<Vec3d, 2> tangent;  // at right angles to it
+    bool stuck = false;            // planes leave it no way
   };
   struct Face {
     std::array<std::uint32_t, 3> point;
@@ -197,7 +199,7 @@ class Patch {
     }
     for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
-    if (options_.keep_borders && !front_.conormals.empty()) keep_borders();
+    if (!front_.conormals.empty()) keep_borders();
     least_det_ = 1;
     folded_ = 0;
     for (Face& face : faces_) {
@@ -217,16 +219,20 @@ class Patch {
       folded_ += det <= 0;
     }
   }
-  /// Vertices of a border stay in the plane across it: they slide along the border alone.
+  /// Vertices of a border stay in the plane across it: they slide along the border alone. Those that planes hold do so
+  /// in any case: in one of them, on the line between two, or not at all.
   void keep_borders() {
     for (Point& p : points_) {
       const std::uint32_t v = body_.front_vertex.empty() ? p.vertex : body_.front_vertex[p.vertex];
       if (v == kNone) continue;
+      const bool held = front_.is_held(v);
       const Vec3d& c = front_.conormals[v];
       const Vec3d n = front_.along_border(v, p.normal);
-      if (c.lengthSqr() == 0 || !(n.lengthSqr() > 1e-12)) continue;
+      p.stuck = held && !(n.lengthSqr() > 1e-12);
+      if (p.stuck) p.tangent.fill(Vec3d(0.0));
+      if (!(held || options_.keep_borders) || c.lengthSqr() == 0 || !(n.lengthSqr() > 1e-12)) continue;
       p.normal = n.unit();
-      p.tangent = {p.normal.cross(c), Vec3d(0.0)};
+      p.tangent = {held ? front_.along_border(v, p.normal.cross(c)) : p.normal.cross(c), Vec3d(0.0)};
     }
   }
 

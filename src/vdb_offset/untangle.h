@@ -22,7 +22,7 @@ class Untangler {
   struct Options {
     double area_weight;     ///< lambda: of the faces' areas against their shapes.
     int smoothing;          ///< How often normals are smoothed over the patch.
-    bool keep_borders;      ///< Vertices at a border slide in the plane across it alone.
+    bool keep_borders;      ///< Vertices at a border slide in the plane across it alone; held ones always do.
     bool thorough = false;  ///< Goes on where little more is gained: to the best shapes, and with what stays folded.
   };
 

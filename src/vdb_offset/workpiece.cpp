@@ -75,8 +75,9 @@ Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options) {
   return work;
 }
 
-void place(Workpiece& work, double voxel_size) {
+void place(Workpiece& work, double voxel_size, const SymmetryOptions& symmetry, double reach) {
   place(work.front, voxel_size);
+  hold_in_planes(work.front, symmetry, reach);
   for (std::optional<Surface>* other : {&work.whole, &work.rest, &work.obstacles})
     if (*other) place_in_frame(**other, work.front.origin);
   if (!work.obstacles) return;

@@ -48,7 +48,9 @@ struct Workpiece {
 /// \throw InvalidInput as build_surface(), and if `only` is not one a face or holds no face.
 Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options);
 
-/// Puts all of it into the front's frame (see place()).
-void place(Workpiece& workpiece, double voxel_size);
+/// Puts all of it into the front's frame (see place()), and tells which vertices of the front stay in planes, none of
+/// which goes farther than `reach`.
+/// \throw InvalidInput as hold_in_planes()
+void place(Workpiece& workpiece, double voxel_size, const SymmetryOptions& symmetry, double reach);
 
 }  // namespace vdb_offset

@@ -71,7 +71,7 @@ std::size_t parse_size(const std::string& text) {
 
 /// What CLI11 fills in before it is checked.
 struct Raw {
-  std::vector<std::string> distances, only;
+  std::vector<std::string> distances, only, symmetry;
   std::optional<std::size_t> layers;
   std::optional<double> growth, adaptivity;
   std::string distance_from, first_height, total_thickness, heights;
@@ -122,6 +122,13 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--border", raw.border,
                  "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]")
       ->type_name("MODE");
+  app.add_option(
+         "--symmetry", raw.symmetry,
+         "A plane that what lies on it stays in: 'x=0', 'y=1.5', or 'A,B,C,D' for A x + B y + C z = D; may be "
+         "repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told")
+      ->type_name("PLANE")
+      ->expected(1)
+      ->take_all();
   app.add_option("--obstacle", args.obstacles, "A mesh that nothing may touch; may be repeated")
       ->type_name("FILE")
       ->expected(1)
@@ -146,6 +153,9 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
       ->type_name("FILE");
   app.add_flag("--structured", raw.structured,
                "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz");
+  app.add_flag("--close", args.close,
+               "Of curves: close those whose ends are near each other, by a straight segment, as over the base of a "
+               "blunt trailing edge");
   app.add_option("--voxel-size", raw.voxel_size, "Voxel size of the direction field, world units [automatic: about D]")
       ->type_name("H");
   app.add_option("--voxels-per-distance", raw.voxels_per_distance, "The same as D / N")->type_name("N");
@@ -237,6 +247,7 @@ void check_curves(const Raw& raw, const Arguments& args) {
   require_structured(args);
   for (const auto& [name, given] : {std::pair{"--only", !raw.only.empty()},
                                     {"--border", raw.border.has_value()},
+                                    {"--symmetry", !raw.symmetry.empty()},
                                     {"--obstacle", !args.obstacles.empty()},
                                     {"--shell", args.shell},
                                     {"--mode iso", args.iso.has_value()},
@@ -246,6 +257,7 @@ void check_curves(const Raw& raw, const Arguments& args) {
 }
 
 void check_names(const Arguments& args) {
+  require(!args.close, "--close: expected curves, as this is not for meshes");
   require(scene::is_scene(args.input) || format_of(args.input, args),
           args.input +
               ": expected an input that ends in .obj, .ply, .stl, .off (or these and .gz or .zst) or .json, or "
@@ -258,15 +270,6 @@ void check_names(const Arguments& args) {
           args.output +
               ": expected an output that ends in .obj, .ply, .stl or .off (or these and .gz or .zst), or "
               "--format");
-}
-
-/// A file that cannot be opened is for the reader to tell of.
-bool holds_curves(const std::string& path) {
-  try {
-    return io::holds_curves(path);
-  } catch (const Error&) {
-    return false;
-  }
 }
 
 void check_file_options(const Raw& raw, Arguments& args) {
@@ -381,6 +384,7 @@ void check_iso(const Raw& raw, Arguments& args) {
                                     {"--shell", args.shell},
                                     {"--only", !raw.only.empty()},
                                     {"--border", raw.border.has_value()},
+                                    {"--symmetry", !raw.symmetry.empty()},
                                     {"--obstacle", !args.obstacles.empty()},
                                     {"--distance-from", !raw.distance_from.empty()},
                                     {"--collision", raw.collision.has_value()},
@@ -423,6 +427,11 @@ void check_surroundings(const Raw& raw, Arguments& args) {
     require(*raw.border == "slide" || *raw.border == "fixed" || *raw.border == "free",
             fmt::format("--border: expected 'slide', 'fixed' or 'free', got '{}'", *raw.border));
     args.border = *raw.border == "slide" ? Border::Slide : *raw.border == "fixed" ? Border::Fixed : Border::Free;
+  }
+  args.symmetry_texts = raw.symmetry;
+  for (const std::string& text : raw.symmetry) {
+    args.options.symmetry.find = args.options.symmetry.find && text != "none";
+    if (text != "none") args.options.symmetry.planes.push_back(parse_plane(text));
   }
   if (raw.clearance.empty()) return;
   try {
@@ -477,6 +486,14 @@ std::optional<io::Format> format_of(const std::string& path, const Arguments& ar
   return format ? format : args.format;
 }
 
+bool holds_curves(const std::string& path) {
+  try {
+    return io::holds_curves(path);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 DistanceRequest parse_request(const std::string& text) {
   if (text.starts_with("ply:")) return {text, {}, text};
   if (text.starts_with('@')) {
@@ -505,6 +522,36 @@ Orient parse_orient(const std::string& text) {
   if (text == "keep") return Orient::Keep;
   if (text == "fix-direction-only") return Orient::FixDirectionOnly;
   throw UsageError(fmt::format("--orient: expected 'keep' or 'fix-direction-only', got '{}'", text));
+}
+
+SymmetryPlane parse_plane(const std::string& text) {
+  const auto number = [&](std::string_view word) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+      throw UsageError(fmt::format(
+          "--symmetry: expected 'x=0' (or y, z), 'A,B,C,D' for A x + B y + C z = D, or 'none', got '{}'", text));
+    return value;
+  };
+  SymmetryPlane plane;
+  const std::string_view given = text;
+  if (given.size() > 2 && given[1] == '=' && given[0] >= 'x' && given[0] <= 'z') {
+    plane.normal[given[0] - 'x'] = 1;
+    plane.offset = number(given.substr(2));
+    return plane;
+  }
+  std::vector<double> factors;
+  for (std::size_t begin = 0; begin <= given.size();) {
+    const std::size_t end = std::min(given.find(',', begin), given.size());
+    factors.push_back(number(given.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  factors.resize(factors.size() == 4 ? 4 : 0);
+  const double length = factors.empty() ? 0 : std::hypot(factors[0], factors[1], factors[2]);
+  if (!(length > 0)) number("");
+  for (int k = 0; k < 3; ++k) plane.normal[k] = factors[static_cast<std::size_t>(k)] / length;
+  plane.offset = factors[3] / length;
+  return plane;
 }
 
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {

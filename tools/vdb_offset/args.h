@@ -53,8 +53,10 @@ struct Arguments {
   std::optional<Solver> solver;        ///< The same.
   std::optional<Collision> collision;  ///< The same.
   std::string weld_text, orient_text;  ///< As given.
+  std::vector<std::string> symmetry_texts;
   std::string report, states, paths, vdb;
   bool curves = false;               ///< What INPUT holds, in place of a mesh.
+  bool close = false;                ///< Of those, join ends that are near each other.
   std::optional<io::Format> format;  ///< Of files whose ending names none.
   io::WriteOptions write;            ///< All but its format, which is the output's alone.
   bool strict = false, dry_run = false, quiet = false, verbose = false;
@@ -68,6 +70,9 @@ struct UsageError : Error {
   using Error::Error;
 };
 
+/// Whether a file holds curves; one that cannot be opened is for the reader to tell of.
+bool holds_curves(const std::string& path);
+
 /// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
 DistanceRequest parse_request(const std::string& text);
 
@@ -76,6 +81,9 @@ WeldOptions parse_weld(const std::string& text);
 
 /// 'keep' or 'fix-direction-only'. \throw UsageError
 Orient parse_orient(const std::string& text);
+
+/// 'x=0', or another axis and number, or 'A,B,C,D' for A x + B y + C z = D. \throw UsageError
+SymmetryPlane parse_plane(const std::string& text);
 
 /// Parses the command line. Empty if it asked only for help or the version, which are then printed.
 /// \throw UsageError with one line that says what is wrong.

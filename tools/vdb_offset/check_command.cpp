@@ -9,7 +9,10 @@
 
 #include "args.h"
 #include "vdb_offset/check.h"
+#include "vdb_offset/curve_check.h"
+#include "vdb_offset/curve_line.h"
 #include "vdb_offset/file_replace.h"
+#include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/report.h"
 
@@ -19,7 +22,7 @@ namespace {
 constexpr const char* kCheckAbout =
     "Measures OFFSET as an offset of SOURCE, whichever program made it: exact distances of all vertices, inverted\n"
     "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
-    "Both must have the same vertices and faces in the same order.";
+    "Both must have the same vertices and faces in the same order; or they are curves, with the same points.";
 
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
@@ -27,12 +30,13 @@ Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex sho
 struct CheckArguments {
   std::string source, offset, distance, weld = "exact", orient = "keep", report;
   int threads = 0;
-  bool json = false, strict = false;
+  bool json = false, strict = false, close = false;
 };
 
 void declare(CLI::App& app, CheckArguments& args) {
-  app.add_option("SOURCE", args.source, "Mesh before (.obj .ply .stl .off)")->required();
-  app.add_option("OFFSET", args.offset, "Mesh after")->required();
+  app.add_option("SOURCE", args.source, "Mesh before (.obj .ply .stl .off), or curves (.dat .txt .xy .svg .obj)")
+      ->required();
+  app.add_option("OFFSET", args.offset, "Mesh or curves after")->required();
   app.add_option("-d,--distance", args.distance,
                  "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward [the median of "
                  "what is found]")
@@ -43,6 +47,8 @@ void declare(CLI::App& app, CheckArguments& args) {
   app.add_option("--orient", args.orient,
                  "Which side of SOURCE is outward, as it was for the offset: 'keep' or 'fix-direction-only' [keep]")
       ->type_name("MODE");
+  app.add_flag("--close", args.close,
+               "SOURCE's curves were closed for the offset, where their ends are near each other");
   app.add_option("--threads", args.threads, "Threads; 0 takes all [0]")->type_name("N");
   app.add_option("--report", args.report, "Write what is found as JSON")->type_name("FILE");
   app.add_flag("--json", args.json, "Print JSON, not text");
@@ -71,20 +77,50 @@ void require_same_faces(const CheckArguments& args, const Polygons& source, cons
                       : ""));
 }
 
-void print(const CheckResult& result) {
+/// The same points; a curve that was closed for one of the two may be open in the other.
+void require_same_points(const CheckArguments& args, const Curves& source, const Curves& offset) {
+  if (source.positions.size() != offset.positions.size())
+    throw InvalidInput(fmt::format("{}: expected the points of {} ({}), found {}", args.offset, args.source,
+                                   source.positions.size(), offset.positions.size()));
+}
+
+void print(const CheckResult& result, bool curves) {
   const AchievedSummary achieved = summarise(result.states, result.achieved, Distances(result.distance));
-  fmt::print("distance    {:.9g}: {:.3f} % of {} vertices there, {} beyond, {} on the wrong side\n", result.distance,
-             100 * achieved.share_reached, achieved.vertices, result.beyond, result.wrong_side);
+  const char* const vertices = curves ? "points" : "vertices";
+  fmt::print("distance    {:.9g}: {:.3f} % of {} {} there, {} beyond, {} on the wrong side\n", result.distance,
+             100 * achieved.share_reached, achieved.vertices, vertices, result.beyond, result.wrong_side);
   fmt::print("achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
              achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,
              achieved.most);
-  fmt::print("in faces    off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
-             100 * result.interior.mean, 100 * result.interior.quantile_99, 100 * result.interior.worst);
-  fmt::print("faces       {} inverted, {} collapsed\n", result.faults.inverted, result.faults.collapsed);
-  fmt::print("crossings   {} new pairs of triangles; {} in the source, {} beside those\n", result.faults.crossings,
-             result.source_crossings, result.crossings_near_source);
-  if (result.torn) fmt::print("torn        {} vertices are apart from others that they stood with\n", result.torn);
+  fmt::print("{}off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
+             curves ? "at middles  " : "in faces    ", 100 * result.interior.mean, 100 * result.interior.quantile_99,
+             100 * result.interior.worst);
+  fmt::print("{}{} inverted, {} collapsed\n", curves ? "segments    " : "faces       ", result.faults.inverted,
+             result.faults.collapsed);
+  fmt::print("crossings   {} new pairs of {}; {} in the source, {} beside those\n", result.faults.crossings,
+             curves ? "segments" : "triangles", result.source_crossings, result.crossings_near_source);
+  if (result.torn) fmt::print("torn        {} {} are apart from others that they stood with\n", result.torn, vertices);
   fmt::print("{}\n", result.valid() ? "valid" : "not valid");
+}
+
+CheckResult measure_curves(const CheckArguments& args, CheckOptions& options) {
+  io::CurveFile source = io::read_curves(args.source);
+  const io::CurveFile offset = io::read_curves(args.offset);
+  if (args.weld != "exact" || args.orient != "keep")
+    throw UsageError("--weld, --orient: expected meshes, as these are not for curves");
+  if (args.close) close_curves(source.file.polygons);
+  require_same_points(args, source.file.polygons, offset.file.polygons);
+  options.distance = parse_distance(args.distance, source.file.polygons.view());
+  return check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
+}
+
+CheckResult measure_meshes(const CheckArguments& args, CheckOptions& options) {
+  if (args.close) throw UsageError("--close: expected curves, as this is not for meshes");
+  const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
+  require_same_faces(args, source.polygons, offset.polygons);
+  options.distance = parse_distance(args.distance, source.polygons.view());
+  options.precision = io::precision_of(args.offset, offset);
+  return check_offset(source.polygons.view(), offset.polygons.positions, options);
 }
 
 }  // namespace
@@ -109,15 +145,12 @@ int run_check(int argc, const char* const* argv) {
   options.weld = parse_weld(args.weld);
   options.orient = parse_orient(args.orient);
   options.threads = args.threads;
-  const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
-  require_same_faces(args, source.polygons, offset.polygons);
-  options.distance = parse_distance(args.distance, source.polygons.view());
-  options.precision = io::precision_of(args.offset, offset);
-  const CheckResult result = check_offset(source.polygons.view(), offset.polygons.positions, options);
+  const bool curves = holds_curves(args.source);
+  const CheckResult result = curves ? measure_curves(args, options) : measure_meshes(args, options);
   const std::string json = check_json(result, args.source, args.offset);
   if (!args.report.empty()) write_file(args.report, json);
   if (args.json) fmt::print("{}", json);
-  else print(result);
+  else print(result, curves);
   const bool all_there = summarise(result.states, result.achieved, Distances(result.distance)).share_reached == 1;
   return result.valid() && (all_there || !args.strict) ? 0 : 3;
 }

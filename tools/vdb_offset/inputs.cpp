@@ -125,12 +125,33 @@ std::vector<Distances> read_heights(const Source& source, const Arguments& args)
   return heights;
 }
 
+/// \throw InvalidInput if there are open curves, but none whose ends are near each other
+void close_curves(const Arguments& args, Source& source) {
+  Curves curves = source.curves->file.polygons;
+  const std::vector<OpenCurve> open = open_curves(curves.view());
+  source.closed = vdb_offset::close_curves(curves);
+  if (!source.closed.empty()) source.as_closed = std::move(curves);
+  else if (!open.empty())
+    throw InvalidInput(
+        fmt::format("{}: --close: expected a curve whose ends are nearer to each other than {:g} of its "
+                    "length, got {:.6g} of {:.6g}",
+                    args.input, OpenCurve::kNearlyClosed, open.front().gap, open.front().length));
+}
+
 }  // namespace
+
+void write_curves(const std::string& path, const Source& source, std::span<const Vec3d> positions,
+                  const io::WriteOptions& options) {
+  if (source.as_closed && io::curve_format_of(path) != source.curves->format)
+    io::write_curves(path, CurvesView{positions, source.as_closed->corners, source.as_closed->face_begin}, options);
+  else io::write_curves(path, *source.curves, positions, options);
+}
 
 Source read_source(const Arguments& args) {
   Source source;
   if (args.curves) {
     source.curves = io::read_curves(args.input);
+    if (args.close) close_curves(args, source);
     return source;
   }
   if (scene::is_scene(args.input)) source.scene = scene::read_scene(args.input);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "args.h"
+#include "vdb_offset/curve_line.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene/scene.h"
@@ -15,14 +16,24 @@ struct Source {
   std::optional<scene::Scene> scene;
   std::optional<io::MeshFile> file;
   std::optional<io::CurveFile> curves;
+  std::vector<OpenCurve> closed;    ///< Those of the curves that have been closed (see --close),
+  std::optional<Curves> as_closed;  ///< and all of them, if any were.
   Polygons obstacles;
 
   PolygonView view() const {
-    return file ? file->polygons.view() : curves ? curves->file.polygons.view() : scene->shape.view();
+    return file        ? file->polygons.view()
+           : as_closed ? as_closed->view()
+           : curves    ? curves->file.polygons.view()
+                       : scene->shape.view();
   }
 };
 
 Source read_source(const Arguments& args);
+
+/// Curves with other positions. In the format of the source its bytes stay, which know nothing of a curve that has been
+/// closed: there its ends stand where the closed one has them.
+void write_curves(const std::string& path, const Source& source, std::span<const Vec3d> positions,
+                  const io::WriteOptions& options);
 
 /// Takes from a scene what the command line leaves open, and settles all options that depend on the mesh. They refer to
 /// the source. Returns the distances: one set for each output, then that of the inner skin if there is one.

@@ -69,7 +69,7 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
     io::WriteOptions options = args.write;
     const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
     if (source.curves) {
-      io::write_curves(path, *source.curves, surface, options);
+      write_curves(path, source, surface, options);
       continue;
     }
     options.format = format_of(path, args);
@@ -139,7 +139,7 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!args.report.empty()) write_layers_report(args, grown.layers, grown.report, start);
   bar.clear();
-  if (!args.quiet) print_layers_summary(args, grown.layers, grown.report, seconds_since(start));
+  if (!args.quiet) print_layers_summary(args, source, grown.layers, grown.report, seconds_since(start));
   return std::all_of(layers.states.begin(), layers.states.end(),
                      [](VertexState state) { return state == VertexState::Reached || state == VertexState::Unused; });
 }

@@ -39,8 +39,8 @@ int judge(const Arguments& args, const Source& source, std::span<const OffsetRes
   for (const OffsetResult& result : results) {
     const double reached = summarise(result).share_reached;
     if (reached == 1) continue;
-    fmt::print(stderr, "vdb_offset: --strict: {:.4f} % of the vertices fall short of the distance\n",
-               100 * (1 - reached));
+    fmt::print(stderr, "vdb_offset: --strict: {:.4f} % of the {} fall short of the distance\n", 100 * (1 - reached),
+               source.curves ? "points" : "vertices");
     return kProcessing;
   }
   return kDone;
@@ -99,7 +99,7 @@ int run(Arguments args) {
     const Outcome outcome{places[i], results[i], inner};
     shell = write_outputs(args, source, outcome, start);
     bar.clear();
-    if (!args.quiet) print_summary(args, outcome, shell, seconds_since(start));
+    if (!args.quiet) print_summary(args, source, outcome, shell, seconds_since(start));
   }
   return judge(args, source, results, shell);
 }

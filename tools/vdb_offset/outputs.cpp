@@ -81,6 +81,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
           {"solver", options.solver == Solver::Eikonal ? "eikonal" : "closest"},
           {"weld", args.weld_text},
           {"orient", args.orient_text},
+          {"symmetry", fmt::format("{}", fmt::join(args.symmetry_texts, " "))},
           {"normals", args.write.normals == io::Normals::Keep ? "keep" : "recompute"},
           {"precision", args.write.digits > 0 ? fmt::format("{}", args.write.digits) : "automatic"},
           {"threads", fmt::format("{}", options.threads)},
@@ -111,7 +112,7 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   if (shell)
     return source.file ? io::write_shell(path, *source.file, *shell, options) : io::write_shell(path, *shell, options);
   if (source.curves) {
-    io::write_curves(path, *source.curves, outcome.result.positions, options);
+    write_curves(path, source, outcome.result.positions, options);
     return {};
   }
   if (source.file) return io::write_mesh(path, *source.file, outcome.result.positions, options);

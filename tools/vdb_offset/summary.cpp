@@ -2,12 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "vdb_offset/curve_line.h"
 #include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
 namespace {
 
-void print_facts(std::FILE* out, const MeshFacts& facts) {
+const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
+
+void print_curve_facts(std::FILE* out, const MeshFacts& facts) {
+  fmt::print(out,
+             "curves     {} points ({} positions, {} unused), {} segments, {} curve{} ({} closed), diagonal {:.6g}\n",
+             facts.vertices, facts.welded_vertices, facts.unused_vertices, facts.faces_by_corners.at(2),
+             facts.components, plural(facts.components), facts.closed_components, facts.diagonal);
+  fmt::print(out, "           {} ends, {} points where curves branch\n", facts.boundary_edges,
+             facts.non_manifold_edges);
+}
+
+void print_facts(std::FILE* out, const MeshFacts& facts, bool curves = false) {
+  if (curves) return print_curve_facts(out, facts);
   std::size_t faces = 0;
   for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
   fmt::print(out, "mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n",
@@ -51,21 +66,96 @@ void print_plan(std::FILE* out, const OffsetStatistics& statistics, const Distan
              statistics.threads == 1 ? "" : "s");
 }
 
+std::string text_of(const SymmetryPlane& plane) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    if (plane.normal[k] == 0) continue;
+    if (!text.empty()) text += " + ";
+    if (plane.normal[k] != 1) text += fmt::format("{:.6g} ", plane.normal[k]);
+    text += "xyz"[k];
+  }
+  return fmt::format("{} = {:.6g}", text, plane.offset);
+}
+
+void print_planes(std::FILE* out, const BorderFacts& borders) {
+  constexpr std::size_t kMostNamed = 6;
+  if (borders.planes.empty()) return;
+  fmt::print(out, "planes     {} vertices stay in", borders.held_vertices);
+  for (std::size_t i = 0; i < std::min(borders.planes.size(), kMostNamed); ++i)
+    fmt::print(out, "{} {}", i > 0 ? "," : "", text_of(borders.planes[i]));
+  if (borders.planes.size() > kMostNamed) fmt::print(out, " and {} more", borders.planes.size() - kMostNamed);
+  fmt::print(out, "\n");
+}
+
 /// All that is known of the mesh and the grid, and the seconds of each stage.
-void print_details(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances) {
-  print_facts(out, statistics.facts);
+void print_details(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances, bool curves) {
+  print_facts(out, statistics.facts, curves);
+  print_planes(out, statistics.borders);
   print_plan(out, statistics, distances);
   for (std::size_t s = 0; s < kStageCount; ++s)
     fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), statistics.seconds[s]);
 }
 
-/// What of the mesh leaves a result in doubt.
-void print_doubts(std::FILE* out, const OffsetStatistics& statistics, Orient orient) {
-  print_orientation(out, statistics.facts, orient);
+/// Where borders are not what the shape of the input lets one expect.
+void print_borders(std::FILE* out, const BorderFacts& borders) {
+  if (borders.strayed_vertices > 0)
+    fmt::print(out, "{} of {} vertices at borders leave the plane across these, by {:.3g} degrees at most\n",
+               borders.strayed_vertices, borders.across_vertices + borders.held_vertices, borders.worst_angle);
+  if (borders.beyond > 0)
+    fmt::print(out, "{} vertices end beyond a plane that the surface lies on one side of, and borders stay in\n",
+               borders.beyond);
+}
+
+/// A distance as it was given, to the other side.
+std::string turned_round(const std::string& text) {
+  if (text.starts_with('-') && text.find_first_of("+*/^( ", 1) == std::string::npos) return text.substr(1);
+  const bool number = text.find_first_not_of("0123456789.eE%") == std::string::npos;
+  return number ? "-" + text : fmt::format("'-({})'", text);
+}
+
+/// The option that sends what was asked for to the other side.
+std::string option_for_other_side(const Arguments& args) {
+  const DistanceRequest* const request = !args.layers         ? &args.distances.front()
+                                         : args.layers->first ? &*args.layers->first
+                                         : args.layers->total ? &*args.layers->total
+                                                              : nullptr;
+  if (!request) return "heights below 0";
+  if (!request->from.empty()) return "distances of the other sign";
+  const char* const option = !args.layers ? "--distance" : args.layers->first ? "--first-height" : "--total-thickness";
+  return fmt::format("{} {}", option, turned_round(request->text));
+}
+
+void print_room(std::FILE* out, const Arguments& args, const SideRoom& room) {
+  if (!room.suggests_other()) return;
+  fmt::print(
+      out,
+      "there is room for that on this side of {:.0f} % of the {}, on the other side of {:.0f} %: if {} the wrong "
+      "way, {} goes there\n",
+      100 * room.here, args.curves ? "curves" : "surface", 100 * room.there, args.curves ? "curves run" : "faces point",
+      option_for_other_side(args));
+}
+
+void print_curve_ends(std::FILE* out, const Source& source) {
+  for (const OpenCurve& closed : source.closed) fmt::print(out, "closed by a straight segment of {:.6g}\n", closed.gap);
+  std::vector<OpenCurve> open = open_curves(source.view());
+  std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
+  if (open.empty()) return;
+  fmt::print(out,
+             "{} open curve{} with ends near each other ({:.6g} apart, of a length of {:.6g}): nothing lies between "
+             "these, nor beyond them (--close joins them)\n",
+             open.size(), plural(open.size()), open.front().gap, open.front().length);
+}
+
+/// What of the input leaves a result in doubt.
+void print_doubts(std::FILE* out, const Arguments& args, const Source& source, const OffsetStatistics& statistics) {
+  if (source.curves) print_curve_ends(out, source);
+  else print_orientation(out, statistics.facts, args.options.orient);
+  print_room(out, args, statistics.room);
+  print_borders(out, statistics.borders);
   const LimitStatistics& limit = statistics.limit;
   if (limit.source_crossings > 0)
-    fmt::print(out, "the input crosses itself: {} pairs of triangles meet, left as they are; {} more beside them\n",
-               limit.source_crossings, limit.crossings_near_source);
+    fmt::print(out, "the input crosses itself: {} pairs of {} meet, left as they are; {} more beside them\n",
+               limit.source_crossings, source.curves ? "segments" : "triangles", limit.crossings_near_source);
 }
 
 void print_states(std::FILE* out, const OffsetResult& result) {
@@ -104,29 +194,30 @@ void print_iso_plan(std::FILE* out, const CaptureStatistics& statistics, double 
 }  // namespace
 
 void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest) {
-  print_facts(stdout, statistics.facts);
+  print_facts(stdout, statistics.facts, args.curves);
   print_plan(stdout, statistics, farthest);
-  print_orientation(stdout, statistics.facts, args.options.orient);
+  if (!args.curves) print_orientation(stdout, statistics.facts, args.options.orient);
 }
 
-void print_summary(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                   double total_seconds) {
+void print_summary(const Arguments& args, const Source& source, const Outcome& outcome,
+                   const std::optional<ShellFacts>& shell, double total_seconds) {
   std::FILE* const out = args.output == "-" ? stderr : stdout;  // standard output may be taken by the mesh
   const OffsetResult& result = outcome.result;
   const AchievedSummary achieved = summarise(result);
-  if (args.verbose) print_details(out, result.statistics, result.distances);
+  const char* const vertices = source.curves ? "points" : "vertices";
+  if (args.verbose) print_details(out, result.statistics, result.distances, args.curves);
   const std::string asked = result.distances.uniform()
                                 ? fmt::format("{:.6g}", result.distances[0])
                                 : fmt::format("{:.6g} to {:.6g}", achieved.asked_least, achieved.asked_most);
-  fmt::print(out, "{}: {} vertices at {}: {:.3f} % reached", outcome.to.mesh, achieved.vertices, asked,
+  fmt::print(out, "{}: {} {} at {}: {:.3f} % reached", outcome.to.mesh, achieved.vertices, vertices, asked,
              100 * achieved.share_reached);
   print_states(out, result);
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
   if (shell) print_shell(out, outcome.to.mesh, *shell);
   if (result.statistics.disagreeing_distances > 0)
-    fmt::print(out, "{} vertices stand with one of which another distance was asked; they go the mean\n",
-               result.statistics.disagreeing_distances);
-  print_doubts(out, result.statistics, args.options.orient);
+    fmt::print(out, "{} {} stand with one of which another distance was asked; they go the mean\n",
+               result.statistics.disagreeing_distances, vertices);
+  print_doubts(out, args, source, result.statistics);
 }
 
 void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance) {
@@ -156,12 +247,12 @@ void print_iso_summary(const Arguments& args, const std::string& path, double di
   print_orientation(out, found.source, args.options.orient);
 }
 
-void print_layers_summary(const Arguments& args, const LayersResult& result, const LayerReport& report,
-                          double total_seconds) {
-  if (args.verbose) print_details(stdout, result.statistics, result.heights.back());
+void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,
+                          const LayerReport& report, double total_seconds) {
+  if (args.verbose) print_details(stdout, result.statistics, result.heights.back(), args.curves);
   fmt::print("{}: {}", args.output, summary(report));
   fmt::print("{:.2f} s\n", total_seconds);
-  print_doubts(stdout, result.statistics, args.options.orient);
+  print_doubts(stdout, args, source, result.statistics);
 }
 
 }  // namespace vdb_offset::tool

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "args.h"
+#include "inputs.h"
 #include "outputs.h"
 
 namespace vdb_offset::tool {
@@ -13,8 +14,8 @@ void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, co
 
 /// What is printed of one output; with --verbose all that is known of the mesh and the grid. Goes to standard output
 /// unless the mesh does.
-void print_summary(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                   double total_seconds);
+void print_summary(const Arguments& args, const Source& source, const Outcome& outcome,
+                   const std::optional<ShellFacts>& shell, double total_seconds);
 
 /// What --dry-run prints with --mode iso.
 void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance);
@@ -24,7 +25,7 @@ void print_iso_summary(const Arguments& args, const std::string& path, double di
                        double total_seconds);
 
 /// The same of layers.
-void print_layers_summary(const Arguments& args, const LayersResult& result, const LayerReport& report,
-                          double total_seconds);
+void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,
+                          const LayerReport& report, double total_seconds);
 
 }  // namespace vdb_offset::tool
