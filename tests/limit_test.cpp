@@ -45,6 +45,63 @@ Polygons umbrella(int n, double height) {
   return mesh;
 }
 
+/// A plate of 370 by 370 by 3 with rounded corners, whose arcs end short of its straight sides: eight notches far
+/// smaller than any distance to offset by, in which large triangles have a corner each.
+Polygons notched_plate(double notch) {
+  constexpr double kHalf = 185, kRadius = 3, kAlong = kHalf - kRadius;
+  constexpr int kArc = 12;
+  std::vector<std::pair<double, double>> corner{{kHalf, kAlong - 0.1}, {kHalf - notch, kAlong - 0.1 + notch}};
+  for (int i = 0; i <= kArc; ++i) {
+    const double a = M_PI / 2 * i / kArc;
+    corner.emplace_back(kAlong + (kRadius - notch) * std::cos(a), kAlong + (kRadius - notch) * std::sin(a));
+  }
+  corner.emplace_back(kAlong - 0.1 + notch, kHalf - notch);
+  corner.emplace_back(kAlong - 0.1, kHalf);
+  Polygons mesh;
+  for (const double z : {0.0, 3.0})
+    for (const auto& [c, s] : {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}})
+      for (const auto& [x, y] : corner) mesh.positions.emplace_back(c * x - s * y, s * x + c * y, z);
+  const auto n = static_cast<std::uint32_t>(mesh.positions.size() / 2);
+  for (std::uint32_t i = 0; i < n; ++i) mesh.corners.push_back(n + i);
+  mesh.close_face();
+  for (std::uint32_t i = n; i-- > 0;) mesh.corners.push_back(i);
+  mesh.close_face();
+  for (std::uint32_t i = 0; i < n; ++i) mesh.add_face({i, (i + 1) % n, n + (i + 1) % n, n + i});
+  return mesh;
+}
+
+/// Two cubes side by side that share an edge, which has four faces.
+Polygons cubes_at_an_edge() {
+  Polygons mesh;
+  for (int i = 0; i < 16; ++i) {
+    const int shift = i / 8;
+    mesh.positions.emplace_back(shift + (i & 1), shift + (i >> 1 & 1), i >> 2 & 1);
+  }
+  for (const std::uint32_t i : {0u, 8u})
+    for (const auto& f : {std::array{0u, 2u, 3u, 1u},
+                          {4u, 5u, 7u, 6u},
+                          {0u, 1u, 5u, 4u},
+                          {2u, 6u, 7u, 3u},
+                          {0u, 4u, 6u, 2u},
+                          {1u, 3u, 7u, 5u}})
+      mesh.add_face({i + f[0], i + f[1], i + f[2], i + f[3]});
+  return mesh;
+}
+
+/// Of a mesh's area, a third of each triangle to each of its corners: what has reached its distance.
+double reached_area(const Polygons& mesh, const OffsetResult& result) {
+  const Surface surface = build_surface(mesh.view(), {});
+  double all = 0, reached = 0;
+  for (const auto& corners : surface.triangles) {
+    const auto at = [&](std::size_t k) { return mesh.positions[surface.representative[corners[k]]]; };
+    const double third = (at(1) - at(0)).cross(at(2) - at(0)).length() / 6;
+    all += 3 * third;
+    for (const auto v : corners)
+      if (result.states[surface.representative[v]] == VertexState::Reached) reached += third;
+  }
+  return reached / all;
+}
+
 }  // namespace
 
 TEST_CASE("crossings: shapes that do not cross themselves have none", "[crossings]") {
@@ -264,6 +321,26 @@ TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limi
     }
     REQUIRE(edges > 100);
     CHECK(static_cast<double>(steep) < 0.02 * static_cast<double>(edges));
+  }
+}
+
+TEST_CASE("limit: a tiny notch holds back nothing but itself", "[limit]") {
+  for (const double notch : {0.002, 0.02})
+    for (const double distance : {2.6, 5.2, 13.0}) {
+      const Polygons mesh = notched_plate(notch);
+      const OffsetResult result = limited(mesh, distance);
+      CAPTURE(notch, distance);
+      CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).valid());
+      CHECK(reached_area(mesh, result) > 0.99);
+    }
+}
+
+TEST_CASE("limit: what is short settles where there is room beside it", "[limit]") {
+  const Polygons cubes = cubes_at_an_edge();
+  for (const double distance : {-0.02, -0.1}) {
+    const OffsetResult result = limited(cubes, distance);
+    CHECK(check_offset(cubes.view(), result.positions, {.distance = distance}).valid());
+    CHECK(reached_area(cubes, result) > 0.99);
   }
 }
 

@@ -2,71 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 
 #include <tbb/parallel_for.h>
 
+#include "vdb_offset/attempts.h"
 #include "vdb_offset/faults.h"
 #include "vdb_offset/mix.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/patches.h"
 #include "vdb_offset/refusals.h"
+#include "vdb_offset/stakes.h"
 #include "vdb_offset/untangle.h"
 
 namespace vdb_offset {
 namespace {
 
 // How much of its way a vertex of a wrong face keeps in a round; below the last share it keeps none. That share is
-// small, as the skins of a shell touch where a vertex has not moved at all.
-constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1;
-
-// Patches are tried in these ways, the first to its end, with ever more rings around what is wrong. What frees one
-// patch fails in the next; borders leave their planes only for what else does not free. The last ways are for small
-// patches in which little has collided: these cost next to nothing, and one of several ways frees many of them. Patches
-// of more vertices than so many, or in which more have collided, are left out: of 23,000 patches of fifteen models
-// these took more than half of the time, and hardly any of them was freed. Larger meshes than all of those may have
-// patches as many times larger as they have kManyVertices, rounded up.
-// Where faces stay wrong so many times over in the first way, fronts have run through each other, and there is no way
-// out: of 380 such patches, which took almost half of the time on thirteen models, two were freed.
-constexpr std::size_t kAnyNumber = kNone, kManyVertices = 200000;
-constexpr std::size_t kHopelessVertices = 100, kHopelessCorners = 8;  // more of the latter for each of the former
-struct Growth {
-  int rings;
-  std::size_t most_vertices, most_collided = kAnyNumber;
-};
-struct Attempt {
-  Untangler::Options options;
-  std::span<const Growth> growths;
-};
-constexpr Growth kFarGrowths[] = {{1, kAnyNumber}, {2, 5000},     {3, 5000},      {4, 3000, 40},
-                                  {6, 3000, 40},   {8, 3000, 40}, {12, 3000, 40}, {16, 3000, 40}};
-constexpr Growth kLessGrowths[] = {{1, 1000}, {2, 1000}, {3, 1000}, {4, 1000, 40}, {6, 1000, 40}, {8, 1000, 40}};
-constexpr Growth kNearGrowths[] = {{1, 1000}, {2, 1000}, {3, 1000}};
-constexpr Growth kNearestGrowths[] = {{1, 300}, {2, 300}, {3, 300}};
-constexpr Growth kHopefulGrowths[] = {{1, 1000, 20}, {2, 1000, 20}};
-constexpr Growth kSmoothGrowths[] = {{1, 1000, 20}, {2, 1000, 20}, {4, 1000, 3}, {6, 1000, 3}};
-constexpr Attempt kAttempts[] = {
-    {{1, 4, true, true}, kFarGrowths},    {{0.1, 10, true}, kNearGrowths},   {{1, 30, false}, kLessGrowths},
-    {{0.01, 10, false}, kNearestGrowths}, {{1, 60, false}, kSmoothGrowths},  {{1, 10, true}, kHopefulGrowths},
-    {{0.3, 2, true}, kHopefulGrowths},    {{3, 4, true}, kHopefulGrowths},   {{0.03, 30, true}, kHopefulGrowths},
-    {{1, 2, true}, kHopefulGrowths},      {{0.1, 4, false}, kHopefulGrowths}};
+// small, as the skins of a shell touch where a vertex has not moved at all. Of a wrong face's corners that one goes
+// back with which least is lost, and those with which no more than so many times as much is; the others once these have
+// spent all but a share of their way.
+constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1, kAlike = 4, kSpent = 0.1;
 
 // Where a precedent is followed, hardly any patch of more vertices than so many is freed that has not been already.
 constexpr std::size_t kFollowedVertices = 60;
-
-// Then what has collided is tried in these, with so many rings around. If it is much, and one of them leaves more than
-// this share of it where it is, fronts have met, and there is no way out.
-struct Freeing {
-  Untangler::Options options;
-  Growth growth;
-};
-constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAnyNumber}},
-                                 {{1, 4, true, true}, {0, kAnyNumber}},
-                                 {{1, 30, true}, {0, kAnyNumber}},
-                                 {{1, 30, false}, {0, 300}},
-                                 {{0.01, 10, false}, {0, 300}}};
-constexpr double kHopeless = 0.99;
 
 // With more faults than this, only patches of few rings are tried, and another way only if one leaves less than a
 // share.
@@ -90,6 +51,14 @@ constexpr int kFollowedRings = 1;
 constexpr double kSteepest = 2;
 // What cannot be taken back with all others often can afterwards.
 constexpr int kEasings = 2;
+// What has so many times the area of a pulled vertex around it does not follow that.
+constexpr double kMuchMoreArea = 4;
+
+// Of the short vertices so many, those with the largest areas, are settled where there is room, unless what they lose
+// is less than that share of the whole area; with no more trials than so many in each turn. A trial takes others back
+// faster, and is given up once these lose more than a part of what is won, or so much is wrong.
+constexpr std::size_t kMostSettled = 2000, kMostTrials = 3000, kMostFaults = 200;
+constexpr double kLeastSettled = 2e-5, kKeptInTrial = 0.6, kLastShareInTrial = 1e-3, kWorthLosing = 0.5;
 
 constexpr std::size_t kExpectedRounds = 32;
 
@@ -106,6 +75,7 @@ class Limiter {
         share_(source.size(), 1.0),
         patches_(body.surface),
         gathered_(source.size()),
+        stakes_(body, distances),
         faults_(faults),
         followed_(followed) {
     statistics_.source_crossings = faults_.source_crossings().size();
@@ -123,9 +93,12 @@ class Limiter {
 
   void pull_back_and_let_out(Progress& progress) {
     while (pull_back()) progress.advance(1);
-    statistics_.left = faults_.count();
     leap(progress);
+    for (const Stakes::Lines lines : {Stakes::Lines::KeepBorder, Stakes::Lines::All})
+      if (settle(lines)) leap(progress);
     for (int i = 0; i < kEasings; ++i) ease();
+    while (pull_back()) progress.advance(1);  // should what was put back be judged otherwise than before
+    statistics_.left = faults_.count();
   }
 
   /// Tells the paths what has become of them, and who may follow.
@@ -228,7 +201,7 @@ class Limiter {
       if (growth.rings > kFewRings && has_many_faults()) break;
       Indices chosen = patch_vertices(growth.rings);
       if (chosen == last) break;
-      untangle(chosen, attempt.options, growth);
+      untangle(chosen, attempt.options, growth, attempt.least_contrast);
       ++statistics_.untanglings;
       progress.advance(1);
       last = std::move(chosen);
@@ -335,7 +308,7 @@ class Limiter {
   }
 
   /// Drops the patches that are not worth while.
-  void leave_out(const Growth& growth) {
+  void leave_out(const Growth& growth, double least_contrast) {
     const std::size_t most = followed_ ? std::min(growth.most_vertices, kFollowedVertices)
                                        : growth.most_vertices * (1 + source_.size() / kManyVertices);
     const std::vector<Wrong> wrong = wrong_by_patch();
@@ -344,8 +317,20 @@ class Limiter {
       const std::size_t n = patch.size();
       const Wrong& is = wrong[number];
       return n > most || is.collided > growth.most_collided ||
-             (!is_first && n > kHopelessVertices && is.corners > kHopelessCorners * n);
+             (!is_first && n > kHopelessVertices && is.corners > kHopelessCorners * n) ||
+             (least_contrast > 0 && contrast(patch) < least_contrast);
     });
+  }
+
+  /// How many times as much area is around one vertex of a patch as around another.
+  double contrast(const Indices& patch) const {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (const auto v : patch) {
+      const double area = stakes_.area(v);
+      least = std::min(least, area);
+      most = std::max(most, area);
+    }
+    return most / least;
   }
 
   std::size_t count_collided(const Indices& patch) const {
@@ -354,18 +339,19 @@ class Limiter {
   }
 
   /// Untangles patches of vertices, all at their distance, and keeps those where that makes nothing worse.
-  void untangle(const Indices& chosen, const Untangler::Options& options, const Growth& growth) {
+  void untangle(const Indices& chosen, const Untangler::Options& options, const Growth& growth,
+                double least_contrast = 0) {
     patches_.split(chosen);
-    leave_out(growth);
+    leave_out(growth, least_contrast);
     const Untangler untangler(body_, distances_, options);
-    try_out([&](const Indices& patch) { untangler(patch, whole_way_); });
+    try_out([&](const Indices& patch) { untangler(patch, whole_way_); }, least_contrast > 0);
   }
 
   /// Lets move(patch) change the ways and shares of the vertices of the patches, in parallel; then puts back the
-  /// patches where that has made something worse, or nothing better where there was nothing wrong. Returns how many
-  /// vertices are not put back.
+  /// patches where that has made something worse, or nothing better where there was nothing wrong; or, if they have to
+  /// be freed, where anything is wrong still. Returns how many vertices are not put back.
   template <class Move>
-  std::size_t try_out(Move&& move) {
+  std::size_t try_out(Move&& move, bool to_be_freed = false) {
     const Indices& chosen = patches_.vertices();
     const std::vector<Wrong> before = wrong_by_patch();
     std::vector<std::pair<Vec3d, double>> old;
@@ -378,7 +364,8 @@ class Limiter {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const std::uint32_t v = chosen[i];
       const Wrong &was = before[patches_.of(v)], &is = after[patches_.of(v)];
-      if (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was)) continue;
+      const bool freed = !to_be_freed || !is.any_fault();
+      if (freed && (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was))) continue;
       std::tie(whole_way_[v], share_[v]) = old[i];
       undone.push_back(v);
     }
@@ -388,10 +375,39 @@ class Limiter {
     return kept;
   }
 
-  /// Takes the vertices that something is wrong with a step back. False if there are none that have any way left.
+  /// Whether a vertex has any of its way left to go back.
+  bool may_go_back(std::uint32_t v) const { return share_[v] != 0 && body_.on_front(v) && whole_way_[v] != Vec3d(0.0); }
+
+  /// Of each fault's corners those that are to go back: with which little is lost, and which have gone far back
+  /// already. Of what a rim meets, and of what is in the wrong place, all.
+  Indices vertices_to_pull() {
+    faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); });
+    stakes_.measure(gathered_.take());
+    faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+      double least = std::numeric_limits<double>::infinity();
+      const auto for_each_corner = [&](auto&& visit) {
+        for (const auto triangle : {s, t})
+          for (const auto v : surface_.triangles[triangle])
+            if (may_go_back(v)) visit(v);
+      };
+      for_each_corner([&](std::uint32_t v) {
+        if (share_[v] > kSpent) least = std::min(least, stakes_[v]);
+      });
+      for_each_corner([&](std::uint32_t v) {
+        if (share_[v] <= kSpent || stakes_[v] <= kAlike * least) gathered_.add(v);
+      });
+    });
+    for (const auto v : faults_.misplaced()) gathered_.add(v);
+    faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); }, [](std::uint32_t) { return true; });
+    for (const auto v : faults_.caught()) gathered_.add(v);
+    Indices pulled = gathered_.take();
+    std::erase_if(pulled, [&](std::uint32_t v) { return !may_go_back(v); });
+    return pulled;
+  }
+
+  /// Takes vertices of what is wrong a step back. False if there are none that have any way left.
   bool pull_back() {
-    Indices wrong = faults_.wrong_vertices();
-    std::erase_if(wrong, [&](std::uint32_t v) { return share_[v] == 0 || !body_.on_front(v); });
+    const Indices wrong = vertices_to_pull();
     if (wrong.empty()) return false;
     const Indices held = faults_.caught();
     for (const auto v : wrong) {
@@ -437,13 +453,102 @@ class Limiter {
     ++turn_;
     OldShares before;
     for (const auto v : pulled_) {
-      if (share_[v] == 0 || share_[v] == 1 || mix(turn_ << 32 | v) % kLeapers != 0) continue;
+      if (share_[v] == 1 || mix(turn_ << 32 | v) % kLeapers != 0) continue;
       const double share = share_[v] + (1 - share_[v]) * part;
       if (!(share > share_[v]) || refusals_->expects(v, share)) continue;
       before.emplace_back(v, share_[v]);
       share_[v] = share;
     }
     keep_valid(before);
+  }
+
+  /// What may be put somewhere else than its way leads.
+  bool may_settle(std::uint32_t v) const {
+    return distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v) && is_short(v);
+  }
+
+  /// The short vertices with which most is lost, first those with the most.
+  std::vector<std::uint32_t> vertices_to_settle() {
+    const double least = kLeastSettled * stakes_.whole_area();
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (std::uint32_t v = 0; v < share_.size(); ++v)
+      if (may_settle(v))
+        if (const double area = stakes_.area(v); area > least) order.emplace_back(-area, v);
+    std::sort(order.begin(), order.end());
+    order.resize(std::min(order.size(), kMostSettled));
+    Indices largest;
+    for (const auto& [area, v] : order) largest.push_back(v);
+    stakes_.measure(largest);
+    std::erase_if(largest, [&](std::uint32_t v) { return !(stakes_[v] > least); });
+    std::stable_sort(largest.begin(), largest.end(),
+                     [&](std::uint32_t v, std::uint32_t w) { return stakes_[v] > stakes_[w]; });
+    return largest;
+  }
+
+  /// Puts short vertices, one by one, where live points around them go; there is room for these, and what is in the way
+  /// of their faces goes back, if less is lost with that. False if none has found a place.
+  bool settle(Stakes::Lines lines) {
+    if (faults_.any()) return false;
+    std::size_t trials = 0;
+    bool any = false;
+    for (const auto v : vertices_to_settle()) {
+      if (trials >= kMostTrials) break;
+      if (!is_short(v)) continue;
+      for (const Vec3d& place : stakes_.places(v, lines)) {
+        ++trials;
+        if (!settle_at(v, place)) continue;
+        any = true;
+        break;
+      }
+    }
+    return any;
+  }
+
+  struct Old {
+    std::uint32_t vertex;
+    Vec3d whole_way;
+    double share;
+  };
+
+  /// False, and nothing has changed, if more is lost than won.
+  bool settle_at(std::uint32_t vertex, const Vec3d& place) {
+    std::vector<Old> old{{vertex, whole_way_[vertex], share_[vertex]}};
+    whole_way_[vertex] = round_way(place - surface_.vertices[vertex], std::abs(distances_[vertex]));
+    share_[vertex] = 1;
+    look({vertex});
+    double lost = 0;
+    while (faults_.any() || !faults_.misplaced().empty()) {
+      const Indices in_the_way = vertices_to_pull();
+      bool in_vain = in_the_way.empty() || fault_count() > kMostFaults;
+      for (const auto v : in_the_way) {
+        in_vain |= v == vertex;
+        if (std::none_of(old.begin(), old.end(), [&](const Old& o) { return o.vertex == v; })) {
+          old.push_back({v, whole_way_[v], share_[v]});
+          if (!is_short(v)) lost += stakes_[v];
+        }
+        share_[v] = share_[v] < kLastShareInTrial ? 0 : share_[v] * kKeptInTrial;
+      }
+      if (in_vain || lost > kWorthLosing * stakes_[vertex]) {
+        put_back(old);
+        return false;
+      }
+      look(in_the_way);
+      ++statistics_.rounds;
+    }
+    for (const Old& o : old) pulled_.push_back(o.vertex);
+    sort_unique(pulled_);
+    return true;
+  }
+
+  void put_back(const std::vector<Old>& old) {
+    Indices vertices;
+    for (const auto& [v, whole_way, share] : old) {
+      whole_way_[v] = whole_way;
+      share_[v] = share;
+      vertices.push_back(v);
+    }
+    sort_unique(vertices);
+    look(vertices);
   }
 
   /// Takes those around a pulled vertex back as well, as far as its dip is too steep; who stays pulled altogether need
@@ -459,7 +564,7 @@ class Limiter {
         for (const auto w : surface_.triangles[t]) {
           if (distances_[w] == 0 || !body_.on_front(w)) continue;
           const double most = share_[v] + steepest_change(w, v);
-          if (!(share_[w] > most)) continue;
+          if (!(share_[w] > most) || stakes_.area(w) > kMuchMoreArea * stakes_.area(v)) continue;
           share_[w] = most;
           eased.push_back(w);
           open.push_back(w);
@@ -514,7 +619,8 @@ class Limiter {
   Indices pulled_;                    // vertices that have been pulled back at some time
   Patches patches_;                   // that are being untangled
   IndexGatherer gathered_;            // vertices
-  FaultFinder& faults_;               // as things stand
+  Stakes stakes_;
+  FaultFinder& faults_;  // as things stand
   const Precedent* followed_;
   LimitStatistics statistics_;
 };

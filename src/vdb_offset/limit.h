@@ -29,12 +29,15 @@ struct LimitStatistics {
 /// which something is wrong here, begin with what became of them; what could not be freed there is not tried again.
 /// Then patches around what is wrong are untangled (Untangler), small ones, then larger ones and with smoother normals,
 /// and a patch keeps that where it makes nothing worse. That costs no distance; what has collided slides to where it
-/// has its distance in the same way, if there is such a place near. Then the vertices of a face that is wrong are
-/// pulled back towards where they came from, by a little in each round, until nothing is wrong; then those that were
-/// are let out again as far as nothing goes wrong, a few at a time by leaps; who was stopped by what has not moved
-/// since does not try the same again. A surface pulled back altogether is the source, so that it ends. Last, vertices
+/// has its distance in the same way, if there is such a place near. Then vertices of a face that is wrong are pulled
+/// back towards where they came from, by a little in each round, until nothing is wrong: those with which little area
+/// is lost that has room (Stakes), and the others only where these do not help. Then those that were are let out again
+/// as far as nothing goes wrong, a few at a time by leaps; what was stopped by what has not moved since does not try
+/// the same again. What is short still, though there is room beside it, is put there, one vertex at a time, if less is
+/// lost with what goes back for that. A surface pulled back altogether is the source, so that it ends. Last, vertices
 /// around the pulled ones follow these, where thickness would else change by more than twice the way from one to the
-/// other, as far as nothing goes wrong. Pulled vertices are `Limited`, with the distance that they keep.
+/// other, as far as nothing goes wrong, and unless far more area is around them. Pulled vertices are `Limited`, with
+/// the distance that they keep.
 ///
 /// `source` holds where the body's vertices stand in the input, world coordinates; `distances` and `paths` are theirs,
 /// and who is not on the front has no way to go. `faults` looks at the same, and has looked at the paths' ends.

@@ -24,6 +24,9 @@ class Untangler {
     int smoothing;          ///< How often normals are smoothed over the patch.
     bool keep_borders;      ///< Vertices at a border slide in the plane across it alone; held ones always do.
     bool thorough = false;  ///< Goes on where little more is gained: to the best shapes, and with what stays folded.
+    /// In distances: edges and heights of faces count as no shorter. Where features are far smaller than the distance,
+    /// slivers would else rule the energy: what is nothing in the source is much where it is.
+    double least_edge = 0;
   };
 
   /// Keeps references to the body and the distances of its vertices.
