@@ -19,6 +19,7 @@
 #include "vdb_offset/precedent.h"
 #include "vdb_offset/rasterise.h"
 #include "vdb_offset/run.h"
+#include "vdb_offset/sheet_sides.h"
 #include "vdb_offset/slide.h"
 
 namespace vdb_offset {
@@ -171,7 +172,9 @@ class Pipeline {
     const Reach farthest = farthest_of(wanted);
     prepare(farthest, {.results = wanted.size()});
     // The body is complete by now, obstacles and all.
-    for (const Distances& distances : wanted) distances_.push_back(on_body(distances));
+    if (options_.off_source) junctions_ = find_junctions(work_.front, mesh_, options_.only);
+    for (const Distances& distances : wanted) asked_.push_back(on_body(distances));
+    for (const Distances& asked : asked_) distances_.push_back(without_junctions(asked));
     std::vector<OffsetResult> results(wanted.size());
     if (goes_anywhere(farthest)) {
       make(results);
@@ -229,6 +232,29 @@ class Pipeline {
     return distances_on(work_, options_.border, of_input, shared_.disagreeing_distances);
   }
 
+  bool is_junction(std::size_t vertex) const {
+    if (junctions_.empty()) return false;
+    const std::size_t on_front = work_.front_vertex.empty() ? vertex : work_.front_vertex[vertex];
+    return on_front < junctions_.size() && junctions_[on_front];
+  }
+
+  /// Vertices at junctions stay.
+  Distances without_junctions(const Distances& of_body) const {
+    if (junctions_.empty()) return of_body;
+    std::vector<double> each(work_.surface().vertices.size());
+    for (std::size_t w = 0; w < each.size(); ++w) each[w] = is_junction(w) ? 0 : of_body[w];
+    return Distances(std::move(each));
+  }
+
+  /// They fall short, until a shell gives each sheet there a place of its own (see shell_of()).
+  void tell_of_junctions(OffsetResult& result) const {
+    if (junctions_.empty()) return;
+    for (std::size_t v = 0; v < result.states.size(); ++v) {
+      const auto w = work_.surface().welded[v];
+      if (w != kNone && is_junction(w) && result.distances[v] != 0) result.states[v] = VertexState::Limited;
+    }
+  }
+
   void make_field(const Reach& farthest, const Yield& yield) {
     Front front;
     {
@@ -273,6 +299,7 @@ class Pipeline {
   struct Draft {
     Body body;
     const Distances& distances;
+    const Distances& asked;
     Paths& paths;
     OffsetStatistics statistics;
     std::optional<FaultFinder> faults;  // if it has to be valid
@@ -287,7 +314,7 @@ class Pipeline {
     if (results.size() > 1 && to_be_valid) source_crossings_ = CrossingFinder(work_.surface(), source_).all();
     std::deque<Draft> drafts;
     for (std::size_t i = 0; i < results.size(); ++i)
-      drafts.push_back({body_of_results(), distances_[i], paths[i], shared_, {}, {}});
+      drafts.push_back({body_of_results(), distances_[i], asked_[i], paths[i], shared_, {}, {}});
     const std::size_t outer = results.size() - options_.inner_skin_last;
     if (options_.inner_skin_last) {
       look(drafts[outer], options_.progress);
@@ -364,9 +391,10 @@ class Pipeline {
     const Surface& surface = work_.surface();
     move_vertices(mesh_, surface, draft.paths, result);
     if (options_.keep_paths) hand_out_paths(surface, source_, draft.paths, result);
-    result.distances = distances_of_input(surface, draft.distances);
     result.statistics.borders = borders(draft.paths);
     result.statistics.room = room(draft.paths, draft.distances);
+    result.distances = distances_of_input(surface, draft.asked);
+    tell_of_junctions(result);
     std::vector<Vec3d> places = source_;
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += draft.paths.displacement[w];
     {
@@ -477,7 +505,9 @@ class Pipeline {
   int threads_;
   OffsetStatistics shared_;  // by all results
   Workpiece work_;
-  std::vector<Distances> distances_;  // of the body's vertices, one set for each result
+  std::vector<std::uint8_t> junctions_;  // of the front's vertices, for shells; empty if there is none
+  std::vector<Distances> asked_,
+      distances_;  // of the body's vertices, one set for each result; 0 at junctions in these
   DistanceField field_;
   std::optional<ClosestQuery> query_, obstacles_;
   std::optional<Obstacles> keep_away_;

@@ -114,6 +114,9 @@ Json shell_json(const ShellFacts& shell) {
           {"border_edges_left", shell.border_edges_left},
           {"non_manifold_edges", shell.non_manifold_edges},
           {"pinched_vertices", shell.pinched_vertices},
+          {"has_thickness", shell.has_thickness},
+          {"junction_vertices", shell.junction_vertices},
+          {"short_junctions", shell.short_junctions},
           {"source_crossings", shell.source_crossings},
           {"crossings_near_source", shell.crossings_near_source},
           {"crossings", shell.crossings}};

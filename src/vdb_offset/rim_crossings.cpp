@@ -3,6 +3,22 @@
 #include <algorithm>
 
 namespace vdb_offset {
+namespace {
+
+/// Whether no other face of the front lies at a half-edge's edge.
+bool ends_front(const Body& body, std::uint32_t half_edge) {
+  const auto& next = body.surface.next_around_edge;
+  for (std::uint32_t h = next[half_edge]; h != half_edge; h = next[h])
+    if (body.is_front(h / 3)) return false;
+  return true;
+}
+
+/// Whether a triangle is of what stays of the mesh, which a shell of its part does not have.
+bool is_left_out(const Body& body, std::uint32_t triangle) {
+  return !body.is_front(triangle) && body.surface.representative[body.surface.triangles[triangle][0]] != kNone;
+}
+
+}  // namespace
 
 RimCrossings::RimCrossings(const Body& body, std::span<const Vec3d> other_skin, std::span<const Vec3d> places,
                            const Distances& distances)
@@ -13,13 +29,12 @@ RimCrossings::RimCrossings(const Body& body, std::span<const Vec3d> other_skin, 
   finder_.emplace(rim_, skins_);
 }
 
-/// Edges of obstacles, and others that stay where they are, have no rim.
+/// Edges of what is no part of the front have no rim.
 void RimCrossings::find_edges() {
   const auto half_edges = static_cast<std::uint32_t>(surface_.next_around_edge.size());
   for (std::uint32_t h = 0; h < half_edges; ++h) {
-    if (surface_.next_around_edge[h] != h) continue;
+    if (!body_.is_front(h / 3) || !ends_front(body_, h)) continue;
     Edge edge{surface_.from(h), surface_.to(h), h / 3};
-    if (!body_.on_front(edge.from) && !body_.on_front(edge.to)) continue;
     if (surface_.is_turned(edge.triangle)) std::swap(edge.from, edge.to);
     edges_.push_back(edge);
   }
@@ -86,9 +101,9 @@ void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const st
   std::erase_if(with_skin_,
                 [&](const auto& pair) { return rim_has_moved(pair.first) || skin.is_updated(pair.second); });
   for (const auto& [r, t] : skin.met_by(rim, rim_corners))
-    if (!may_meet(r, t)) with_skin_.emplace_back(r, t);
+    if (!is_left_out(body_, t) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
   for (const auto& [t, r] : finder_->met_by(touched, skin_corners))
-    if (!rim_has_moved(r) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
+    if (!is_left_out(body_, t) && !rim_has_moved(r) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
   std::sort(with_skin_.begin(), with_skin_.end());
 
   std::erase_if(with_other_, [&](const auto& pair) { return rim_has_moved(pair.first); });

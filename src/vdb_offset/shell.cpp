@@ -1,14 +1,15 @@
 #include "vdb_offset/shell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
-#include "vdb_offset/crossings.h"
 #include "vdb_offset/edge_sides.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/near_crossings.h"
+#include "vdb_offset/junction_shell.h"
 #include "vdb_offset/parallel.h"
-#include "vdb_offset/triangulate.h"
+#include "vdb_offset/run.h"
+#include "vdb_offset/shell_facts.h"
 
 namespace vdb_offset {
 namespace {
@@ -22,6 +23,39 @@ std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::ui
   std::sort(corners.begin(), corners.end());
   return corners;
 }
+
+/// The faces of a mesh that a shell is made of.
+class Part {
+ public:
+  Part(PolygonView mesh, std::span<const std::uint8_t> only) : mesh_(mesh), all_(only.empty()) {
+    if (all_) return;
+    if (only.size() != mesh.face_count())
+      throw InvalidInput("shell: expected a mark for each of " + std::to_string(mesh.face_count()) + " faces, got " +
+                         std::to_string(only.size()));
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+      if (!only[f]) continue;
+      const auto face = mesh.face(f);
+      corners_.insert(corners_.end(), face.begin(), face.end());
+      face_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
+      faces_.push_back(f);
+    }
+  }
+
+  PolygonView view() const { return all_ ? mesh_ : PolygonView{mesh_.positions, corners_, face_begin_}; }
+  const std::vector<std::uint32_t>& faces() const { return faces_; }
+  /// Of the mesh, instead of the part.
+  Shell::RimOrigin in_mesh(Shell::RimOrigin edge) const {
+    if (all_) return edge;
+    edge.corner += mesh_.face_begin[faces_[edge.face]] - face_begin_[edge.face];
+    edge.face = faces_[edge.face];
+    return edge;
+  }
+
+ private:
+  PolygonView mesh_;
+  bool all_;
+  std::vector<std::uint32_t> corners_, face_begin_{0}, faces_;
+};
 
 /// Both skins, without a rim.
 Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner) {
@@ -89,100 +123,122 @@ void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<
   }
 }
 
-void count_edges(std::span<const std::uint32_t> place, Shell& shell) {
-  ShellFacts& facts = shell.facts;
-  facts.closed = facts.oriented = true;
-  visit_edges(shell.polygons.view(), place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
-    const auto forwards = std::count_if(sides.begin(), sides.end(), [&](const EdgeSide& side) {
-      return place[shell.polygons.corners[side.corner]] == smaller;
-    });
-    facts.border_edges_left += sides.size() == 1;
-    facts.non_manifold_edges += sides.size() > 2;
-    facts.closed = facts.closed && sides.size() % 2 == 0;
-    facts.oriented = facts.oriented && 2 * static_cast<std::size_t>(forwards) == sides.size();
-  });
+}  // namespace
+
+std::uint32_t Shell::skin_face(std::uint32_t source_face) const {
+  if (faces.empty()) return source_face;
+  const auto found = std::lower_bound(faces.begin(), faces.end(), source_face);
+  return found != faces.end() && *found == source_face ? static_cast<std::uint32_t>(found - faces.begin()) : kNone;
 }
 
-/// By the divergence theorem, from a corner of the shell so that far-away solids keep their digits.
-double enclosed_volume(PolygonView mesh) {
-  const Vec3d origin = mesh.positions[mesh.corners[0]];
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  double six_times = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    triangles.clear();
-    triangulate(mesh.positions, mesh.face(f), triangles);
-    for (const auto& [i, j, k] : triangles)
-      six_times += (mesh.positions[i] - origin).dot((mesh.positions[j] - origin).cross(mesh.positions[k] - origin));
+Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
+                 const Precision& precision, std::span<const std::uint8_t> only) {
+  if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())
+    throw InvalidInput("shell: expected two skins of " + std::to_string(mesh.positions.size()) + " vertices, got " +
+                       std::to_string(outer.size()) + " and " + std::to_string(inner.size()));
+  const Part part(mesh, only);
+  const PolygonView faces = part.view();
+  const std::vector<std::uint32_t> place_in_mesh = weld_by_position(faces, weld);
+  if (2 * mesh.positions.size() >= kNone)
+    throw InvalidInput("shell: expected fewer than 2^31 vertices, got " + std::to_string(mesh.positions.size()));
+  Shell shell = both_skins(faces, outer, inner);
+  const std::vector<std::uint32_t> place = places_of(shell, place_in_mesh, weld.enabled);
+  add_rim(faces, find_border(faces, place_in_mesh), place, shell);
+  count_facts(faces, weld, precision, place, shell);
+  shell.faces = part.faces();
+  for (Shell::RimOrigin& edge : shell.rim) edge = part.in_mesh(edge);
+  return shell;
+}
+
+namespace {
+
+/// How the faces of a part were taken: turned round, or as lying over others; and which of its vertices stayed, as
+/// sheets meet there.
+struct TakenFaces {
+  std::vector<std::uint8_t> turned, repeats, junctions;
+
+  TakenFaces(PolygonView part, const OffsetOptions& options)
+      : turned(part.face_count(), 0), repeats(part.face_count(), 1), junctions(part.positions.size(), 0) {
+    const Surface surface = build_surface(part, options.weld, options.orient);
+    const std::vector<std::uint8_t> found =
+        options.off_source ? find_junctions(surface, part) : std::vector<std::uint8_t>();
+    for (std::size_t v = 0; v < junctions.size() && !found.empty(); ++v)
+      junctions[v] = surface.welded[v] != kNone && found[surface.welded[v]];
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+      repeats[surface.face[t]] = 0;
+      turned[surface.face[t]] |= static_cast<std::uint8_t>(surface.is_turned(t));
+    }
   }
-  return six_times / 6;
-}
+};
 
-/// Vertices of faces at which the skins touch.
-std::size_t count_pinched(PolygonView mesh, const Shell& shell) {
-  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
-  for (const auto v : mesh.corners) used[v] = 1;
-  std::size_t pinched = 0;
-  for (std::size_t v = 0; v < used.size(); ++v) pinched += used[v] && shell.outer()[v] == shell.inner()[v];
-  return pinched;
-}
-
-/// For each vertex of the mesh: 1 within two rings of where it crosses itself.
-std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld) {
-  const Surface surface = build_surface(mesh, weld);
-  const NearCrossings crossings(surface, CrossingFinder(surface, surface.vertices).all());
-  std::vector<std::uint8_t> near(mesh.positions.size(), 0);
-  for (std::size_t v = 0; v < near.size(); ++v)
-    near[v] = surface.welded[v] != kNone && crossings.is_vertex_near(surface.welded[v]);
-  return near;
-}
-
-void count_crossings(PolygonView mesh, const WeldOptions& weld, const Precision& precision, Shell& shell) {
-  const std::size_t count = mesh.positions.size();
-  std::vector<Vec3d> rounded = shell.polygons.positions;
-  for (std::size_t v = 0; v < rounded.size(); ++v)
-    if (rounded[v] != mesh.positions[v % count]) rounded[v] = precision(rounded[v]);  // the others keep their bytes
-  const Surface surface = build_surface({rounded, shell.polygons.corners, shell.polygons.face_begin}, {});
-  const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
-  if (pairs.empty()) return;
-  const std::vector<std::uint8_t> near = find_near_crossings(mesh, weld);
-  const auto has_moved = [&](std::uint32_t v) { return rounded[v] != mesh.positions[v % count]; };
-  const auto is_near = [&](std::uint32_t v) { return near[v % count] != 0; };
-  const auto any_corner = [&](const TrianglePair& pair, const auto& holds) {
-    for (const auto t : {pair.first, pair.second})
-      for (const auto v : surface.triangles[t])
-        if (holds(surface.representative[v])) return true;
-    return false;
+/// Whether there is anything that two skins with a vertex each cannot tell: sheets that meet, where vertices stay, or
+/// faces that were turned round.
+bool needs_sides(const OffsetResult& result, const TakenFaces& taken) {
+  const auto any = [](const std::vector<std::uint8_t>& marks) {
+    return std::find(marks.begin(), marks.end(), 1) != marks.end();
   };
-  for (const TrianglePair& pair : pairs)
-    ++(!any_corner(pair, has_moved) ? shell.facts.source_crossings
-       : any_corner(pair, is_near)  ? shell.facts.crossings_near_source
-                                    : shell.facts.crossings);
+  return any(taken.junctions) || (result.statistics.facts.turned_triangles > 0 && any(taken.turned));
+}
+bool may_need_sides(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options) {
+  if (result.statistics.facts.turned_triangles > 0) return true;
+  for (std::size_t v = 0; options.off_source && v < result.states.size(); ++v)
+    if (result.states[v] == VertexState::Limited && result.positions[v] == mesh.positions[v]) return true;
+  return false;
+}
+
+Shell junction_shell_of(const Part& part, const TakenFaces& taken, std::span<const Vec3d> outer,
+                        std::span<const Vec3d> inner_skin, const OffsetResult& result, const OffsetOptions& options,
+                        const OffsetResult* inner) {
+  const PolygonView faces = part.view();
+  const std::vector<std::uint32_t> place = weld_by_position(faces, options.weld);
+  const auto thickness = [&](std::uint32_t v) -> std::array<double, 2> {
+    const double d = result.distances[v];
+    if (inner) return {d, -inner->distances[v]};
+    return {std::max(d, 0.0), std::max(-d, 0.0)};
+  };
+  Shell shell = make_junction_shell({.sheets = {faces, place, taken.turned, taken.repeats, thickness},
+                                     .outer = outer,
+                                     .inner = inner_skin,
+                                     .junctions = taken.junctions,
+                                     .weld = options.weld,
+                                     .precision = options.precision,
+                                     .to_be_valid = options.collision == Collision::Limit});
+  count_facts(faces, options.weld, options.precision, weld_by_position(shell.polygons.view(), {}), shell);
+  shell.faces = part.faces();
+  for (Shell::RimOrigin& edge : shell.rim) edge = part.in_mesh(edge);
+  return shell;
 }
 
 }  // namespace
 
-Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
-                 const Precision& precision) {
-  if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())
-    throw InvalidInput("shell: expected two skins of " + std::to_string(mesh.positions.size()) + " vertices, got " +
-                       std::to_string(outer.size()) + " and " + std::to_string(inner.size()));
-  const std::vector<std::uint32_t> place_in_mesh = weld_by_position(mesh, weld);
-  if (2 * mesh.positions.size() >= kNone)
-    throw InvalidInput("shell: expected fewer than 2^31 vertices, got " + std::to_string(mesh.positions.size()));
-  Shell shell = both_skins(mesh, outer, inner);
-  const std::vector<std::uint32_t> place = places_of(shell, place_in_mesh, weld.enabled);
-  add_rim(mesh, find_border(mesh, place_in_mesh), place, shell);
-  count_edges(place, shell);
-  shell.facts.pinched_vertices = count_pinched(mesh, shell);
-  count_crossings(mesh, weld, precision, shell);
-  shell.facts.volume = enclosed_volume(shell.polygons.view());
-  return shell;
-}
-
 Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options, const OffsetResult* inner) {
   std::vector<Vec3d> out(mesh.positions.begin(), mesh.positions.end()), in = out;
   for (std::size_t v = 0; v < out.size(); ++v) (result.distances[v] < 0 ? in : out)[v] = result.positions[v];
-  return make_shell(mesh, out, inner ? inner->positions : in, options.weld, options.precision);
+  if (inner) in = inner->positions;
+  const auto plain = [&] { return make_shell(mesh, out, in, options.weld, options.precision, options.only); };
+  if (!may_need_sides(mesh, result, options)) return plain();
+  const Part part(mesh, options.only);
+  const TakenFaces taken(part.view(), options);
+  if (!needs_sides(result, taken)) return plain();
+  Shell shell = junction_shell_of(part, taken, out, in, result, options, inner);
+  if (shell.facts.closed && shell.facts.oriented) return shell;
+  // Of sheets too tangled for that, both skins go on through the junctions, where they are in the mesh.
+  Shell simple = plain();
+  simple.facts.junction_vertices = simple.facts.short_junctions = shell.facts.junction_vertices;
+  return simple;
+}
+
+void tell_states(const Shell& shell, OffsetResult& result) {
+  if (shell.kept.empty()) return;
+  for (std::size_t v = 0; v < shell.kept.size(); ++v) {
+    const double kept = shell.kept[v], asked = std::abs(result.distances[v]);
+    if (kept < 0 || asked == 0) continue;
+    if (kept < 1 && !shell.is_junction[v] && result.states[v] != VertexState::Reached) continue;
+    result.states[v] = kept < 1 ? VertexState::Limited : VertexState::Reached;
+    result.achieved[v] = kept * asked;
+  }
+  result.statistics.vertices_by_state = {};
+  count_states(result.states, result.statistics);
 }
 
 }  // namespace vdb_offset

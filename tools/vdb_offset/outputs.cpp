@@ -190,17 +190,18 @@ std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& sou
               {"offset_distance", to.distance},
               {"made_by", std::string("vdb_offset ") + version()}});
   const PolygonView mesh = source.view();
-  if (!to.states.empty())
-    io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin},
-                     {result.states, result.achieved, result.distances});
-  if (!to.paths.empty()) write_paths(to.paths, result.paths);
   const auto writing = Clock::now();
   std::optional<Shell> shell;
   std::optional<ShellFacts> facts;
   if (args.shell) {
     shell = shell_of(mesh, outcome.result, args.options, outcome.inner);
+    tell_states(*shell, outcome.result);
     facts = shell->facts;
   }
+  if (!to.states.empty())
+    io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin},
+                     {result.states, result.achieved, result.distances});
+  if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteOptions options = args.write;
   options.format = format_of(to.mesh, args);
   options.before_rename = [&] {

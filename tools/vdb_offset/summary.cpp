@@ -168,9 +168,13 @@ void print_states(std::FILE* out, const OffsetResult& result) {
 }
 
 void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {
-  fmt::print(out, "{}: shell {}, {}, volume {:.6g}, rim of {} quads and {} triangles", path,
-             shell.closed ? "closed" : "not closed", shell.oriented ? "oriented" : "not oriented", shell.volume,
-             shell.rim_quads, shell.rim_triangles);
+  fmt::print(out, "{}: shell {}{}, {}, volume {:.6g}, rim of {} quads and {} triangles", path,
+             shell.has_thickness ? "" : "without any thickness, ", shell.closed ? "closed" : "not closed",
+             shell.oriented ? "oriented" : "not oriented", shell.volume, shell.rim_quads, shell.rim_triangles);
+  if (shell.junction_vertices) {
+    fmt::print(out, ", {} vertices at junctions of sheets", shell.junction_vertices);
+    if (shell.short_junctions) fmt::print(out, " ({} of them held back)", shell.short_junctions);
+  }
   if (shell.border_edges_left) fmt::print(out, ", {} border edges left", shell.border_edges_left);
   if (shell.non_manifold_edges) fmt::print(out, ", {} non-manifold edges", shell.non_manifold_edges);
   if (shell.pinched_vertices) fmt::print(out, ", without thickness at {} vertices", shell.pinched_vertices);

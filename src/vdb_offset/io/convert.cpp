@@ -18,10 +18,8 @@ namespace vdb_offset::io {
 namespace {
 
 /// Normals of faces that moved are computed from the coordinates as written, and need no more than single precision.
-void update_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
-                    std::vector<Vec3d>& normals, std::size_t& disagreeing) {
-  const NewNormals computed = new_normals(source, positions, precision);
-  disagreeing += computed.disagreeing;
+void update_normals(const NewNormals& computed, std::vector<Vec3d>& normals, WriteResult& result) {
+  result.disagreeing_normals += computed.disagreeing;
   const Precision single{Precision::Kind::Single};
   for (std::size_t n = 0; n < normals.size(); ++n)
     if (computed.value[n].lengthSqr() > 0) normals[n] = single(computed.value[n]);
@@ -197,12 +195,14 @@ void sort_by_material(const SourceLookup& lookup, const Materials& materials, Co
   put_in_order(content.with.texture.of_corner);
 }
 
-/// What each skin's vertices have.
+/// What the vertices of both skins have, and splits of them.
 template <class Value>
-void double_up(std::vector<Value>& of_vertices) {
+void double_up(const Shell& shell, std::vector<Value>& of_vertices) {
+  if (of_vertices.empty()) return;
   const std::size_t count = of_vertices.size();
   of_vertices.resize(2 * count);
   std::copy_n(of_vertices.begin(), count, of_vertices.begin() + static_cast<std::ptrdiff_t>(count));
+  for (const Shell::Split& split : shell.splits) of_vertices.push_back(of_vertices[split.vertex]);
 }
 
 /// What the corners of a shell name, by what those of its mesh do; those of the rim what the corners of its border
@@ -221,25 +221,29 @@ std::vector<std::uint32_t> values_of_shell(PolygonView mesh, const Shell& shell,
 }
 
 /// Normals of the inner skin point the other way. The rim has none of its own: in a format that has normals of vertices
-/// only, those of the skins.
+/// only, those of the skins; so have splits.
 void add_inner_normals(PolygonView mesh, const Shell& shell, bool of_corners, const std::vector<Vec3d>& inner,
                        CornerValues<Vec3d>& normals) {
   const auto count = static_cast<std::uint32_t>(normals.value.size());
   if (of_corners || !normals.of_corner.empty()) {
     normals.of_corner = values_of_shell(mesh, shell, normals);
-    const std::size_t rim = shell.polygons.face_begin[2 * shell.source_faces()];
+    const std::size_t rim = shell.polygons.face_begin[2 * shell.skin_faces()];
     for (std::size_t c = 0; c < normals.of_corner.size(); ++c) {
       std::uint32_t& normal = normals.of_corner[c];
       if (of_corners && c >= rim) normal = kNoNormal;
-      if (normal != kNoNormal && shell.polygons.corners[c] >= shell.source_vertices()) normal += count;
+      const bool on_inner_skin = c < rim ? c >= rim / 2 : shell.skin_of(shell.polygons.corners[c]) == ShellPart::Inner;
+      if (normal != kNoNormal && on_inner_skin) normal += count;
     }
   }
   for (const Vec3d& normal : inner) normals.value.push_back(Vec3d(0.0) - normal);
+  if (!of_corners && normals.of_corner.empty())
+    for (const Shell::Split& split : shell.splits)
+      normals.value.push_back(normals.value[split.skin == ShellPart::Inner ? count + split.vertex : split.vertex]);
 }
 
 std::vector<Part> parts_of(const Shell& shell) {
   std::vector<Part> parts;
-  const std::size_t faces[kShellPartCount] = {shell.source_faces(), shell.source_faces(), shell.rim.size()};
+  const std::size_t faces[kShellPartCount] = {shell.skin_faces(), shell.skin_faces(), shell.rim.size()};
   for (const ShellPart part : {ShellPart::Outer, ShellPart::Inner, ShellPart::Rim})
     if (const std::size_t count = faces[static_cast<std::size_t>(part)]; count > 0)
       parts.push_back({name(part), count});
@@ -275,7 +279,7 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
   Attributes& with = content->with;
   if (!with.normals.empty() && normals == Normals::Recompute && target != Format::Stl)
-    update_normals(source, positions, precision, with.normals.value, result.disagreeing_normals);
+    update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);
 }
 
@@ -285,14 +289,14 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
   const auto content = std::make_shared<Content>(
       Content{shell.polygons.view(), precision, read_attributes(source), parts_of(shell), {}});
   Attributes& with = content->with;
-  double_up(with.colours);
+  double_up(shell, with.colours);
   if (!with.texture.of_corner.empty()) with.texture.of_corner = values_of_shell(mesh, shell, with.texture);
-  else double_up(with.texture.value);
+  else double_up(shell, with.texture.value);
   if (!with.normals.empty()) {
     std::vector<Vec3d> inner = with.normals.value;
     if (normals == Normals::Recompute && target != Format::Stl) {
-      update_normals(source, shell.outer(), precision, with.normals.value, result.disagreeing_normals);
-      update_normals(source, shell.inner(), precision, inner, result.disagreeing_normals);
+      update_normals(skin_normals(source, shell, ShellPart::Outer, precision), with.normals.value, result);
+      update_normals(skin_normals(source, shell, ShellPart::Inner, precision), inner, result);
     }
     add_inner_normals(mesh, shell, target == Format::Obj, inner, with.normals);
   }

@@ -33,17 +33,27 @@ std::uint32_t normal_of(const MeshFile& source, std::size_t corner) {
   return source.corner_normal.empty() ? kNoNormal : source.corner_normal[corner];
 }
 
-Users find_users(const MeshFile& source) {
+/// Calls visit(face, corner, normal) for the corners that name one, in the file's order.
+template <class Visit>
+void for_each_user(const MeshFile& source, std::span<const std::uint32_t> faces, Visit&& visit) {
   const PolygonView mesh = source.polygons.view();
+  const std::size_t count = faces.empty() ? mesh.face_count() : faces.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t f = faces.empty() ? static_cast<std::uint32_t>(i) : faces[i];
+    for (std::uint32_t c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) visit(f, c, n);
+  }
+}
+
+Users find_users(const MeshFile& source, std::span<const std::uint32_t> faces) {
   Users users;
   users.begin.assign(source.normal_at.size() + 2, 0);
-  for (std::size_t c = 0; c < mesh.corners.size(); ++c)
-    if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) ++users.begin[n + 2];
+  for_each_user(source, faces, [&](auto, auto, std::uint32_t n) { ++users.begin[n + 2]; });
   std::partial_sum(users.begin.begin(), users.begin.end(), users.begin.begin());
   users.corners.resize(users.begin.back());
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-    for (std::uint32_t c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) users.corners[users.begin[n + 1]++] = {f, c};
+  for_each_user(source, faces, [&](std::uint32_t f, std::uint32_t c, std::uint32_t n) {
+    users.corners[users.begin[n + 1]++] = {f, c};
+  });
   users.begin.pop_back();
   return users;
 }
@@ -98,11 +108,11 @@ NewNormals facet_normals(PolygonView mesh, std::span<const Vec3d> positions, con
   return normals;
 }
 
-NewNormals normals_of_moved(const MeshFile& source, std::span<const Vec3d> positions,
+NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<const std::uint32_t> faces,
                             const std::vector<std::uint8_t>& moved) {
-  const PolygonView mesh = source.polygons.view();
+  const std::span<const Vec3d> positions = mesh.positions;
   if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
-  const Users users = find_users(source);
+  const Users users = find_users(source, faces);
   NewNormals normals;
   normals.value.assign(source.normal_at.size(), Vec3d(0.0));
   std::atomic<std::size_t> disagreeing = 0;
@@ -123,15 +133,19 @@ NewNormals normals_of_moved(const MeshFile& source, std::span<const Vec3d> posit
 
 }  // namespace
 
-NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision) {
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
+                       const PlacedFaces& placed) {
   if (source.normal_at.empty()) return {};
   std::vector<Vec3d> stored(positions.size());
   std::vector<std::uint8_t> moved(positions.size());
   for_each_index(positions.size(), [&](std::size_t v) {
-    moved[v] = has_moved(source.polygons.positions[v], positions[v], precision);
-    stored[v] = moved[v] ? precision(positions[v]) : source.polygons.positions[v];
+    const Vec3d& before = source.polygons.positions[placed.origin.empty() ? v : placed.origin[v]];
+    moved[v] = has_moved(before, positions[v], precision);
+    stored[v] = moved[v] ? precision(positions[v]) : before;
   });
-  return normals_of_moved(source, stored, moved);
+  const std::span<const std::uint32_t> corners =
+      placed.corners.empty() ? std::span(source.polygons.corners) : placed.corners;
+  return normals_of_moved(source, {stored, corners, source.polygons.face_begin}, placed.faces, moved);
 }
 
 }  // namespace vdb_offset::io

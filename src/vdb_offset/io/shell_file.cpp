@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/convert.h"
@@ -18,12 +19,12 @@ namespace {
 constexpr Precision kNormalPrecision{Precision::Kind::Single};
 
 void require_same_mesh(const MeshFile& source, const Shell& shell) {
+  const std::size_t faces = source.polygons.face_count();
   if (shell.source_vertices() == source.polygons.positions.size() &&
-      shell.source_faces() == source.polygons.face_count())
+      (shell.faces.empty() ? shell.skin_faces() == faces : shell.faces.back() < faces))
     return;
   throw InvalidInput(fmt::format("write_shell: expected a shell of {} vertices and {} faces, got one of {} and {}",
-                                 source.polygons.positions.size(), source.polygons.face_count(),
-                                 shell.source_vertices(), shell.source_faces()));
+                                 source.polygons.positions.size(), faces, shell.source_vertices(), shell.skin_faces()));
 }
 
 Pieces in_own_format(const SharedShell& content, std::vector<std::string>& lost) {
@@ -52,24 +53,33 @@ std::string negated(std::string_view word) {
 
 Skin::Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision, Normals normals)
     : source_(source),
+      shell_(shell),
       positions_(part == ShellPart::Inner ? shell.inner() : shell.outer()),
       first_vertex_(part == ShellPart::Inner ? static_cast<std::uint32_t>(positions_.size()) : 0),
       precision_(precision) {
-  if (normals == Normals::Recompute) normals_ = io::new_normals(source, positions_, precision);
+  if (normals != Normals::Recompute || source.normal_at.empty()) return;
+  const bool of_vertices = source.format == Format::Ply || source.format == Format::Off;
+  if (of_vertices && !shell.splits.empty()) vertex_normals_ = shell_vertex_normals(shell, precision);
+  else normals_ = skin_normals(source, shell, part, precision);
 }
 
 bool Skin::is_source() const {
   return std::equal(positions_.begin(), positions_.end(), source_.polygons.positions.begin());
 }
 
-Vec3d Skin::position(std::size_t v) const { return new_position(v).value_or(source_.polygons.positions[v]); }
+Vec3d Skin::position(std::size_t v) const { return new_position(v).value_or(source_.polygons.positions[source_of(v)]); }
 
 std::optional<Vec3d> Skin::new_position(std::size_t v) const {
-  if (!has_moved(source_.polygons.positions[v], positions_[v], precision_)) return std::nullopt;
-  return precision_(positions_[v]);
+  const Vec3d& place = shell_.polygons.positions[number(v)];
+  if (!has_moved(source_.polygons.positions[source_of(v)], place, precision_)) return std::nullopt;
+  return precision_(place);
 }
 
 std::optional<Vec3d> Skin::new_normal(std::size_t n) const {
+  if (!vertex_normals_.empty()) {
+    const Vec3d& normal = vertex_normals_[number(n)];
+    return normal.lengthSqr() > 0 ? std::optional(normal) : std::nullopt;
+  }
   if (normals_.value.empty() || !(normals_.value[n].lengthSqr() > 0)) return std::nullopt;
   return is_reversed() ? Vec3d(0.0) - normals_.value[n] : normals_.value[n];
 }
@@ -87,20 +97,52 @@ void Skin::append_normal_component(std::string& text, std::size_t n, int k, std:
 void Skin::append_position(std::string& text, std::size_t v) const {
   for (int k = 0; k < 3; ++k) {
     text += ' ';
-    append_coordinate(text, v, k, word_at(source_.position_at[v].at[k]));
+    append_coordinate(text, v, k, word_at(source_.position_at[source_of(v)].at[k]));
   }
 }
 
 void Skin::append_normal(std::string& text, std::size_t n) const {
+  const std::size_t at = vertex_normals_.empty() ? n : source_of(n);
   for (int k = 0; k < 3; ++k) {
     text += ' ';
-    append_normal_component(text, n, k, word_at(source_.normal_at[n].at[k]));
+    append_normal_component(text, n, k, word_at(source_.normal_at[at].at[k]));
   }
 }
 
 std::string_view Skin::word_at(std::uint64_t byte) const {
   const char comment = source_.format == Format::Obj || source_.format == Format::Off ? '#' : '\0';
   return Scanner(source_.path, source_.text(), byte, source_.format == Format::Obj, comment).token();
+}
+
+NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision) {
+  const bool inner = part == ShellPart::Inner;
+  if (shell.splits.empty())
+    return new_normals(source, inner ? shell.inner() : shell.outer(), precision, {.faces = shell.faces});
+  const PolygonView mesh = source.polygons.view();
+  std::vector<std::uint32_t> corners = source.polygons.corners, origin(shell.polygons.positions.size());
+  for (std::uint32_t v = 0; v < origin.size(); ++v) origin[v] = shell.source_vertex(v);
+  const std::size_t first = inner ? shell.skin_faces() : 0;
+  for (std::size_t f = first; f < first + shell.skin_faces(); ++f) {
+    const auto face = shell.polygons.view().face(f);
+    for (std::size_t k = 0; k < face.size(); ++k) corners[shell.source_corner(mesh, f, k)] = face[k];
+  }
+  return new_normals(source, shell.polygons.positions, precision, {shell.faces, corners, origin});
+}
+
+std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Precision& precision) {
+  std::vector<Vec3d> normals(shell.polygons.positions.size(), Vec3d(0.0));
+  for (std::size_t f = 0; f < 2 * shell.skin_faces(); ++f) {
+    const auto face = shell.polygons.view().face(f);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const auto at = [&](std::size_t i) { return precision(shell.polygons.positions[face[i % face.size()]]); };
+      const Vec3d next = at(k + 1) - at(k), previous = at(k + face.size() - 1) - at(k), across = next.cross(previous);
+      const double sine = across.length();
+      if (sine > 0) normals[face[k]] += across * (std::atan2(sine, next.dot(previous)) / sine);
+    }
+  }
+  for (Vec3d& normal : normals)
+    if (normal.lengthSqr() > 0) normal.normalize();
+  return normals;
 }
 
 WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,

@@ -14,6 +14,8 @@ namespace vdb_offset::io {
 inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
 
 /// One skin of a shell, as a file of its source's format has it. Refers to what it is made of.
+///
+/// Its vertices are numbered as the source's; behind those come the splits of both skins.
 class Skin {
  public:
   Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision, Normals normals);
@@ -23,6 +25,8 @@ class Skin {
   bool is_reversed() const { return first_vertex_ > 0; }
   /// No vertex has moved.
   bool is_source() const;
+  /// The vertex of the source that one is, or is a split of.
+  std::size_t source_of(std::size_t v) const { return v < vertices() ? v : shell_.splits[v - vertices()].vertex; }
   /// The source's normals as they are now, not turned round.
   const NewNormals& new_normals() const { return normals_; }
 
@@ -41,13 +45,25 @@ class Skin {
 
  private:
   std::string_view word_at(std::uint64_t byte) const;
+  std::size_t vertices() const { return positions_.size(); }
+  /// Among the shell's.
+  std::size_t number(std::size_t v) const { return v < vertices() ? first_vertex_ + v : vertices() + v; }
 
   const MeshFile& source_;
+  const Shell& shell_;
   std::span<const Vec3d> positions_;
   std::uint32_t first_vertex_;
   Precision precision_;
   NewNormals normals_;
+  std::vector<Vec3d> vertex_normals_;  // of the shell's, where splits need some of their own
 };
+
+/// The normals of a file's corners, as a skin of its shell has them; not turned round.
+NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision);
+
+/// Those of a shell's vertices, outward: the means of the faces of both skins by angle, without the rim. Zero where
+/// there is none.
+std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Precision& precision);
 
 /// A shell that is to be a file of its source's format. Refers to what it is made of.
 struct ShellContent {
@@ -59,6 +75,16 @@ struct ShellContent {
   Skin inner{source, shell, ShellPart::Inner, precision, normals};
 
   const Skin& skin(ShellPart part) const { return part == ShellPart::Inner ? inner : outer; }
+  /// A vertex of the shell: a skin, and its number there.
+  struct SkinVertex {
+    const Skin& skin;
+    std::size_t number;
+  };
+  SkinVertex vertex(std::uint32_t v) const {
+    const Skin& of = skin(shell.skin_of(v));
+    const std::size_t count = shell.source_vertices();
+    return {of, v < 2 * count ? v - of.first_vertex() : v - count};
+  }
 };
 using SharedShell = std::shared_ptr<const ShellContent>;
 

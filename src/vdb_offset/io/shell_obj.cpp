@@ -193,25 +193,33 @@ class ObjShellWriter {
     std::string patched = outer_.make(i);
     bool needs_group = found_.groups_late && i == found_.first_face_run;
     if (i + 1 == runs() && !patched.ends_with('\n')) patched += '\n';
-    if (!needs_group && !run.has_groups && !(run.has_elements && elements_inside_)) return patched;
+    if (!needs_group && !run.has_groups && !(run.has_elements && elements_inside_) && has_faces_as_they_are())
+      return patched;
     const std::size_t mark = i == 0 ? byte_order_mark(patched) : 0;
     std::string text = patched.substr(0, mark);
+    Progress at{run.vertices, run.textures, run.faces};
     for_each_obj_line(source_.path, patched, mark, [&](const ObjLine& line) {
-      if (needs_group && line.keyword == "f") {
+      const bool is_face = line.keyword == "f";
+      at.textures += line.keyword == "vt";
+      if (needs_group && is_face) {
         text += "g outer\n";
         needs_group = false;
       }
       if (line.keyword == "g") append_group(text, line, ShellPart::Outer);
+      else if (is_face) append_outer_face(text, line, at);
       else if (!(elements_inside_ && is_element(line.keyword))) append_line(text, line.whole);
+      at.faces += is_face;
     });
     return text;
   }
 
-  void append_inner_vertex(std::string& text, std::size_t v) const {
+  /// One of the inner skin, or behind that.
+  void append_other_vertex(std::string& text, std::size_t i) const {
+    const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
     text += 'v';
-    content_->inner.append_position(text, v);
+    skin.append_position(text, v);
     if (has_vertex_data_) {
-      Scanner words(source_.path, source_.text(), source_.position_at[v].at[2], true, '#');
+      Scanner words(source_.path, source_.text(), source_.position_at[skin.source_of(v)].at[2], true, '#');
       for (words.token(); !words.at_line_end();) (text += ' ') += words.token();
     }
     text += '\n';
@@ -233,7 +241,8 @@ class ObjShellWriter {
         state[k] = line.whole;
         return;
       }
-      if (line.keyword != "f" && !elements_inside_) return;
+      if (line.keyword != "f" ? !elements_inside_ : shell_.skin_face(static_cast<std::uint32_t>(at.faces)) == kNone)
+        return;
       append_changes(text, state, written);
       if (line.keyword == "f") append_inner_face(text, line, at);
       else append_element(text, line, at);
@@ -245,7 +254,7 @@ class ObjShellWriter {
   /// The rim's faces at the borders of a run's.
   std::string rim_run(std::size_t i) const {
     auto edge = first_rim_of(found_.runs[i].faces);
-    if (edge == first_rim_of(i + 1 < runs() ? found_.runs[i + 1].faces : shell_.source_faces())) return {};
+    if (edge == first_rim_of(i + 1 < runs() ? found_.runs[i + 1].faces : mesh_faces())) return {};
     std::string text = edge == shell_.rim.begin() ? "g rim\n" : "";
     StateLines state = found_.runs[i].state, written = state_before(edge);
     for_each_face_line(i, [&](const ObjLine& line, const Progress& at) {
@@ -277,7 +286,7 @@ class ObjShellWriter {
       at.vertices += line.keyword == "v";
       at.textures += line.keyword == "vt";
       // A file that has changed meanwhile may have more faces; it will not be put in place.
-      if (is_face && at.faces >= shell_.source_faces()) return;
+      if (is_face && at.faces >= mesh_faces()) return;
       if (is_face || line.keyword == "g" || is_element(line.keyword) || face_state_of(line.keyword) != kNoState)
         visit(line, at);
       at.faces += is_face;
@@ -330,24 +339,42 @@ class ObjShellWriter {
     append_integer(text, normal);
   }
 
+  std::size_t mesh_faces() const { return source_.polygons.face_count(); }
+  bool has_faces_as_they_are() const { return shell_.faces.empty() && shell_.splits.empty(); }
+
+  /// The source's line, if it names the same vertices; nothing for a face that is not part of the shell.
+  void append_outer_face(std::string& text, const ObjLine& line, const Progress& at) const {
+    const std::uint32_t face = at.faces < mesh_faces() ? shell_.skin_face(static_cast<std::uint32_t>(at.faces)) : kNone;
+    if (face == kNone) return;
+    if (std::ranges::equal(shell_.polygons.view().face(face), source_.polygons.view().face(at.faces)))
+      append_line(text, line.whole);
+    else append_face(text, line, at, face, 0);
+  }
+
   void append_inner_face(std::string& text, const ObjLine& line, const Progress& at) const {
+    const std::uint32_t face = shell_.skin_face(static_cast<std::uint32_t>(at.faces));
+    append_face(text, line, at, shell_.skin_faces() + face, source_.normal_at.size());
+  }
+
+  /// A face of the shell over the one of a line; normals are numbered behind `first_normal`.
+  void append_face(std::string& text, const ObjLine& line, const Progress& at, std::size_t face,
+                   std::size_t first_normal) const {
     const PolygonView mesh = source_.polygons.view();
     const std::vector<std::uint64_t> textures = textures_of(line, at);
-    const std::size_t face = shell_.source_faces() + at.faces;
     const auto corners = shell_.polygons.view().face(face);
     text += 'f';
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const std::uint32_t corner = shell_.source_corner(mesh, face, k);
       const std::uint32_t normal = has_normals_ ? source_.corner_normal[corner] : kNoNormal;
       append_corner(text, std::uint64_t{corners[k]} + 1, textures[corner - mesh.face_begin[at.faces]],
-                    normal == kNoNormal ? 0 : source_.normal_at.size() + normal + 1);
+                    normal == kNoNormal ? 0 : first_normal + normal + 1);
     }
     text += '\n';
   }
 
   void append_rim_face(std::string& text, RimIterator edge, const std::vector<std::uint64_t>& textures) const {
     const PolygonView mesh = source_.polygons.view();
-    const std::size_t face = 2 * shell_.source_faces() + static_cast<std::size_t>(edge - shell_.rim.begin());
+    const std::size_t face = 2 * shell_.skin_faces() + static_cast<std::size_t>(edge - shell_.rim.begin());
     const auto corners = shell_.polygons.view().face(face);
     text += 'f';
     for (std::size_t k = 0; k < corners.size(); ++k)
@@ -389,8 +416,8 @@ Pieces shell_to_obj(const SharedShell& content, std::vector<std::string>& lost) 
   const std::size_t normals = writer->has_normals() ? content->source.normal_at.size() : 0;
   return in_a_row(
       {{writer->runs(), [=](std::size_t i) { return writer->outer_run(i); }},
-       in_sections({}, {{content->source.polygons.positions.size(),
-                         [=](std::string& text, std::size_t v) { writer->append_inner_vertex(text, v); }},
+       in_sections({}, {{content->shell.polygons.positions.size() - content->shell.source_vertices(),
+                         [=](std::string& text, std::size_t i) { writer->append_other_vertex(text, i); }},
                         {normals, [=](std::string& text, std::size_t n) { writer->append_inner_normal(text, n); }}}),
        {writer->runs(), [=](std::size_t i) { return writer->inner_run(i); }},
        {writer->runs(), [=](std::size_t i) { return writer->rim_run(i); }}});

@@ -1,8 +1,10 @@
+#include <algorithm>
+
 #include "vdb_offset/io/numbers.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/shell_formats.h"
 
-/// The source's text up to its faces, with the outer skin's positions and other counts; the inner skin's vertices; the
+/// The source's text up to its faces, with the outer skin's positions and other counts; all other vertices; the
 /// source's faces; all other faces.
 namespace vdb_offset::io {
 namespace {
@@ -30,16 +32,24 @@ class OffShellWriter {
     const std::size_t end = v + 1 < shell_.source_vertices() ? first_of_vertex(v + 1) : face_row_.front();
     append_whole(text, source_.text().substr(end_of_numbers(v), end - end_of_numbers(v)));
   }
-  void append_inner_vertex(std::string& text, std::size_t v) const {
-    append_numbers(text, content_->inner, v);
-    append_words(text, Scanner(source_.path, source_.text(), end_of_numbers(v), false, '#'));
+  /// One of the inner skin, or behind that.
+  void append_other_vertex(std::string& text, std::size_t i) const {
+    const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
+    append_numbers(text, skin, v);
+    append_words(text, Scanner(source_.path, source_.text(), end_of_numbers(skin.source_of(v)), false, '#'));
   }
   void append_outer_face(std::string& text, std::size_t f) const {
-    append_whole(text, source_.text().substr(face_row_[f], face_row_[f + 1] - face_row_[f]));
+    const std::uint32_t row = shell_.source_face(f);
+    if (!std::ranges::equal(shell_.polygons.view().face(f), source_.polygons.view().face(row)))
+      append_new_face(text, f);
+    else append_whole(text, source_.text().substr(face_row_[row], face_row_[row + 1] - face_row_[row]));
   }
   /// A face of the inner skin or the rim.
-  void append_other_face(std::string& text, std::size_t i) const {
-    const std::size_t f = shell_.source_faces() + i, source_face = shell_.source_face(f);
+  void append_other_face(std::string& text, std::size_t i) const { append_new_face(text, shell_.skin_faces() + i); }
+
+ private:
+  void append_new_face(std::string& text, std::size_t f) const {
+    const std::size_t source_face = shell_.source_face(f);
     const auto face = shell_.polygons.view().face(f);
     append_integer(text, face.size());
     for (const auto v : face) append_integer(text += ' ', v);
@@ -48,7 +58,6 @@ class OffShellWriter {
     append_words(text, words);
   }
 
- private:
   std::size_t first_of_vertex(std::size_t v) const { return source_.position_at[v].at[0]; }
   std::size_t end_of_numbers(std::size_t v) const {
     const Places& last = source_.normal_at.empty() ? source_.position_at : source_.normal_at;
@@ -74,8 +83,9 @@ class OffShellWriter {
   /// Where each face's line starts; what stands behind the last one is its own.
   void find_faces() {
     Scanner scanner(source_.path, source_.text(), end_of_numbers(shell_.source_vertices() - 1), false, '#');
-    face_row_.reserve(shell_.source_faces() + 1);
-    for (std::size_t f = 0; f < shell_.source_faces(); ++f) {
+    const std::size_t faces = source_.polygons.face_count();
+    face_row_.reserve(faces + 1);
+    for (std::size_t f = 0; f < faces; ++f) {
       scanner.next_line();
       if (scanner.at_text_end()) scanner.fail("a face");
       face_row_.push_back(scanner.position());
@@ -117,9 +127,10 @@ Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost) 
   return in_sections(
       writer->start(),
       {{shell.source_vertices(), [=](std::string& text, std::size_t v) { writer->append_outer_vertex(text, v); }},
-       {shell.source_vertices(), [=](std::string& text, std::size_t v) { writer->append_inner_vertex(text, v); }},
-       {shell.source_faces(), [=](std::string& text, std::size_t f) { writer->append_outer_face(text, f); }},
-       {shell.polygons.face_count() - shell.source_faces(),
+       {shell.source_vertices() + shell.splits.size(),
+        [=](std::string& text, std::size_t i) { writer->append_other_vertex(text, i); }},
+       {shell.skin_faces(), [=](std::string& text, std::size_t f) { writer->append_outer_face(text, f); }},
+       {shell.polygons.face_count() - shell.skin_faces(),
         [=](std::string& text, std::size_t i) { writer->append_other_face(text, i); }}});
 }
 

@@ -68,14 +68,12 @@ class PlyShellWriter {
 
   /// The elements in their order.
   static Pieces pieces(const std::shared_ptr<const PlyShellWriter>& writer) {
-    const std::size_t count = writer->source_.polygons.positions.size();
     std::vector<Section> sections;
     for (std::size_t i = 0; i < writer->header_.elements.size(); ++i) {
       const Element& element = writer->header_.elements[i];
       if (&element == &writer->vertices_) {
-        for (const ShellPart part : {ShellPart::Outer, ShellPart::Inner})
-          sections.push_back(
-              {count, [=](std::string& bytes, std::size_t v) { writer->append_vertex(bytes, part, v); }});
+        sections.push_back({writer->shell_.polygons.positions.size(),
+                            [=](std::string& bytes, std::size_t v) { writer->append_vertex(bytes, v); }});
       } else if (&element == &writer->faces_) {
         sections.push_back({writer->shell_.polygons.face_count(),
                             [=](std::string& bytes, std::size_t f) { writer->append_face(bytes, f); }});
@@ -118,10 +116,10 @@ class PlyShellWriter {
     return text;
   }
 
-  void append_vertex(std::string& bytes, ShellPart part, std::size_t v) const {
+  void append_vertex(std::string& bytes, std::size_t vertex) const {
     constexpr std::string_view kNames[6] = {"x", "y", "z", "nx", "ny", "nz"};
-    const Skin& skin = content_->skin(part);
-    std::size_t at = vertex_row_[v];
+    const auto& [skin, v] = content_->vertex(static_cast<std::uint32_t>(vertex));
+    std::size_t at = vertex_row_[skin.source_of(v)];
     const std::size_t start = bytes.size();
     for (const Property& property : vertices_.properties) {
       const auto* const known =

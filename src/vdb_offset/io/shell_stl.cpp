@@ -20,7 +20,7 @@ struct RimFacet {
 std::vector<RimFacet> split_rim(const Shell& shell) {
   std::vector<RimFacet> facets;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (std::size_t f = 2 * shell.source_faces(); f < shell.polygons.face_count(); ++f) {
+  for (std::size_t f = 2 * shell.skin_faces(); f < shell.polygons.face_count(); ++f) {
     triangles.clear();
     triangulate(shell.polygons.positions, shell.polygons.view().face(f), triangles);
     for (const auto& triangle : triangles) facets.push_back({triangle, shell.source_face(f)});
@@ -37,15 +37,10 @@ class StlShellWriter {
 
   /// Facet f of a skin.
   void append_text(std::string& text, ShellPart part, std::size_t f) const {
-    const Skin& skin = content_->skin(part);
     text += "  facet normal";
-    skin.append_normal(text, f);
+    content_->skin(part).append_normal(text, shell_.source_face(f));
     text += "\n    outer loop\n";
-    for (std::size_t k = 0; k < 3; ++k) {
-      text += "      vertex";
-      skin.append_position(text, source_vertex(part, f, k));
-      text += '\n';
-    }
+    for (const std::uint32_t v : corners(part, f)) append_vertex(text, v);
     text += "    endloop\n  endfacet\n";
   }
   void append_rim_text(std::string& text, std::size_t i) const {
@@ -53,20 +48,17 @@ class StlShellWriter {
     const Vec3d normal = rim_normal(i);
     for (int k = 0; k < 3; ++k) append_number(text += ' ', normal[k], {Precision::Kind::Single});
     text += "\n    outer loop\n";
-    for (const std::uint32_t v : rim_[i].corners) {
-      text += "      vertex";
-      skin_of(v).append_position(text, v % shell_.source_vertices());
-      text += '\n';
-    }
+    for (const std::uint32_t v : rim_[i].corners) append_vertex(text, v);
     text += "    endloop\n  endfacet\n";
   }
 
   void append_binary_facet(std::string& bytes, ShellPart part, std::size_t f) const {
     const Skin& skin = content_->skin(part);
-    if (const auto normal = skin.new_normal(f)) append_floats(bytes, *normal);
-    else append_old_normal(bytes, f, skin.is_reversed());
-    for (std::size_t k = 0; k < 3; ++k) append_floats(bytes, skin.position(source_vertex(part, f, k)));
-    append_attribute(bytes, f);
+    const std::uint32_t of_source = shell_.source_face(f);
+    if (const auto normal = skin.new_normal(of_source)) append_floats(bytes, *normal);
+    else append_old_normal(bytes, of_source, skin.is_reversed());
+    for (const std::uint32_t v : corners(part, f)) append_floats(bytes, position(v));
+    append_attribute(bytes, of_source);
   }
   void append_binary_rim(std::string& bytes, std::size_t i) const {
     append_floats(bytes, rim_normal(i));
@@ -75,14 +67,19 @@ class StlShellWriter {
   }
 
  private:
-  std::uint32_t source_vertex(ShellPart part, std::size_t f, std::size_t k) const {
-    const std::size_t face = part == ShellPart::Inner ? shell_.source_faces() + f : f;
-    return shell_.polygons.view().face(face)[k] - content_->skin(part).first_vertex();
+  std::span<const std::uint32_t> corners(ShellPart part, std::size_t f) const {
+    return shell_.polygons.view().face(part == ShellPart::Inner ? shell_.skin_faces() + f : f);
   }
-  const Skin& skin_of(std::uint32_t v) const {
-    return content_->skin(v < shell_.source_vertices() ? ShellPart::Outer : ShellPart::Inner);
+  void append_vertex(std::string& text, std::uint32_t v) const {
+    text += "      vertex";
+    const auto [skin, number] = content_->vertex(v);
+    skin.append_position(text, number);
+    text += '\n';
   }
-  Vec3d position(std::uint32_t v) const { return skin_of(v).position(v % shell_.source_vertices()); }
+  Vec3d position(std::uint32_t v) const {
+    const auto [skin, number] = content_->vertex(v);
+    return skin.position(number);
+  }
   Vec3d rim_normal(std::size_t i) const {
     const auto& [a, b, c] = rim_[i].corners;
     const Vec3d normal = (position(b) - position(a)).cross(position(c) - position(a));
@@ -140,7 +137,7 @@ Pieces solids(const SharedShell& content, const SharedStlWriter& writer, std::ve
                                                                       }}}));
   };
   for (const ShellPart part : {ShellPart::Outer, ShellPart::Inner})
-    add(part, of_source, content->shell.source_faces(),
+    add(part, of_source, content->shell.skin_faces(),
         [=](std::string& text, std::size_t f) { writer->append_text(text, part, f); });
   add(ShellPart::Rim, "", writer->rim_facets(),
       [=](std::string& text, std::size_t i) { writer->append_rim_text(text, i); });
@@ -148,13 +145,13 @@ Pieces solids(const SharedShell& content, const SharedStlWriter& writer, std::ve
 }
 
 Pieces binary_stl(const SharedShell& content, const SharedStlWriter& writer) {
-  const std::size_t faces = content->shell.source_faces();
+  const std::size_t faces = content->shell.skin_faces();
   std::string header(content->source.text().substr(0, kStlHeader));
   append_binary(header, static_cast<std::uint32_t>(2 * faces + writer->rim_facets()));
   const auto skin = [&](ShellPart part) {
     return Section{faces, [=](std::string& bytes, std::size_t f) { writer->append_binary_facet(bytes, part, f); }};
   };
-  const std::size_t end = kStlFirst + faces * kStlFacet;
+  const std::size_t end = kStlFirst + content->source.polygons.face_count() * kStlFacet;
   return in_sections(
       header, {skin(ShellPart::Outer),
                skin(ShellPart::Inner),
