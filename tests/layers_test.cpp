@@ -11,6 +11,7 @@
 #include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/layer_block.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layer_report.h"
 #include "vdb_offset/scene/shapes.h"
 

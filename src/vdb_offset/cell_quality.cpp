@@ -8,16 +8,11 @@
 
 #include "vdb_offset/cell_faces.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/polygon_prism.h"
 #include "vdb_offset/prism_quality.h"
 
 namespace vdb_offset {
 namespace {
-
-/// Of unit vectors along a, b and c; 0 if one of them has no length.
-double unit_triple(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const double lengths = a.length() * b.length() * c.length();
-  return lengths > 0 ? a.cross(b).dot(c) / lengths : 0;
-}
 
 /// Points of a cell by the numbers of its corners.
 struct CellPoints {
@@ -104,35 +99,20 @@ Vec3d twice_area(std::size_t corners, At&& at) {
   return sum;
 }
 
-/// The neighbours of a face's corner.
-struct Around {
-  std::uint32_t previous, next;
-};
-Around around(std::span<const std::uint32_t> face, std::size_t k) {
-  return {face[(k + face.size() - 1) % face.size()], face[(k + 1) % face.size()]};
-}
-
 /// The faces of a prism over a polygon: the base seen from below, the top, and sides that stand on the base's edges.
-/// Corners that are in both base and top have two edges or four.
+/// Corners that are in both base and top are flat.
 double polyhedron_jacobian(const VolumeMesh& mesh, std::span<const std::uint32_t> cell) {
   const auto base = cell.subspan(2, cell[1]), top = cell.subspan(3 + cell[1], cell[2 + cell[1]]);
-  const Vec3d down = twice_area(base.size(), [&](std::size_t k) { return mesh.points[base[k]]; });
-  const auto triple = [&](std::uint32_t at, Around in_face, std::uint32_t across) {
-    const Vec3d& x = mesh.points[at];
-    return unit_triple(mesh.points[in_face.previous] - x, mesh.points[in_face.next] - x, mesh.points[across] - x);
-  };
-  constexpr double kStraight = 1e-6;  // sine of the angle by which a corner has to turn
-  double least = std::numeric_limits<double>::infinity();
+  thread_local PolygonPrism prism;
   const std::size_t n = base.size();
+  prism.below.resize(n), prism.above.resize(n), prism.flat.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const std::uint32_t below = base[k], above = top[(n - k) % n];
-    const Around ring = around(base, k);
-    const Vec3d& x = mesh.points[below];
-    if (unit_triple(x - mesh.points[ring.previous], mesh.points[ring.next] - x, down) < kStraight || below == above)
-      continue;
-    least = std::min({least, triple(below, ring, above), triple(above, around(top, (n - k) % n), below)});
+    const std::uint32_t below = base[(n - k) % n];
+    prism.below[k] = mesh.points[below];
+    prism.above[k] = mesh.points[top[k]];
+    prism.flat[k] = below == top[k];
   }
-  return std::isfinite(least) ? least : 0;
+  return scaled_jacobian(prism);
 }
 
 /// Least sine of the corners, and the same for triangles as for a regular one.

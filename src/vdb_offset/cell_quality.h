@@ -16,8 +16,7 @@ namespace vdb_offset {
 /// regular triangle (2 / sqrt 3) and a pyramid of edges of one length; for hexahedra that of the principal axes counts,
 /// too. At most 1; below 0 for a cell that is inside out somewhere, and 0 where an edge has no length. Pyramids are the
 /// worst of the four tetrahedra over their base's corners; other than Verdict's, theirs keeps its sign below 0.
-/// Polyhedra: over corners of three edges; not those where their first face is straight or turns inwards, which a right
-/// prism over a concave face has as well. Triangles (factor 2 / sqrt 3) and quadrilaterals: the least sine of a corner.
+/// Polyhedra: see polygon_prism.h. Triangles (factor 2 / sqrt 3) and quadrilaterals: the least sine of a corner.
 double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell);
 
 /// Longest edge by shortest; infinite if that has no length. For a cell in a layer, its width by its height.

@@ -5,7 +5,11 @@
 #include <atomic>
 #include <numeric>
 #include <optional>
+#include <utility>
 
+#include "vdb_offset/cell_quality.h"
+#include "vdb_offset/column_mesh.h"
+#include "vdb_offset/foam_cells.h"
 #include "vdb_offset/layer_rail.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/ways.h"
@@ -63,22 +67,60 @@ struct TwoTriangles {
   Pair square;  // of the normal
 };
 
-/// Whether in all prisms of two columns the ways up from each corner lean towards both triangles' normals, as leans().
+/// The corners of two triangles in the order of their numbers, and on which side of them so their normals lie.
+struct TwoOrders {
+  explicit TwoOrders(const std::array<std::span<const std::uint32_t>, 2>& base) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      auto& [p, q, r] = by_number[i];
+      p = base[i][0], q = base[i][1], r = base[i][2];
+      if (p > q) std::swap(p, q), sign[i] = -sign[i];
+      if (q > r) std::swap(q, r), sign[i] = -sign[i];
+      if (p > q) std::swap(p, q), sign[i] = -sign[i];
+    }
+  }
+  Way<Pair> at(const Stacks& stacks, std::size_t k, std::size_t layer) const {
+    return both(stacks.of(by_number[0][k])[layer], stacks.of(by_number[1][k])[layer]);
+  }
+  std::array<std::array<std::uint32_t, 3>, 2> by_number;
+  Pair sign{1, 1};
+};
+
+/// Whether prisms have volumes above 0 if their sides are split in two triangles as cell_volume() does it: from the
+/// lower corner of the lower number to the upper one of the higher. Of the three tetrahedra, two stand on the
+/// triangles.
+PairMask have_volume(const TwoOrders& order, const Stacks& stacks, std::size_t layer, const Pair& sign,
+                     const Way<Pair>& below, const Way<Pair>& above) {
+  const Way<Pair> p = order.at(stacks, 0, layer), upper_p = order.at(stacks, 0, layer + 1);
+  const Way<Pair> r = order.at(stacks, 2, layer), upper_r = order.at(stacks, 2, layer + 1);
+  const Way<Pair> q = order.at(stacks, 1, layer) - p, upper_q = order.at(stacks, 1, layer + 1) - p;
+  const Pair on_triangles = below.dot(upper_r - r) + above.dot(upper_p - p);
+  return sign * on_triangles + sign * order.sign * q.cross(upper_r - p).dot(upper_q) > 0.0;
+}
+
+/// Whether the prisms of two columns are inside out nowhere: in all of them the ways up from each corner lean towards
+/// both triangles' normals, as leans(), and between, at height t, the Jacobian is above 0 as well. On the way up from
+/// a corner it is a (1 - t)^2 + (a + c - d) t (1 - t) + c t^2, where a and c are the way's products with the normals,
+/// and d is the triple product of all three ways.
 std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const Stacks& stacks,
                                 int side) {
+  const Pair sign = Pair{} + static_cast<double>(side);
+  const TwoOrders order(base);
   PairMask upright{-1, -1};
   TwoTriangles below(base, stacks, 0);
   for (std::size_t layer = 0; layer < stacks.layers() && (upright[0] != 0 || upright[1] != 0); ++layer) {
     const TwoTriangles above(base, stacks, layer + 1);
-    const TwoTriangles* const ends[] = {&below, &above};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Way<Pair> up = above.corner[k] - below.corner[k];
-      const Pair square = up.dot(up);
-      for (const TwoTriangles* triangles : ends) {
-        const Pair dot = triangles->normal.dot(up) * static_cast<double>(side);
-        upright &= (dot > 0.0) & (dot * dot > kLeastLean * kLeastLean * triangles->square * square);
-      }
+    const Way<Pair> up[] = {above.corner[0] - below.corner[0], above.corner[1] - below.corner[1],
+                            above.corner[2] - below.corner[2]};
+    const Pair triple = up[0].cross(up[1]).dot(up[2]) * sign;
+    for (const Way<Pair>& way : up) {
+      const Pair square = way.dot(way);
+      const Pair a = below.normal.dot(way) * sign, c = above.normal.dot(way) * sign;
+      upright &= (a > 0.0) & (a * a > kLeastLean * kLeastLean * below.square * square);
+      upright &= (c > 0.0) & (c * c > kLeastLean * kLeastLean * above.square * square);
+      const Pair over = triple - a - c;
+      upright &= (over <= 0.0) | (over * over < 4.0 * a * c);
     }
+    upright &= have_volume(order, stacks, layer, sign, below.normal, above.normal);
     below = above;
   }
   return {upright[0] != 0, upright[1] != 0};
@@ -110,7 +152,8 @@ std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
 
 }  // namespace
 
-CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
+CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source, CellRules rules)
+    : rules_(rules) {
   if (take_all(mesh, body, source)) return;
   const Surface& surface = body.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
@@ -192,6 +235,14 @@ Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stack
 }
 
 bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
+  if (is_of_prisms(column, stacks))
+    return are_upright({base(column), base(column)}, stacks, side)[0] &&
+           (rules_ != CellRules::OpenFoam || has_valid_cells(column, stacks, side));
+  return rises_everywhere(column, stacks, side) && has_valid_cells(column, stacks, side);
+}
+
+/// Whether the ways up from each corner lean towards the normals of the faces that it has below and above.
+bool CellColumns::rises_everywhere(std::size_t column, const Stacks& stacks, int side) const {
   const auto corners = base(column);
   const std::size_t count = corners.size();
   const bool has_flat = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
@@ -211,6 +262,25 @@ bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) c
   return true;
 }
 
+/// Whether cells are told to be valid once they are made.
+bool CellColumns::has_valid_cells(std::size_t column, const Stacks& stacks, int side) const {
+  thread_local ColumnMesh cells;
+  thread_local std::vector<std::uint32_t> ring;
+  ring.assign(base(column).begin(), base(column).end());
+  if (side < 0) std::reverse(ring.begin() + 1, ring.end());
+  const auto flat = [&](std::uint32_t v) { return stacks.is_flat(v); };
+  if (std::all_of(ring.begin(), ring.end(), flat)) return true;  // there are none
+  cells.begin(ring, [&](std::size_t k) { return flat(ring[k]); });
+  for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {
+    const VolumeMesh& mesh = cells.at(layer, [&](std::size_t k) { return stacks.of(ring[k]); });
+    for (std::size_t c = 0; c < mesh.cell_count(); ++c)
+      if (!(scaled_jacobian(mesh, c) > 0) || !(cell_volume(mesh, c) > 0) ||
+          (rules_ == CellRules::OpenFoam && !has_foam_pyramids(mesh, c)))
+        return false;
+  }
+  return true;
+}
+
 bool CellColumns::is_of_prisms(std::size_t column, const Stacks& stacks) const {
   const auto corners = base(column);
   return corners.size() == 3 &&
@@ -219,7 +289,7 @@ bool CellColumns::is_of_prisms(std::size_t column, const Stacks& stacks) const {
 
 std::array<bool, 2> CellColumns::are_valid(std::size_t column, std::size_t other, const Stacks& stacks,
                                            int side) const {
-  if (!is_of_prisms(column, stacks) || !is_of_prisms(other, stacks))
+  if (rules_ == CellRules::OpenFoam || !is_of_prisms(column, stacks) || !is_of_prisms(other, stacks))
     return {is_valid(column, stacks, side), is_valid(other, stacks, side)};
   return are_upright({base(column), base(other)}, stacks, side);
 }

@@ -11,6 +11,12 @@
 
 namespace vdb_offset {
 
+/// What makes cells valid.
+enum class CellRules : std::uint8_t {
+  AnySolver,
+  OpenFoam,  ///< Beside all else, its checkMesh must find no face of a cell oriented wrongly (foam_cells.h).
+};
+
 /// The columns of cells that stand on the faces of a body's front, on its welded vertices.
 ///
 /// A column's base runs as its face's triangles do in the surface, seen from where they face. Faces that the surface
@@ -19,7 +25,8 @@ namespace vdb_offset {
 class CellColumns {
  public:
   /// `mesh` is the one that the body's surface was built from.
-  CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
+  CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source,
+              CellRules rules = CellRules::AnySolver);
 
   std::size_t size() const { return begin_.size() - 1; }
   std::span<const std::uint32_t> base(std::size_t column) const {
@@ -41,15 +48,18 @@ class CellColumns {
   /// more of the whole. Not normalised.
   Vec3d normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const;
 
-  /// Whether every cell of a column has a positive Jacobian at every corner that is not flat: there, the way up, to
-  /// `side` (1 or -1) of the base, makes less than a right angle with the normals of both its faces. Hexahedra
-  /// must not be inside out in their middle either, and quads with flat corners are also seen as the triangles that
-  /// they are split into.
+  /// Whether every cell of a column has a positive volume, and is inside out nowhere: at every corner that is not flat
+  /// the way up, to `side` (1 or -1) of the base, makes less than a right angle with the normals of both its faces, and
+  /// the cell's scaled Jacobian is above 0 (cell_quality.h). Prisms must not be inside out between their corners,
+  /// hexahedra not in their middle either, and quads with flat corners are also seen as the triangles that they are
+  /// split into.
   bool is_valid(std::size_t column, const Stacks& stacks, int side) const;
   /// The same of two columns, in half the time where both are of prisms.
   std::array<bool, 2> are_valid(std::size_t column, std::size_t other, const Stacks& stacks, int side) const;
 
  private:
+  bool rises_everywhere(std::size_t column, const Stacks& stacks, int side) const;
+  bool has_valid_cells(std::size_t column, const Stacks& stacks, int side) const;
   bool is_of_prisms(std::size_t column, const Stacks& stacks) const;
   bool take_all(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
   void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source);
@@ -57,6 +67,7 @@ class CellColumns {
   std::vector<std::uint32_t> corners_, begin_{0}, without_area_;
   std::vector<std::uint32_t> incident_, incident_begin_;
   std::vector<SplitQuad> split_quads_;
+  CellRules rules_;
 };
 
 }  // namespace vdb_offset

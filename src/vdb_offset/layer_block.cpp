@@ -1,10 +1,12 @@
 #include "vdb_offset/layer_block.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "vdb_offset/cell_quality.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/layer_columns.h"
 #include "vdb_offset/parallel.h"
@@ -156,6 +158,26 @@ StructuredBlock make_block(PolygonView mesh, const LayersResult& layers) {
     block.point_fields[2].values[p] = static_cast<float>(layers.states[v]);
   });
   return block;
+}
+
+std::size_t inverted_cells(const StructuredBlock& block) {
+  const std::size_t row = block.ni, sheet = row * block.nj;
+  const auto cells_in_row = static_cast<std::size_t>(block.ni - 1), cells_in_sheet = cells_in_row * (block.nj - 1);
+  std::atomic<std::size_t> count = 0;
+  for_each_index(cells_in_sheet * (block.nk - 1), [&](std::size_t c) {
+    thread_local VolumeMesh cell;
+    const std::size_t k = c / cells_in_sheet, j = c % cells_in_sheet / cells_in_row, i = c % cells_in_row;
+    const std::size_t at = k * sheet + j * row + i;
+    cell.cell_types = {CellType::Hexahedron};
+    cell.corners = {0, 1, 2, 3, 4, 5, 6, 7};
+    cell.cell_begin = {0, 8};
+    cell.points.clear();
+    for (const std::size_t level : {at, at + sheet})
+      for (const std::size_t corner : {level, level + 1, level + row + 1, level + row})
+        cell.points.push_back(block.points[corner]);
+    if (!(scaled_jacobian(cell, 0) > 0)) ++count;
+  });
+  return count;
 }
 
 }  // namespace vdb_offset

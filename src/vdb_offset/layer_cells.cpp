@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <set>
+#include <string>
 
 #include "vdb_offset/cell_stack.h"
 #include "vdb_offset/parallel.h"
@@ -113,23 +116,79 @@ void add_outer(const LayerPoints& points, const LayerColumns& columns, std::size
     });
 }
 
-void add_sides(const LayerPoints& points, const LayerColumns& columns, std::size_t layers, VolumeMesh& volume) {
-  VolumePatch patch;
-  patch.name = "sides";
-  patch.kind = VolumePatch::Kind::Side;
-  std::vector<std::pair<std::size_t, Index>> open;  // columns, and their sides
+/// A side of a column on the boundary.
+struct OpenSide {
+  std::size_t column;
+  Index corner;
+  Index opening = 0;
+};
+
+/// The sides on the boundary, and to which opening of the surface each belongs: those of one hang together at their
+/// points. Openings are numbered in the order of columns. Returns how many there are.
+std::size_t find_openings(const LayerPoints& points, const LayerColumns& columns, std::vector<OpenSide>& sides) {
+  std::vector<Index> first(points.wall());
+  std::iota(first.begin(), first.end(), 0);
+  const auto find = [&](Index p) {
+    while (first[p] != p) p = first[p] = first[first[p]];
+    return p;
+  };
   for (std::size_t c = 0; c < columns.count(); ++c)
-    for (Index k = 0; k < columns.ring(c).size(); ++k)
-      if (columns.open[columns.begin[c] + k] != 0) open.emplace_back(c, k);
+    for (Index k = 0; k < columns.ring(c).size(); ++k) {
+      if (columns.open[columns.begin[c] + k] == 0) continue;
+      sides.push_back({c, k});
+      const Index a = find(columns.ring(c)[k]), b = find(columns.ring(c)[(k + 1) % columns.ring(c).size()]);
+      first[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<Index> number(points.wall(), kNone);
+  std::size_t count = 0;
+  for (OpenSide& side : sides) {
+    Index& opening = number[find(columns.ring(side.column)[side.corner])];
+    if (opening == kNone) opening = static_cast<Index>(count++);
+    side.opening = opening;
+  }
+  return count;
+}
+
+/// A surface may be torn to pieces: openings beyond the largest few are one, the last.
+std::size_t keep_largest(std::size_t openings, std::vector<OpenSide>& sides) {
+  constexpr std::size_t kMost = 64;
+  if (openings <= kMost) return openings;
+  std::vector<Index> size(openings, 0), by_size(openings), number(openings, kMost - 1);
+  for (const OpenSide& side : sides) ++size[side.opening];
+  std::iota(by_size.begin(), by_size.end(), 0);
+  std::stable_sort(by_size.begin(), by_size.end(), [&](Index a, Index b) { return size[a] > size[b]; });
+  std::sort(by_size.begin(), by_size.begin() + kMost - 1);
+  for (Index i = 0; i + 1 < kMost; ++i) number[by_size[i]] = i;
+  for (OpenSide& side : sides) side.opening = number[side.opening];
+  return kMost;
+}
+
+/// `sides`, or of several openings `sides_1`, `sides_2` ... without the walls' names.
+std::string side_name(std::size_t openings, std::set<std::string>& taken) {
+  if (openings == 1) return "sides";
+  for (std::size_t n = 1;; ++n)
+    if (std::string name = "sides_" + std::to_string(n); taken.insert(name).second) return name;
+}
+
+void add_sides(const LayerPoints& points, const LayerColumns& columns, std::size_t layers, VolumeMesh& volume) {
+  std::vector<OpenSide> sides;
+  const std::size_t openings = keep_largest(find_openings(points, columns, sides), sides);
+  std::set<std::string> taken;
+  for (const VolumePatch& patch : volume.patches) taken.insert(patch.name);
+  const std::size_t first = volume.patches.size();
+  for (std::size_t i = 0; i < openings; ++i) {
+    VolumePatch& patch = volume.patches.emplace_back();
+    patch.name = side_name(openings, taken);
+    patch.kind = VolumePatch::Kind::Side;
+  }
   for (std::size_t layer = 0; layer < layers; ++layer)
-    for (const auto& [c, k] : open) {
+    for (const auto& [c, k, opening] : sides) {
       const CellStack stack(points, columns.ring(c), layer);
       std::array<Index, 4> face;
       const Index size = stack.side(k, face);
       add_face(std::span(face).first(size), layer * columns.cells.back() + columns.cells[c] + stack.cell_at_side(k),
-               patch);
+               volume.patches[first + opening]);
     }
-  if (patch.face_count() > 0) volume.patches.push_back(std::move(patch));
 }
 
 void add_patches(const LayerPoints& points, const LayerColumns& columns, const WallNames& names, std::size_t layers,

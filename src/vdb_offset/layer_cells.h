@@ -14,14 +14,15 @@ namespace vdb_offset {
 /// the neighbours and of the layers below and above; every one that a single cell has is in one patch. Where the cells
 /// of an edge cannot be paired, two by two and of opposite directions (on edges of three faces, or where faces disagree
 /// about the outside), what is left over has its face in the patch of sides; points there are split, so that these
-/// faces are not those of other cells as well.
+/// faces are not those of other cells as well. Sides that hang together belong to one opening, which has a patch of its
+/// own; of more than 64 the smallest share the last.
 ///
 /// Points: those of the wall in the order of the mesh's vertices, split ones behind them; then the same for each layer
 /// without the flat ones. Cells: layer by layer from the wall, in the order of faces. Patches: one for each of
-/// patch_names(), which may have no faces, "outer", and "sides" if there are any.
-/// Point fields: layer (0: wall), share, height (asked of the point, world units, signed), achieved, state (of
-/// VertexState). Cell fields: layer (from 1), face (of the input; exact up to 2^24), patch, scaled_jacobian,
-/// aspect_ratio. The result does not depend on the number of threads. Cost: O(cells).
+/// patch_names(), which may have no faces, "outer", and "sides" if the surface has an opening, or "sides_1", "sides_2"
+/// ... if it has several. Point fields: layer (0: wall), share, height (asked of the point, world units, signed),
+/// achieved, state (of VertexState). Cell fields: layer (from 1), face (of the input; exact up to 2^24), patch,
+/// scaled_jacobian, aspect_ratio. The result does not depend on the number of threads. Cost: O(cells).
 ///
 /// \pre `cells` are those of `layers`, and `quality` is theirs. \throw InvalidInput as require_names()
 VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,

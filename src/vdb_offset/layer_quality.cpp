@@ -6,6 +6,7 @@
 
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/cell_stack.h"
+#include "vdb_offset/column_mesh.h"
 #include "vdb_offset/parallel.h"
 #include "vdb_offset/prism_columns.h"
 
@@ -13,52 +14,6 @@ namespace vdb_offset {
 namespace {
 
 using Index = std::uint32_t;
-
-/// The cells of one column by themselves: their points are numbered within it, those of the wall first.
-class ColumnMesh {
- public:
-  void begin(const LayerPoints& points, std::span<const Index> ring) {
-    const auto corners = static_cast<Index>(ring.size());
-    points_.vertex.resize(corners);
-    ring_.resize(corners);
-    std::iota(ring_.begin(), ring_.end(), 0);
-    points_.in_layer.assign(corners, kNone);
-    points_.rising.clear();
-    for (Index k = 0; k < corners; ++k) {
-      if (points.flat(ring[k])) continue;
-      points_.in_layer[k] = points_.risen();
-      points_.rising.push_back(k);
-    }
-    mesh_.points.resize(corners + points_.risen());
-    mesh_.cell_types.clear();
-    mesh_.corners.clear();
-    mesh_.cell_begin.clear();
-    CellStack(points_, ring_, 0)
-        .visit_cells(
-            [&](CellType type) {
-              mesh_.cell_types.push_back(type);
-              mesh_.cell_begin.push_back(mesh_.corners.size());
-            },
-            [&](Index corner) { mesh_.corners.push_back(corner); });
-    mesh_.cell_begin.push_back(mesh_.corners.size());
-  }
-
-  /// `stack(k)` are the places of corner k in all layers, from the wall outward.
-  template <class Stack>
-  const VolumeMesh& at(std::size_t layer, Stack&& stack) {
-    for (Index k = 0; k < ring_.size(); ++k) {
-      mesh_.points[k] = stack(k)[points_.flat(k) ? 0 : layer];
-      if (!points_.flat(k)) mesh_.points[points_.at(k, 1)] = stack(k)[layer + 1];
-    }
-    return mesh_;
-  }
-  const std::vector<CellType>& types() const { return mesh_.cell_types; }
-
- private:
-  LayerPoints points_;
-  std::vector<Index> ring_;
-  VolumeMesh mesh_;
-};
 
 class CellMeasurer {
  public:
@@ -138,7 +93,7 @@ class CellMeasurer {
 
   double measure_column(std::size_t c, ColumnMesh& column) {
     const auto ring = cells_.columns.ring(c);
-    column.begin(cells_.points, ring);
+    column.begin(ring, [&](Index k) { return cells_.points.flat(ring[k]); });
     const std::size_t first = cells_.columns.cells[c];
     std::copy(column.types().begin(), column.types().end(), result_.types.begin() + static_cast<std::ptrdiff_t>(first));
     std::fill_n(result_.wall_angle.begin() + static_cast<std::ptrdiff_t>(first), column.types().size(),

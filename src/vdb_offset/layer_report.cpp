@@ -270,6 +270,16 @@ std::string summary(const LayerReport& report) {
   if (report.plane)
     text += fmt::format("segments of layers have {:.3g} of the length of those on the wall at least\n",
                         report.least_segment);
+  if (report.foam)
+    text += fmt::format(
+        "OpenFOAM: {} faces oriented wrongly; non-orthogonality {:.1f} degrees at most, {:.1f} on average ({} faces "
+        "above {:.0f}); skewness {:.3g} at most ({} faces above {:.0f})\n",
+        report.foam->wrong_faces, report.foam->non_orthogonality, report.foam->mean_non_orthogonality,
+        report.foam->non_orthogonal_faces, FoamQuality::kMostDegrees, report.foam->skewness, report.foam->skew_faces,
+        FoamQuality::kMostSkewness);
+  if (report.inverted_block_cells > 0)
+    text += fmt::format("{} cells of the block have a scaled Jacobian not above 0, as where layers end\n",
+                        report.inverted_block_cells);
   if (all.transition_cells > 0 || left_out(all) > 0)
     text += fmt::format("{} transition cells where layers end, {} {} left out\n", all.transition_cells, left_out(all),
                         report.plane ? "segments" : "faces");

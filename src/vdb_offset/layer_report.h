@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "vdb_offset/foam_cells.h"
 #include "vdb_offset/layer_columns.h"
 #include "vdb_offset/layer_quality.h"
 #include "vdb_offset/spread.h"
@@ -36,6 +38,8 @@ struct LayerReport {
   double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
   std::size_t points = 0;
   LayerStatistics growing;
+  std::optional<FoamQuality> foam;       ///< Of what has been written for OpenFOAM.
+  std::size_t inverted_block_cells = 0;  ///< Of what has been written as a structured block.
   std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;
 };
 

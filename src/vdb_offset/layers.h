@@ -30,13 +30,14 @@ struct LayersResult {
 };
 
 /// Grows layers of cells on a mesh's faces: one march passes all heights, so that exact distances are at each of them
-/// (1e-6 relative) where a vertex keeps all of its heights. The prisms over the faces' triangles have positive
-/// Jacobians at all corners, and neither cross each other nor the wall: where they would, all layers of the vertices
+/// (1e-6 relative) where a vertex keeps all of its heights. The cells over the faces are valid (CellColumns) by
+/// `rules`, and neither cross each other nor the wall: where they would, all layers of the vertices
 /// there are thinned by one share, which changes by no more than a bounded step from neighbour to neighbour. A vertex
 /// that cannot move at all has the share 0, and cells of no height stand on it.
 /// `heights` are those of the layers from the wall outward: all above 0 or all below, in rising order of size at each
 /// vertex; 0 in all layers leaves a vertex where it is. `options.distance` and `options.collision` do not count.
 /// \throw InvalidInput as offset_several(), and for heights that do not rise, or are of both signs.
-LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options);
+LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
+                         CellRules rules = CellRules::AnySolver);
 
 }  // namespace vdb_offset

@@ -186,7 +186,7 @@ class Pipeline {
   }
 
   /// Layers up to the last of the heights, which is the one that the march goes to.
-  LayersResult grow(std::span<const Distances> heights) {
+  LayersResult grow(std::span<const Distances> heights, CellRules rules) {
     prepare(farthest_of(heights.last(1)), {.layers = heights.size()});
     std::vector<Distances> on_vertices;
     for (const Distances& each : heights) on_vertices.push_back(on_body(each));
@@ -206,7 +206,7 @@ class Pipeline {
     LayerStack stack;
     {
       const StageTimer timer(statistics.seconds, Stage::Layers);
-      columns.emplace(mesh_, body, source);
+      columns.emplace(mesh_, body, source, rules);
       stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, *faults, paths.front(),
                            options_.progress);
     }
@@ -533,14 +533,15 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
   return results;
 }
 
-LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options) {
+LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
+                         CellRules rules) {
   for (const Distances& each : heights) require_one_each(mesh, each);
   require_heights(heights, mesh.positions.size());
   require_clearance(options);
   const int threads = thread_count(options.threads);
   LayersResult result;
   tbb::task_arena arena(threads);
-  arena.execute([&] { result = Pipeline(mesh, options, threads).grow(heights); });
+  arena.execute([&] { result = Pipeline(mesh, options, threads).grow(heights, rules); });
   count_states(result.states, result.statistics);
   return result;
 }

@@ -175,6 +175,14 @@ Json layers_json(const LayerReport& layers) {
                      {"coincident", layers.coincident_sides},
                      {"split_points", layers.split_points},
                      {"turned_faces", layers.turned_faces}};
+  report["inverted_block_cells"] = layers.inverted_block_cells;
+  if (layers.foam)
+    report["openfoam"] = {{"wrong_faces", layers.foam->wrong_faces},
+                          {"non_orthogonality", layers.foam->non_orthogonality},
+                          {"mean_non_orthogonality", layers.foam->mean_non_orthogonality},
+                          {"non_orthogonal_faces", layers.foam->non_orthogonal_faces},
+                          {"skewness", layers.foam->skewness},
+                          {"skew_faces", layers.foam->skew_faces}};
   report["patches"] = patches;
   return report;
 }

@@ -9,7 +9,7 @@
 
 namespace vdb_offset {
 
-/// With the order of a cell's corners, as in VTK's parametric coordinates, Gmsh, CGNS and SU2.
+/// With the order of a cell's corners, as in Gmsh, CGNS and SU2; VTK has prisms the other way round.
 enum class CellType : std::uint8_t {
   Tetrahedron,  ///< 0 1 2, whose normal by the right hand points to 3.
   Pyramid,      ///< 0 1 2 3 around the base, whose normal points to 4.

@@ -57,7 +57,8 @@ Grown grow(const Arguments& args, const Source& source, std::span<const Distance
     grown.layers = grow_curve_layers(source.view(), heights, args.options);
     measure_on_curves(source.view(), grown);
   } else {
-    grown.layers = grow_layers(source.view(), heights, args.options);
+    const bool foam = io::volume_format_of(args.output) == io::VolumeFormat::Foam;
+    grown.layers = grow_layers(source.view(), heights, args.options, foam ? CellRules::OpenFoam : CellRules::AnySolver);
     measure(source, grown);
   }
   return grown;
@@ -83,17 +84,28 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
 }
 
 void write_volume(const Arguments& args, const Source& source, Grown& grown) {
-  io::write_volume(args.output, source.curves
-                                    ? std::move(grown.on_curves)
-                                    : make_cells(grown.layers, grown.cells, grown.names, std::move(grown.quality)));
+  const io::VolumeWriteResult written = io::write_volume(
+      args.output, source.curves ? std::move(grown.on_curves)
+                                 : make_cells(grown.layers, grown.cells, grown.names, std::move(grown.quality)));
+  grown.report.foam = written.foam;
+}
+
+void write_block(const Arguments& args, const Source& source, Grown& grown) {
+  if (source.curves) return io::write_structured(args.output, make_curve_block(source.view(), grown.layers));
+  const StructuredBlock block = make_block(source.view(), grown.layers);
+  grown.report.inverted_block_cells = inverted_cells(block);
+  io::write_structured(args.output, block);
 }
 
 void write_cells(const Arguments& args, const Source& source, Grown& grown) {
-  if (args.layers->structured)
-    io::write_structured(args.output, source.curves ? make_curve_block(source.view(), grown.layers)
-                                                    : make_block(source.view(), grown.layers));
+  if (args.layers->structured) write_block(args, source, grown);
   else if (is_volume(args.output)) write_volume(args, source, grown);
   else write_surfaces(args, source, grown.layers);
+}
+
+bool are_valid(const LayerReport& report) {
+  return report.all.inverted_cells == 0 && report.inverted_block_cells == 0 &&
+         (!report.foam || report.foam->wrong_faces == 0);
 }
 
 void require_names(const Arguments& args, std::size_t layers) {
@@ -140,8 +152,9 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   if (!args.report.empty()) write_layers_report(args, grown.layers, grown.report, start);
   bar.clear();
   if (!args.quiet) print_layers_summary(args, source, grown.layers, grown.report, seconds_since(start));
-  return std::all_of(layers.states.begin(), layers.states.end(),
-                     [](VertexState state) { return state == VertexState::Reached || state == VertexState::Unused; });
+  return are_valid(grown.report) && std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) {
+           return state == VertexState::Reached || state == VertexState::Unused;
+         });
 }
 
 }  // namespace vdb_offset::tool

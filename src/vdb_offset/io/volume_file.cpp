@@ -114,40 +114,54 @@ void require_standard_cells(const std::string& path, const VolumeMesh& mesh, con
                                        path, patch.name, patch.face(f).size()));
 }
 
-std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest) {
-  std::vector<std::string> words;
+std::vector<std::string> distinct_words(std::span<const std::string> words, std::size_t longest) {
+  std::vector<std::string> distinct;
   std::unordered_set<std::string> known;
-  for (const VolumePatch& patch : mesh.patches) {
-    const std::string start = as_word(patch.name);
+  for (const std::string& start : words) {
     std::string word = start.substr(0, longest);
     for (int n = 2; !known.insert(word).second; ++n) {
       const std::string number = fmt::format("_{}", n);
       word = start.substr(0, longest - number.size()) + number;
     }
-    words.push_back(word);
+    distinct.push_back(word);
   }
-  return words;
+  return distinct;
 }
 
-void write_volume(const std::string& path, const VolumeMesh& mesh) {
+std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest) {
+  std::vector<std::string> words;
+  for (const VolumePatch& patch : mesh.patches) words.push_back(as_word(patch.name));
+  return distinct_words(words, longest);
+}
+
+VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh) {
   const auto format = volume_format_of(path);
   if (!format)
     throw InvalidInput(path + ": expected a name that ends in .vtu, .msh, .cgns or .su2, or a folder named polyMesh");
   require_consistent(path, mesh);
   require(!mesh.plane() || *format == VolumeFormat::Vtu || *format == VolumeFormat::Su2, path,
           "a name that ends in .vtu or .su2, as the cells lie in a plane");
+  // To the names of a .vtu's patches its cells refer.
+  if (*format != VolumeFormat::Vtu)
+    std::erase_if(mesh.patches, [](const VolumePatch& patch) { return patch.face_count() == 0; });
+  VolumeWriteResult result;
   switch (*format) {
     case VolumeFormat::Vtu:
-      return write_vtu(path, mesh);
+      write_vtu(path, mesh);
+      break;
     case VolumeFormat::Msh:
-      return write_msh(path, mesh);
+      write_msh(path, mesh);
+      break;
     case VolumeFormat::Cgns:
-      return write_cgns(path, mesh);
+      write_cgns(path, mesh);
+      break;
     case VolumeFormat::Su2:
-      return write_su2(path, mesh);
+      write_su2(path, mesh);
+      break;
     case VolumeFormat::Foam:
-      return write_foam(path, mesh);
+      result.foam = write_foam(path, mesh);
   }
+  return result;
 }
 
 }  // namespace vdb_offset::io

@@ -91,6 +91,7 @@ class FoamWriter {
             {"neighbour", neighbour()},
             {"boundary", in_sections(boundary(), {})}};
   }
+  FoamQuality quality() const { return measure_foam(mesh_, faces_); }
 
  private:
   /// For each cell, calls append(text, cell, its face towards a cell of a higher number).
@@ -171,13 +172,14 @@ void replace_all(const std::filesystem::path& folder, std::span<const FoamFile> 
 
 }  // namespace
 
-void write_foam(const std::string& path, const VolumeMesh& mesh) {
+FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh) {
   std::filesystem::path folder = std::filesystem::path(path).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   const FoamWriter writer(mesh);
   NewFolders made(folder);
   replace_all(folder, writer.files());
   made.keep();
+  return writer.quality();
 }
 
 }  // namespace vdb_offset::io

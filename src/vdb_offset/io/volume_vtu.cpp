@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "vdb_offset/io/volume_formats.h"
 #include "vdb_offset/io/vtk_write.h"
@@ -43,6 +44,17 @@ vtkSmartPointer<Array> vtk_copy(const std::vector<Number>& numbers) {
   auto* const to = array->GetPointer(0);
   for_each_index(numbers.size(), [&](std::size_t i) { to[i] = static_cast<typename Array::ValueType>(numbers[i]); });
   return array;
+}
+
+/// VTK's prism has the triangle first whose normal points away from the other one, so that two corners of each change
+/// places; all other cells have ours.
+void turn_prisms(VolumeMesh& mesh) {
+  for_each_index(mesh.cell_count(), [&](std::size_t c) {
+    if (mesh.cell_types[c] != CellType::Prism) return;
+    std::uint32_t* const corners = mesh.corners.data() + mesh.cell_begin[c];
+    std::swap(corners[1], corners[2]);
+    std::swap(corners[4], corners[5]);
+  });
 }
 
 /// The corners stay where they are as long as VTK's 32 bits, one of which is the sign, can count them.
@@ -105,7 +117,8 @@ void add_patches(vtkFieldData& data, const VolumeMesh& mesh) {
 
 }  // namespace
 
-void write_vtu(const std::string& path, const VolumeMesh& mesh) {
+void write_vtu(const std::string& path, VolumeMesh& mesh) {
+  turn_prisms(mesh);
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->SetPoints(vtk_points(mesh.points));
   if (has_polyhedra(mesh)) {
