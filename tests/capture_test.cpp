@@ -278,7 +278,7 @@ TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]")
     most = std::max(most, radius);
     ++count;
   }
-  CHECK(count > 40);  // a voxel has a tenth, and the circle is 5.4 long
+  CHECK(count > 30);  // a voxel has a tenth, and the circle is 5.4 long: 36 to 60, as voxels happen to lie
   CHECK(least > exact - 0.01);
   CHECK(most < exact + 0.01);
 }
@@ -419,13 +419,14 @@ TEST_CASE("iso grid: phi is exact where an edge may cross, and has the right sig
   place(surface, kVoxel);
   const ClosestQuery query(surface);
   const Inside inside(surface);
-  const IsoGrid grid = rasterise_iso(query, inside, level, kVoxel, 1000);
+  const Lattice lattice{kVoxel, GENERATE(Vec3d(0.0), Vec3d(-0.02, -0.01, -0.03))};
+  const IsoGrid grid = rasterise_iso(query, inside, level, lattice, 1000);
   double worst = 0;
   std::size_t near_count = 0, wrong_signs = 0;
   for (int i = -8; i <= 32; ++i)
     for (int j = -8; j <= 26; ++j)
       for (int k = -8; k <= 22; ++k) {
-        const Vec3d x = Vec3d(i, j, k) * kVoxel + surface.origin;
+        const Vec3d x = lattice.place(Vec3d(i, j, k)) + surface.origin;
         const double exact = box_distance({0.5, 0.35, 0.25}, x) - level, found = grid.phi->tree().getValue({i, j, k});
         if (std::abs(exact) > 1e-6) wrong_signs += (found < 0) != (exact < 0);
         if (std::abs(exact) > kVoxel) continue;
@@ -435,7 +436,7 @@ TEST_CASE("iso grid: phi is exact where an edge may cross, and has the right sig
   CHECK(near_count > 1000);
   CHECK(wrong_signs == 0);
   CHECK(worst < 1e-6);
-  CHECK_THROWS_AS(rasterise_iso(query, inside, level, kVoxel, grid.leaf_nodes - 1), OutOfBudget);
+  CHECK_THROWS_AS(rasterise_iso(query, inside, level, lattice, grid.leaf_nodes - 1), OutOfBudget);
 }
 
 TEST_CASE("inside: agrees with solid angles", "[capture]") {

@@ -532,6 +532,27 @@ TEST_CASE("command: a captured surface, its report and what comes along", "[comm
   CHECK(!shell.has("out.obj"));
 }
 
+TEST_CASE("command: a hollow solid by captured skins", "[command][capture]") {
+  const Shell shell;
+  const std::string iso = " --mode iso --shell --voxel-size 0.1 --report out.json ";
+  for (const char* distance : {"-d -0.2", "-d 0.2", "-d 0.1 --inner 0.1"}) {
+    const Run run = shell("sphere.obj out.obj" + iso + distance);
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("1 component, closed, manifold") &&
+                            Catch::Contains("hollow solid closed, oriented") &&
+                            Catch::Contains("0 pairs of triangles meet"));
+    const auto report = nlohmann::json::parse(shell.slurp(shell.file("out.json")));
+    CHECK(report["shell"]["closed"] == true);
+    CHECK(report["shell"]["volume"] > 0);
+    CHECK(report.contains("inner_surface") == (std::string(distance).find("--inner") != std::string::npos));
+    const std::string text = shell.slurp(shell.file("out.obj"));
+    CHECK_THAT(text, Catch::Contains("g outer\n") && Catch::Contains("g inner\n"));
+  }
+  std::ofstream(shell.file("square.obj")) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  check_failure(shell, "square.obj out.obj -d -0.1" + iso, 2, "expected a mesh that has an inside");
+  check_failure(shell, "sphere.obj out.obj -d -2" + iso, 2, "expected a surface at distance -2");
+}
+
 TEST_CASE("command: options of captured surfaces that do not go together", "[command][capture]") {
   const Shell shell;
   const std::string iso = "sphere.obj out.obj -d 0.1 --mode iso ";
@@ -539,11 +560,13 @@ TEST_CASE("command: options of captured surfaces that do not go together", "[com
   check_failure(shell, "sphere.obj out.obj -d 0.1 --adaptivity 0.5", 1, "--adaptivity: expected it with --mode iso");
   check_failure(shell, "sphere.obj out.obj -d 0.1 --transport uv", 1, "--transport: expected it with --mode iso");
   for (const std::string option :
-       {"--shell", "--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge", "--solver eikonal",
+       {"--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge", "--solver eikonal",
         "--normals keep", "--states a.csv", "--paths a.obj", "--save-vdb a.vdb"})
     check_failure(shell, iso + option, 1, option.substr(0, option.find(' ')) + ": expected it without --mode iso");
   check_failure(shell, "sphere.obj out.vtu --mode iso --layers 3 --first-height 0.1", 1,
                 "--layers: expected it without");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --keep-specks", 1, "--keep-specks: expected it with --mode iso");
+  check_failure(shell, iso + "--inside out", 1, "--inside: expected 'winding' or 'never'");
   check_failure(shell, iso + "--adaptivity 2", 1, "--adaptivity: expected a number from 0 to 1");
   check_failure(shell, iso + "--transport uv,", 1, "--transport: expected 'uv'");
   check_failure(shell, iso + "--transport uv", 1, "expected texture coordinates");

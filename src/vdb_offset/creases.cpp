@@ -127,9 +127,10 @@ class CreaseFinder {
   bool is_near(std::size_t v, const Vec3d& x, double slack) const {
     const double h = level_.voxel_size();
     if (mesh_.merged) return (x - places_[v]).length() <= (1 + slack) * h;
+    const Vec3d in_lattice = x - mesh_.lattice.corner;
     for (int k = 0; k < 3; ++k) {
       const double cell = std::floor(static_cast<double>(mesh_.points[v][k]));
-      if (!(x[k] >= (cell - slack) * h && x[k] <= (cell + 1 + slack) * h)) return false;
+      if (!(in_lattice[k] >= (cell - slack) * h && in_lattice[k] <= (cell + 1 + slack) * h)) return false;
     }
     return true;
   }

@@ -6,12 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/iso_grid.h"
 #include "vdb_offset/level_set.h"
 
 namespace vdb_offset {
 
 /// Vertices and faces as volumeToMesh makes them, a vertex in each voxel that the surface passes through.
 struct VoxelMesh {
+  Lattice lattice;
   std::vector<openvdb::Vec3s> points;  ///< Index space.
   std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;

@@ -37,8 +37,8 @@ struct Cube {
 
 class IsoRasteriser {
  public:
-  IsoRasteriser(const ClosestQuery& query, const Inside& inside, double level, double voxel_size)
-      : query_(query), inside_(inside), level_(level), h_(voxel_size) {}
+  IsoRasteriser(const ClosestQuery& query, const Inside& inside, double level, const Lattice& lattice)
+      : query_(query), inside_(inside), level_(level), lattice_(lattice), h_(lattice.voxel_size) {}
 
   /// Halves cubes down to leaf nodes.
   std::vector<Cube> find_leaves(std::size_t most) const {
@@ -73,15 +73,20 @@ class IsoRasteriser {
     return {x, x - closest.point, closest.distance, closest.triangle, same_side ? known.inside : inside_(x)};
   }
 
-  Vec3d centre(const Coord& at, int width) const { return (at.asVec3d() + Vec3d((width - 1) / 2.0)) * h_; }
+  Vec3d centre(const Coord& at, int width) const { return lattice_.place(at.asVec3d() + Vec3d((width - 1) / 2.0)); }
   /// How far from a cube's centre a grid edge may end that starts at one of its corners.
   double reach(int width) const { return (kHalfRoot3 * (width - 1) + 1) * h_ * (1 + kPhiRounding); }
-  bool is_reached(const Probe& centre, int width) const { return std::abs(centre.phi() - level_) <= reach(width); }
+  /// In a hole the sign changes at less than the distance from its rim, which the surface has nothing to do with.
+  bool is_reached(const Probe& centre, int width) const {
+    const double away =
+        inside_.has_holes() ? std::abs(centre.distance - std::abs(level_)) : std::abs(centre.phi() - level_);
+    return away <= reach(width);
+  }
 
   std::vector<Cube> roots(int& width) const {
     const MeshFacts& facts = query_.surface().facts;
-    const Vec3d pad(std::abs(level_) + 2 * h_), lower = facts.lower - query_.surface().origin - pad,
-                                                upper = facts.upper - query_.surface().origin + pad;
+    const Vec3d pad(std::abs(level_) + 2 * h_), zero = query_.surface().origin + lattice_.corner,
+                                                lower = facts.lower - zero - pad, upper = facts.upper - zero + pad;
     constexpr int kRootsAcross = 4;
     const double across = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]}) / h_;
     while (width * kRootsAcross < across) width *= 2;
@@ -129,7 +134,7 @@ class IsoRasteriser {
         for (int k = 0; k < width; ++k) {
           const Coord at = cube.at.offsetBy(i, j, k);
           value_at(at - leaf, phi) =
-              static_cast<float>(cube.probe.phi() - level_ + gradient.dot(at.asVec3d() * h_ - x));
+              static_cast<float>(cube.probe.phi() - level_ + gradient.dot(lattice_.place(at.asVec3d()) - x));
         }
   }
 
@@ -137,16 +142,18 @@ class IsoRasteriser {
 
   const ClosestQuery& query_;
   const Inside& inside_;
-  double level_, h_;
+  double level_;
+  const Lattice& lattice_;
+  double h_;
 };
 
 }  // namespace
 
-IsoGrid rasterise_iso(const ClosestQuery& query, const Inside& inside, double level, double voxel_size,
+IsoGrid rasterise_iso(const ClosestQuery& query, const Inside& inside, double level, const Lattice& lattice,
                       std::size_t most_leaf_nodes, const ProgressCallback& callback) {
-  const IsoRasteriser rasteriser(query, inside, level, voxel_size);
+  const IsoRasteriser rasteriser(query, inside, level, lattice);
   const std::vector<Cube> leaves = rasteriser.find_leaves(most_leaf_nodes);
-  const auto beyond = static_cast<float>(voxel_size);
+  const auto beyond = static_cast<float>(lattice.voxel_size);
   IsoGrid grid;
   grid.phi = openvdb::FloatGrid::create(beyond);
   grid.leaf_nodes = leaves.size();

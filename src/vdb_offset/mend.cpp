@@ -19,6 +19,12 @@ void make_set(TriangleList& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
+bool stands_as_needle(const Surface& mesh, std::uint32_t t) {
+  const auto& [i, j, k] = mesh.triangles[t];
+  const Vec3d ab = mesh.vertices[j] - mesh.vertices[i], ac = mesh.vertices[k] - mesh.vertices[i], bc = ac - ab;
+  return is_needle(ab.cross(ac).lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}));
+}
+
 /// One round: the topology that it starts with, the faults that are left, and what is done about them.
 class MendingRound {
  public:
@@ -59,11 +65,7 @@ class MendingRound {
     return changed == changed_.end() ? mesh_.triangles_around(vertex) : std::span<const std::uint32_t>(changed->second);
   }
 
-  bool stands_as_needle(std::uint32_t t) const {
-    const auto& [i, j, k] = mesh_.triangles[t];
-    const Vec3d ab = places_[j] - places_[i], ac = places_[k] - places_[i], bc = ac - ab;
-    return is_needle(ab.cross(ac).lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}));
-  }
+  bool stands_as_needle(std::uint32_t t) const { return vdb_offset::stands_as_needle(mesh_, t); }
 
   bool is_wrong(std::uint32_t t) const {
     return std::binary_search(needles_.begin(), needles_.end(), t) ||
@@ -258,6 +260,13 @@ std::size_t split_longest_edges(Surface& mesh, const TriangleList& wrong, const 
 }
 
 }  // namespace
+
+MeshFaults find_faults(const Surface& mesh) {
+  MeshFaults faults;
+  faults.crossings = CrossingFinder(mesh, mesh.vertices).all().size();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) faults.needles += stands_as_needle(mesh, t);
+  return faults;
+}
 
 MendStatistics mend(Surface& mesh, const Onto& onto) {
   MendStatistics statistics;

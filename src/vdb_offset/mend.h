@@ -16,6 +16,9 @@ struct MeshFaults {
   std::size_t total() const { return crossings + needles; }
 };
 
+/// Of all pairs of a mesh's triangles. \pre the mesh is built
+MeshFaults find_faults(const Surface& mesh);
+
 /// What mending found and did.
 struct MendStatistics {
   MeshFaults before, left;

@@ -209,10 +209,21 @@ Json surface_json(const CaptureStatistics& found) {
   const auto faults = [](const MeshFaults& counts) {
     return Json{{"crossings", counts.crossings}, {"without_area", counts.needles}};
   };
+  const SolidFacts& solid = found.solid;
   return {{"signed", found.is_signed},
+          {"source",
+           {{"parts", solid.parts},
+            {"open_parts", solid.open_parts},
+            {"holes_filled", solid.holes},
+            {"hole_share", solid.hole_share},
+            {"buried_triangles", solid.buried},
+            {"cut_triangles", solid.cut}}},
           {"vertices", found.vertices},
           {"triangles", found.triangles},
           {"components", found.components},
+          {"dropped_specks", found.dropped_specks},
+          {"merged_vertices", found.merged_vertices},
+          {"attempts", found.attempts},
           {"valid", found.valid()},
           {"closed", found.closed()},
           {"manifold", found.manifold()},
@@ -321,23 +332,25 @@ std::string report_json(const CaptureStatistics& statistics, const RunFacts& run
   Json seconds = Json::object();
   for (const Stage stage : kCaptureStages) seconds[name(stage)] = statistics.seconds[static_cast<std::size_t>(stage)];
   seconds["total"] = run.total_seconds;
-  const Json report = {{"version", version()},
-                       {"input", run.input},
-                       {"output", run.output},
-                       {"options", options_json(run)},
-                       {"distance", statistics.distance},
-                       {"distance_as_given", run.distance_text},
-                       {"voxel_size", statistics.plan.voxel_size},
-                       {"voxel_size_reason", statistics.plan.reason},
-                       {"threads", statistics.threads},
-                       {"mesh", facts_json(statistics.source)},
-                       {"grid",
-                        {{"leaf_nodes", statistics.leaf_nodes},
-                         {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
-                         {"estimated_bytes", statistics.plan.bytes}}},
-                       {"seconds", seconds},
-                       {"peak_memory_bytes", peak_memory()},
-                       {"surface", surface_json(statistics)}};
+  Json report = {{"version", version()},
+                 {"input", run.input},
+                 {"output", run.output},
+                 {"options", options_json(run)},
+                 {"distance", statistics.distance},
+                 {"distance_as_given", run.distance_text},
+                 {"voxel_size", statistics.plan.voxel_size},
+                 {"voxel_size_reason", statistics.plan.reason},
+                 {"threads", statistics.threads},
+                 {"mesh", facts_json(statistics.source)},
+                 {"grid",
+                  {{"leaf_nodes", statistics.leaf_nodes},
+                   {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
+                   {"estimated_bytes", statistics.plan.bytes}}},
+                 {"seconds", seconds},
+                 {"peak_memory_bytes", peak_memory()},
+                 {"surface", surface_json(statistics)}};
+  if (run.shell) report["shell"] = shell_json(*run.shell);
+  if (run.inner_surface) report["inner_surface"] = surface_json(*run.inner_surface);
   return report.dump(2) + "\n";
 }
 

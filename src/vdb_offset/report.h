@@ -32,6 +32,7 @@ struct RunFacts {
   std::string distance_text;  ///< As given.
   double total_seconds = 0;
   std::optional<ShellFacts> shell;                           ///< Of what was written, if it is one.
+  std::optional<CaptureStatistics> inner_surface;            ///< Of a hollow solid, both skins of which were captured.
   std::optional<LayerReport> layers;                         ///< The same, of cells in layers.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };

@@ -48,7 +48,7 @@ SourceLookup::SourceLookup(const CaptureResult& captured, PolygonView mesh) : ca
   });
   const std::vector<Closest> closest = closest_points(captured.source->query, centres);
   home_.resize(centres.size());
-  for_each_index(home_.size(), [&](std::size_t t) { home_[t] = closest[t].triangle; });
+  for_each_index(home_.size(), [&](std::size_t t) { home_[t] = captured.source->given(closest[t].triangle); });
 }
 
 /// The corner of the mesh's face that corner k of one of the source's triangles is.

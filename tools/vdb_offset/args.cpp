@@ -75,10 +75,11 @@ struct Raw {
   std::optional<std::size_t> layers;
   std::optional<double> growth, adaptivity;
   std::string distance_from, first_height, total_thickness, heights;
-  bool structured = false;
+  bool structured = false, keep_specks = false;
   std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
   std::optional<std::string> solver, collision, border, format, transport;
   std::string mode = "topology";
+  std::optional<std::string> inside;
   std::string normals = "recompute";
   std::optional<double> voxel_size, voxels_per_distance;
   int threads = 0;
@@ -101,9 +102,18 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
                  "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "
                  "closed and manifold, for which INPUT may be anything [topology]")
       ->type_name("MODE");
-  app.add_option("--adaptivity", raw.adaptivity,
-                 "With --mode iso: how readily cells are merged where the surface is flat, 0 to 1 [0]")
+  app.add_option(
+         "--adaptivity", raw.adaptivity,
+         "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [triangles are "
+         "merged where that changes nothing: where it is flat and nothing comes along]")
       ->type_name("X");
+  app.add_option("--inside", raw.inside,
+                 "With --mode iso: 'winding' tells what is inside of a mesh that is closed but for small holes, or has "
+                 "edges of four faces and more; 'never' takes such a mesh as open, with a surface on all its sides "
+                 "[winding]")
+      ->type_name("MODE");
+  app.add_flag("--keep-specks", raw.keep_specks,
+               "With --mode iso: keep pieces that enclose less than a voxel, as knife edges leave them");
   app.add_option(
          "--transport", raw.transport,
          "With --mode iso: what comes along from INPUT, of 'uv', 'color' and 'material', separated by commas, or "
@@ -137,8 +147,10 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
                  "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]")
       ->type_name("C");
   app.add_flag("--shell", args.shell,
-               "Write the source and its offset as one closed solid, joined by a rim where the surface is open");
-  app.add_option("--inner", raw.inner, "With --shell: the inner skin lies this far inward, not on the source")
+               "Write the source and its offset as one closed solid, joined by a rim where the surface is open; with "
+               "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin");
+  app.add_option("--inner", raw.inner,
+                 "With --shell: the inner skin lies this far inward, not on the source; with --mode iso both are clean")
       ->type_name("E");
   app.add_option(
          "--layers", raw.layers,
@@ -376,12 +388,13 @@ void check_iso(const Raw& raw, Arguments& args) {
   require(raw.mode == "topology" || raw.mode == "iso",
           fmt::format("--mode: expected 'topology' or 'iso', got '{}'", raw.mode));
   const bool asked = raw.mode == "iso";
-  for (const auto& [name, given] :
-       {std::pair{"--adaptivity", raw.adaptivity.has_value()}, {"--transport", raw.transport.has_value()}})
+  for (const auto& [name, given] : {std::pair{"--adaptivity", raw.adaptivity.has_value()},
+                                    {"--inside", raw.inside.has_value()},
+                                    {"--keep-specks", raw.keep_specks},
+                                    {"--transport", raw.transport.has_value()}})
     require(asked || !given, fmt::format("{}: expected it with --mode iso", name));
   if (!asked) return;
   for (const auto& [name, given] : {std::pair{"--layers", raw.layers || !raw.heights.empty()},
-                                    {"--shell", args.shell},
                                     {"--only", !raw.only.empty()},
                                     {"--border", raw.border.has_value()},
                                     {"--symmetry", !raw.symmetry.empty()},
@@ -395,9 +408,14 @@ void check_iso(const Raw& raw, Arguments& args) {
                                     {"--save-vdb", !args.vdb.empty()}})
     require(!given, fmt::format("{}: expected it without --mode iso", name));
   IsoRequest& iso = args.iso.emplace();
-  iso.adaptivity = raw.adaptivity.value_or(0);
-  require(iso.adaptivity >= 0 && iso.adaptivity <= 1,
-          fmt::format("--adaptivity: expected a number from 0 to 1, got {}", iso.adaptivity));
+  iso.adaptivity = raw.adaptivity;
+  require(!iso.adaptivity || (*iso.adaptivity >= 0 && *iso.adaptivity <= 1),
+          fmt::format("--adaptivity: expected a number from 0 to 1, got {}", iso.adaptivity.value_or(0)));
+  iso.keep_specks = raw.keep_specks;
+  const std::string inside = raw.inside.value_or("winding");
+  require(inside == "winding" || inside == "never",
+          fmt::format("--inside: expected 'winding' or 'never', got '{}'", inside));
+  iso.use_winding = inside == "winding";
   if (!raw.transport) return;
   iso.transport_text = *raw.transport;
   iso.transport = parse_transport(*raw.transport);

@@ -32,7 +32,8 @@ struct LayersRequest {
 
 /// The offset surface as a mesh of its own, asked for with --mode iso.
 struct IsoRequest {
-  double adaptivity = 0;
+  std::optional<double> adaptivity;
+  bool use_winding = true, keep_specks = false;
   io::TransportRequest transport;
   std::string transport_text;  ///< As given; empty: all that there is.
 };

@@ -1,6 +1,8 @@
 #include "iso_command.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <optional>
 
 #include "summary.h"
 #include "vdb_offset/capture.h"
@@ -9,6 +11,17 @@
 
 namespace vdb_offset::tool {
 namespace {
+
+/// No file is written of what is not what it is said to be.
+void require_valid(const CaptureStatistics& found) {
+  if (found.valid()) return;
+  throw Error(fmt::format(
+      "capture: expected a closed, manifold surface that does not cross itself, got {} border edges, {} non-manifold "
+      "edges, {} pinched vertices, {} crossings and {} triangles without area on each of {} lattices (try another "
+      "--voxel-size, or more digits)",
+      found.border_edges, found.non_manifold_edges, found.pinched_vertices, found.mending.left.crossings,
+      found.mending.left.needles, found.attempts));
+}
 
 /// A scene may bring what the command line could not ask for.
 void require_even(const Arguments& args, std::span<const Distances> distances) {
@@ -19,12 +32,19 @@ void require_even(const Arguments& args, std::span<const Distances> distances) {
     throw InvalidOption("--mode iso: expected the whole mesh and nothing else, got a part or obstacles");
 }
 
-CaptureOptions options_of(const Arguments& args, const Distances& distance, const std::string& path) {
+CaptureOptions options_of(const Arguments& args, const Distances& distance, const std::string& path,
+                          const io::Transported& transported = {}) {
   const OffsetOptions& given = args.options;
   CaptureOptions options;
   options.distance = distance[0];
   options.grid = given.grid;
   options.adaptivity = args.iso->adaptivity;
+  // What comes along differs within what is flat.
+  const auto& [attributes, materials] = transported;
+  if (!options.adaptivity && !(attributes.texture.empty() && attributes.colours.empty() && materials.of_face.empty()))
+    options.adaptivity = 0;
+  options.use_winding = args.iso->use_winding;
+  options.keep_specks = args.iso->keep_specks;
   io::WriteOptions writing = args.write;
   writing.format = format_of(path, args);
   options.precision = io::precision_of_captured(path, writing);
@@ -56,9 +76,41 @@ void write_captured(const Arguments& args, const Source& source, const io::Trans
   else io::write_captured(to.mesh, result, options);
 }
 
+CaptureResult capture_valid(const Arguments& args, const Source& source, const Distances& distance,
+                            const std::string& path, const io::Transported& transported) {
+  CaptureResult result = capture(source.view(), options_of(args, distance, path, transported));
+  require_valid(result.statistics);
+  return result;
+}
+
+void require_inside(const CaptureResult& result) {
+  if (!result.statistics.is_signed)
+    throw InvalidInput("--shell with --mode iso: expected a mesh that has an inside, got an open one");
+}
+
+/// The mesh and the captured surface, or two of these, as one solid.
+Hollow hollow_of(const Source& source, double distance, const CaptureResult& captured, const CaptureResult* inner) {
+  const PolygonView mesh = source.view(), skin = captured.polygons.view();
+  if (inner) return make_hollow(skin, inner->polygons.view(), Hollow::Source::Neither);
+  return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer) : make_hollow(skin, mesh, Hollow::Source::Inner);
+}
+
+void write_hollow(const Arguments& args, const Source& source, const Destination& to, const Hollow& hollow,
+                  CaptureResult& captured, const CaptureResult* inner, Clock::time_point start) {
+  const auto writing = Clock::now();
+  io::WriteOptions options = args.write;
+  options.format = format_of(to.mesh, args);
+  options.before_rename = [&] {
+    captured.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+    if (!to.report.empty()) write_iso_report(args, to, captured, start, &hollow.facts, inner);
+  };
+  const io::MeshFile* const file = source.file ? &*source.file : nullptr;
+  tell_losses(args, to.mesh, io::write_hollow(to.mesh, file, hollow, captured, options));
+}
+
 }  // namespace
 
-bool run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar) {
+void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar) {
   const std::vector<Distances> distances = settle_options(source, args);
   require_even(args, distances);
   const std::vector<Destination> places = destinations(args);
@@ -67,21 +119,31 @@ bool run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressB
     for (std::size_t i = 0; i < places.size(); ++i)
       print_iso_dry_run(args, plan_capture(source.view(), options_of(args, distances[i], places[i].mesh)),
                         distances[i][0]);
-    return true;
+    return;
   }
   const io::Transported transported = read_attributes_of(args, source);
   std::vector<CaptureResult> results;
   for (std::size_t i = 0; i < places.size(); ++i)
-    results.push_back(capture(source.view(), options_of(args, distances[i], places[i].mesh)));
+    results.push_back(capture_valid(args, source, distances[i], places[i].mesh, transported));
+  std::optional<CaptureResult> inner;
+  if (args.inner) inner = capture_valid(args, source, distances.back(), places.front().mesh, transported);
+  if (args.shell) require_inside(results.front());
   bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
+  const CaptureResult* const inner_skin = inner ? &*inner : nullptr;
   for (std::size_t i = 0; i < places.size(); ++i) {
+    const double distance = distances[i][0];
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
-    write_captured(args, source, transported, places[i], results[i], start);
+    std::optional<Hollow> hollow;
+    if (args.shell) hollow = hollow_of(source, distance, results[i], inner_skin);
+    if (hollow) write_hollow(args, source, places[i], *hollow, results[i], inner_skin, start);
+    else write_captured(args, source, transported, places[i], results[i], start);
     bar.clear();
-    if (!args.quiet) print_iso_summary(args, places[i].mesh, distances[i][0], results[i], seconds_since(start));
+    if (args.quiet) continue;
+    if (hollow)
+      print_hollow_summary(args, places[i].mesh, distance, *hollow, results[i], inner_skin, seconds_since(start));
+    else print_iso_summary(args, places[i].mesh, distance, results[i], seconds_since(start));
   }
-  return std::all_of(results.begin(), results.end(), [](const CaptureResult& r) { return r.statistics.valid(); });
 }
 
 }  // namespace vdb_offset::tool

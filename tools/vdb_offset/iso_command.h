@@ -7,8 +7,8 @@
 
 namespace vdb_offset::tool {
 
-/// A run with --mode iso, from the source on. Returns whether --strict can be content: all surfaces are closed and
-/// manifold, and do not cross themselves.
-bool run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar);
+/// A run with --mode iso, from the source on. \throw Error for a surface that is not valid, and then no file is
+/// written.
+void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar);
 
 }  // namespace vdb_offset::tool

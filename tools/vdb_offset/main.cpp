@@ -68,7 +68,10 @@ int run(Arguments args) {
   bar.show(Stage::Read, 0);
   Source source = read_source(args);
   if (args.layers) return run_layers(args, source, start, bar) || !args.strict ? kDone : kProcessing;
-  if (args.iso) return run_iso(args, source, start, bar) || !args.strict ? kDone : kProcessing;
+  if (args.iso) {
+    run_iso(args, source, start, bar);
+    return kDone;
+  }
   const std::vector<Distances> distances = settle_options(source, args);
   const std::vector<Destination> places = destinations(args);
   const double read_seconds = seconds_since(start);

@@ -61,7 +61,9 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
   const IsoRequest iso = args.iso.value_or(IsoRequest{});
   return {{"distance", to.distance},
           {"mode", args.iso ? "iso" : "topology"},
-          {"adaptivity", fmt::format("{}", iso.adaptivity)},
+          {"adaptivity", iso.adaptivity ? fmt::format("{}", *iso.adaptivity) : "flat"},
+          {"inside", iso.use_winding ? "winding" : "never"},
+          {"keep-specks", iso.keep_specks ? "true" : "false"},
           {"transport", iso.transport_text.empty() ? "all" : iso.transport_text},
           {"layers", fmt::format("{}", layers.count)},
           {"first-height", text_of(layers.first)},
@@ -176,8 +178,11 @@ void write_layers_report(const Arguments& args, const LayersResult& result, cons
 }
 
 void write_iso_report(const Arguments& args, const Destination& to, const CaptureResult& result,
-                      Clock::time_point start) {
-  write_file(to.report, report_json(result.statistics, facts_of(args, to, start)));
+                      Clock::time_point start, const ShellFacts* shell, const CaptureResult* inner) {
+  RunFacts facts = facts_of(args, to, start);
+  if (shell) facts.shell = *shell;
+  if (inner) facts.inner_surface = inner->statistics;
+  write_file(to.report, report_json(result.statistics, facts));
 }
 
 std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,

@@ -185,6 +185,25 @@ void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shel
   fmt::print(out, "\n");
 }
 
+/// What of the mesh has an inside, and how that is known.
+void print_solids(std::FILE* out, const CaptureStatistics& found) {
+  const SolidFacts& solid = found.solid;
+  if (!found.is_signed)
+    fmt::print(out,
+               "the input is not closed, or its faces do not agree about the outside: the surface is on all its "
+               "sides\n");
+  else if (solid.open_parts > 0)
+    fmt::print(out, "{} of {} parts of the input are open, and have no inside\n", solid.open_parts, solid.parts);
+  if (solid.holes > 0)
+    fmt::print(out,
+               "{} hole{} of the input ({:.2g} % of its area) filled, so that it has an inside (--inside never takes "
+               "it as open)\n",
+               solid.holes, solid.holes == 1 ? "" : "s", 100 * solid.hole_share);
+  if (solid.buried + solid.cut > 0)
+    fmt::print(out, "{} triangles of the input are buried inside it, {} in part: distances are to the others\n",
+               solid.buried + solid.cut, solid.cut);
+}
+
 void print_iso_plan(std::FILE* out, const CaptureStatistics& statistics, double distance) {
   const CapturePlan& plan = statistics.plan;
   print_facts(out, statistics.source);
@@ -229,6 +248,21 @@ void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistic
   print_orientation(stdout, statistics.source, args.options.orient);
 }
 
+void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
+                          const CaptureResult& captured, const CaptureResult* inner, double total_seconds) {
+  print_iso_summary(args, path, distance, captured, total_seconds);
+  if (inner) print_iso_summary(args, path, inner->statistics.distance, *inner, total_seconds);
+  const ShellFacts& shell = hollow.facts;
+  std::FILE* const out = args.output == "-" ? stderr : stdout;
+  fmt::print(out, "{}: hollow solid {}, {}, volume {:.6g}, {} pairs of triangles meet", path,
+             shell.closed ? "closed" : "not closed", shell.oriented ? "oriented" : "not oriented", shell.volume,
+             shell.crossings);
+  if (shell.border_edges_left) fmt::print(out, ", {} border edges left", shell.border_edges_left);
+  if (shell.non_manifold_edges) fmt::print(out, ", {} non-manifold edges", shell.non_manifold_edges);
+  if (shell.source_crossings) fmt::print(out, ", {} of the source's own", shell.source_crossings);
+  fmt::print(out, "\n");
+}
+
 void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
                        double total_seconds) {
   std::FILE* const out = args.output == "-" ? stderr : stdout;
@@ -239,15 +273,16 @@ void print_iso_summary(const Arguments& args, const std::string& path, double di
     for (const Stage stage : kCaptureStages)
       fmt::print(out, "{:<10} {:.3f} s\n", name(stage), found.seconds[static_cast<std::size_t>(stage)]);
   }
-  fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {}, {}, {} crossing{}", path, found.vertices,
-             found.triangles, distance, found.closed() ? "closed" : "not closed",
-             found.manifold() ? "manifold" : "not manifold", left.crossings, left.crossings == 1 ? "" : "s");
+  fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {} component{}, {}, {}, {} crossing{}", path,
+             found.vertices, found.triangles, distance, found.components, found.components == 1 ? "" : "s",
+             found.closed() ? "closed" : "not closed", found.manifold() ? "manifold" : "not manifold", left.crossings,
+             left.crossings == 1 ? "" : "s");
   if (left.needles > 0) fmt::print(out, ", {} triangles without area", left.needles);
   fmt::print(out, ", distance off by {:.2g} at most ({:.2f} s)\n", found.worst_error, total_seconds);
-  if (!found.is_signed)
-    fmt::print(out,
-               "the input is not closed, or its faces do not agree about the outside: the surface is on all its "
-               "sides\n");
+  if (found.dropped_specks > 0)
+    fmt::print(out, "{} speck{} dropped that enclosed less than a voxel of {:.6g} (--keep-specks keeps them)\n",
+               found.dropped_specks, found.dropped_specks == 1 ? "" : "s", found.plan.voxel_size);
+  print_solids(out, found);
   print_orientation(out, found.source, args.options.orient);
 }
 

@@ -6,6 +6,7 @@
 #include "args.h"
 #include "inputs.h"
 #include "outputs.h"
+#include "vdb_offset/hollow.h"
 
 namespace vdb_offset::tool {
 
@@ -23,6 +24,10 @@ void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistic
 /// What is printed of a captured surface.
 void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
                        double total_seconds);
+
+/// The same of a hollow solid; `inner` is its inner skin if that was captured beside the outer one.
+void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
+                          const CaptureResult& captured, const CaptureResult* inner, double total_seconds);
 
 /// The same of layers.
 void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,

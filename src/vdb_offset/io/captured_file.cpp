@@ -54,4 +54,17 @@ void write_captured(const std::string& path, const CaptureResult& captured, cons
                options.before_rename);
 }
 
+WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
+                         const CaptureResult& captured, const WriteOptions& options) {
+  const Format format = require_format(path, options.format);
+  const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
+  WriteResult result;
+  const Pieces pieces = is_skin ? convert(*source, format, hollow, captured, result) : convert(format, hollow, result);
+  write_pieces(path, pieces, [&] {
+    if (source) source->bytes.require_unchanged(source->path);
+    if (options.before_rename) options.before_rename();
+  });
+  return result;
+}
+
 }  // namespace vdb_offset::io

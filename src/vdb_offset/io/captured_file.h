@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdb_offset/capture.h"
+#include "vdb_offset/hollow.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 
@@ -37,5 +38,12 @@ WriteResult write_captured(const std::string& path, const MeshFile& source, cons
 
 /// The same of a mesh that comes from no file.
 void write_captured(const std::string& path, const CaptureResult& captured, const WriteOptions& options = {});
+
+/// Writes a hollow solid: the skin that is its source with the source's faces in their order and all that the format
+/// can hold of them, the other skin, which was captured, with colours and materials of what is closest. OBJ has groups
+/// `outer` and `inner`, PLY a face property `part`, 0 or 1. Without a source that is one of the skins: plain polygons.
+/// \throw as write_mesh()
+WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
+                         const CaptureResult& captured, const WriteOptions& options = {});
 
 }  // namespace vdb_offset::io

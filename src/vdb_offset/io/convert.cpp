@@ -250,6 +250,35 @@ std::vector<Part> parts_of(const Shell& shell) {
   return parts;
 }
 
+std::vector<Part> parts_of(const Hollow& hollow) {
+  return {{name(ShellPart::Outer), hollow.outer_faces},
+          {name(ShellPart::Inner), hollow.polygons.face_count() - hollow.outer_faces}};
+}
+
+/// What the corners of a hollow solid name, by what those of its source do; those of the other skin none.
+template <class Value>
+std::vector<std::uint32_t> values_of_hollow(PolygonView source, const Hollow& hollow,
+                                            const CornerValues<Value>& values) {
+  std::vector<std::uint32_t> of_corner(hollow.polygons.corners.size(), kNoNormal);
+  const bool is_inside = hollow.source == Hollow::Source::Inner;
+  const std::size_t first = is_inside ? hollow.outer_faces : 0;
+  for_each_index(source.face_count(), [&](std::size_t f) {
+    const std::uint32_t begin = source.face_begin[f], size = source.face_begin[f + 1] - begin;
+    for (std::uint32_t k = 0; k < size; ++k) {
+      const std::uint32_t corner = begin + (is_inside ? (size - k) % size : k);
+      of_corner[hollow.polygons.face_begin[first + f] + k] = values.index(corner, source.corners[corner]);
+    }
+  });
+  return of_corner;
+}
+
+/// The other skin's values behind the source's, or in front of them if that is inside.
+template <class Value>
+void add_other_skin(const Hollow& hollow, std::vector<Value> other, std::vector<Value>& values) {
+  if (hollow.source == Hollow::Source::Inner) values.swap(other);
+  values.insert(values.end(), other.begin(), other.end());
+}
+
 bool keeps_parts(Format format) { return format == Format::Obj || format == Format::Ply; }
 
 Pieces keep_alive(Pieces pieces, std::shared_ptr<const Polygons> mesh) {
@@ -306,6 +335,37 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
 Pieces convert(Format target, const Shell& shell, const Precision& precision, WriteResult& result) {
   if (!keeps_parts(target)) result.lost = kShellParts;
   return encode(target, std::make_shared<Content>(Content{shell.polygons.view(), precision, {}, parts_of(shell), {}}));
+}
+
+Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const CaptureResult& captured,
+               WriteResult& result) {
+  const PolygonView mesh = source.polygons.view();
+  // Positions are what is written already.
+  const auto content =
+      std::make_shared<Content>(Content{hollow.polygons.view(), {}, read_attributes(source), parts_of(hollow), {}});
+  Attributes& with = content->with;
+  const SourceLookup lookup(captured, mesh);
+  if (!with.colours.empty())
+    add_other_skin(hollow, colours_of(lookup, mesh, with, captured.polygons.positions.size()), with.colours);
+  if (!with.texture.empty()) with.texture.of_corner = values_of_hollow(mesh, hollow, with.texture);
+  if (!with.normals.empty()) {
+    with.normals.of_corner = values_of_hollow(mesh, hollow, with.normals);
+    if (hollow.source == Hollow::Source::Inner)
+      for (Vec3d& normal : with.normals.value) normal = Vec3d(0.0) - normal;
+  }
+  if (Materials materials = read_materials(source); target == Format::Obj && !materials.of_face.empty()) {
+    std::erase(with.lost, "materials");
+    std::vector<std::uint32_t> other(captured.polygons.face_count());
+    for (std::size_t t = 0; t < other.size(); ++t) other[t] = materials.of_face[lookup.face_of(t)];
+    add_other_skin(hollow, std::move(other), materials.of_face);
+    content->materials = std::move(materials);
+  }
+  return encode_fitting(source, target, content, result);
+}
+
+Pieces convert(Format target, const Hollow& hollow, WriteResult& result) {
+  if (!keeps_parts(target)) result.lost = kShellParts;
+  return encode(target, std::make_shared<Content>(Content{hollow.polygons.view(), {}, {}, parts_of(hollow), {}}));
 }
 
 Pieces convert(const MeshFile& source, Format target, const CaptureResult& captured, const Transported& transported,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vdb_offset/capture.h"
+#include "vdb_offset/hollow.h"
 #include "vdb_offset/io/captured_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/pieces.h"
@@ -27,5 +28,13 @@ Pieces convert(const MeshFile& source, Format target, const CaptureResult& captu
 
 /// The same of a mesh that comes from no file.
 Pieces convert(Format target, const CaptureResult& captured, const Precision& precision);
+
+/// A hollow solid; the skin that is the source has all that the format can hold of it, and the other one its colours
+/// and materials where it is closest. `captured` is the other skin.
+Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const CaptureResult& captured,
+               WriteResult& result);
+
+/// A hollow solid without more than that.
+Pieces convert(Format target, const Hollow& hollow, WriteResult& result);
 
 }  // namespace vdb_offset::io

@@ -1,0 +1,251 @@
+#include "vdb_offset/flats.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "vdb_offset/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+// More triangles around a vertex are not looked at: it waits until some of them have gone.
+constexpr std::size_t kMostAround = 14;
+// Height by longest edge: no triangle may get thinner, unless there was one as thin.
+constexpr double kThin = 0.02;
+// Sine of the least angle between two flat parts with an edge between them that tells where it runs.
+constexpr double kLeastAngle = 0.05;
+// A triangle's height in tolerances, from which on it tells a plane.
+constexpr double kClearHeight = 8;
+
+using List = std::vector<std::uint32_t>;
+
+struct Plane {
+  Vec3d point, normal;
+  double height(const Vec3d& x) const { return normal.dot(x - point); }
+};
+
+class FlatMerger {
+ public:
+  FlatMerger(Surface& mesh, double tolerance)
+      : mesh_(mesh), tolerance_(tolerance), stars_(mesh.vertices.size()), is_gone_(mesh.triangles.size(), 0) {}
+
+  /// What lost a neighbour, or has others, is looked at again.
+  std::size_t run() {
+    std::vector<std::uint8_t> is_flat(mesh_.vertices.size(), 0);
+    for_each_index(is_flat.size(), [&](std::size_t v) {
+      const auto vertex = static_cast<std::uint32_t>(v);
+      is_flat[v] = around(vertex).size() >= 3 && look_at(vertex).has_value();
+    });
+    List turn;
+    for (std::uint32_t v = 0; v < is_flat.size(); ++v)
+      if (is_flat[v]) turn.push_back(v);
+    std::size_t taken = 0;
+    while (!turn.empty()) {
+      touched_.clear();
+      for (const auto v : turn) taken += try_to_take(v);
+      std::sort(touched_.begin(), touched_.end());
+      touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+      turn.swap(touched_);
+    }
+    if (taken > 0) close_ranks();
+    return taken;
+  }
+
+ private:
+  std::span<const std::uint32_t> around(std::uint32_t v) const {
+    return stars_[v].empty() ? mesh_.triangles_around(v) : std::span<const std::uint32_t>(stars_[v]);
+  }
+  List& star(std::uint32_t v) {
+    if (stars_[v].empty()) stars_[v].assign(around(v).begin(), around(v).end());
+    return stars_[v];
+  }
+  bool has(std::uint32_t triangle, std::uint32_t v) const {
+    const auto& corners = mesh_.triangles[triangle];
+    return corners[0] == v || corners[1] == v || corners[2] == v;
+  }
+  std::array<Vec3d, 3> places(const std::array<std::uint32_t, 3>& corners) const {
+    return {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]]};
+  }
+  static Vec3d cross_of(const std::array<Vec3d, 3>& p) { return (p[1] - p[0]).cross(p[2] - p[0]); }
+  static double longest_squared(const std::array<Vec3d, 3>& p) {
+    return std::max({(p[1] - p[0]).lengthSqr(), (p[2] - p[1]).lengthSqr(), (p[0] - p[2]).lengthSqr()});
+  }
+
+  /// The plane of the largest of some triangles; none if all are too small to tell one.
+  std::optional<Plane> plane_of_largest(std::span<const std::uint32_t> triangles, std::uint32_t v) const {
+    double most = 0;
+    Vec3d cross(0.0);
+    for (const auto t : triangles)
+      if (const Vec3d c = cross_of(places(mesh_.triangles[t])); c.lengthSqr() > most) {
+        most = c.lengthSqr();
+        cross = c;
+      }
+    const double length = std::sqrt(most);
+    if (!(length > kClearHeight * tolerance_ * kClearHeight * tolerance_)) return std::nullopt;
+    return Plane{mesh_.vertices[v], cross / length};
+  }
+
+  bool is_in(const Plane& plane, std::uint32_t triangle) const {
+    for (const auto w : mesh_.triangles[triangle])
+      if (std::abs(plane.height(mesh_.vertices[w])) > tolerance_) return false;
+    return true;
+  }
+
+  /// What is flat around a vertex: one plane, or two with the neighbours that the edge between them leads to.
+  struct Flat {
+    std::array<Plane, 2> plane;
+    std::vector<std::uint8_t> plane_of;  // of each triangle around
+    List ways;                           // neighbours that the vertex may go into
+  };
+
+  std::optional<Flat> look_at(std::uint32_t v) const {
+    const auto star = around(v);
+    const auto first = plane_of_largest(star, v);
+    if (!first) return std::nullopt;
+    Flat flat{{*first, *first}, std::vector<std::uint8_t>(star.size(), 0), {}};
+    List rest;
+    for (std::size_t i = 0; i < star.size(); ++i)
+      if (!is_in(*first, star[i])) {
+        flat.plane_of[i] = 1;
+        rest.push_back(star[i]);
+      }
+    if (rest.empty()) {
+      for (const auto t : star)
+        for (const auto w : mesh_.triangles[t])
+          if (w != v && std::find(flat.ways.begin(), flat.ways.end(), w) == flat.ways.end()) flat.ways.push_back(w);
+      return flat;
+    }
+    const auto second = plane_of_largest(rest, v);
+    if (!second || first->normal.cross(second->normal).length() < kLeastAngle) return std::nullopt;
+    for (const auto t : rest)
+      if (!is_in(*second, t)) return std::nullopt;
+    flat.plane[1] = *second;
+    if (!find_edge(v, flat)) return std::nullopt;
+    return flat;
+  }
+
+  /// The two neighbours at which the planes meet, one on either side in a row with the vertex.
+  bool find_edge(std::uint32_t v, Flat& flat) const {
+    const auto star = around(v);
+    for (std::size_t i = 0; i < star.size(); ++i)
+      for (std::size_t j = 0; j < star.size(); ++j) {
+        if (flat.plane_of[i] != 0 || flat.plane_of[j] != 1) continue;
+        for (const auto w : mesh_.triangles[star[i]])
+          if (w != v && has(star[j], w)) flat.ways.push_back(w);
+      }
+    if (flat.ways.size() != 2 || flat.ways[0] == flat.ways[1]) return false;
+    const Vec3d a = mesh_.vertices[flat.ways[0]] - mesh_.vertices[v],
+                b = mesh_.vertices[flat.ways[1]] - mesh_.vertices[v], along = b - a;
+    return a.dot(b) < 0 && a.cross(along).lengthSqr() <= 4 * tolerance_ * tolerance_ * along.lengthSqr();
+  }
+
+  static double thinness(const std::array<Vec3d, 3>& p, double cross) { return cross / longest_squared(p); }
+
+  /// The thinnest triangle there would be if v went into w, by height and longest edge; none if one would turn round.
+  std::optional<double> thinnest_after(std::uint32_t v, std::uint32_t w, const Flat& flat) const {
+    const auto star = around(v);
+    double least = 1;
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      if (has(star[i], w)) continue;
+      auto corners = mesh_.triangles[star[i]];
+      std::replace(corners.begin(), corners.end(), v, w);
+      const std::array<Vec3d, 3> p = places(corners);
+      const double cross = flat.plane[flat.plane_of[i]].normal.dot(cross_of(p)),
+                   longest = std::sqrt(longest_squared(p));
+      if (!(cross > kClearHeight * tolerance_ * longest)) return std::nullopt;
+      least = std::min(least, thinness(p, cross));
+    }
+    return least;
+  }
+
+  /// v and w have no neighbour in common but at the two triangles beside their edge.
+  bool keeps_manifold(std::uint32_t v, std::uint32_t w) const {
+    std::size_t common = 0;
+    List seen{w};
+    for (const auto t : around(v))
+      for (const auto x : mesh_.triangles[t]) {
+        if (x == v || std::find(seen.begin(), seen.end(), x) != seen.end()) continue;
+        seen.push_back(x);
+        const auto star = around(x);
+        common += std::any_of(star.begin(), star.end(), [&](std::uint32_t s) { return has(s, w); });
+      }
+    return common == 2;
+  }
+
+  bool try_to_take(std::uint32_t v) {
+    const auto star = around(v);
+    if (star.size() < 3 || star.size() > kMostAround || is_gone_[star[0]] || !has(star[0], v)) return false;
+    const auto flat = look_at(v);
+    if (!flat) return false;
+    double thinnest = 1;
+    for (const auto t : star) {
+      const std::array<Vec3d, 3> p = places(mesh_.triangles[t]);
+      thinnest = std::min(thinnest, thinness(p, cross_of(p).length()));
+    }
+    std::uint32_t best = kNone;
+    double least = std::min(kThin, thinnest);
+    for (const auto w : flat->ways) {
+      const auto after = thinnest_after(v, w, *flat);
+      if (!after || *after < least || (best != kNone && *after == least) || !keeps_manifold(v, w)) continue;
+      best = w;
+      least = *after;
+    }
+    if (best == kNone) return false;
+    collapse(v, best);
+    return true;
+  }
+
+  void collapse(std::uint32_t v, std::uint32_t w) {
+    const List triangles(around(v).begin(), around(v).end());
+    List& of_w = star(w);
+    for (const auto t : triangles) {
+      for (const auto x : mesh_.triangles[t])
+        if (x != v) touched_.push_back(x);
+      if (has(t, w)) {
+        is_gone_[t] = 1;
+        std::erase(of_w, t);
+        for (const auto x : mesh_.triangles[t])
+          if (x != v && x != w) std::erase(star(x), t);
+        continue;
+      }
+      std::replace(mesh_.triangles[t].begin(), mesh_.triangles[t].end(), v, w);
+      of_w.push_back(t);
+    }
+  }
+
+  void close_ranks() {
+    std::vector<std::uint32_t> number(mesh_.vertices.size(), kNone);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t t = 0; t < is_gone_.size(); ++t)
+      if (!is_gone_[t]) {
+        triangles.push_back(mesh_.triangles[t]);
+        for (const auto v : triangles.back()) number[v] = 0;
+      }
+    std::uint32_t count = 0;
+    for (std::size_t v = 0; v < number.size(); ++v)
+      if (number[v] != kNone) {
+        number[v] = count;
+        mesh_.vertices[count++] = mesh_.vertices[v];
+      }
+    mesh_.vertices.resize(count);
+    for (auto& corners : triangles)
+      for (auto& v : corners) v = number[v];
+    mesh_.triangles = std::move(triangles);
+    list_incident_triangles(mesh_);
+  }
+
+  Surface& mesh_;
+  double tolerance_;
+  std::vector<List> stars_;  // of vertices whose triangles have changed; the others' are the mesh's
+  std::vector<std::uint8_t> is_gone_;
+  List touched_;
+};
+
+}  // namespace
+
+std::size_t merge_flats(Surface& mesh, double tolerance) { return FlatMerger(mesh, tolerance).run(); }
+
+}  // namespace vdb_offset
