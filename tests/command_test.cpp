@@ -643,3 +643,29 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
   }
   CHECK_FALSE(shell.has("none.vtu"));
 }
+
+TEST_CASE("command: distances by axis and fits, and what goes with them", "[command]") {
+  const Shell shell;
+  Polygons floor = scene::box(Vec3d(4, 4, 1), 2, true);
+  for (Vec3d& p : floor.positions) p[2] -= 1.55;  // its upper side at -1.05
+  io::write_mesh(shell.file("floor.obj"), floor.view());
+  CHECK(shell("sphere.obj thin.stl --distance-xy -0.1 --distance-z -0.05").code == 0);
+  CHECK(shell("check sphere.obj thin.obj -d 1").code == 2);
+  CHECK(shell("sphere.obj thin.obj --distance-xy -0.1 --distance-z -0.05").code == 0);
+  CHECK(shell("check sphere.obj thin.obj --distance-xy -0.1 --distance-z -0.05 --strict").code == 0);
+  CHECK(shell("check sphere.obj thin.obj -d -0.1 --strict").code == 3);
+  CHECK(shell("sphere.obj loose.stl --fit floor.obj --clearance 0.1 --strict --report fit.json").code == 0);
+  const auto report = nlohmann::json::parse(shell.slurp(shell.file("fit.json")));
+  CHECK(report["fit"]["gap"].get<double>() >= 0.1 * (1 - 1e-6));
+  CHECK(report["fit"]["gap_at_start"].get<double>() < 0.06);
+  CHECK(shell("sphere.obj same.obj -d 0 --obstacle floor.obj --clearance 0.1 --strict").code == 3);
+  CHECK(shell("sphere.obj same.obj -d 0 --obstacle floor.obj --clearance 0.01 --strict").code == 0);
+  check_failure(shell, "sphere.obj o.obj --distance-xy 1", 1, "--distance-z");
+  check_failure(shell, "sphere.obj o.obj --distance-xy 1 --distance-z 0", 1, "other than 0");
+  check_failure(shell, "sphere.obj o.obj --distance-xy 1 --distance-z -1", 1, "the sign of --distance-xy");
+  check_failure(shell, "sphere.obj o.obj --distance-xy 1 --distance-z 1 -d 1", 1, "--distance");
+  check_failure(shell, "sphere.obj o.obj --fit floor.obj", 1, "--clearance");
+  check_failure(shell, "sphere.obj o.obj --fit floor.obj --clearance 0", 1, "above 0");
+  check_failure(shell, "sphere.obj o.obj --fit floor.obj --clearance 1 --mode iso", 1, "--mode iso");
+  check_failure(shell, "sphere.obj o.obj --fit none.obj --clearance 1", 2, "none.obj");
+}

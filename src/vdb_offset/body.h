@@ -2,15 +2,43 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "vdb_offset/closest.h"
+#include "vdb_offset/metric.h"
 
 namespace vdb_offset {
 
-/// Other geometry, that nothing which moves may come nearer to than this, in world units.
+/// How near a body's triangles stand to obstacles before anything moves. What is nearer than the clearance there may
+/// move as long as it comes no nearer.
+struct StartingGaps {
+  std::vector<double> bound;          ///< Of each triangle of the body: its gap, or the clearance if that is less.
+  std::vector<std::uint8_t> touches;  ///< Of each triangle of the body: 1 if it meets an obstacle.
+  double least = 0;                   ///< World units; 0 if any meets one.
+  std::size_t touching = 0;           ///< Pairs of the body's triangles and obstacles' that meet, and
+  std::size_t crossing = 0;           ///< those that go through each other.
+};
+
+/// Other geometry, that nothing which moves may come nearer to than this, in world units. Its triangles are the last of
+/// the body's surface.
 struct Obstacles {
   const ClosestQuery& query;
   double clearance;
+  const StartingGaps* start = nullptr;  ///< Without: everything stands clear of them.
+};
+
+/// Where distances are measured in the space of a metric: what vertices are in the file, which is what counts where
+/// triangles meet.
+struct FileFrame {
+  const InMetric& space;
+  std::span<const Vec3d> source;  ///< Of the body's vertices, as its source in that space.
+  std::span<const Vec3d> places;  ///< Where they stand, if that is known; else where they are put, rounded.
+
+  /// Of a vertex that is put to a place in that space.
+  Vec3d of(std::size_t vertex, const Vec3d& from, const Vec3d& to, const Precision& precision) const {
+    if (!places.empty()) return places[vertex];
+    return to == from ? source[vertex] : precision(space.moved(source[vertex], from, to));
+  }
 };
 
 /// All that must stay valid, beside the front that distances are measured from.
@@ -33,8 +61,14 @@ struct Body {
   /// is the source.
   std::span<const Vec3d> other_skin;
 
+  const FileFrame* file = nullptr;  ///< If the body's space is not the file's.
+
   bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
   bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
+  /// Triangles of an obstacle never move.
+  bool is_obstacle(std::uint32_t triangle) const {
+    return obstacles && triangle >= surface.triangles.size() - obstacles->query.surface().triangles.size();
+  }
   bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
   /// A triangle of the front to start a search from.

@@ -77,11 +77,13 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Pre
 }
 
 void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
-  Surface surface = build_surface(source, options.weld, options.orient);
-  result.facts = surface.facts;
+  const InMetric space(source, options.metric), moved({positions, source.corners, source.face_begin}, options.metric);
+  Surface surface = build_surface(space.view(), options.weld, options.orient);
+  result.facts = options.metric.even() ? surface.facts : build_surface(source, options.weld, options.orient).facts;
   place(surface, surface.facts.diagonal / 256);
   const ClosestQuery query(surface);
-  const Places places(surface, source, positions);
+  const Places places(surface, space.view(), moved.view().positions), in_file(surface, source, positions);
+  const FileFrame file{space, in_file.source, in_file.offset};
   result.torn = places.torn;
   result.distance = options.distance ? *options.distance : find_distance(query, places.offset);
   if (result.distance == 0) {
@@ -89,7 +91,8 @@ void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOp
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  const Body body{query, surface, {}, {}, {}, nullptr, false};
+  Body body{query, surface, {}, {}, {}, nullptr, false};
+  if (!options.metric.even()) body.file = &file;
   const Distances distances(result.distance);
   FaultFinder finder(body, places.source, distances, {});
   finder.look_everywhere([&](std::uint32_t v) { return places.offset[v]; });

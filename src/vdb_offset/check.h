@@ -14,6 +14,7 @@ struct CheckOptions {
   std::optional<double> distance;
   Precision precision;  ///< Of the offset's coordinates as stored.
   WeldOptions weld;
+  Metric metric;                 ///< That distances are measured in.
   Orient orient = Orient::Keep;  ///< As it was for the offset: which side of the source a distance above 0 is on.
   int threads = 0;               ///< 0: as many as the machine has.
 };

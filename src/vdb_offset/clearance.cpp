@@ -1,14 +1,25 @@
 #include "vdb_offset/clearance.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace vdb_offset {
 namespace {
 
-/// Squared distance of two segments (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
-double squared_segment_distance(const Vec3d& p1, const Vec3d& q1, const Vec3d& p2, const Vec3d& q2) {
+// What is nearer than it may be by no more than this share of the clearance is far enough.
+constexpr double kHeld = 1e-6;
+
+/// Where two segments are nearest, as shares of them (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
+std::pair<double, double> nearest_shares(const Vec3d& p1, const Vec3d& q1, const Vec3d& p2, const Vec3d& q2) {
   const Vec3d d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
   const double a = d1.lengthSqr(), e = d2.lengthSqr(), f = d2.dot(r);
   double s = 0, t = 0;
@@ -24,29 +35,39 @@ double squared_segment_distance(const Vec3d& p1, const Vec3d& q1, const Vec3d& p
   } else if (e > 0) {
     t = std::clamp(f / e, 0.0, 1.0);
   }
-  return (r + d1 * s - d2 * t).lengthSqr();
+  return {s, t};
 }
 
-/// Whether a segment runs through a triangle's inside.
-bool pierces(const Vec3d& p, const Vec3d& q, const TriangleCorners& triangle) {
+/// Where a segment runs through a triangle's inside, if it does.
+std::optional<Vec3d> piercing(const Vec3d& p, const Vec3d& q, const TriangleCorners& triangle) {
   const Vec3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0], n = u.cross(v);
   const double at_p = n.dot(p - triangle[0]), at_q = n.dot(q - triangle[0]);
-  if (at_p * at_q > 0 || at_p == at_q) return false;
+  if (at_p * at_q > 0 || at_p == at_q) return std::nullopt;
   const Vec3d x = p + (q - p) * (at_p / (at_p - at_q));
   for (std::size_t k = 0; k < 3; ++k)
-    if (n.dot((triangle[(k + 1) % 3] - triangle[k]).cross(x - triangle[k])) < 0) return false;
-  return true;
+    if (n.dot((triangle[(k + 1) % 3] - triangle[k]).cross(x - triangle[k])) < 0) return std::nullopt;
+  return x;
 }
 
-FloatBox box_around(const TriangleCorners& corners, double margin) {
+FloatBox box_around(const TriangleCorners& corners) {
   FloatBox box;
   for (const Vec3d& p : corners)
     for (std::size_t k = 0; k < 3; ++k) {
       const double x = p[static_cast<int>(k)], rounding = std::abs(x) * 0x1p-22;
-      box.lower[k] = std::min(box.lower[k], static_cast<float>(x - margin - rounding));
-      box.upper[k] = std::max(box.upper[k], static_cast<float>(x + margin + rounding));
+      box.lower[k] = std::min(box.lower[k], static_cast<float>(x - rounding));
+      box.upper[k] = std::max(box.upper[k], static_cast<float>(x + rounding));
     }
   return box;
+}
+
+double squared_box_distance(const FloatBox& a, const FloatBox& b) {
+  double squared = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double apart =
+        std::max({0.0, static_cast<double>(a.lower[k]) - b.upper[k], static_cast<double>(b.lower[k]) - a.upper[k]});
+    squared += apart * apart;
+  }
+  return squared;
 }
 
 TriangleCorners corners_of(const Surface& surface, std::size_t t) {
@@ -57,31 +78,133 @@ TriangleCorners corners_of(const Surface& surface, std::size_t t) {
 }  // namespace
 
 double distance_between(const TriangleCorners& a, const TriangleCorners& b) {
+  Vec3d on_a;
+  return distance_between(a, b, on_a);
+}
+
+double distance_between(const TriangleCorners& a, const TriangleCorners& b, Vec3d& on_a) {
   double least = std::numeric_limits<double>::infinity();
+  const auto take = [&](double squared, const Vec3d& where) {
+    if (!(squared < least)) return;
+    least = squared;
+    on_a = where;
+  };
   for (std::size_t i = 0; i < 3; ++i) {
-    if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return 0;
-    least = std::min({least, closest_on_triangle(a[i], b[0], b[1], b[2]).squared_distance,
-                      closest_on_triangle(b[i], a[0], a[1], a[2]).squared_distance});
-    for (std::size_t j = 0; j < 3; ++j)
-      least = std::min(least, squared_segment_distance(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
+    const Vec3d &p = a[i], &q = a[(i + 1) % 3];
+    for (const auto& x : {piercing(p, q, b), piercing(b[i], b[(i + 1) % 3], a)})
+      if (x) take(0, *x);
+    take(closest_on_triangle(p, b[0], b[1], b[2]).squared_distance, p);
+    const TrianglePoint below = closest_on_triangle(b[i], a[0], a[1], a[2]);
+    take(below.squared_distance, below.point);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto [s, t] = nearest_shares(p, q, b[j], b[(j + 1) % 3]);
+      const Vec3d x = p + (q - p) * s;
+      take((x - b[j] - (b[(j + 1) % 3] - b[j]) * t).lengthSqr(), x);
+    }
   }
   return std::sqrt(least);
 }
 
 ClearanceFinder::ClearanceFinder(const Obstacles& obstacles) : obstacles_(obstacles) {
   const Surface& surface = obstacles.query.surface();
-  tree_.build(surface.triangles.size(),
-              [&](std::size_t t) { return box_around(corners_of(surface, t), obstacles_.clearance); });
+  tree_.build(surface.triangles.size(), [&](std::size_t t) { return box_around(corners_of(surface, t)); });
 }
 
-bool ClearanceFinder::is_crowded(const TriangleCorners& triangle) const {
-  const double least = obstacles_.clearance * (1 - 1e-6);
-  if (!(least > 0)) return false;
-  bool crowded = false;
-  tree_.for_each_overlap(box_around(triangle, 0), [&](std::size_t t) {
-    crowded = crowded || distance_between(triangle, corners_of(obstacles_.query.surface(), t)) < least;
+double ClearanceFinder::gap(const TriangleCorners& triangle, double limit) const {
+  Vec3d where;
+  return gap(triangle, limit, where);
+}
+
+/// Down the tree, what is nearest first; what is no nearer than the least so far is left out.
+double ClearanceFinder::gap(const TriangleCorners& triangle, double limit, Vec3d& where) const {
+  struct Node {
+    std::uint32_t level, node;
+    double squared;
+  };
+  const Surface& surface = obstacles_.query.surface();
+  const FloatBox box = box_around(triangle);
+  std::array<Node, BoxTree::kWidth * 12> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {static_cast<std::uint32_t>(tree_.levels().size() - 1), 0, 0};
+  double least = limit;
+  while (depth > 0) {
+    const auto [level, node, squared] = stack[--depth];
+    if (!(squared < least * least)) continue;
+    const std::size_t first = depth;
+    for (int i = 0; i < BoxTree::kWidth; ++i) {
+      const double to_child = squared_box_distance(BoxTree::box(tree_.levels()[level][node], i), box);
+      const auto child = node * BoxTree::kWidth + static_cast<std::uint32_t>(i);
+      if (!(to_child < least * least)) continue;
+      if (level > 0) {
+        stack[depth++] = {level - 1, child, to_child};
+        continue;
+      }
+      Vec3d at;
+      const double distance = distance_between(triangle, corners_of(surface, child), at);
+      if (!(distance < least)) continue;
+      least = distance;
+      where = at;
+    }
+    std::sort(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.begin() + static_cast<std::ptrdiff_t>(depth),
+              [](const Node& a, const Node& b) { return a.squared > b.squared; });
+  }
+  return least;
+}
+
+bool ClearanceFinder::is_crowded(const TriangleCorners& triangle, double bound, double slack) const {
+  const double least = bound - obstacles_.clearance * kHeld - slack;
+  return least > 0 && gap(triangle, least) < least;
+}
+
+Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles, OfEach of_each) {
+  const std::size_t count = surface.triangles.size() - obstacles.query.surface().triangles.size();
+  const ClearanceFinder finder(obstacles);
+  const double held = obstacles.clearance * (1 - kHeld);
+  Gap gap;
+  if (of_each == OfEach::Yes) gap.of_each.resize(count);
+  std::atomic<double> least = std::numeric_limits<double>::infinity();
+  gap.near = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count, 64), std::size_t{0},
+      [&](const auto& range, std::size_t near) {
+        for (std::size_t t = range.begin(); t != range.end(); ++t) {
+          const auto& [a, b, c] = surface.triangles[t];
+          const Vec3d& origin = surface.origin;
+          const double known = least.load(std::memory_order_relaxed);
+          const double found = finder.gap({places[a] - origin, places[b] - origin, places[c] - origin},
+                                          std::max(known, obstacles.clearance));
+          near += found < held || found == 0;
+          if (of_each == OfEach::Yes) gap.of_each[t] = std::min(found, obstacles.clearance);
+          for (double so_far = known; found < so_far && !least.compare_exchange_weak(so_far, found);) {
+          }
+        }
+        return near;
+      },
+      std::plus<>());
+  gap.least = least;
+  return gap;
+}
+
+StartingGaps find_starting_gaps(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles,
+                                std::vector<TrianglePair>& meeting) {
+  const auto count = static_cast<std::uint32_t>(surface.triangles.size() - obstacles.query.surface().triangles.size());
+  const CrossingFinder finder(surface, places);
+  StartingGaps start;
+  Gap gap = measure_gap(surface, places, obstacles, OfEach::Yes);
+  start.bound = std::move(gap.of_each);
+  start.least = gap.least;
+  start.touches.assign(count, 0);
+  std::erase_if(meeting, [&](const TrianglePair& pair) {
+    if (pair.first >= count) return true;  // obstacles' own
+    if (pair.second < count) return false;
+    start.touches[pair.first] = 1;
+    start.bound[pair.first] = 0;
+    ++start.touching;
+    const bool crosses = finder.go_through(pair);
+    start.crossing += crosses;
+    return !crosses;
   });
-  return crowded;
+  if (start.touching > 0) start.least = 0;
+  return start;
 }
 
 }  // namespace vdb_offset

@@ -154,6 +154,19 @@ bool meet(const Couple& pair) {
   return CGAL::coplanar(a[0], a[1], a[2], b[2]) && CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::POSITIVE;
 }
 
+/// Whether a triangle has corners strictly on both sides of another's plane.
+bool has_both_sides(const std::array<Vec3d, 3>& triangle, const std::array<Vec3d, 3>& other) {
+  const auto point = [](const Vec3d& x) { return Point(x[0], x[1], x[2]); };
+  int least = 0, most = 0;
+  for (const Vec3d& corner : triangle) {
+    const auto side =
+        static_cast<int>(CGAL::orientation(point(other[0]), point(other[1]), point(other[2]), point(corner)));
+    least = std::min(least, side);
+    most = std::max(most, side);
+  }
+  return least < 0 && most > 0;
+}
+
 bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
   return meet(Couple(surface, positions, s, positions, t));
 }
@@ -335,6 +348,11 @@ std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
   pairs.insert(pairs.end(), more.begin(), more.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+bool CrossingFinder::go_through(const TrianglePair& pair) const {
+  const Couple couple(surface_, positions_, pair.first, positions_, pair.second);
+  return has_both_sides(couple.a, couple.b) && has_both_sides(couple.b, couple.a) && meet(couple);
 }
 
 std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {

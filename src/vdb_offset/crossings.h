@@ -36,6 +36,10 @@ class CrossingFinder {
   std::vector<TrianglePair> one_of_each_updated(const std::function<bool(std::uint32_t)>& matters,
                                                 const std::function<bool(const TrianglePair&)>& counts) const;
 
+  /// Whether two triangles, where they stand, do not just touch but go through each other: each has corners on both
+  /// sides of the other.
+  bool go_through(const TrianglePair& pair) const;
+
   /// The surface's triangles, as they stand here, that one meets with its corners at `places`, elsewhere than in
   /// corners that are at one place. In no particular order.
   std::vector<std::uint32_t> met_by(std::uint32_t triangle, std::span<const Vec3d> places) const;

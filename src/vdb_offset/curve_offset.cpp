@@ -295,11 +295,31 @@ void require_one_for_each_point(CurvesView curves, std::span<const Distances> di
                          " points, got " + std::to_string(each.count()));
 }
 
+std::vector<OffsetResult> offset_curves_in_metric(CurvesView curves, std::span<const Distances> distances,
+                                                  const OffsetOptions& options) {
+  const InMetric space(curves, options.metric);
+  OffsetOptions even = options;
+  even.metric = {};
+  std::vector<OffsetResult> results = offset_curves(space.view(), distances, even);
+  for (OffsetResult& result : results) {
+    for (std::size_t p = 0; p < result.positions.size(); ++p)
+      result.positions[p] = space.moved(curves.positions[p], space.view().positions[p], result.positions[p]);
+    for (auto& path : result.paths)
+      for (Vec3d& place : path) place = options.metric.from(place);
+    MeshFacts& facts = result.statistics.facts;
+    facts.lower = options.metric.from(facts.lower);
+    facts.upper = options.metric.from(facts.upper);
+    facts.diagonal = (facts.upper - facts.lower).length();
+  }
+  return results;
+}
+
 }  // namespace
 
 OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options,
                              std::size_t layers) {
-  CurvePipeline pipeline(curves, options, thread_count(options.threads), layers);
+  const InMetric space(curves, options.metric);
+  CurvePipeline pipeline(space.view(), options, thread_count(options.threads), layers);
   pipeline.prepare(distances);
   return pipeline.statistics();
 }
@@ -308,6 +328,7 @@ std::vector<OffsetResult> offset_curves(CurvesView curves, std::span<const Dista
                                         const OffsetOptions& options) {
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   require_one_for_each_point(curves, distances);
+  if (!options.metric.even()) return offset_curves_in_metric(curves, distances, options);
   const int threads = thread_count(options.threads);
   std::vector<OffsetResult> results;
   // An arena of its own keeps the number of threads a matter of this call alone.

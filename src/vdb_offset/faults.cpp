@@ -40,12 +40,13 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
       position_(source.size(), Position::AsBefore) {
+  if (body.file) written_.assign(body.file->source.begin(), body.file->source.end());
   if (body.off_source) source_finder_.emplace(surface_, source_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
   if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
   if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, place_, distances_);
   if (!source_crossings) {
-    finder_.emplace(surface_, place_);
+    finder_.emplace(surface_, in_file());
     source_crossings = finder_->all();
   }
   source_crossings_.emplace(surface_, std::move(*source_crossings));
@@ -74,7 +75,13 @@ Indices FaultFinder::triangles_around(const Indices& vertices) {
 /// Whether a pair that meets is not to.
 bool FaultFinder::is_fault(const TrianglePair& pair) const {
   return !goes_along(pair.first, pair.second) && !goes_along(pair.second, pair.first) &&
-         !std::binary_search(source_crossings().begin(), source_crossings().end(), pair);
+         !std::binary_search(source_crossings().begin(), source_crossings().end(), pair) && !still_touches(pair);
+}
+
+/// Whether a face that met an obstacle from the start does no more than touch one.
+bool FaultFinder::still_touches(const TrianglePair& pair) const {
+  return body_.is_obstacle(pair.second) && body_.obstacles->start && !body_.is_obstacle(pair.first) &&
+         body_.obstacles->start->touches[pair.first] && !finder_->go_through(pair);
 }
 
 /// Not what is near where sheets of the source cross, which has to slide.
@@ -93,7 +100,7 @@ void FaultFinder::forget_crossings_of_updated() {
 
 void FaultFinder::update_finder(const Indices& touched) {
   const bool knows_all = !finder_ && touched.size() == surface_.triangles.size();
-  if (!finder_) finder_.emplace(surface_, place_);
+  if (!finder_) finder_.emplace(surface_, in_file());
   if (!knows_all) finder_->update(touched);
 }
 
@@ -210,9 +217,17 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
     return false;
   if (source_finder_ && body_.is_front(t) && meets_source(t)) return true;
   if (other_skin_finder_ && body_.is_front(t) && meets_other_skin(t)) return true;
+  return clearance_ && is_near_obstacle(t);
+}
+
+/// What stood nearer than the clearance keeps its gap, as far as coordinates can tell.
+bool FaultFinder::is_near_obstacle(std::uint32_t t) const {
+  const auto& [a, b, c] = surface_.triangles[t];
   const Vec3d& origin = surface_.origin;
-  return clearance_ && clearance_->is_crowded(
-                           {place_[corners[0]] - origin, place_[corners[1]] - origin, place_[corners[2]] - origin});
+  const double clearance = body_.obstacles->clearance,
+               bound = body_.obstacles->start ? body_.obstacles->start->bound[t] : clearance,
+               slack = bound < clearance ? std::max({rounding(a), rounding(b), rounding(c)}) : 0;
+  return clearance_->is_crowded({place_[a] - origin, place_[b] - origin, place_[c] - origin}, bound, slack);
 }
 
 /// What stays is in nobody's way here, as edges slide along it; but where it rests, that at the border is, too, in the
@@ -293,21 +308,28 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
                        Crossings crossings) {
   constexpr std::size_t kBlock = 64;
-  const auto put = [&](std::size_t block) {
+  const auto look_at = [&](std::size_t block) {
     const auto some = std::span(moved).subspan(block * kBlock, std::min(kBlock, moved.size() - block * kBlock));
-    for (const auto v : some) {
-      const Vec3d p = place_of(v);
-      place_[v] = p == source_[v] ? p : precision_(p);  // what has not moved keeps its bytes
-    }
+    for (const auto v : some) put(v, place_of(v));
     measure(some, ends);
   };
-  for_each_index((moved.size() + kBlock - 1) / kBlock, put, 1);
+  for_each_index((moved.size() + kBlock - 1) / kBlock, look_at, 1);
   const Indices touched = triangles_around(moved);
   for_each_index(
       touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, moved, [&](std::uint32_t v) { return is_misplaced(v); });
   look_for_crossings(moved, touched, crossings);
+}
+
+/// What has not moved keeps its bytes.
+void FaultFinder::put(std::uint32_t v, const Vec3d& place) {
+  if (body_.file) {
+    written_[v] = body_.file->of(v, source_[v], place, precision_);
+    place_[v] = place == source_[v] ? place : body_.file->space.metric().to(written_[v]);
+  } else {
+    place_[v] = place == source_[v] ? place : precision_(place);
+  }
 }
 
 void FaultFinder::try_out(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
@@ -325,7 +347,8 @@ void FaultFinder::remember(const Indices& moved) {
   before_ = {moved, triangles_around(moved), {}, {}, crossings_};
   before_.stands.reserve(moved.size());
   for (const auto v : moved) {
-    before_.stands.push_back({place_[v], away_[v], distance_[v], closest_[v], right_side_[v]});
+    before_.stands.push_back(
+        {place_[v], body_.file ? written_[v] : place_[v], away_[v], distance_[v], closest_[v], right_side_[v]});
     position_[v] = Position::Out;
   }
   before_.faults.reserve(before_.triangles.size());
@@ -363,6 +386,7 @@ void FaultFinder::take_back(const Indices& vertices) {
   for (const auto v : vertices) {
     const Stand& stand = before_.stands[index_of(before_.vertices, v)];
     place_[v] = stand.place;
+    if (body_.file) written_[v] = stand.written;
     away_[v] = stand.away;
     distance_[v] = stand.distance;
     closest_[v] = stand.closest;

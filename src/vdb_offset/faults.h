@@ -108,7 +108,7 @@ class FaultFinder {
 
   /// What is known of a vertex where it stands.
   struct Stand {
-    Vec3d place, away;  ///< `away` is the way there from the surface.
+    Vec3d place, written, away;  ///< `away` is the way there from the surface; `written` only in a metric's space.
     double distance;
     std::uint32_t closest;
     std::uint8_t right_side;
@@ -122,6 +122,9 @@ class FaultFinder {
   };
 
   void find_folded();
+  void put(std::uint32_t vertex, const Vec3d& place);
+  /// What decides where triangles meet.
+  std::span<const Vec3d> in_file() const { return body_.file ? written_ : place_; }
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
   enum class Position : std::uint8_t { AsBefore, Out, ToTakeBack };
@@ -139,10 +142,12 @@ class FaultFinder {
   bool has_bound(std::uint32_t triangle) const;
   bool goes_along(std::uint32_t resting, std::uint32_t other) const;
   bool is_crowded(std::uint32_t triangle) const;
+  bool is_near_obstacle(std::uint32_t triangle) const;
   bool meets_source(std::uint32_t triangle) const;
   bool meets_other_skin(std::uint32_t triangle) const;
   bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   bool is_fault(const TrianglePair& pair) const;
+  bool still_touches(const TrianglePair& pair) const;
   bool matters(std::uint32_t triangle) const;
   bool is_out(std::uint32_t triangle) const;
   void mark_to_take_back();
@@ -161,6 +166,7 @@ class FaultFinder {
   double near_;  // what is nearer to the front says nothing about sides
   Precision precision_;
   std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
+  std::vector<Vec3d> written_;       // of each vertex: its place in the file, if that is another space
   std::vector<double> distance_;
   std::vector<std::uint32_t> closest_;
   std::vector<std::uint8_t> right_side_;

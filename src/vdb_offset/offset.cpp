@@ -28,10 +28,19 @@ namespace {
 // Triangles that the error between vertices is measured on.
 constexpr std::size_t kInteriorTriangles = 10000;
 
+// A frame for a mesh without any size.
+constexpr double kLeastSize = 1e-100;
+
 void require_one_each(PolygonView mesh, const Distances& distances) {
   if (!distances.uniform() && distances.count() != mesh.positions.size())
     throw InvalidInput("offset: expected a distance for each of " + std::to_string(mesh.positions.size()) +
                        " vertices, got " + std::to_string(distances.count()));
+}
+
+/// Clearances and thicknesses are lengths in the file.
+void require_metric(const OffsetOptions& options) {
+  if (!options.metric.even() && (options.obstacles.face_count() > 0 || options.off_source))
+    throw InvalidInput("metric: expected neither obstacles nor a shell where axes count differently");
 }
 
 void require_clearance(const OffsetOptions& options) {
@@ -165,8 +174,8 @@ bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthe
 /// The pipeline: surface, front, field, directions, paths, and what of them is valid.
 class Pipeline {
  public:
-  Pipeline(PolygonView mesh, const OffsetOptions& options, int threads)
-      : mesh_(mesh), options_(options), threads_(threads) {}
+  Pipeline(const InMetric& mesh, const OffsetOptions& options, int threads)
+      : space_(mesh), mesh_(mesh.view()), options_(options), threads_(threads) {}
 
   std::vector<OffsetResult> run(std::span<const Distances> wanted) {
     const Reach farthest = farthest_of(wanted);
@@ -180,6 +189,8 @@ class Pipeline {
       make(results);
       if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
     } else {
+      if (work_.obstacles) place(work_, std::max(work_.front.facts.diagonal, kLeastSize) / 256);
+      look_around();
       for (std::size_t i = 0; i < results.size(); ++i) results[i] = stay(distances_[i]);
     }
     return results;
@@ -198,7 +209,7 @@ class Pipeline {
     std::optional<FaultFinder> faults;
     {
       const StageTimer timer(statistics.seconds, Stage::Limit);
-      faults.emplace(body, source, distances_.front(), options_.precision);
+      faults.emplace(body, source, distances_.front(), options_.precision, source_crossings_);
       faults->look_at_ends(paths.front());
       statistics.limit = untangle(*faults, body, source, distances_.front(), paths.front(), options_.progress);
     }
@@ -213,6 +224,10 @@ class Pipeline {
     statistics.limit.left = faults->count();
     statistics.borders = borders(paths.front());
     statistics.room = room(paths.front(), distances_.front());
+    if (surroundings_) {
+      statistics.limit.source_crossings -= surroundings_->crossing();
+      statistics.obstacles = surroundings_->facts(outermost(stack.stacks));
+    }
     return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
   }
 
@@ -280,8 +295,7 @@ class Pipeline {
     const DirectionField directions = find_directions();
     const StageTimer timer(shared_.seconds, Stage::Propagate);
     query_.emplace(work_.front);
-    if (work_.obstacles) obstacles_.emplace(*work_.obstacles);
-    if (obstacles_) keep_away_.emplace(Obstacles{*obstacles_, options_.clearance});
+    look_around();
     std::vector<Distances> on_front;
     for (const Distances& distances : distances_) on_front.push_back(distances_on_front(work_, distances));
     std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress,
@@ -290,9 +304,18 @@ class Pipeline {
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (slides_) slide_borders(work_, *slides_, *query_, on_front[i], paths[i]);
       paths[i] = paths_of_body(work_, std::move(paths[i]));
+      if (surroundings_) surroundings_->hold(paths[i], distances_[i], work_.bound);
       end_traces(paths[i]);
     }
     return paths;
+  }
+
+  /// How the input stands to obstacles.
+  void look_around() {
+    if (!work_.obstacles) return;
+    source_ = work_.source(mesh_);
+    surroundings_.emplace(work_, source_, options_.clearance);
+    source_crossings_ = surroundings_->source_crossings();
   }
 
   /// One of the results in the making.
@@ -310,8 +333,13 @@ class Pipeline {
   void make(std::vector<OffsetResult>& results) {
     std::vector<Paths> paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
     source_ = work_.source(mesh_);
+    if (!space_.metric().even()) {
+      file_source_ = work_.source(space_.file());
+      file_.emplace(FileFrame{space_, file_source_, {}});
+    }
     const bool to_be_valid = options_.collision == Collision::Limit;
-    if (results.size() > 1 && to_be_valid) source_crossings_ = CrossingFinder(work_.surface(), source_).all();
+    if (results.size() > 1 && to_be_valid && !source_crossings_)
+      source_crossings_ = CrossingFinder(work_.surface(), file_ ? file_source_ : source_).all();
     std::deque<Draft> drafts;
     for (std::size_t i = 0; i < results.size(); ++i)
       drafts.push_back({body_of_results(), distances_[i], asked_[i], paths[i], shared_, {}, {}});
@@ -358,6 +386,7 @@ class Pipeline {
   Body body_of_results() const {
     Body body = work_.body(*query_, keep_away(), options_.off_source);
     body.with_rim = options_.off_source;
+    body.file = file_ ? &*file_ : nullptr;
     return body;
   }
 
@@ -381,6 +410,7 @@ class Pipeline {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit =
         limit(*draft.faults, draft.body, source_, draft.distances, draft.paths, progress, followed, set);
+    if (surroundings_) draft.statistics.limit.source_crossings -= surroundings_->crossing();
     draft.faults.reset();
   }
 
@@ -393,12 +423,14 @@ class Pipeline {
     if (options_.keep_paths) hand_out_paths(surface, source_, draft.paths, result);
     result.statistics.borders = borders(draft.paths);
     result.statistics.room = room(draft.paths, draft.distances);
+    if (file_) bring_to_file(surface, result);
     result.distances = distances_of_input(surface, draft.asked);
     tell_of_junctions(result);
     std::vector<Vec3d> places = source_;
     for (std::size_t w = 0; w < places.size(); ++w) places[w] += draft.paths.displacement[w];
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
+      if (surroundings_) result.statistics.obstacles = surroundings_->facts(as_written(draft.paths));
       result.statistics.interior = measure_interior(draft.body, places, draft.distances, kInteriorTriangles);
     }
     return result;
@@ -421,6 +453,30 @@ class Pipeline {
       sliding[f] = slides_ && work_.at_border[w];
     }
     return border_facts(work_.front, way, sliding);
+  }
+
+  /// Positions and paths are the file's; so are the facts of the mesh.
+  void bring_to_file(const Surface& surface, OffsetResult& result) const {
+    const PolygonView file = space_.file();
+    for (std::size_t v = 0; v < result.positions.size(); ++v) {
+      const auto w = surface.welded[v];
+      if (result.positions[v] == mesh_.positions[v]) {
+        result.positions[v] = file.positions[v];
+      } else if (w != kNone) {
+        const auto first = surface.representative[w];
+        result.positions[v] = space_.moved(file.positions[first], mesh_.positions[first], result.positions[v]);
+      }
+    }
+    for (auto& path : result.paths)
+      for (Vec3d& place : path) place = space_.metric().from(place);
+    result.statistics.facts = build_surface(file, options_.weld, options_.orient).facts;
+  }
+
+  std::vector<Vec3d> as_written(const Paths& paths) const {
+    std::vector<Vec3d> places = source_;
+    for (std::size_t w = 0; w < places.size(); ++w)
+      if (paths.displacement[w] != Vec3d(0.0)) places[w] = options_.precision(places[w] + paths.displacement[w]);
+    return places;
   }
 
   /// As it will be written.
@@ -486,10 +542,18 @@ class Pipeline {
     return result;
   }
 
+  static std::vector<Vec3d> outermost(const Stacks& stacks) {
+    std::vector<Vec3d> places;
+    places.reserve(stacks.vertices());
+    for (std::size_t w = 0; w < stacks.vertices(); ++w) places.push_back(stacks.of(w).back());
+    return places;
+  }
+
   /// A distance of 0 needs no field: every vertex in use is where it should be.
   OffsetResult stay(const Distances& distances) const {
     OffsetResult result = unmoved(mesh_);
     result.statistics = shared_;
+    if (surroundings_) result.statistics.obstacles = surroundings_->facts(source_);
     result.distances = distances_of_input(work_.surface(), distances);
     for (std::size_t v = 0; v < result.states.size(); ++v)
       if (work_.surface().welded[v] != kNone) result.states[v] = VertexState::Reached;
@@ -498,9 +562,10 @@ class Pipeline {
     return result;
   }
 
-  const Obstacles* keep_away() const { return keep_away_ ? &*keep_away_ : nullptr; }
+  const Obstacles* keep_away() const { return surroundings_ ? &surroundings_->obstacles() : nullptr; }
 
-  PolygonView mesh_;
+  const InMetric& space_;
+  PolygonView mesh_;  // in that space
   const OffsetOptions& options_;
   int threads_;
   OffsetStatistics shared_;  // by all results
@@ -509,9 +574,11 @@ class Pipeline {
   std::vector<Distances> asked_,
       distances_;  // of the body's vertices, one set for each result; 0 at junctions in these
   DistanceField field_;
-  std::optional<ClosestQuery> query_, obstacles_;
-  std::optional<Obstacles> keep_away_;
+  std::optional<ClosestQuery> query_;
+  std::optional<Surroundings> surroundings_;  // if there are obstacles
   std::optional<BorderSlides> slides_;
+  std::vector<Vec3d> file_source_;  // where they stand in the file, if distances are measured in another space
+  std::optional<FileFrame> file_;
   std::vector<Vec3d> source_;                                  // where the body's vertices stand, world coordinates
   std::optional<std::vector<TrianglePair>> source_crossings_;  // that all of several results are compared with
   std::vector<Vec3d> inner_skin_;                              // of the body's vertices, once it is made
@@ -524,11 +591,13 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   for (const Distances& each : distances) require_one_each(mesh, each);
   require_clearance(options);
+  require_metric(options);
   const int threads = thread_count(options.threads);
+  const InMetric in_metric(mesh, options.metric);
   std::vector<OffsetResult> results;
   // An arena of its own keeps the number of threads a matter of this call alone.
   tbb::task_arena arena(threads);
-  arena.execute([&] { results = Pipeline(mesh, options, threads).run(distances); });
+  arena.execute([&] { results = Pipeline(in_metric, options, threads).run(distances); });
   for (OffsetResult& result : results) count_states(result.states, result.statistics);
   return results;
 }
@@ -538,10 +607,12 @@ LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, c
   for (const Distances& each : heights) require_one_each(mesh, each);
   require_heights(heights, mesh.positions.size());
   require_clearance(options);
+  if (!options.metric.even()) throw InvalidInput("metric: expected one in which all axes count alike, for layers");
   const int threads = thread_count(options.threads);
+  const InMetric in_metric(mesh, options.metric);
   LayersResult result;
   tbb::task_arena arena(threads);
-  arena.execute([&] { result = Pipeline(mesh, options, threads).grow(heights, rules); });
+  arena.execute([&] { result = Pipeline(in_metric, options, threads).grow(heights, rules); });
   count_states(result.states, result.statistics);
   return result;
 }
@@ -590,11 +661,13 @@ OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> dista
                               std::size_t layers) {
   OffsetStatistics statistics;
   statistics.threads = thread_count(options.threads);
-  const Workpiece work = build_workpiece(mesh, {options.only, options.obstacles, options.weld, options.orient});
+  const InMetric in_metric(mesh, options.metric);
+  const Workpiece work =
+      build_workpiece(in_metric.view(), {options.only, options.obstacles, options.weld, options.orient});
   statistics.facts = work.surface().facts;
   const Reach farthest = farthest_of(distances);
   if (goes_anywhere(farthest))
-    statistics.plan = plan(work, mesh, farthest, options, statistics.threads, {distances.size(), layers});
+    statistics.plan = plan(work, in_metric.view(), farthest, options, statistics.threads, {distances.size(), layers});
   return statistics;
 }
 

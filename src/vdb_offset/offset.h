@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "vdb_offset/border_facts.h"
@@ -9,12 +10,14 @@
 #include "vdb_offset/interior.h"
 #include "vdb_offset/limit.h"
 #include "vdb_offset/mesh.h"
+#include "vdb_offset/metric.h"
 #include "vdb_offset/plan.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/progress.h"
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/side_room.h"
 #include "vdb_offset/surface.h"
+#include "vdb_offset/surroundings.h"
 #include "vdb_offset/sweep.h"
 #include "vdb_offset/workpiece.h"
 
@@ -40,6 +43,9 @@ struct OffsetOptions {
   double clearance = 0;           ///< World units, >= 0.
   bool off_source = false;        ///< For shells: neither the result nor the rim may meet the surface they come from.
   bool inner_skin_last = false;   ///< For shells of two offsets: the last of several is one that the others keep off.
+  /// Distances are measured in its space, and so are states and all else that is told of them; not with obstacles,
+  /// shells or layers. Positions are the file's.
+  Metric metric;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
@@ -66,6 +72,8 @@ struct OffsetStatistics {
   LimitStatistics limit;
   BorderFacts borders;
   SideRoom room;
+  std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
+  std::optional<FitFacts> fit;             ///< Of what fit() made.
   InteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
 };
 

@@ -12,13 +12,19 @@ struct Precision {
 
   Kind kind = Kind::Double;
   int digits = 17;  ///< Significant decimal digits; for Kind::Digits, 1 .. 17.
+  /// Places are so many times as large as the file has them.
+  Vec3d scale{1.0};
 
   double operator()(double value) const {
     return kind == Kind::Double   ? value
            : kind == Kind::Single ? static_cast<double>(static_cast<float>(value))
                                   : rounded_to_digits(value);
   }
-  Vec3d operator()(const Vec3d& p) const { return {(*this)(p[0]), (*this)(p[1]), (*this)(p[2])}; }
+  Vec3d operator()(const Vec3d& p) const {
+    if (scale == Vec3d(1.0)) return {(*this)(p[0]), (*this)(p[1]), (*this)(p[2])};
+    const Vec3d q = p / scale;
+    return Vec3d((*this)(q[0]), (*this)(q[1]), (*this)(q[2])) * scale;
+  }
 
   /// Most that a number may change by, relative to itself, arithmetic on the way included.
   double epsilon() const {

@@ -220,7 +220,9 @@ class Marches {
 
   Vec3d known_end(std::size_t set, std::size_t v) const {
     const Vec3d& end = arrival_[set][v].position;
-    return obstacles_ ? stop_at_obstacle(*obstacles_, surface_.vertices[v], end) : end;
+    if (!obstacles_) return end;
+    const Vec3d& start = surface_.vertices[v];
+    return ObstacleGuard(*obstacles_, start, distances_[set][v] < 0 ? -1 : 1).stop(start, end);
   }
 
   /// At the end of a known way nothing is left to judge, but where rounding moves it.

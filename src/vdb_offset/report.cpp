@@ -87,6 +87,27 @@ Json limit_json(const LimitStatistics& limit) {
           {"mean_thickness_lost", limit.thickness_lost}};
 }
 
+Json obstacles_json(const ObstacleFacts& obstacles) {
+  return {{"gap", obstacles.gap},
+          {"gap_at_start", obstacles.starting_gap},
+          {"triangles_too_near", obstacles.near},
+          {"touching_at_start", obstacles.touching},
+          {"crossing_at_start", obstacles.crossing}};
+}
+
+Json fit_json(const FitFacts& fit) {
+  return {{"clearance", fit.clearance},
+          {"gap", fit.gap},
+          {"gap_at_start", fit.starting_gap},
+          {"triangles_too_near", fit.near},
+          {"triangles_too_near_at_start", fit.near_at_start},
+          {"vertices_moved", fit.moved},
+          {"deepest", fit.deepest},
+          {"rounds", fit.rounds},
+          {"solid", fit.is_signed},
+          {"components_enclosed", fit.enclosed}};
+}
+
 Json achieved_json(const AchievedSummary& achieved) {
   return {{"vertices", achieved.vertices},
           {"asked", {{"least", achieved.asked_least}, {"mean", achieved.asked_mean}, {"most", achieved.asked_most}}},
@@ -271,6 +292,8 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)},
                  {"face_interior_error", interior_json(statistics.interior)}};
+  if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
+  if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
   if (run.shell) report["shell"] = shell_json(*run.shell);
   if (run.layers) report["layers"] = layers_json(*run.layers);
   return report.dump(2) + "\n";

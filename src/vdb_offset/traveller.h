@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_offset/distance_cut.h"
+#include "vdb_offset/obstacle_guard.h"
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/ridge_way.h"
 #include "vdb_offset/start.h"
@@ -23,29 +24,6 @@ struct Stop {
   double distance;
   std::size_t set;
 };
-
-/// How far a point may go in any direction before it is too near to an obstacle; below 0 if it is.
-inline double room_at(const Obstacles& obstacles, const Vec3d& x, std::uint32_t& hint) {
-  const Closest closest = obstacles.query(x, hint);
-  hint = closest.triangle;
-  return closest.distance - obstacles.clearance;
-}
-
-/// The first point from `from` to `to` that is as near to an obstacle as may be: balls that hold no obstacle, one after
-/// the other. `to`, if there is none.
-inline Vec3d stop_at_obstacle(const Obstacles& obstacles, const Vec3d& from, const Vec3d& to) {
-  constexpr int kMostBalls = 1000;
-  constexpr double kTouches = 1e-9;
-  const double length = (to - from).length();
-  std::uint32_t hint = 0;
-  double gone = 0;
-  for (int i = 0; i < kMostBalls && gone < length; ++i) {
-    const double room = room_at(obstacles, from + (to - from) * (gone / length), hint);
-    if (room <= kTouches * length) return from + (to - from) * (gone / length);
-    gone += room;
-  }
-  return gone < length ? from + (to - from) * (gone / length) : to;
-}
 
 /// A vertex in haste asks what is near of the triangles around the last answer alone. That is right but where another
 /// part of the surface comes near, which shows in the exact distance where it ends up: having met such a part it is
@@ -70,7 +48,6 @@ class Traveller {
   Traveller(const Query& query, const DirectionField& field, DirectionSampler& sampler, int side, std::uint32_t vertex,
             Pace pace, const Obstacles* obstacles = nullptr)
       : query_(query),
-        obstacles_(obstacles),
         sampler_(sampler),
         surface_(query.surface()),
         side_(side),
@@ -83,6 +60,7 @@ class Traveller {
     const Start start = start_of(surface_, vertex);
     normal_ = start.direction * side_;
     slope_ = start.slope;
+    if (obstacles) guard_.emplace(*obstacles, origin_, side);
   }
 
   /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
@@ -106,10 +84,10 @@ class Traveller {
   template <class Tell>
   void march(std::span<const Stop> stops, Tell&& tell) {
     // What lies before the first step is on the way to it, unless that ends at an obstacle.
-    target_ = (obstacles_ ? stops.front() : stops.back()).distance;
+    target_ = (guard_ ? stops.front() : stops.back()).distance;
     const auto first = leave_surface(first_step());
     target_ = stops.front().distance;
-    if (!first || (obstacles_ && stop_at_obstacle(*obstacles_, origin_, first->x) != first->x)) {
+    if (!first || (guard_ && guard_->stop(origin_, first->x) != first->x)) {
       for (const Stop& stop : stops) tell(stop, Arrival{origin_, hint_});
       return;
     }
@@ -190,8 +168,7 @@ class Traveller {
       double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
                               std::max(kStepVoxels * h_, kStepShare * last),
                               std::max(last - here.phi, kLeastStep * std::min(h_, last))});
-      const Vec3d ahead = runge_kutta(here, step),
-                  to = obstacles_ ? stop_at_obstacle(*obstacles_, here.x, ahead) : ahead;
+      const Vec3d ahead = runge_kutta(here, step), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
       const bool in_the_way = to != ahead;
       for (auto stop = stop_before(to, here); stop; stop = stop_before(to, *stop)) {
         tell_of(*stop, stops[passed], tell);
@@ -387,7 +364,6 @@ class Traveller {
   }
 
   const Query& query_;
-  const Obstacles* obstacles_;
   DirectionSampler& sampler_;
   const ShapeOf<Query>& surface_;
   int side_;
@@ -399,6 +375,7 @@ class Traveller {
   std::uint32_t hint_;
   Pace pace_;
   bool outside_ = false;
+  std::optional<ObstacleGuard> guard_;  // if there are obstacles
   std::optional<std::vector<Vec3d>> trace_;
 };
 

@@ -44,6 +44,8 @@ Examples:
   vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
   vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
   vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
+  vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
+  vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
   vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
@@ -74,7 +76,7 @@ struct Raw {
   std::vector<std::string> distances, only, symmetry;
   std::optional<std::size_t> layers;
   std::optional<double> growth, adaptivity;
-  std::string distance_from, first_height, total_thickness, heights;
+  std::string distance_from, distance_xy, distance_z, first_height, total_thickness, heights;
   bool structured = false, keep_specks = false;
   std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
   std::optional<std::string> solver, collision, border, format, transport;
@@ -123,6 +125,11 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
                  "Each vertex's distance, world units: a file of numbers (text or .npy), or 'ply:NAME', a vertex "
                  "property of INPUT; elsewhere '@FILE' and 'ply:NAME' say the same")
       ->type_name("FILE");
+  app.add_option(
+         "--distance-xy", raw.distance_xy,
+         "Instead of --distance, with --distance-z: how far within the plane of x and y, world units or percent")
+      ->type_name("A");
+  app.add_option("--distance-z", raw.distance_z, "With --distance-xy, of its sign: how far along z")->type_name("B");
   app.add_option("--only", raw.only,
                  "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME' or "
                  "'faces=FILE' (indices from 0, or a 0 or 1 for each face); may be repeated")
@@ -146,6 +153,10 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--clearance", raw.clearance,
                  "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]")
       ->type_name("C");
+  app.add_option("--fit", args.fit,
+                 "Instead of --distance, with --clearance: what is nearer to this mesh gives way, inward, until it is "
+                 "that far from it; all else stays")
+      ->type_name("FILE");
   app.add_flag("--shell", args.shell,
                "Write the source and its offset as one closed solid, joined by a rim where the surface is open; with "
                "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin");
@@ -231,6 +242,9 @@ void check_apart(const Arguments& args) {
             path + ": expected an obstacle that ends in .obj, .ply, .stl or .off (or these and .gz or .zst)");
     taken.push_back(path);
   }
+  require(!same_file(args.fit, args.output), "--fit: expected a file other than the output, got " + args.fit);
+  require(!same_file(args.fit, args.input), "--fit: expected a file other than the input, got " + args.fit);
+  taken.push_back(args.fit);
   for (const auto& [name, path] : {std::pair{"--report", args.report},
                                    {"--states", args.states},
                                    {"--paths", args.paths},
@@ -313,7 +327,43 @@ DistanceRequest parse_request(const std::string& option, const std::string& text
   }
 }
 
+/// What asks for another distance, or for what goes with --distance alone.
+void check_instead_of_distance(const Raw& raw, Arguments& args, const char* option, bool curves_too) {
+  for (const auto& [name, given] : {std::pair{"--distance", !raw.distances.empty()},
+                                    {"--distance-from", !raw.distance_from.empty()},
+                                    {"--layers", raw.layers || !raw.heights.empty()},
+                                    {"--shell", args.shell},
+                                    {"--obstacle", !args.obstacles.empty()},
+                                    {"--save-vdb", !args.vdb.empty()}})
+    require(!given, fmt::format("{}: expected it without {}", name, option));
+  require(curves_too || !args.curves, fmt::format("{}: expected a mesh, as this is not for curves", option));
+}
+
+void check_axes(const Raw& raw, Arguments& args) {
+  args.axes = parse_axes(raw.distance_xy, raw.distance_z);
+  if (!args.axes) return;
+  check_instead_of_distance(raw, args, "--distance-xy", true);
+  require(args.fit.empty(), "--fit: expected it without --distance-xy");
+  require(!args.curves || args.write.digits == 0,
+          "--precision: expected it without --distance-xy where there are curves");
+  args.distances.push_back({fmt::format("{} xy {} z", raw.distance_xy, raw.distance_z), args.axes->xy, {}});
+}
+
+void check_fit(const Raw& raw, Arguments& args) {
+  if (args.fit.empty()) return;
+  check_instead_of_distance(raw, args, "--fit", false);
+  for (const auto& [name, given] : {std::pair{"--mode iso", args.iso.has_value()},
+                                    {"--dry-run", args.dry_run},
+                                    {"--collision", raw.collision.has_value()}})
+    require(!given, fmt::format("{}: expected it without --fit", name));
+  require(!raw.clearance.empty(), "--fit: expected it with --clearance");
+  require(format_of(args.fit, args).has_value(),
+          args.fit + ": expected a mesh that ends in .obj, .ply, .stl or .off (or these and .gz or .zst)");
+  args.distances.push_back({"fit", {}, {}});
+}
+
 void check_distances(const Raw& raw, Arguments& args) {
+  if (args.axes || !args.fit.empty()) return;
   for (const std::string& text : raw.distances) args.distances.push_back(parse_request("--distance", text, args));
   require(raw.distances.empty() || raw.distance_from.empty(), "--distance-from: expected it or --distance, got both");
   if (!raw.distance_from.empty()) {
@@ -459,7 +509,9 @@ void check_surroundings(const Raw& raw, Arguments& args) {
   }
   require(args.clearance.value >= 0,
           fmt::format("--clearance: expected a number of world units or percent, 0 or more, got '{}'", raw.clearance));
-  require(!args.obstacles.empty(), "--clearance: expected it with --obstacle");
+  require(!args.obstacles.empty() || !args.fit.empty(), "--clearance: expected it with --obstacle or --fit");
+  require(args.fit.empty() || args.clearance.value > 0,
+          fmt::format("--clearance: expected one above 0 with --fit, got '{}'", raw.clearance));
 }
 
 void check(const Raw& raw, Arguments& args) {
@@ -470,6 +522,8 @@ void check(const Raw& raw, Arguments& args) {
   if (args.curves) check_curves(raw, args);
   else check_names(args);
   check_apart(args);
+  check_axes(raw, args);
+  check_fit(raw, args);
   if (!args.layers) check_distances(raw, args);
   check_even(args);
   check_surroundings(raw, args);

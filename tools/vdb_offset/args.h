@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vdb_offset/error.h"
@@ -38,6 +39,11 @@ struct IsoRequest {
   std::string transport_text;  ///< As given; empty: all that there is.
 };
 
+/// Distances in the plane of x and y and along z, of one sign.
+struct AxisDistances {
+  scene::Distance xy, z;
+};
+
 /// What the command line asks for.
 struct Arguments {
   std::string input, output;
@@ -49,6 +55,8 @@ struct Arguments {
   std::vector<io::Selector> only;
   std::vector<std::string> only_texts, obstacles;
   scene::Distance clearance;
+  std::string fit;                     ///< Another mesh that INPUT is to keep the clearance from; empty: none.
+  std::optional<AxisDistances> axes;   ///< Then the only distance is that in the plane.
   OffsetOptions options;               ///< All but what depends on the mesh, and progress.
   std::optional<Border> border;        ///< As given; a scene's own counts otherwise.
   std::optional<Solver> solver;        ///< The same.
@@ -73,6 +81,10 @@ struct UsageError : Error {
 
 /// Whether a file holds curves; one that cannot be opened is for the reader to tell of.
 bool holds_curves(const std::string& path);
+/// Of --distance-xy and --distance-z; both or none are given. \throw UsageError
+std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string& z);
+/// The metric in which these are one distance, and that distance, world units.
+std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mesh);
 
 /// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
 DistanceRequest parse_request(const std::string& text);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "args.h"
 #include "vdb_offset/check.h"
@@ -28,7 +29,7 @@ constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
 struct CheckArguments {
-  std::string source, offset, distance, weld = "exact", orient = "keep", report;
+  std::string source, offset, distance, distance_xy, distance_z, weld = "exact", orient = "keep", report;
   int threads = 0;
   bool json = false, strict = false, close = false;
 };
@@ -41,6 +42,9 @@ void declare(CLI::App& app, CheckArguments& args) {
                  "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward [the median of "
                  "what is found]")
       ->type_name("D");
+  app.add_option("--distance-xy", args.distance_xy, "Instead, with --distance-z: as it was for the offset")
+      ->type_name("A");
+  app.add_option("--distance-z", args.distance_z, "The same along z")->type_name("B");
   app.add_option("--weld", args.weld,
                  "Vertices of SOURCE that count as one: 'exact', 'none', or within TOL world units [exact]")
       ->type_name("MODE");
@@ -114,11 +118,13 @@ CheckResult measure_curves(const CheckArguments& args, CheckOptions& options) {
   return check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
 }
 
-CheckResult measure_meshes(const CheckArguments& args, CheckOptions& options) {
+CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisDistances>& axes,
+                           CheckOptions& options) {
   if (args.close) throw UsageError("--close: expected curves, as this is not for meshes");
   const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
   require_same_faces(args, source.polygons, offset.polygons);
   options.distance = parse_distance(args.distance, source.polygons.view());
+  if (axes) std::tie(options.metric, options.distance) = settle_axes(*axes, source.polygons.view());
   options.precision = io::precision_of(args.offset, offset);
   return check_offset(source.polygons.view(), offset.polygons.positions, options);
 }
@@ -141,12 +147,15 @@ int run_check(int argc, const char* const* argv) {
   }
   if (args.threads < 0 || args.threads > 4096)
     throw UsageError(fmt::format("--threads: expected 0 to 4096, got {}", args.threads));
+  const auto axes = parse_axes(args.distance_xy, args.distance_z);
+  if (axes && !args.distance.empty()) throw UsageError("--distance: expected it without --distance-xy");
   CheckOptions options;
   options.weld = parse_weld(args.weld);
   options.orient = parse_orient(args.orient);
   options.threads = args.threads;
   const bool curves = holds_curves(args.source);
-  const CheckResult result = curves ? measure_curves(args, options) : measure_meshes(args, options);
+  if (curves && axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
+  const CheckResult result = curves ? measure_curves(args, options) : measure_meshes(args, axes, options);
   const std::string json = check_json(result, args.source, args.offset);
   if (!args.report.empty()) write_file(args.report, json);
   if (args.json) fmt::print("{}", json);

@@ -45,6 +45,11 @@ void settle_surroundings(const Source& source, Arguments& args) {
   if (args.border) options.border = *args.border;
   options.off_source = args.shell;
   options.inner_skin_last = args.inner.has_value();
+  if (!args.fit.empty()) {
+    if (source.obstacles.face_count() > 0 || options.obstacles.face_count() > 0 || args.shell)
+      throw InvalidOption("--fit: expected a scene without an obstacle or a shell");
+    options.clearance = args.clearance.in_world_units(args.clearance.percent ? used_diagonal(source.view()) : 0);
+  }
   if (source.obstacles.face_count() == 0) return;
   options.obstacles = source.obstacles.view();
   options.clearance = args.clearance.in_world_units(args.clearance.percent ? used_diagonal(source.view()) : 0);
@@ -159,12 +164,20 @@ Source read_source(const Arguments& args) {
   else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
   for (const std::string& path : args.obstacles)
     add(source.obstacles, io::read_mesh(path, format_of(path, args)).polygons);
+  if (!args.fit.empty()) source.to_fit = io::read_mesh(args.fit, format_of(args.fit, args)).polygons;
   return source;
 }
 
 std::vector<Distances> settle_options(Source& source, Arguments& args) {
   settle_all_but_distances(source, args);
   std::vector<Distances> distances;
+  if (args.axes) {
+    if (args.options.obstacles.face_count() > 0 || args.shell)
+      throw InvalidOption("--distance-xy: expected a scene without an obstacle or a shell");
+    const auto [metric, distance] = settle_axes(*args.axes, source.view());
+    args.options.metric = metric;
+    return {distance};
+  }
   for (const DistanceRequest& request : args.distances) distances.push_back(evaluate(source, args, request));
   if (args.inner) {
     for (const Distances& outer : distances)

@@ -18,7 +18,7 @@ struct Source {
   std::optional<io::CurveFile> curves;
   std::vector<OpenCurve> closed;    ///< Those of the curves that have been closed (see --close),
   std::optional<Curves> as_closed;  ///< and all of them, if any were.
-  Polygons obstacles;
+  Polygons obstacles, to_fit;
 
   PolygonView view() const {
     return file        ? file->polygons.view()

@@ -78,7 +78,8 @@ void write_captured(const Arguments& args, const Source& source, const io::Trans
 
 CaptureResult capture_valid(const Arguments& args, const Source& source, const Distances& distance,
                             const std::string& path, const io::Transported& transported) {
-  CaptureResult result = capture(source.view(), options_of(args, distance, path, transported));
+  CaptureResult result =
+      capture_in_metric(source.view(), options_of(args, distance, path, transported), args.options.metric);
   require_valid(result.statistics);
   return result;
 }
@@ -117,7 +118,9 @@ void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressB
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
     for (std::size_t i = 0; i < places.size(); ++i)
-      print_iso_dry_run(args, plan_capture(source.view(), options_of(args, distances[i], places[i].mesh)),
+      print_iso_dry_run(args,
+                        plan_capture(InMetric(source.view(), args.options.metric).view(),
+                                     options_of(args, distances[i], places[i].mesh)),
                         distances[i][0]);
     return;
   }

@@ -152,6 +152,7 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   if (!args.report.empty()) write_layers_report(args, grown.layers, grown.report, start);
   bar.clear();
   if (!args.quiet) print_layers_summary(args, source, grown.layers, grown.report, seconds_since(start));
+  if (layers.statistics.obstacles && layers.statistics.obstacles->near > 0) return false;
   return are_valid(grown.report) && std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) {
            return state == VertexState::Reached || state == VertexState::Unused;
          });

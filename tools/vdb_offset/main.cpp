@@ -18,12 +18,36 @@
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/file_replace.h"
+#include "vdb_offset/fit.h"
 #include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
 namespace {
 
 enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 };
+
+std::vector<OffsetResult> fit_input(const Arguments& args, const Source& source) {
+  std::vector<OffsetResult> results;
+  results.push_back(fit(source.view(), source.to_fit.view(), args.options.clearance, args.options));
+  return results;
+}
+
+/// Whether --strict can be content with a result. Says why, if not.
+bool is_as_asked(const OffsetResult& result, bool of_curves) {
+  const OffsetStatistics& statistics = result.statistics;
+  const auto tell = [](std::size_t triangles, const char* what) {
+    if (triangles > 0)
+      fmt::print(stderr, "vdb_offset: --strict: {} triangles are nearer to {} than asked\n", triangles, what);
+    return triangles == 0;
+  };
+  if (statistics.fit) return tell(statistics.fit->near, "the mesh that they are to fit");
+  if (statistics.obstacles && !tell(statistics.obstacles->near, "an obstacle")) return false;
+  const double reached = summarise(result).share_reached;
+  if (reached < 1)
+    fmt::print(stderr, "vdb_offset: --strict: {:.4f} % of the {} fall short of the distance\n", 100 * (1 - reached),
+               of_curves ? "points" : "vertices");
+  return reached == 1;
+}
 
 /// Exit code 3 if a scene's expectations, or --strict, are not met.
 int judge(const Arguments& args, const Source& source, std::span<const OffsetResult> results,
@@ -36,14 +60,10 @@ int judge(const Arguments& args, const Source& source, std::span<const OffsetRes
   for (const std::string& expectation : failed) fmt::print(stderr, "vdb_offset: {}: {}\n", args.input, expectation);
   if (!failed.empty()) return kProcessing;
   if (!args.strict) return kDone;
-  for (const OffsetResult& result : results) {
-    const double reached = summarise(result).share_reached;
-    if (reached == 1) continue;
-    fmt::print(stderr, "vdb_offset: --strict: {:.4f} % of the {} fall short of the distance\n", 100 * (1 - reached),
-               source.curves ? "points" : "vertices");
-    return kProcessing;
-  }
-  return kDone;
+  return std::all_of(results.begin(), results.end(),
+                     [&](const OffsetResult& result) { return is_as_asked(result, source.curves.has_value()); })
+             ? kDone
+             : kProcessing;
 }
 
 void require_places(const Arguments& args, std::span<const Destination> places) {
@@ -91,8 +111,9 @@ int run(Arguments args) {
   writing.format = format_of(args.output, args);
   if (source.file) args.options.precision = io::precision_of(args.output, *source.file, writing);
   if (source.curves) args.options.precision = io::precision_of_curves(writing);
-  std::vector<OffsetResult> results = source.curves ? offset_curves(source.view(), distances, args.options)
-                                                    : offset_several(source.view(), distances, args.options);
+  std::vector<OffsetResult> results = !args.fit.empty() ? fit_input(args, source)
+                                      : source.curves   ? offset_curves(source.view(), distances, args.options)
+                                                        : offset_several(source.view(), distances, args.options);
   bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
   const OffsetResult* const inner = args.inner ? &results.back() : nullptr;

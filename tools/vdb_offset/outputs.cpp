@@ -60,6 +60,9 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
   const LayersRequest layers = args.layers.value_or(LayersRequest{});
   const IsoRequest iso = args.iso.value_or(IsoRequest{});
   return {{"distance", to.distance},
+          {"metric", fmt::format("{}", fmt::join(std::vector{options.metric.scale[0], options.metric.scale[1],
+                                                             options.metric.scale[2]},
+                                                 " "))},
           {"mode", args.iso ? "iso" : "topology"},
           {"adaptivity", iso.adaptivity ? fmt::format("{}", *iso.adaptivity) : "flat"},
           {"inside", iso.use_winding ? "winding" : "never"},
@@ -75,6 +78,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
           {"border", border},
           {"obstacle", fmt::format("{}", fmt::join(args.obstacles, " "))},
           {"clearance", fmt::format("{}", options.clearance)},
+          {"fit", args.fit},
           {"shell", args.shell ? "true" : "false"},
           {"inner", args.inner ? args.inner->text : ""},
           {"voxel-size", number(options.grid.voxel_size)},

@@ -158,6 +158,30 @@ void print_doubts(std::FILE* out, const Arguments& args, const Source& source, c
                limit.source_crossings, source.curves ? "segments" : "triangles", limit.crossings_near_source);
 }
 
+/// What is between a result and its obstacles, and was at first.
+void print_obstacles(std::FILE* out, const ObstacleFacts& obstacles, double clearance) {
+  fmt::print(out, "gap to obstacles {:.6g}, {:.6g} at the start", obstacles.gap, obstacles.starting_gap);
+  if (obstacles.near > 0)
+    fmt::print(out, ": {} triangles {} one", obstacles.near,
+               clearance > 0 ? fmt::format("are nearer than {:.6g} to", clearance) : "touch");
+  fmt::print(out, "\n");
+  if (obstacles.touching + obstacles.crossing > 0)
+    fmt::print(out, "at the start {} pairs of the input's triangles and obstacles' touch, {} go through each other\n",
+               obstacles.touching, obstacles.crossing);
+}
+
+void print_fit(std::FILE* out, const FitFacts& fit) {
+  fmt::print(out, "gap {:.9g}, {:.6g} at the start: {} of {} triangles are still nearer than {:.6g}", fit.gap,
+             fit.starting_gap, fit.near, fit.near_at_start, fit.clearance);
+  fmt::print(out, "; {} vertices gave way, by {:.6g} at most\n", fit.moved, fit.deepest);
+  if (!fit.is_signed)
+    fmt::print(out,
+               "the other mesh is not closed, or its faces do not agree about the outside: each side of it is one\n");
+  if (fit.enclosed > 0)
+    fmt::print(out, "{} components of the other mesh lie inside of the result: nothing can give way to them\n",
+               fit.enclosed);
+}
+
 void print_states(std::FILE* out, const OffsetResult& result) {
   const auto in = [&](VertexState state) {
     return result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
@@ -240,6 +264,8 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
   if (result.statistics.disagreeing_distances > 0)
     fmt::print(out, "{} {} stand with one of which another distance was asked; they go the mean\n",
                result.statistics.disagreeing_distances, vertices);
+  if (result.statistics.fit) print_fit(out, *result.statistics.fit);
+  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, args.options.clearance);
   print_doubts(out, args, source, result.statistics);
 }
 
@@ -291,6 +317,7 @@ void print_layers_summary(const Arguments& args, const Source& source, const Lay
   if (args.verbose) print_details(stdout, result.statistics, result.heights.back(), args.curves);
   fmt::print("{}: {}", args.output, summary(report));
   fmt::print("{:.2f} s\n", total_seconds);
+  if (result.statistics.obstacles) print_obstacles(stdout, *result.statistics.obstacles, args.options.clearance);
   print_doubts(stdout, args, source, result.statistics);
 }
 

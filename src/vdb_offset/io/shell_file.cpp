@@ -16,7 +16,7 @@ namespace vdb_offset::io {
 namespace {
 
 // A normal needs no more.
-constexpr Precision kNormalPrecision{Precision::Kind::Single};
+const Precision kNormalPrecision{Precision::Kind::Single};
 
 void require_same_mesh(const MeshFile& source, const Shell& shell) {
   const std::size_t faces = source.polygons.face_count();
