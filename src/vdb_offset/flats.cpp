@@ -17,6 +17,8 @@ constexpr std::size_t kMostAround = 14;
 constexpr double kThin = 0.02;
 // Sine of the least angle between two flat parts with an edge between them that tells where it runs.
 constexpr double kLeastAngle = 0.05;
+// Cosine of an angle that normals of one plane do not enclose, but for triangles that hardly have an area.
+constexpr double kAlike = 0.9999;
 // A triangle's height in tolerances, from which on it tells a plane.
 constexpr double kClearHeight = 8;
 
@@ -34,14 +36,7 @@ class FlatMerger {
 
   /// What lost a neighbour, or has others, is looked at again.
   std::size_t run() {
-    std::vector<std::uint8_t> is_flat(mesh_.vertices.size(), 0);
-    for_each_index(is_flat.size(), [&](std::size_t v) {
-      const auto vertex = static_cast<std::uint32_t>(v);
-      is_flat[v] = around(vertex).size() >= 3 && look_at(vertex).has_value();
-    });
-    List turn;
-    for (std::uint32_t v = 0; v < is_flat.size(); ++v)
-      if (is_flat[v]) turn.push_back(v);
+    List turn = find_flat();
     std::size_t taken = 0;
     while (!turn.empty()) {
       touched_.clear();
@@ -55,6 +50,38 @@ class FlatMerger {
   }
 
  private:
+  /// Most vertices of what is curved need no more than a look at the normals around.
+  List find_flat() const {
+    std::vector<Vec3d> normal(mesh_.triangles.size());
+    for_each_index(normal.size(), [&](std::size_t t) {
+      const Vec3d cross = cross_of(places(mesh_.triangles[t]));
+      normal[t] = cross.lengthSqr() > 0 ? cross.unit() : Vec3d(0.0);
+    });
+    std::vector<std::uint8_t> is_flat(mesh_.vertices.size(), 0);
+    for_each_index(is_flat.size(), [&](std::size_t v) {
+      const auto vertex = static_cast<std::uint32_t>(v);
+      is_flat[v] = has_two_normals(vertex, normal) && look_at(vertex).has_value();
+    });
+    List flat;
+    for (std::uint32_t v = 0; v < is_flat.size(); ++v)
+      if (is_flat[v]) flat.push_back(v);
+    return flat;
+  }
+
+  /// Or one, or such that are nearly alike.
+  bool has_two_normals(std::uint32_t v, const std::vector<Vec3d>& normal) const {
+    const auto star = around(v);
+    if (star.size() < 3) return false;
+    const Vec3d& first = normal[star[0]];
+    const Vec3d* second = nullptr;
+    for (const auto t : star) {
+      if (first.dot(normal[t]) > kAlike || (second && second->dot(normal[t]) > kAlike)) continue;
+      if (second) return false;
+      second = &normal[t];
+    }
+    return true;
+  }
+
   std::span<const std::uint32_t> around(std::uint32_t v) const {
     return stars_[v].empty() ? mesh_.triangles_around(v) : std::span<const std::uint32_t>(stars_[v]);
   }
@@ -88,10 +115,11 @@ class FlatMerger {
     return Plane{mesh_.vertices[v], cross / length};
   }
 
+  /// And seen from where the plane is: a sliver may be folded over within the tolerance.
   bool is_in(const Plane& plane, std::uint32_t triangle) const {
     for (const auto w : mesh_.triangles[triangle])
       if (std::abs(plane.height(mesh_.vertices[w])) > tolerance_) return false;
-    return true;
+    return plane.normal.dot(cross_of(places(mesh_.triangles[triangle]))) > 0;
   }
 
   /// What is flat around a vertex: one plane, or two with the neighbours that the edge between them leads to.
