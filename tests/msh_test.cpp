@@ -46,12 +46,21 @@ void check_entities(const VolumeMesh& mesh) {
   auto of_edge = patches_of_edges(mesh);
   std::erase_if(of_edge, [](const auto& edge) { return edge.second.size() < 2; });
   std::vector<int> seen(mesh.points.size(), 0);
-  for (const auto p : entities.inside) ++seen[p], CHECK(of_point[p].empty());
+  for (const auto p : entities.inside) {
+    ++seen[p];
+    CHECK(of_point[p].empty());
+  }
   for (std::uint32_t i = 0; i < mesh.patches.size(); ++i)
-    for (const auto p : entities.on_patch[i]) ++seen[p], CHECK(of_point[p] == std::set{i});
+    for (const auto p : entities.on_patch[i]) {
+      ++seen[p];
+      CHECK(of_point[p] == std::set<std::uint32_t>{i});
+    }
   const std::set<std::uint32_t> corners(entities.corners.begin(), entities.corners.end());
   CHECK(corners.size() == entities.corners.size());
-  for (const auto p : corners) ++seen[p], CHECK(of_point[p].size() > 1);
+  for (const auto p : corners) {
+    ++seen[p];
+    CHECK(of_point[p].size() > 1);
+  }
   for (std::uint32_t c = 0; c < entities.curves.size(); ++c) {
     const auto& [points, group] = entities.curves[c];
     const auto& patches = entities.groups[group];

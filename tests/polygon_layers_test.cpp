@@ -7,6 +7,7 @@
 #include "vdb_offset/cell_quality.h"
 #include "vdb_offset/foam_cells.h"
 #include "vdb_offset/layer_block.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layer_report.h"
 #include "vdb_offset/polygon_prism.h"
 #include "vdb_offset/scene/shapes.h"

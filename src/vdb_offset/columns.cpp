@@ -67,15 +67,15 @@ struct TwoTriangles {
   Pair square;  // of the normal
 };
 
-/// The corners of two triangles in the order of their numbers, and on which side of them so their normals lie.
+/// The corners of two triangles in the order of their places' numbers, and on which side of them so their normals lie.
 struct TwoOrders {
-  explicit TwoOrders(const std::array<std::span<const std::uint32_t>, 2>& base) {
+  TwoOrders(const std::array<std::span<const std::uint32_t>, 2>& base, std::span<const std::uint32_t> place) {
     for (std::size_t i = 0; i < 2; ++i) {
       auto& [p, q, r] = by_number[i];
       p = base[i][0], q = base[i][1], r = base[i][2];
-      if (p > q) std::swap(p, q), sign[i] = -sign[i];
-      if (q > r) std::swap(q, r), sign[i] = -sign[i];
-      if (p > q) std::swap(p, q), sign[i] = -sign[i];
+      if (place[p] > place[q]) std::swap(p, q), sign[i] = -sign[i];
+      if (place[q] > place[r]) std::swap(q, r), sign[i] = -sign[i];
+      if (place[p] > place[q]) std::swap(p, q), sign[i] = -sign[i];
     }
   }
   Way<Pair> at(const Stacks& stacks, std::size_t k, std::size_t layer) const {
@@ -102,9 +102,9 @@ PairMask have_volume(const TwoOrders& order, const Stacks& stacks, std::size_t l
 /// a corner it is a (1 - t)^2 + (a + c - d) t (1 - t) + c t^2, where a and c are the way's products with the normals,
 /// and d is the triple product of all three ways.
 std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const Stacks& stacks,
-                                int side) {
+                                std::span<const std::uint32_t> place, int side) {
   const Pair sign = Pair{} + static_cast<double>(side);
-  const TwoOrders order(base);
+  const TwoOrders order(base, place);
   PairMask upright{-1, -1};
   TwoTriangles below(base, stacks, 0);
   for (std::size_t layer = 0; layer < stacks.layers() && (upright[0] != 0 || upright[1] != 0); ++layer) {
@@ -153,7 +153,9 @@ std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
 }  // namespace
 
 CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source, CellRules rules)
-    : rules_(rules) {
+    : rules_(rules), place_(body.surface.vertices.size(), kNone) {
+  for (auto v = static_cast<std::uint32_t>(body.surface.welded.size()); v-- > 0;)
+    if (body.surface.welded[v] != kNone) place_[body.surface.welded[v]] = v;
   if (take_all(mesh, body, source)) return;
   const Surface& surface = body.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
@@ -236,7 +238,7 @@ Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stack
 
 bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
   if (is_of_prisms(column, stacks))
-    return are_upright({base(column), base(column)}, stacks, side)[0] &&
+    return are_upright({base(column), base(column)}, stacks, place_, side)[0] &&
            (rules_ != CellRules::OpenFoam || has_valid_cells(column, stacks, side));
   return rises_everywhere(column, stacks, side) && has_valid_cells(column, stacks, side);
 }
@@ -265,12 +267,14 @@ bool CellColumns::rises_everywhere(std::size_t column, const Stacks& stacks, int
 /// Whether cells are told to be valid once they are made.
 bool CellColumns::has_valid_cells(std::size_t column, const Stacks& stacks, int side) const {
   thread_local ColumnMesh cells;
-  thread_local std::vector<std::uint32_t> ring;
+  thread_local std::vector<std::uint32_t> ring, numbers;
   ring.assign(base(column).begin(), base(column).end());
   if (side < 0) std::reverse(ring.begin() + 1, ring.end());
   const auto flat = [&](std::uint32_t v) { return stacks.is_flat(v); };
   if (std::all_of(ring.begin(), ring.end(), flat)) return true;  // there are none
-  cells.begin(ring, [&](std::size_t k) { return flat(ring[k]); });
+  numbers.clear();
+  for (const std::uint32_t v : ring) numbers.push_back(place_[v]);
+  cells.begin(numbers, [&](std::size_t k) { return flat(ring[k]); });
   for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {
     const VolumeMesh& mesh = cells.at(layer, [&](std::size_t k) { return stacks.of(ring[k]); });
     for (std::size_t c = 0; c < mesh.cell_count(); ++c)
@@ -291,7 +295,7 @@ std::array<bool, 2> CellColumns::are_valid(std::size_t column, std::size_t other
                                            int side) const {
   if (rules_ == CellRules::OpenFoam || !is_of_prisms(column, stacks) || !is_of_prisms(other, stacks))
     return {is_valid(column, stacks, side), is_valid(other, stacks, side)};
-  return are_upright({base(column), base(other)}, stacks, side);
+  return are_upright({base(column), base(other)}, stacks, place_, side);
 }
 
 }  // namespace vdb_offset

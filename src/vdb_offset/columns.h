@@ -68,6 +68,7 @@ class CellColumns {
   std::vector<std::uint32_t> incident_, incident_begin_;
   std::vector<SplitQuad> split_quads_;
   CellRules rules_;
+  std::vector<std::uint32_t> place_;  // the first of the mesh's vertices at each of the surface's
 };
 
 }  // namespace vdb_offset

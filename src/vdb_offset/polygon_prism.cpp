@@ -98,7 +98,8 @@ double scaled_jacobian(const PolygonPrism& prism) {
   const double corners = least_at_corners(prism);
   const double split = prism.size() > kFewCorners ? base_split(prism) : best_split(prism);
   if (!(split > 0)) return std::min(corners, split);
-  return corners < kUnbounded ? corners : split < kUnbounded ? split : 0;
+  if (corners > 0 && corners < kUnbounded) return corners;
+  return split < kUnbounded ? split : 0;
 }
 
 }  // namespace vdb_offset

@@ -22,12 +22,11 @@ struct PolygonPrism {
   std::size_t size() const { return below.size(); }
 };
 
-/// The least triple product of unit edge vectors over the corners that turn outwards in the base and in the top, as
-/// there are in right prisms over convex polygons; if it is above 0, the prism is the union of prisms over triangles
-/// with such products at all of their corners, so that it is inside out nowhere. If there is no such split, what the
-/// best one has, which is 0 or below it. Where no corner turns outwards in both, how much the edges upwards
-/// lean at least towards the normals of the best split's triangles (their sine). Cost: O(corners^3) for few, else
-/// O(corners^2).
+/// Above 0 if the prism is the union of prisms over triangles, on the ways between its corners, in which all edges
+/// upwards lean towards the normals below and above: then it is inside out nowhere. It is the least triple product of
+/// unit edge vectors over the corners that turn outwards in the base and in the top; where there is none, or one is not
+/// above 0, as over bent polygons, the least lean in the best split (a sine). If there is no such split, it is what the
+/// best one has, or a corner, which is 0 or below. Cost: O(corners^3) for few, else O(corners^2).
 double scaled_jacobian(const PolygonPrism& prism);
 
 }  // namespace vdb_offset
