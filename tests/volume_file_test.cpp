@@ -386,7 +386,7 @@ TEST_CASE("volume file: msh read by Gmsh", "[volume_file]") {
                              output_of(folder, "gmsh -check " + folder.file("mesh.msh"));
   INFO(output);
   CHECK_THAT(output, !Contains("Warning") && !Contains("Error"));
-  CHECK_THAT(output, Contains("17 nodes") && Contains("26 elements") && Contains("groups: 3 1"));
+  CHECK_THAT(output, Contains("17 nodes") && Contains("36 elements") && Contains("groups: 3 1"));
   const std::size_t at = output.find("minJ      =");
   REQUIRE(at != std::string::npos);
   CHECK(std::atof(output.c_str() + at + 11) > 0.1);
