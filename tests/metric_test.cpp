@@ -41,8 +41,8 @@ TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes"
     if (collision == Collision::Merge) {
       for (std::size_t v = 0; v < cube.positions.size(); ++v)
         for (int k = 0; k < 3; ++k) {
-          const double half = k == 2 ? 0.2 : 0.4;
-          CHECK(in.positions[v][k] == Approx(std::clamp(cube.positions[v][k], -half, half)).margin(1e-9));
+          const double side = k == 2 ? 0.2 : 0.4;
+          CHECK(in.positions[v][k] == Approx(std::clamp(cube.positions[v][k], -side, side)).margin(1e-9));
         }
     }
     options = options_of(0.1, 0.3);
