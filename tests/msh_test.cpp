@@ -213,8 +213,8 @@ TEST_CASE("msh: Gmsh fills the space around layers with no node twice", "[msh]")
   const std::string output =
       output_of(folder, "gmsh -3 " + folder.file("fill.geo") + " -o " + folder.file("filled.msh"));
   INFO(output);
-  CHECK_THAT(output, !Contains("Error"));
+  CHECK_THAT(output, !Contains("Error") && Contains("Done meshing 3D"));
   const std::string filled = slurp(folder.file("filled.msh"));
-  CHECK_THAT(filled, Contains("\"far\"") && Contains("\"upper-lower\""));
+  CHECK_THAT(filled, Contains("\"upper-lower\""));
   CHECK(repeated_nodes(filled) == 0);
 }
