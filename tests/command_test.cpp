@@ -302,6 +302,87 @@ TEST_CASE("command: check measures any two meshes", "[command]") {
   check_failure(shell, "check sphere.obj out.obj -d x", 1, "'x'");
 }
 
+TEST_CASE("command: behind -- names may start with a dash", "[command]") {
+  const Shell shell;
+  fs::rename(shell.file("sphere.obj"), shell.file("-in.obj"));
+  CHECK(shell("-d 0.1 -- -in.obj -out.obj").code == 0);
+  CHECK(shell.has("-out.obj"));
+  CHECK(shell("--distance=0.1 -q --report r.json -- -in.obj --out.ply").code == 0);
+  CHECK(shell.has("--out.ply"));
+  CHECK(shell("-d 0.1 -d 0.2 --obstacle far.obj -- -in.obj -o.obj").code == 2);  // it is not there
+  CHECK(shell("-d 0.1 -d 0.2 --dry-run -- -in.obj -o.obj").code == 0);
+  CHECK(shell("check --distance 0.1 --strict -- -in.obj -out.obj").code == 0);
+  CHECK(shell("check -- -in.obj -out.obj").code == 0);
+  CHECK(shell("-d 0.1 -- -in.obj").code == 1);
+  CHECK(shell("-- -in.obj -out.obj -d 0.1").code == 1);  // two names too many
+}
+
+TEST_CASE("command: reports of names that are no UTF-8", "[command]") {
+  const Shell shell;
+  const std::string name = "a\xff\xc3.obj";
+  std::ofstream file(shell.file(name));
+  file << "g sk\xe9\n";
+  for (const Vec3d& p : scene::box(Vec3d(1), 1, true).positions)
+    file << "v " << p[0] << " " << p[1] << " " << p[2] << "\n";
+  const Polygons box = scene::box(Vec3d(1), 1, true);
+  for (std::size_t f = 0; f < box.face_count(); ++f) {
+    file << "f";
+    for (const auto v : box.view().face(f)) file << " " << v + 1;
+    file << "\n";
+  }
+  file.close();
+  for (const std::string& run :
+       {"'" + name + "' o\xff.obj -d 0.1", "'" + name + "' o.obj -d 0.1 --only 'group=sk\xe9'",
+        "'" + name + "' i.ply -d 0.1 --mode iso --voxel-size 0.1",
+        "'" + name + "' o.vtu --layers 2 --first-height 0.01", "check '" + name + "' '" + name + "'"}) {
+    INFO(run);
+    CHECK(shell(run + " --report r.json").code == 0);
+    CHECK_NOTHROW(nlohmann::json::parse(shell.slurp(shell.file("r.json"))));
+    fs::remove(shell.file("r.json"));
+  }
+}
+
+TEST_CASE("command: seams that are closed, and those that look like it", "[command]") {
+  const Shell shell;
+  const auto write = [&](const std::string& name, double gap) {
+    Polygons box = scene::box(Vec3d(1), 4, true);
+    const auto first = static_cast<std::uint32_t>(box.positions.size());
+    const Polygons whole = box;
+    for (const Vec3d& p : whole.positions) box.positions.push_back(p + Vec3d(gap, -gap, gap));
+    for (std::size_t c = box.corners.size() / 2 / 3 * 3; c < box.corners.size(); ++c) box.corners[c] += first;
+    io::write_mesh(shell.file(name), box.view());
+  };
+  write("cracked.obj", 1e-13);
+  const Run run = shell("cracked.obj o.obj -d 0.05 --report r.json");
+  CHECK(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("are one with others but for rounding") && Catch::Contains("--weld exact"));
+  const auto mesh = nlohmann::json::parse(shell.slurp(shell.file("r.json")))["mesh"];
+  CHECK(mesh["seams"]["welded_vertices"] > 0);
+  CHECK(mesh["seams"]["widest"].get<double>() < 2e-13);
+  CHECK(mesh["closed"] == true);
+  CHECK_THAT(shell("check cracked.obj o.obj").out, Catch::Contains("seams ") && Catch::EndsWith("\nvalid\n"));
+  CHECK_THAT(shell("cracked.obj o.obj -d 0.05 --weld exact").out, !Catch::Contains("rounding"));
+  CHECK_THAT(shell("cracked.obj i.obj -d -0.1 --mode iso --voxel-size 0.05").out,
+             Catch::Contains("closed, manifold") && Catch::Contains("but for rounding"));
+  CHECK_THAT(shell("cracked.obj l.vtu --layers 2 --first-height 0.01").out, Catch::Contains("but for rounding"));
+
+  write("slit.obj", 1e-5);
+  const Run slit = shell("slit.obj o.obj -d 0.05");
+  CHECK_THAT(slit.out, Catch::Contains("run along each other") && Catch::Contains("--weld 0.0001 closes"));
+  CHECK_THAT(shell("slit.obj o.obj -d 0.0001").out, !Catch::Contains("run along"));  // not far below the distance
+  CHECK_THAT(shell("slit.obj o.obj -d 0.05 --weld 0.0001").out, !Catch::Contains("run along"));
+  CHECK_THAT(shell("sphere.obj o.obj -d 0.05").out, !Catch::Contains("--weld"));
+}
+
+TEST_CASE("command: faces that name normals which are not there", "[command]") {
+  const Shell shell;
+  std::ofstream(shell.file("a.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n";
+  const Run run = shell("a.obj b.obj -d 0.1");
+  CHECK(run.code == 0);
+  CHECK_THAT(run.err, Catch::Contains("a.obj: faces name normals (as in f 1//1)"));
+  CHECK(shell("a.obj b.obj -d 0.1 -q").err.empty());
+}
+
 TEST_CASE("command: 1 for wrong usage", "[command]") {
   const Shell shell;
   check_failure(shell, "", 1, "INPUT");

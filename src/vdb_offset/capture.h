@@ -26,7 +26,7 @@ struct CaptureOptions {
   std::optional<double> adaptivity;
   bool keep_specks = false;  ///< Keep pieces that enclose less than a voxel, as knife edges leave them.
   Precision precision;       ///< What the file that the result is for keeps; validity is checked on that.
-  WeldOptions weld;
+  WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.

@@ -35,8 +35,11 @@ struct Places {
       source.push_back(mesh.positions[v]);
       offset.push_back(positions[v]);
     }
-    for (std::size_t v = 0; v < positions.size(); ++v)
-      torn += surface.welded[v] != kNone && positions[v] != offset[surface.welded[v]];
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const std::uint32_t w = surface.welded[v];
+      if (w == kNone || positions[v] == offset[w]) continue;
+      torn += offset[w] != source[w] || positions[v] != mesh.positions[v];  // what stays may stay beside it
+    }
   }
 };
 

@@ -13,7 +13,7 @@ struct CheckOptions {
   /// What was asked for, world units, negative inward; empty: the median of the distances found, with the sign of most.
   std::optional<double> distance;
   Precision precision;  ///< Of the offset's coordinates as stored.
-  WeldOptions weld;
+  WeldOptions weld = WeldOptions::automatic();
   Metric metric;                 ///< That distances are measured in.
   Orient orient = Orient::Keep;  ///< As it was for the offset: which side of the source a distance above 0 is on.
   int threads = 0;               ///< 0: as many as the machine has.

@@ -150,7 +150,14 @@ Joined join(Surface& surface, std::size_t face_count) {
   if (std::vector<double>& lengths = joined.lengths; !lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
-    surface.facts.median_edge = *middle;
+    MeshFacts& facts = surface.facts;
+    facts.median_edge = *middle;
+    facts.sliver_edges = 0, facts.longest_sliver = 0;
+    for (auto length = lengths.begin(); length != middle; ++length) {
+      if (*length >= MeshFacts::kSliver * *middle) continue;
+      ++facts.sliver_edges;
+      facts.longest_sliver = std::max(facts.longest_sliver, *length);
+    }
   }
   return joined;
 }

@@ -49,7 +49,7 @@ struct OffsetOptions {
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
-  WeldOptions weld;
+  WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.

@@ -49,8 +49,18 @@ Json facts_json(const MeshFacts& facts) {
           {"upper", {facts.upper[0], facts.upper[1], facts.upper[2]}},
           {"diagonal", facts.diagonal},
           {"area", facts.area},
-          {"median_edge", facts.median_edge}};
+          {"median_edge", facts.median_edge},
+          {"seams",
+           {{"welded_vertices", facts.seams.vertices},
+            {"widest", facts.seams.widest},
+            {"near_vertices", facts.seams.near_vertices},
+            {"widest_near", facts.seams.widest_near}}},
+          {"sliver_edges", facts.sliver_edges},
+          {"longest_sliver", facts.longest_sliver}};
 }
+
+/// Names of files and parts may hold bytes that are no UTF-8, which JSON has no place for.
+std::string as_text(const Json& report) { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json faults_json(const FaultCounts& counts) {
   return {{"inverted_faces", counts.inverted},
@@ -296,7 +306,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
   if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
   if (run.shell) report["shell"] = shell_json(*run.shell);
   if (run.layers) report["layers"] = layers_json(*run.layers);
-  return report.dump(2) + "\n";
+  return as_text(report);
 }
 
 }  // namespace
@@ -374,7 +384,7 @@ std::string report_json(const CaptureStatistics& statistics, const RunFacts& run
                  {"surface", surface_json(statistics)}};
   if (run.shell) report["shell"] = shell_json(*run.shell);
   if (run.inner_surface) report["inner_surface"] = surface_json(*run.inner_surface);
-  return report.dump(2) + "\n";
+  return as_text(report);
 }
 
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {
@@ -392,7 +402,7 @@ std::string check_json(const CheckResult& result, const std::string& source, con
                        {"vertices_torn", result.torn},
                        {"achieved", achieved_json(summarise(result.states, result.achieved, result.distance))},
                        {"face_interior_error", interior_json(result.interior)}};
-  return report.dump(2) + "\n";
+  return as_text(report);
 }
 
 }  // namespace vdb_offset

@@ -79,16 +79,24 @@ Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
   return shell;
 }
 
-/// For each vertex of the shell one that stands for its place; kNone for one in no face. Vertices that are one in the
-/// mesh are one in each skin; whether others are, both skins' positions decide, so far as vertices are welded at all.
-std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::uint32_t> place_in_mesh,
-                                     bool by_position) {
+/// Where the shell's vertices stand if those that are one in the mesh are at one place: with a tolerance, or at a seam,
+/// one that has not moved keeps its own.
+std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uint32_t> place_in_mesh) {
   const std::size_t count = shell.source_vertices();
   std::vector<Vec3d> positions = shell.polygons.positions;
   for_each_index(2 * count, [&](std::size_t v) {
     const std::uint32_t first = place_in_mesh[v % count];
     if (first != kNone) positions[v] = shell.polygons.positions[v < count ? first : count + first];
   });
+  return positions;
+}
+
+/// For each vertex of the shell one that stands for its place; kNone for one in no face. Vertices that are one in the
+/// mesh are one in each skin; whether others are, both skins' positions decide, so far as vertices are welded at all.
+std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::uint32_t> place_in_mesh,
+                                     bool by_position) {
+  const std::size_t count = shell.source_vertices();
+  const std::vector<Vec3d> positions = welded_positions(shell, place_in_mesh);
   if (by_position) return weld_by_position({positions, shell.polygons.corners, shell.polygons.face_begin}, {});
   std::vector<std::uint32_t> place(2 * count);
   for_each_index(2 * count, [&](std::size_t v) {

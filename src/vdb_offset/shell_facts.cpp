@@ -52,8 +52,13 @@ void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shel
   shell.facts.pinched_vertices = static_cast<std::size_t>(std::count(pinched.begin(), pinched.end(), 1));
 }
 
-void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written, Shell& shell) {
-  const Surface surface = build_surface({written, shell.polygons.corners, shell.polygons.face_begin}, {});
+/// Vertices at one place count as one there, though one that has not moved keeps its own coordinates.
+void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written,
+                     std::span<const std::uint32_t> place, Shell& shell) {
+  std::vector<Vec3d> joined(written.begin(), written.end());
+  for (std::size_t v = 0; v < joined.size(); ++v)
+    if (place[v] != kNone) joined[v] = written[place[v]];
+  const Surface surface = build_surface({joined, shell.polygons.corners, shell.polygons.face_begin}, {});
   const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
   if (pairs.empty()) return;
   const std::vector<std::uint8_t> near = find_near_crossings(mesh, weld);
@@ -94,7 +99,7 @@ void count_facts(PolygonView mesh, const WeldOptions& weld, const Precision& pre
   const std::vector<Vec3d> written = written_positions(mesh, shell, precision);
   count_edges(place, shell);
   count_pinched(mesh, written, shell);
-  count_crossings(mesh, weld, written, shell);
+  count_crossings(mesh, weld, written, place, shell);
   shell.facts.volume = enclosed_volume({written, shell.polygons.corners, shell.polygons.face_begin});
 }
 

@@ -230,6 +230,11 @@ void find_normals(Surface& surface) {
 
 }  // namespace
 
+double MeshFacts::tolerance_above(double length) {
+  constexpr double kSpare = 1.5;  // chains of such gaps are a little longer
+  return std::pow(10.0, std::ceil(std::log10(kSpare * length)));
+}
+
 Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
   if (feature == Feature::Face) return triangle_normals[triangle];
   const auto f = static_cast<std::uint32_t>(feature);
@@ -314,8 +319,12 @@ void list_incident_triangles(Surface& surface) {
 
 Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient orient) {
   require_usable(polygons);
+  return build_welded(polygons, weld_usable(polygons, options), orient);
+}
+
+Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient) {
   Surface surface;
-  weld(polygons, options, surface);
+  give_vertices(polygons, welding, surface);
   find_bounds(surface);
   split_faces(polygons, surface);
   sort_in_space(surface);

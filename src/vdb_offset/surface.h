@@ -20,6 +20,19 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 struct WeldOptions {
   bool enabled = true;
   double tolerance = 0;  ///< World units, >= 0. Vertices closer than this are taken to stand where the first stands.
+  bool close_seams = false;  ///< Without a tolerance: also borders that are one but for rounding (see seams.h).
+  double precision = 0;      ///< For that: of a coordinate, relative to the largest; 0: as the coordinates have it.
+
+  /// Equal positions, and seams.
+  static WeldOptions automatic() { return {true, 0, true, 0}; }
+};
+
+/// What was done about borders that all but meet, see seams.h. Lengths in world units.
+struct SeamFacts {
+  std::size_t vertices = 0;       ///< Positions on borders that went to another one.
+  double widest = 0;              ///< The farthest that one of them was away from that.
+  std::size_t near_vertices = 0;  ///< Positions on borders that run along another one, close by, and stay.
+  double widest_near = 0;         ///< How far apart these are at most.
 };
 
 /// Which side of a closed component is outward.
@@ -33,6 +46,7 @@ struct MeshFacts {
   std::size_t vertices = 0;         ///< As in the input.
   std::size_t unused_vertices = 0;  ///< In no face.
   std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
+  SeamFacts seams;
   std::map<std::size_t, std::size_t> faces_by_corners;
   std::size_t components = 0;          ///< Of faces, joined over edges.
   std::size_t boundary_edges = 0;      ///< With one face.
@@ -50,7 +64,14 @@ struct MeshFacts {
   Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
   double diagonal = 0;                    ///< Of that box.
   double area = 0;
-  double median_edge = 0;  ///< Median edge length of the triangulated surface.
+  double median_edge = 0;        ///< Median edge length of the triangulated surface.
+  std::size_t sliver_edges = 0;  ///< Shorter than kSliver of that.
+  double longest_sliver = 0;     ///< The longest of those edges.
+
+  static constexpr double kSliver = 1e-5;
+
+  /// A tolerance (a power of ten) that makes one place of what is no farther apart than that.
+  static double tolerance_above(double length);
 
   bool closed() const { return boundary_left == 0 && non_manifold_left == 0; }
   /// Whether each edge has two faces, of opposite directions, and no face had to be left out or turned round for that.
@@ -131,6 +152,17 @@ struct Surface {
 /// left to place(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
 /// finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
+
+/// Which vertices of a mesh are one.
+struct Welding {
+  std::vector<std::uint32_t> first;  ///< Of each vertex the one whose position counts; kNone for one in no face.
+  SeamFacts seams;
+};
+/// Of polygons with any number of corners. \throw InvalidInput as build_surface(), or for a tolerance or a precision
+/// that cannot be used
+Welding find_welding(PolygonView polygons, const WeldOptions& weld);
+/// build_surface() of all or some of a mesh's faces, welded as all of it is.
+Surface build_welded(PolygonView faces, const Welding& of_all, Orient orient);
 
 /// For each vertex the first that stands where it does; kNone for one that is in no face.
 std::vector<std::uint32_t> first_at_place(const Surface& surface);

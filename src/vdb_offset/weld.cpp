@@ -10,6 +10,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/mix.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/seams.h"
 
 namespace vdb_offset {
 namespace {
@@ -124,6 +125,8 @@ std::vector<std::uint32_t> find_firsts(PolygonView polygons, const WeldOptions& 
 }
 
 void require_tolerance(PolygonView polygons, const WeldOptions& options) {
+  if (!(options.precision >= 0 && options.precision < 1))
+    throw InvalidInput("weld: expected a precision from 0 to 1, got " + std::to_string(options.precision));
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
     throw InvalidInput("weld: expected a tolerance >= 0, got " + std::to_string(options.tolerance));
   if (options.tolerance == 0) return;
@@ -170,10 +173,32 @@ void require_usable(PolygonView polygons, std::uint32_t least_corners) {
                        std::to_string(corners[i]));
 }
 
-void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
+Welding find_welding(PolygonView polygons, const WeldOptions& options) {
+  require_usable(polygons, 1);
+  return weld_usable(polygons, options);
+}
+
+Welding weld_usable(PolygonView polygons, const WeldOptions& options) {
   require_tolerance(polygons, options);
+  Welding welding{find_firsts(polygons, options), {}};
+  if (options.enabled && options.tolerance == 0 && options.close_seams)
+    welding.seams = close_seams(polygons, options.precision, welding.first);
+  return welding;
+}
+
+Welding restricted(Welding welding, PolygonView some_faces) {
+  std::vector<std::uint32_t> first(welding.first.size(), kNone);
+  for (const auto v : some_faces.corners) {
+    const std::uint32_t one = welding.first[v];
+    first[v] = first[one] = one;  // which may be in none of the faces, but has their place
+  }
+  welding.first = std::move(first);
+  return welding;
+}
+
+void give_vertices(PolygonView polygons, const Welding& welding, Surface& surface) {
   const std::size_t count = polygons.positions.size();
-  const std::vector<std::uint32_t> first = find_firsts(polygons, options);
+  const std::vector<std::uint32_t>& first = welding.first;
   surface.welded.assign(count, kNone);
   surface.representative.reserve(count);
   for (std::uint32_t v = 0; v < count; ++v) {
@@ -188,6 +213,7 @@ void weld(PolygonView polygons, const WeldOptions& options, Surface& surface) {
   for_each_index(surface.vertices.size(),
                  [&](std::size_t w) { surface.vertices[w] = polygons.positions[surface.representative[w]]; });
   surface.facts.vertices = count;
+  surface.facts.seams = welding.seams;
   surface.facts.unused_vertices = static_cast<std::size_t>(std::count(first.begin(), first.end(), kNone));
   surface.facts.welded_vertices = surface.vertices.size();
 }
@@ -201,10 +227,7 @@ std::vector<std::uint32_t> first_at_place(const Surface& surface) {
 }
 
 std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& options) {
-  require_usable(polygons, 1);
-  Surface surface;
-  weld(polygons, options, surface);
-  return first_at_place(surface);
+  return find_welding(polygons, options).first;
 }
 
 }  // namespace vdb_offset

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/weld.h"
 
 namespace vdb_offset {
 namespace {
@@ -62,9 +63,14 @@ Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options) {
   } else {
     const SomeFaces chosen(mesh, options.only, 1), left(mesh, options.only, 0);
     if (chosen.empty()) throw InvalidInput("part: expected at least one face, got none");
-    work.front = build_surface(chosen.of(mesh), options.weld, options.orient);
-    work.whole = build_surface(mesh, options.weld, options.orient);
-    if (!left.empty()) work.rest = build_surface(left.of(mesh), options.weld, options.orient);
+    // All of the mesh says what is one; where a part ends there is no border.
+    const Welding welding = find_welding(mesh, options.weld);
+    const auto build = [&](PolygonView faces) {
+      return build_welded(faces, restricted(welding, faces), options.orient);
+    };
+    work.front = build(chosen.of(mesh));
+    work.whole = build_welded(mesh, welding, options.orient);
+    if (!left.empty()) work.rest = build(left.of(mesh));
   }
   if (options.obstacles.face_count() > 0) {
     if (!work.whole) work.whole = work.front;

@@ -28,6 +28,11 @@ std::string write(const std::string& name, const std::string& bytes) {
   return path.string();
 }
 
+std::string with_cr(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  return text;
+}
+
 /// Most seeds must be meshes, else they would lead nowhere: checked here.
 void seed(const std::string& name, const std::string& bytes) { io::read_mesh(write(name, bytes)); }
 
@@ -64,6 +69,8 @@ void obj_seeds() {
       "o part\ng group\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/1/1 # face\nf -3//1 -1//1 -2//1\nl 1 2\nunknown 1 2 3";
   seed("rich.obj", rich);
   seed("crlf.obj", with_crlf(rich));
+  seed("cr.obj", with_cr(rich));
+  seed("unnamed.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//-2 3//1\nf 1/1/7 2/2 3/-3\n");
   seed("numbers.obj", "v +0 -0 .5\nv 1e-3 2E+2 3.\nv 1e-400 1e300 0.1000000000000000055\nf 1 +2 3\n");
   const std::string continued =
       "v 0 \\\n0 0\nv 1 0 0\\\nv 0 1 0\nv 1\\\n 0 0\nv 0 1 0\nf 1\\\n 2 \\\n 3\n# end \\\nf 1 2 3\n";
@@ -89,9 +96,23 @@ void off_seeds() {
   seed("stoff.off", with("STOFF", " 0.25 0.75"));
   seed("stcnoff.off", with("STCNOFF", " 0 0 1 1 1 1 1 0.25 0.75"));
   seed("crlf.off", with_crlf(with("OFF", "")));
+  seed("cr.off", with_cr(with("COFF", " 255 0 0 128")));
   seed("comments.off",
        "# first\nOFF # keyword\n\n# counts\n3 1 # two of three\n0 0 0#near\n#\n1 0 0\n0 1 0\n\n3 0 1 2");
   seed("one_line.off", "\xef\xbb\xbfOFF 3 1 0\n0 0 0\n1e-3 +0 -0\n0 1 .5\n3 0 1 2");
+}
+
+/// A triangle with a colour and a quadrilateral without, of Geomview's kind.
+void binary_off_seeds() {
+  for (const auto& [keyword, numbers] : {std::pair{"OFF", 3}, {"COFF", 7}, {"STCNOFF", 12}}) {
+    std::string bytes = keyword + std::string(" BINARY\n");
+    for (const std::int32_t count : {4, 2, 5}) bytes += raw(count, true);
+    for (int i = 0; i < 4 * numbers; ++i) bytes += raw(0.125f * static_cast<float>(i * 7 % 8), true);
+    for (const std::int32_t number : {3, 0, 1, 2, 3}) bytes += raw(number, true);
+    for (const float colour : {1.f, 0.5f, 0.f}) bytes += raw(colour, true);
+    for (const std::int32_t number : {4, 0, 1, 3, 2, 0}) bytes += raw(number, true);
+    seed(std::string("binary_") + keyword + ".off", bytes);
+  }
 }
 
 std::string ply_header(const std::string& encoding, const std::string& elements) {
@@ -115,6 +136,14 @@ void ply_text_seeds() {
            "2 7 8\n0.5 3 0 1 2 6 0 0 1 0 0 1\n0 0 0 0 255\n1 5 1 0 0 255\n2 5 6 0 1 0 255\n");
   seed("text_one_line.ply",
        ply_header("ascii", "element vertex 3\n" + xyz + "element face 1\n" + corners) + "0 0 0 1 0 0 0 1 0 3 0 1 2");
+  const std::string strips = "element vertex 4\n" + xyz + "element tristrips 2\nproperty list int int vertex_indices\n";
+  seed("text_strips.ply",
+       ply_header("ascii", strips) + "0 0 0 1 0 0 0 1 0 0 0 1\n9 0 1 2 3 0 1 -1 2 2\n5 3 3 0 1 -1\n");
+  seed("text_cr.ply", with_cr(normals));
+  std::string binary = with_cr(ply_header("binary_little_endian", strips));
+  for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) binary += raw(x);
+  for (const std::int32_t i : {5, 0, 1, 2, 3, -1, 3, 0, 1, 3}) binary += raw(i);
+  seed("binary_cr_strips.ply", binary);
   const std::string three = "element vertex 3\n" + xyz + "property float nx\nproperty float ny\nproperty float nz\n";
   const std::string one = "element face 1\n" + corners;
   odd_seed("text_twice.ply", ply_header("ascii", three + three + one + one + "element edge 1000\n") +
@@ -173,6 +202,7 @@ void stl_seeds() {
   std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
   seed("text.stl", text);
   seed("crlf.stl", with_crlf(text));
+  seed("cr.stl", with_cr(text));
   seed("upper.stl", upper);
   seed("two_solids.stl", text + "\n" + text);
   seed("remarks.stl",
@@ -229,6 +259,7 @@ int main(int count, char** arguments) {
     plain_seeds();
     obj_seeds();
     off_seeds();
+    binary_off_seeds();
     ply_text_seeds();
     for (const bool big : {false, true}) {
       const std::string name = big ? "big.ply" : "little.ply";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -78,7 +79,7 @@ struct Raw {
   std::optional<double> growth, adaptivity;
   std::string distance_from, distance_xy, distance_z, first_height, total_thickness, heights;
   bool structured = false, keep_specks = false;
-  std::string max_memory, clearance, inner, weld = "exact", orient = "keep";
+  std::string max_memory, clearance, inner, weld = "auto", orient = "keep";
   std::optional<std::string> solver, collision, border, format, transport;
   std::string mode = "topology";
   std::optional<std::string> inside;
@@ -190,8 +191,10 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--solver", raw.solver,
                  "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]")
       ->type_name("NAME");
-  app.add_option("--weld", raw.weld,
-                 "Vertices that move as one: 'exact' (equal positions), 'none', or within TOL world units [exact]")
+  app.add_option(
+         "--weld", raw.weld,
+         "Vertices that move as one: 'auto' (equal positions, and borders that are one but for the file's rounding), "
+         "'exact' (equal positions), 'none', or within TOL world units [auto]")
       ->type_name("MODE");
   app.add_option("--orient", raw.orient,
                  "Outward is where the faces point ('keep'), or out of what a closed component encloses even where it "
@@ -277,7 +280,7 @@ void check_curves(const Raw& raw, const Arguments& args) {
                                     {"--obstacle", !args.obstacles.empty()},
                                     {"--shell", args.shell},
                                     {"--mode iso", args.iso.has_value()},
-                                    {"--weld", raw.weld != "exact"},
+                                    {"--weld", raw.weld != "auto" && raw.weld != "exact"},
                                     {"--orient", raw.orient != "keep"}})
     require(!given, fmt::format("{}: expected a mesh, as this is not for curves", name));
 }
@@ -577,6 +580,7 @@ DistanceRequest parse_request(const std::string& text) {
 
 WeldOptions parse_weld(const std::string& text) {
   WeldOptions weld;
+  if (text == "auto") return WeldOptions::automatic();
   if (text == "exact") return weld;
   if (text == "none") {
     weld.enabled = false;
@@ -586,7 +590,7 @@ WeldOptions parse_weld(const std::string& text) {
   if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) ||
       !std::isfinite(weld.tolerance))
     throw UsageError(
-        fmt::format("--weld: expected 'none', 'exact' or a tolerance >= 0 in world units, got '{}'", text));
+        fmt::format("--weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got '{}'", text));
   return weld;
 }
 
@@ -626,6 +630,19 @@ SymmetryPlane parse_plane(const std::string& text) {
   return plane;
 }
 
+std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
+  std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  const auto mark = std::find(arguments.begin(), arguments.end(), "--");
+  if (mark != arguments.end()) {
+    // CLI11 takes the mark for the end of what an option before it lists. As ./NAME a name looks like no option.
+    for (auto name = mark + 1; name != arguments.end(); ++name)
+      if (name->starts_with('-') && *name != "-") name->insert(0, "./");
+    arguments.erase(mark);
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
+}
+
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "vdb_offset");
   app.footer(kMore);
@@ -634,7 +651,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   Raw raw;
   declare(app, args, raw);
   try {
-    app.parse(argc, argv);
+    app.parse(reversed_arguments(argc, argv));
   } catch (const CLI::Success& success) {
     app.exit(success);
     return std::nullopt;

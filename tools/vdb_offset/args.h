@@ -89,7 +89,7 @@ std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mes
 /// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
 DistanceRequest parse_request(const std::string& text);
 
-/// 'exact', 'none' or a tolerance. \throw UsageError
+/// 'auto', 'exact', 'none' or a tolerance. \throw UsageError
 WeldOptions parse_weld(const std::string& text);
 
 /// 'keep' or 'fix-direction-only'. \throw UsageError
@@ -97,6 +97,10 @@ Orient parse_orient(const std::string& text);
 
 /// 'x=0', or another axis and number, or 'A,B,C,D' for A x + B y + C z = D. \throw UsageError
 SymmetryPlane parse_plane(const std::string& text);
+
+/// The arguments behind a program's or a subcommand's name, the last one first, as CLI11 takes them. What stands behind
+/// `--` is a file's name, whatever it starts with.
+std::vector<std::string> reversed_arguments(int argc, const char* const* argv);
 
 /// Parses the command line. Empty if it asked only for help or the version, which are then printed.
 /// \throw UsageError with one line that says what is wrong.

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "args.h"
+#include "inputs.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_check.h"
 #include "vdb_offset/curve_line.h"
@@ -29,7 +30,7 @@ constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
 struct CheckArguments {
-  std::string source, offset, distance, distance_xy, distance_z, weld = "exact", orient = "keep", report;
+  std::string source, offset, distance, distance_xy, distance_z, weld = "auto", orient = "keep", report;
   int threads = 0;
   bool json = false, strict = false, close = false;
 };
@@ -45,8 +46,10 @@ void declare(CLI::App& app, CheckArguments& args) {
   app.add_option("--distance-xy", args.distance_xy, "Instead, with --distance-z: as it was for the offset")
       ->type_name("A");
   app.add_option("--distance-z", args.distance_z, "The same along z")->type_name("B");
-  app.add_option("--weld", args.weld,
-                 "Vertices of SOURCE that count as one: 'exact', 'none', or within TOL world units [exact]")
+  app.add_option(
+         "--weld", args.weld,
+         "Vertices of SOURCE that count as one: 'auto', 'exact', 'none', or within TOL world units, as it was for the "
+         "offset [auto]")
       ->type_name("MODE");
   app.add_option("--orient", args.orient,
                  "Which side of SOURCE is outward, as it was for the offset: 'keep' or 'fix-direction-only' [keep]")
@@ -103,6 +106,9 @@ void print(const CheckResult& result, bool curves) {
              result.faults.collapsed);
   fmt::print("crossings   {} new pairs of {}; {} in the source, {} beside those\n", result.faults.crossings,
              curves ? "segments" : "triangles", result.source_crossings, result.crossings_near_source);
+  if (result.facts.seams.vertices > 0)
+    fmt::print("seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",
+               result.facts.seams.vertices, result.facts.seams.widest);
   if (result.torn) fmt::print("torn        {} {} are apart from others that they stood with\n", result.torn, vertices);
   fmt::print("{}\n", result.valid() ? "valid" : "not valid");
 }
@@ -110,7 +116,7 @@ void print(const CheckResult& result, bool curves) {
 CheckResult measure_curves(const CheckArguments& args, CheckOptions& options) {
   io::CurveFile source = io::read_curves(args.source);
   const io::CurveFile offset = io::read_curves(args.offset);
-  if (args.weld != "exact" || args.orient != "keep")
+  if (args.weld != "auto" || args.orient != "keep")
     throw UsageError("--weld, --orient: expected meshes, as these are not for curves");
   if (args.close) close_curves(source.file.polygons);
   require_same_points(args, source.file.polygons, offset.file.polygons);
@@ -122,6 +128,7 @@ CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisD
                            CheckOptions& options) {
   if (args.close) throw UsageError("--close: expected curves, as this is not for meshes");
   const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
+  for (const io::MeshFile* const file : {&source, &offset}) tell_remarks(*file);
   require_same_faces(args, source.polygons, offset.polygons);
   options.distance = parse_distance(args.distance, source.polygons.view());
   if (axes) std::tie(options.metric, options.distance) = settle_axes(*axes, source.polygons.view());
@@ -139,7 +146,7 @@ int run_check(int argc, const char* const* argv) {
   CheckArguments args;
   declare(app, args);
   try {
-    app.parse(argc - 1, argv + 1);
+    app.parse(reversed_arguments(argc - 1, argv + 1));
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {

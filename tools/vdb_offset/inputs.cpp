@@ -152,6 +152,10 @@ void write_curves(const std::string& path, const Source& source, std::span<const
   else io::write_curves(path, *source.curves, positions, options);
 }
 
+void tell_remarks(const io::MeshFile& file) {
+  for (const std::string& remark : file.remarks) fmt::print(stderr, "vdb_offset: {}: {}\n", file.path, remark);
+}
+
 Source read_source(const Arguments& args) {
   Source source;
   if (args.curves) {
@@ -162,9 +166,17 @@ Source read_source(const Arguments& args) {
   if (scene::is_scene(args.input)) source.scene = scene::read_scene(args.input);
   if (!source.scene) source.file = io::read_mesh(args.input, format_of(args.input, args));
   else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
-  for (const std::string& path : args.obstacles)
-    add(source.obstacles, io::read_mesh(path, format_of(path, args)).polygons);
-  if (!args.fit.empty()) source.to_fit = io::read_mesh(args.fit, format_of(args.fit, args)).polygons;
+  if (source.file && !args.quiet) tell_remarks(*source.file);
+  for (const std::string& path : args.obstacles) {
+    const io::MeshFile obstacle = io::read_mesh(path, format_of(path, args));
+    if (!args.quiet) tell_remarks(obstacle);
+    add(source.obstacles, obstacle.polygons);
+  }
+  if (!args.fit.empty()) {
+    const io::MeshFile to_fit = io::read_mesh(args.fit, format_of(args.fit, args));
+    if (!args.quiet) tell_remarks(to_fit);
+    source.to_fit = to_fit.polygons;
+  }
   return source;
 }
 

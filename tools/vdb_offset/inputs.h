@@ -28,6 +28,9 @@ struct Source {
   }
 };
 
+/// Prints what is wrong with a file that was read all the same.
+void tell_remarks(const io::MeshFile& file);
+
 Source read_source(const Arguments& args);
 
 /// Curves with other positions. In the format of the source its bytes stay, which know nothing of a curve that has been

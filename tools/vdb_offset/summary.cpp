@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vdb_offset/curve_line.h"
 #include "vdb_offset/report.h"
@@ -49,6 +50,31 @@ void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient) {
     fmt::print(out,
                "{} edges between faces that disagree about the outside: {} triangles taken as turned, {} edges left\n",
                facts.orientation_conflicts, facts.turned_triangles, facts.unsettled_conflicts);
+}
+
+/// Which borders were closed, and which look as if they should be.
+void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
+  if (seams.vertices > 0)
+    fmt::print(out,
+               "{} vertices at borders are one with others but for rounding, {:.2g} apart at most, and count as welded "
+               "(--weld exact leaves these borders open)\n",
+               seams.vertices, seams.widest);
+  constexpr double kFarBelow = 0.1;  // of the distance
+  if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)
+    fmt::print(out,
+               "{} vertices are at borders that run along each other, {:.2g} apart at most: --weld {:g} closes them if "
+               "they are not meant\n",
+               seams.near_vertices, seams.widest_near, MeshFacts::tolerance_above(seams.widest_near));
+}
+
+/// What may have held vertices back.
+void print_slivers(std::FILE* out, const MeshFacts& facts) {
+  if (facts.sliver_edges > 0)
+    fmt::print(out,
+               "{} edges are no longer than {:.2g}, where the median is {:.2g}; such slivers hold back what is around "
+               "them: --weld {:g} makes one place of their ends\n",
+               facts.sliver_edges, facts.longest_sliver, facts.median_edge,
+               MeshFacts::tolerance_above(facts.longest_sliver));
 }
 
 std::string range_of(const Distances& distances) {
@@ -147,7 +173,11 @@ void print_curve_ends(std::FILE* out, const Source& source) {
 }
 
 /// What of the input leaves a result in doubt.
-void print_doubts(std::FILE* out, const Arguments& args, const Source& source, const OffsetStatistics& statistics) {
+void print_doubts(std::FILE* out, const Arguments& args, const Source& source, const OffsetStatistics& statistics,
+                  const Distances& distances) {
+  print_seams(out, statistics.facts.seams, std::abs(distances.farthest()));
+  const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
+  if (in(VertexState::Limited) + in(VertexState::Collision) > 0) print_slivers(out, statistics.facts);
   if (source.curves) print_curve_ends(out, source);
   else print_orientation(out, statistics.facts, args.options.orient);
   print_room(out, args, statistics.room);
@@ -243,6 +273,7 @@ void print_iso_plan(std::FILE* out, const CaptureStatistics& statistics, double 
 void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest) {
   print_facts(stdout, statistics.facts, args.curves);
   print_plan(stdout, statistics, farthest);
+  print_seams(stdout, statistics.facts.seams, std::abs(farthest.farthest()));
   if (!args.curves) print_orientation(stdout, statistics.facts, args.options.orient);
 }
 
@@ -266,11 +297,12 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
                result.statistics.disagreeing_distances, vertices);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, args.options.clearance);
-  print_doubts(out, args, source, result.statistics);
+  print_doubts(out, args, source, result.statistics, result.distances);
 }
 
 void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance) {
   print_iso_plan(stdout, statistics, distance);
+  print_seams(stdout, statistics.source.seams, std::abs(distance));
   print_orientation(stdout, statistics.source, args.options.orient);
 }
 
@@ -309,6 +341,7 @@ void print_iso_summary(const Arguments& args, const std::string& path, double di
     fmt::print(out, "{} speck{} dropped that enclosed less than a voxel of {:.6g} (--keep-specks keeps them)\n",
                found.dropped_specks, found.dropped_specks == 1 ? "" : "s", found.plan.voxel_size);
   print_solids(out, found);
+  print_seams(out, found.source.seams, std::abs(distance));
   print_orientation(out, found.source, args.options.orient);
 }
 
@@ -318,7 +351,7 @@ void print_layers_summary(const Arguments& args, const Source& source, const Lay
   fmt::print("{}: {}", args.output, summary(report));
   fmt::print("{:.2f} s\n", total_seconds);
   if (result.statistics.obstacles) print_obstacles(stdout, *result.statistics.obstacles, args.options.clearance);
-  print_doubts(stdout, args, source, result.statistics);
+  print_doubts(stdout, args, source, result.statistics, result.heights.back());
 }
 
 }  // namespace vdb_offset::tool

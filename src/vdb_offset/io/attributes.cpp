@@ -11,6 +11,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/labels.h"
+#include "vdb_offset/io/off_binary.h"
 #include "vdb_offset/io/ply_header.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/parallel.h"
@@ -190,8 +191,28 @@ bool has_face_colours(const MeshFile& source) {
   return false;
 }
 
+constexpr const char *kOffColours = "vertex colours", *kOffTexture = "texture coordinates";
+
+/// Colours, four of them, and texture coordinates.
+void read_binary_off(const MeshFile& source, Attributes& attributes) {
+  const off::Layout layout = off::layout_of(source);
+  const auto columns_of = [&](std::size_t first, std::size_t width) {
+    Columns columns{width, {}};
+    for (std::size_t v = 0; v < source.position_at.size(); ++v)
+      for (std::size_t k = 0; k < width; ++k)
+        columns.number.push_back(off::number_at(source, source.position_at[v].at[0] + 4 * (first + k)));
+    return columns;
+  };
+  if (layout.colour && take_colours(columns_of(layout.colour, 4), 4, 1, attributes)) is_kept(attributes, kOffColours);
+  if (layout.texture && take_texture(columns_of(layout.texture, 2), 0, attributes)) is_kept(attributes, kOffTexture);
+  const std::uint64_t counts = source.polygons.corners.size() + 2 * source.polygons.face_count();
+  const std::vector<std::uint64_t> places = off::face_places(source);
+  if (places.back() - places.front() > 4 * counts) attributes.lost.emplace_back("face colours");
+}
+
 void read_off(const MeshFile& source, Attributes& attributes) {
-  constexpr const char *kColours = "vertex colours", *kTexture = "texture coordinates";
+  if (source.encoding != Encoding::Ascii) return read_binary_off(source, attributes);
+  constexpr const char *kColours = kOffColours, *kTexture = kOffTexture;
   if (has_face_colours(source)) attributes.lost.emplace_back("face colours");
   const auto tails = read_tails(source);
   const std::size_t textures = has_extra(source, kTexture) ? 2 : 0;
@@ -284,7 +305,8 @@ class TextureIndex {
 
 /// Lists `texcoord` of faces: two numbers a corner, or none at all.
 void read_ply_texture_lists(const MeshFile& source, const ply::Header& header, Attributes& attributes) {
-  const ply::Element& faces = *ply::find(header, "face");
+  if (!ply::find_faces(header) || ply::find_strips(header)) return;
+  const ply::Element& faces = *ply::find_faces(header);
   const auto is_texture = [](const ply::Property& p) { return p.name == "texcoord" && p.count && p.type.kind == 'f'; };
   if (std::count_if(faces.properties.begin(), faces.properties.end(), is_texture) != 1) return;
   CornerValues<Vec2d> texture;
@@ -314,10 +336,10 @@ void read_ply_texture_lists(const MeshFile& source, const ply::Header& header, A
 
 void read_ply(const MeshFile& source, Attributes& attributes) {
   const ply::Header header = ply::read_header(source);
-  const ply::Element *vertices = ply::find(header, "vertex"), *faces = ply::find(header, "face");
+  const ply::Element *vertices = ply::find(header, "vertex"), *faces = ply::find_faces(header);
   // Not so only if the file has changed, and then nothing will be written.
-  if (!vertices || vertices->count != source.polygons.positions.size() || !faces ||
-      faces->count != source.polygons.face_count())
+  if (!vertices || vertices->count != source.polygons.positions.size() ||
+      (!ply::find_strips(header) && (!faces || faces->count != source.polygons.face_count())))
     return;
   for (const auto read : {read_ply_colours, read_ply_texture_lists, read_ply_texture}) {
     try {

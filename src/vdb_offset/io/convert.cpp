@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vdb_offset/io/encode.h"
+#include "vdb_offset/io/nearest_names.h"
 #include "vdb_offset/io/normals.h"
 #include "vdb_offset/io/shell_formats.h"
 #include "vdb_offset/parallel.h"
@@ -296,7 +297,7 @@ Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_p
   fit(target, content->mesh, with);
   if (target == Format::Stl) name_losses_of_triangles(source, with.lost);
   if (!content->parts.empty() && !keeps_parts(target)) with.lost.emplace_back(kShellParts);
-  result.lost = fmt::format("{}", fmt::join(with.lost, ", "));
+  result.lost = first_names(with.lost);
   return encode(target, content);
 }
 
@@ -387,7 +388,7 @@ Pieces convert(const MeshFile& source, Format target, const CaptureResult& captu
     sort_by_material(lookup, transported.materials, *content, *mesh);
   }
   fit(target, content->mesh, with);
-  result.lost = fmt::format("{}", fmt::join(with.lost, ", "));
+  result.lost = first_names(with.lost);
   return keep_alive(encode(target, content), mesh);
 }
 

@@ -10,6 +10,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
+#include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/numbers.h"
 #include "vdb_offset/io/patch.h"
 #include "vdb_offset/io/pieces.h"
@@ -186,6 +187,7 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   curves.file.path = name;
   curves.file.bytes = std::move(bytes);
   if (curves.file.text().empty()) throw InvalidInput(name + ", byte 0: expected curves, got an empty file");
+  if (format != CurveFormat::Svg) use_line_feeds(curves.file);
   switch (format) {
     case CurveFormat::Text:
       TextParser(curves).run();
@@ -276,7 +278,8 @@ bool holds_curves(const std::string& path) {
   const FileBytes bytes = FileBytes::open(path);
   const std::string_view text = bytes.view();
   const auto has_line = [&](std::string_view start) {
-    return text.starts_with(start) || text.rfind("\n" + std::string(start)) != std::string_view::npos;
+    return text.starts_with(start) || text.rfind("\n" + std::string(start)) != std::string_view::npos ||
+           text.rfind("\r" + std::string(start)) != std::string_view::npos;
   };
   // From the end, where a mesh has its faces.
   return !has_line("f ") && !has_line("f\t") && (has_line("l ") || has_line("l\t"));

@@ -67,7 +67,10 @@ struct FileBytes::Mapping {
   std::string_view view() const { return {static_cast<const char*>(address), size()}; }
 };
 
-FileBytes::FileBytes(std::string bytes) : owned_(std::make_shared<const std::string>(std::move(bytes))) {
+FileBytes::FileBytes(std::string bytes) { show(std::move(bytes)); }
+
+void FileBytes::show(std::string bytes) {
+  owned_ = std::make_shared<const std::string>(std::move(bytes));
   view_ = *owned_;
 }
 

@@ -18,6 +18,8 @@ class FileBytes {
   static FileBytes open(const std::string& path);
 
   std::string_view view() const { return view_; }
+  /// Shows other bytes in the place of the file's, which is still the one that must stay unchanged.
+  void show(std::string bytes);
 
   /// \throw ReadError if the file has been written to since it was mapped, so that what was read of it may be
   /// neither the old nor the new. (A mapped file that is cut short ends in the signal SIGBUS when read.)

@@ -11,6 +11,9 @@ void parse_off(MeshFile& file);
 void parse_ply(MeshFile& file);
 void parse_stl(MeshFile& file);
 
+/// Has a text whose lines end with carriage returns alone, as those of old Macs, look like any other; see MeshFile.
+void use_line_feeds(MeshFile& file);
+
 /// As told, else by the file's ending. \throw InvalidInput for an ending that is unknown.
 Format require_format(const std::string& path, const std::optional<Format>& told);
 

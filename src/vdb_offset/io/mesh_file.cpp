@@ -41,6 +41,15 @@ MeshFile parse(std::string name, Format format, FileBytes bytes) {
 
 }  // namespace
 
+void use_line_feeds(MeshFile& file) {
+  const std::string_view text = file.text();
+  if (text.find('\n') != std::string_view::npos || text.find('\r') == std::string_view::npos) return;
+  std::string lines(text);
+  std::replace(lines.begin(), lines.end(), '\r', '\n');
+  file.bytes.show(std::move(lines));
+  file.has_carriage_returns = true;
+}
+
 Format require_format(const std::string& path, const std::optional<Format>& told) {
   const auto format = told ? told : format_of(path);
   if (!format)

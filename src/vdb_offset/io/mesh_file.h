@@ -23,7 +23,7 @@ enum class Format { Obj, Off, Ply, Stl };
 std::optional<Format> format_of(std::string_view path);
 const char* name(Format format);
 
-/// How the numbers of a PLY or STL file are stored.
+/// How the numbers of an OFF, PLY or STL file are stored.
 enum class Encoding { Ascii, LittleEndian, BigEndian };
 
 /// A mesh as read, with all that is needed to write the same file again with other coordinates.
@@ -40,9 +40,12 @@ struct MeshFile {
   Places normal_at;
   /// OBJ: the normal that each face corner names, kNoNormal where it names none. Empty if no corner does.
   std::vector<std::uint32_t> corner_normal;
-  std::vector<std::string> extras;                    ///< What the file holds besides positions and faces, in words.
+  std::vector<std::string> extras;   ///< What the file holds besides positions and faces, in words.
+  std::vector<std::string> remarks;  ///< What is wrong with the file and yet no reason to refuse it, in words.
   std::uint8_t position_bytes = 0, normal_bytes = 0;  ///< Size of a binary number: 4 or 8; 0 for text.
   Precision precision;                                ///< What its coordinates can hold.
+  /// Lines end with a carriage return alone. `bytes` has a line feed in the place of each.
+  bool has_carriage_returns = false;
 
   std::string_view text() const { return bytes.view(); }
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <tuple>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/formats.h"
@@ -26,6 +27,8 @@ enum Extra : unsigned {
 constexpr const char* kExtraNames[] = {
     "vertex weights or colours", "normals",          "texture coordinates", "materials",
     "groups and object names",   "smoothing groups", "other lines"};
+/// What corners of faces name, as further bits.
+enum Named : unsigned { kNamesTexture = 128, kNamesNormals = 256 };
 
 // Bytes of "v 0 0 0".
 constexpr std::ptrdiff_t kLeastVertexLine = 7;
@@ -232,6 +235,7 @@ class RunParser {
       if (!has_texture || cursor.take('/')) {
         if (!cursor.digits(normal) || normal == 0 || normal > all_.normals) return false;
       }
+      if (has_texture) extras_ |= kNamesTexture;
     }
     if (!cursor.at_word_end()) return false;
     add_corner(vertex - 1, normal == 0 ? kNoNormal : normal - 1);
@@ -258,7 +262,16 @@ class RunParser {
     const std::uint32_t vertex = index(part[0], next_.vertices, all_.vertices, "vertex", at);
     std::int64_t texture = 0;
     if (!part[1].empty() && !parse_integer(part[1], texture)) scanner_.fail("a texture index", at);
-    add_corner(vertex, part[2].empty() ? kNoNormal : index(part[2], next_.normals, all_.normals, "normal", at));
+    if (!part[1].empty()) extras_ |= kNamesTexture;
+    add_corner(vertex, part[2].empty() ? kNoNormal : normal_index(part[2], at));
+  }
+  /// Some writers name normals that they do not write.
+  std::uint32_t normal_index(std::string_view text, std::size_t at) {
+    if (all_.normals > 0) return index(text, next_.normals, all_.normals, "normal", at);
+    std::int64_t ignored = 0;
+    if (!parse_integer(text, ignored)) scanner_.fail("a normal index", at);
+    extras_ |= kNamesNormals;
+    return kNoNormal;
   }
   std::uint32_t index(std::string_view text, std::size_t so_far, std::size_t all, const char* what, std::size_t at) {
     std::int64_t value = 0;
@@ -321,6 +334,7 @@ Arrays allocate(MeshFile& file, const Counts& all) {
 /// Reads `v`, `vn` and `f` lines; all others stay what they are, bytes that are copied. The lines are counted first, so
 /// that runs of them can be parsed in parallel, straight to where they belong.
 void parse_obj(MeshFile& file) {
+  use_line_feeds(file);
   const std::vector<std::size_t> cuts = cut_at_lines(file.text(), byte_order_mark(file.text()));
   const std::vector<Counts> before = count(file, cuts);
   const Counts& all = before.back();
@@ -343,6 +357,10 @@ void parse_obj(MeshFile& file) {
   for (const unsigned extra : extras) held |= extra;
   for (std::size_t i = 0; i < std::size(kExtraNames); ++i)
     if (held >> i & 1) file.extras.emplace_back(kExtraNames[i]);
+  for (const auto& [named, there, remark] :
+       {std::tuple{kNamesNormals, kNormals, "faces name normals (as in f 1//1), but there is no 'vn' line"},
+        {kNamesTexture, kTexture, "faces name texture coordinates (as in f 1/1), but there is no 'vt' line"}})
+    if ((held & named) && !(held & there)) file.remarks.emplace_back(remark);
 }
 
 }  // namespace vdb_offset::io

@@ -141,9 +141,18 @@ class Patcher {
 
 }  // namespace
 
+Pieces with_line_ends_of(const MeshFile& source, Pieces pieces) {
+  if (!source.has_carriage_returns) return pieces;
+  return {pieces.count, [make = std::move(pieces.make)](std::size_t piece) {
+            std::string text = make(piece);
+            std::replace(text.begin(), text.end(), '\n', '\r');
+            return text;
+          }};
+}
+
 Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, NewNormals normals) {
   const auto patcher = std::make_shared<const Patcher>(source, positions, precision, std::move(normals));
-  return {patcher->pieces(), [patcher](std::size_t piece) { return patcher->make(piece); }};
+  return with_line_ends_of(source, {patcher->pieces(), [patcher](std::size_t piece) { return patcher->make(piece); }});
 }
 
 }  // namespace vdb_offset::io

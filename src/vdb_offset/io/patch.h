@@ -13,4 +13,7 @@ namespace vdb_offset::io {
 Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
              NewNormals normals = {});
 
+/// A text with line feeds in that source's format as it has its lines end.
+Pieces with_line_ends_of(const MeshFile& source, Pieces pieces);
+
 }  // namespace vdb_offset::io

@@ -25,14 +25,14 @@ class PlyParser {
   void run() {
     file_.encoding = header_.encoding;
     if (!find(header_, "vertex")) missing("an element 'vertex'");
-    const Element* faces = find(header_, "face");
-    if (!faces || std::none_of(faces->properties.begin(), faces->properties.end(), is_corner_list))
-      missing("an element 'face' with a list 'vertex_indices'");
+    const Element *const faces = find_faces(header_), *const strips = find_strips(header_);
+    if (!faces && !strips) missing("an element 'face' or 'tristrips' with a list 'vertex_indices'");
     for (const Element& element : header_.elements) {
       if (find(header_, element.name) != &element) missing("each element once");
       if (element.properties.empty()) continue;  // takes no bytes, however many there are
       if (element.name == "vertex") read_vertices(element);
-      else if (element.name == "face") read_faces(element);
+      else if (&element == faces) read_faces(element);
+      else if (&element == strips) read_strips(element);
       else {
         for (std::size_t i = 0; i < element.count; ++i)
           for (const Property& property : element.properties) body_.skip(property);
@@ -173,8 +173,55 @@ class PlyParser {
     file_.normal_at = Places(std::move(normal_at));
   }
 
-  /// Reads the first list of corners that each face has, and skips the rest.
+  /// Reads the first list of corners that each row has, and skips the rest.
+  template <class Read>
+  void read_lists(const Element& element, Read&& read) {
+    for (std::size_t row = 0; row < element.count; ++row) {
+      bool found = false;
+      for (const Property& property : element.properties) {
+        if (found || !is_corner_list(property)) body_.skip(property);
+        else read(property, row), found = true;
+      }
+    }
+  }
+
+  void read_strips(const Element& element) {
+    for (const Property& p : element.properties)
+      if (!is_corner_list(p)) file_.extras.push_back("property '" + p.name + "' of triangle strips");
+    file_.extras.emplace_back("triangle strips (the triangles are there)");
+    read_lists(element, [&](const Property& property, std::size_t) { read_strip(property); });
+  }
+  /// A corner that repeats one of the two before leads on to another place, without a triangle.
+  void read_strip(const Property& property) {
+    // Without a sign, -1 is the largest number, if that is no vertex.
+    const double largest = std::ldexp(1.0, 8 * property.type.bytes) - 1;
+    const bool largest_ends =
+        property.type.kind == 'u' && static_cast<double>(find(header_, "vertex")->count) <= largest;
+    std::array<std::uint32_t, 3> last{};
+    std::uint64_t at = 0;
+    for (std::size_t left = body_.take_length(property), length = 0; left > 0; --left) {
+      const double v = body_.take(property.type, "a vertex index or -1", at);
+      if (v == -1 || (largest_ends && v == largest)) {
+        length = 0;
+        continue;
+      }
+      if (v < 0 || v > static_cast<double>(kMostVertices))
+        body_.fail("a vertex index, or -1 at the end of a strip", fmt::format("{}", v), at);
+      last = {last[1], last[2], static_cast<std::uint32_t>(v)};
+      if (++length >= 3) add_triangle(last, length % 2 == 0, at);
+    }
+  }
+  void add_triangle(const std::array<std::uint32_t, 3>& corners, bool turned, std::uint64_t at) {
+    const auto [a, b, c] = corners;
+    if (a == b || b == c || c == a) return;
+    if (file_.polygons.corners.size() + 3 > kMostVertices)
+      body_.fail("fewer than 2^32 corners of triangles", "more", at);
+    if (turned) file_.polygons.add_face({b, a, c});
+    else file_.polygons.add_face({a, b, c});
+  }
+
   void read_faces(const Element& element) {
+    if (element.count == 0) return;  // there may be strips
     for (const Property& p : element.properties)
       if (!is_corner_list(p)) file_.extras.push_back("face property '" + p.name + "'");
     const auto lists = std::count_if(element.properties.begin(), element.properties.end(),
@@ -269,17 +316,7 @@ class PlyParser {
   void read_faces_one_by_one(const Element& element) {
     file_.polygons.corners.clear();
     file_.polygons.face_begin.assign(1, 0);
-    for (std::size_t f = 0; f < element.count; ++f) {
-      bool read = false;
-      for (const Property& property : element.properties) {
-        if (read || !is_corner_list(property)) {
-          body_.skip(property);
-          continue;
-        }
-        read_corners(property, f);
-        read = true;
-      }
-    }
+    read_lists(element, [&](const Property& property, std::size_t f) { read_corners(property, f); });
   }
   void read_corners(const Property& property, std::size_t f) {
     std::uint64_t at = 0;

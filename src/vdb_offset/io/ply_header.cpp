@@ -58,10 +58,32 @@ bool is_corner_list(const Property& p) {
   return p.count && p.type.kind != 'f' && (p.name == "vertex_indices" || p.name == "vertex_index");
 }
 
+namespace {
+
+const Element* find_with_corners(const Header& header, std::string_view name) {
+  const Element* const found = find(header, name);
+  return found && std::any_of(found->properties.begin(), found->properties.end(), is_corner_list) ? found : nullptr;
+}
+
+}  // namespace
+
+const Element* find_faces(const Header& header) { return find_with_corners(header, "face"); }
+
+const Element* find_strips(const Header& header) {
+  if (const Element* const faces = find_faces(header); faces && faces->count > 0) return nullptr;
+  return find_with_corners(header, "tristrips");
+}
+
 Header read_header(const MeshFile& file) {
   Scanner scanner(file.path, file.text());
   if (scanner.token() != "ply") scanner.fail("the keyword ply", 0);
   Header header;
+  const std::size_t first_end = file.text().find_first_of("\r\n");
+  if (first_end < file.text().size() && file.text()[first_end] == '\r' &&
+      !file.text().substr(first_end + 1).starts_with('\n')) {
+    header.line_end = '\r';
+    scanner.end_lines_with('\r');
+  }
   bool has_format = false;
   for (;;) {
     scanner.next_line();

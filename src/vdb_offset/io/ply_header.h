@@ -34,14 +34,21 @@ struct Element {
 struct Header {
   Encoding encoding = Encoding::Ascii;
   std::vector<Element> elements;
-  std::size_t end = 0;  // first byte of the body
+  std::size_t end = 0;   // first byte of the body
+  char line_end = '\n';  // of the header's lines: a carriage return if no line feed follows the first one
 };
 
 /// The first element of that name, or none.
 const Element* find(const Header& header, std::string_view element);
 
-/// The property is the list of a face's corners.
+/// The property is the list of a face's corners, or of those of strips of triangles.
 bool is_corner_list(const Property& property);
+
+/// The element 'face', if its rows have corners.
+const Element* find_faces(const Header& header);
+/// Strips of triangles in the place of faces: each three corners in a row are a triangle, every other one turned round,
+/// and -1 ends a strip. None if there are faces.
+const Element* find_strips(const Header& header);
 
 /// \throw InvalidInput
 Header read_header(const MeshFile& file);

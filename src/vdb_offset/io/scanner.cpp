@@ -38,7 +38,7 @@ bool is_word(std::string_view text, std::string_view word) {
 bool parse_double(std::string_view token, double& value) {
   const char* first = token.data();
   const char* last = first + token.size();
-  if (!skip_plus(first, last)) return false;
+  if (token.size() > kLongestNumber || !skip_plus(first, last)) return false;
   const auto [end, error] = std::from_chars(first, last, value);
   if (end != last || first == last) return false;
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(first, last).c_str(), nullptr);
@@ -54,8 +54,10 @@ bool parse_integer(std::string_view token, std::int64_t& value) {
 }
 
 bool Scanner::is_break(std::size_t at) const {
-  return at >= text_.size() || text_[at] == '\n' || (comment_ && text_[at] == comment_);
+  return at >= text_.size() || text_[at] == line_end_ || (comment_ && text_[at] == comment_);
 }
+
+bool Scanner::is_blank_at(std::size_t at) const { return is_blank(text_[at]) && text_[at] != line_end_; }
 
 std::size_t Scanner::continuation_length(std::size_t at) const {
   if (!continues_ || text_[at] != '\\') return 0;
@@ -66,7 +68,7 @@ std::size_t Scanner::continuation_length(std::size_t at) const {
 
 void Scanner::skip_blanks() {
   while (at_ < text_.size()) {
-    if (is_blank(text_[at_])) ++at_;
+    if (is_blank_at(at_)) ++at_;
     else if (const std::size_t length = continuation_length(at_)) at_ += length;
     else return;
   }
@@ -79,7 +81,7 @@ bool Scanner::at_line_end() {
 
 void Scanner::next_line() {
   for (bool goes_on = true; goes_on;) {
-    const std::size_t begin = at_, end = std::min(text_.find('\n', begin), text_.size());
+    const std::size_t begin = at_, end = std::min(text_.find(line_end_, begin), text_.size());
     at_ = std::min(end + 1, text_.size());
     std::size_t last = end;  // of the line, less what a line break of two bytes leaves
     if (last > begin && text_[last - 1] == '\r') --last;
@@ -100,7 +102,7 @@ bool Scanner::at_text_end() {
 std::string_view Scanner::token() {
   if (at_line_end()) return {};
   const std::size_t begin = last_token_ = at_;
-  while (!is_break(at_) && !is_blank(text_[at_]) && !continuation_length(at_)) ++at_;
+  while (!is_break(at_) && !is_blank_at(at_) && !continuation_length(at_)) ++at_;
   return text_.substr(begin, at_ - begin);
 }
 
@@ -113,6 +115,9 @@ double Scanner::number(const char* expected, std::uint64_t* at) {
   const std::string_view text = token();
   const std::size_t begin = at_ - text.size();
   double value = 0;
+  if (text.size() > kLongestNumber)
+    fail_with(fmt::format("{} of at most {} characters", expected, kLongestNumber),
+              fmt::format("'{}' of {}", shown(text), text.size()), begin);
   if (text.empty() || !parse_double(text, value)) fail(expected, begin);
   if (!std::isfinite(value)) fail(std::string(expected) + " that is finite", begin);
   if (at) *at = begin;
@@ -147,7 +152,7 @@ void Scanner::skip_triple(const char* expected, NumberTriple& at) {
 void Scanner::fail(const std::string& expected, std::size_t at) const {
   at = std::min(at, text_.size());
   std::size_t end = at;
-  while (!is_break(end) && !is_blank(text_[end])) ++end;
+  while (!is_break(end) && !is_blank_at(end)) ++end;
   fail_with(expected,
             at >= text_.size() ? "the end of the file"
             : end == at        ? "the end of the line"
@@ -156,8 +161,10 @@ void Scanner::fail(const std::string& expected, std::size_t at) const {
 }
 
 void Scanner::fail_with(const std::string& expected, const std::string& found, std::size_t at) const {
-  const auto before = text_.begin() + static_cast<std::ptrdiff_t>(std::min(at, text_.size()));
-  const auto line = 1 + std::count(text_.begin(), before, '\n');
+  const std::string_view before = text_.substr(0, std::min(at, text_.size()));
+  std::size_t line = 1;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    line += before[i] == '\n' || (before[i] == '\r' && (i + 1 == text_.size() || text_[i + 1] != '\n'));
   throw InvalidInput(fmt::format("{}, line {}: expected {}, got {}", *path_, line, expected, found));
 }
 

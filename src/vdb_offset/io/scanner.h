@@ -17,6 +17,9 @@ class Scanner {
   Scanner(const std::string& path, std::string_view text, std::size_t at = 0, bool continues = false, char comment = 0)
       : path_(&path), text_(text), at_(at), continues_(continues), comment_(comment) {}
 
+  /// Has lines end with this character alone: a carriage return, where no line feed follows it.
+  void end_lines_with(char line_end) { line_end_ = line_end; }
+
   std::size_t position() const { return at_; }
   std::size_t remaining() const { return text_.size() - at_; }
   bool at_end() const { return at_ >= text_.size(); }
@@ -35,7 +38,8 @@ class Scanner {
   /// The next token wherever it stands. \throw InvalidInput at the end of the text.
   std::string_view token_anywhere(const char* expected);
 
-  /// A finite number that is the whole next token of this line. `at` receives its first byte.
+  /// A finite number that is the whole next token of this line, of no more than kLongestNumber characters. `at`
+  /// receives its first byte.
   double number(const char* expected, std::uint64_t* at = nullptr);
   /// Three tokens of this line, whatever they hold: normals, which are replaced and never used.
   void skip_triple(const char* expected, NumberTriple& at);
@@ -54,6 +58,7 @@ class Scanner {
 
  private:
   bool is_break(std::size_t at) const;
+  bool is_blank_at(std::size_t at) const;
   std::size_t continuation_length(std::size_t at) const;
   void skip_blanks();
 
@@ -63,6 +68,7 @@ class Scanner {
   std::size_t last_token_ = 0;
   bool continues_;
   char comment_;
+  char line_end_ = '\n';
 };
 
 /// Bytes that a UTF-8 byte order mark takes at the start of a text: 3 or 0.
@@ -71,7 +77,7 @@ inline std::size_t byte_order_mark(std::string_view text) { return text.starts_w
 /// True if `text` is `word` in any case; `word` is lower case.
 bool is_word(std::string_view text, std::string_view word);
 
-/// Parses a whole token as a number, which may be an infinity or a NaN; false if it is none.
+/// Parses a whole token as a number, which may be an infinity or a NaN; false if it is none, or too long to be one.
 bool parse_double(std::string_view token, double& value);
 
 /// Parses a whole token as an integer; false if it is none or does not fit.

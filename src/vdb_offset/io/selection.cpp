@@ -9,6 +9,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/labels.h"
+#include "vdb_offset/io/nearest_names.h"
 #include "vdb_offset/io/scanner.h"
 
 namespace vdb_offset::io {
@@ -72,8 +73,8 @@ void require_known(const MeshFile& mesh, const Labels& labels, const Selector& s
   const char* const kind = group ? "group" : "material";
   throw InvalidOption(
       known.empty() ? fmt::format("{}: expected a {} '{}', got a file without any", mesh.path, kind, selector.name)
-                    : fmt::format("{}: expected a {} among {}, got '{}'", mesh.path, kind, fmt::join(known, ", "),
-                                  selector.name));
+                    : fmt::format("{}: expected a {} among {}, got '{}'", mesh.path, kind,
+                                  nearest_names(selector.name, {known.begin(), known.end()}), selector.name));
 }
 
 /// Marks the faces that a file names: a number for each face, 0 or 1, or else indices.

@@ -8,7 +8,10 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/convert.h"
 #include "vdb_offset/io/formats.h"
+#include "vdb_offset/io/nearest_names.h"
 #include "vdb_offset/io/numbers.h"
+#include "vdb_offset/io/patch.h"
+#include "vdb_offset/io/ply_header.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/shell_formats.h"
 
@@ -25,6 +28,10 @@ void require_same_mesh(const MeshFile& source, const Shell& shell) {
     return;
   throw InvalidInput(fmt::format("write_shell: expected a shell of {} vertices and {} faces, got one of {} and {}",
                                  source.polygons.positions.size(), faces, shell.source_vertices(), shell.skin_faces()));
+}
+
+bool has_strips(const MeshFile& source) {
+  return source.format == Format::Ply && ply::find_strips(ply::read_header(source));
 }
 
 Pieces in_own_format(const SharedShell& content, std::vector<std::string>& lost) {
@@ -152,12 +159,13 @@ WriteResult write_shell(const std::string& path, const MeshFile& source, const S
   require_same_mesh(source, shell);
   WriteResult result;
   Pieces pieces;
-  if (format == source.format) {
+  // Strips cannot be turned round face by face.
+  if (format == source.format && !has_strips(source)) {
     const auto content = std::make_shared<ShellContent>(ShellContent{source, shell, precision, options.normals});
     std::vector<std::string> lost;
-    pieces = in_own_format(content, lost);
+    pieces = with_line_ends_of(source, in_own_format(content, lost));
     result.disagreeing_normals = content->outer.new_normals().disagreeing + content->inner.new_normals().disagreeing;
-    result.lost = fmt::format("{}", fmt::join(lost, ", "));
+    result.lost = first_names(lost);
   } else {
     pieces = convert(source, format, shell, precision, options.normals, result);
   }

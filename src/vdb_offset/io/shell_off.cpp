@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "vdb_offset/io/numbers.h"
+#include "vdb_offset/io/off_binary.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/shell_formats.h"
 
@@ -122,6 +123,7 @@ class OffShellWriter {
 
 Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost) {
   lost.emplace_back(kShellParts);
+  if (content->source.encoding != Encoding::Ascii) return off::shell_to_binary(content);
   const auto writer = std::make_shared<const OffShellWriter>(content);
   const Shell& shell = content->shell;
   return in_sections(

@@ -91,7 +91,7 @@ class PlyShellWriter {
     std::string text;
     bool of_faces = false, list_found = false;
     for (std::size_t at = 0; at < lines.size();) {
-      const std::size_t newline = std::min(lines.find('\n', at), lines.size() - 1);
+      const std::size_t newline = std::min(lines.find(header_.line_end, at), lines.size() - 1);
       const std::string_view line = lines.substr(at, newline + 1 - at);
       Scanner words(source_.path, line);
       const std::string_view keyword = words.token();
@@ -170,7 +170,9 @@ class PlyShellWriter {
   bool is_widened() const {
     return index_type_.kind != corner_list_->type.kind || index_type_.bytes != corner_list_->type.bytes;
   }
-  static std::string line_end(std::string_view line) { return line.ends_with("\r\n") ? "\r\n" : "\n"; }
+  std::string line_end(std::string_view line) const {
+    return line.ends_with("\r\n") ? "\r\n" : std::string(1, header_.line_end);
+  }
 
   std::string element_line(std::string_view line, std::string_view what) const {
     if (what != "vertex" && what != "face") return std::string(line);
@@ -221,7 +223,7 @@ class PlyShellWriter {
     if (is_text() && bytes.size() > start) bytes += ' ';
   }
   void end_row(std::string& bytes) const {
-    if (is_text()) bytes += '\n';
+    if (is_text()) bytes += header_.line_end;
   }
   void append_cell(std::string& bytes, std::size_t start, const Cell& cell) const {
     separate(bytes, start);

@@ -126,7 +126,10 @@ void parse_stl(MeshFile& file) {
   if (holds_header && (bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)} ||
                        (!says_solid && bytes.size() > kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)})))
     return parse_binary(file);
-  if (says_solid) return AsciiStlParser(file).run();
+  if (says_solid) {
+    use_line_feeds(file);
+    return AsciiStlParser(file).run();
+  }
   if (!holds_header)
     throw InvalidInput(fmt::format("{}, byte 0: expected 'solid' or a binary STL header of 84 bytes, got {} bytes",
                                    file.path, bytes.size()));

@@ -14,6 +14,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/numbers.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/io/text.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -73,7 +74,8 @@ class ValueScanner {
     if (value_[at_] == '+' && value_.substr(at_ + 1).starts_with('-')) fail(expected);
     double number = 0;
     const auto [end, error] = std::from_chars(first, value_.data() + value_.size(), number);
-    if (error != std::errc() || !std::isfinite(number)) fail(expected);
+    if (error != std::errc() || !std::isfinite(number) || static_cast<std::size_t>(end - first) > kLongestNumber)
+      fail(expected);
     at_ = static_cast<std::size_t>(end - value_.data());
     return number;
   }

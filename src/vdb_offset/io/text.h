@@ -15,6 +15,9 @@ namespace vdb_offset::io {
 /// What separates words within a line.
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
+/// Longer words are no numbers that a program would write: that of the largest one, written out, has 309 digits.
+inline constexpr std::size_t kLongestNumber = 330;
+
 /// Cuts a text into runs of whole lines of about half a MiB: boundaries from `begin` to its end. A line that a
 /// backslash joins to the next one is not cut.
 std::vector<std::size_t> cut_at_lines(std::string_view text, std::size_t begin);
@@ -46,7 +49,8 @@ class FastCursor {
   bool number(double& value) {
     skip_blanks();
     const auto [after, error] = std::from_chars(at_, end_, value);
-    if (error != std::errc() || !std::isfinite(value)) return false;
+    if (error != std::errc() || !std::isfinite(value) || static_cast<std::size_t>(after - at_) > kLongestNumber)
+      return false;
     at_ = after;
     return at_word_end();
   }

@@ -10,6 +10,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
+#include "vdb_offset/io/nearest_names.h"
 #include "vdb_offset/io/ply_header.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/text.h"
@@ -37,6 +38,9 @@ std::vector<double> parse_text(const std::string& path, std::string_view text, s
   for (; !scanner.at_text_end(); ++found) {
     const std::string_view word = scanner.token();
     double number = 0;
+    if (word.size() > kLongestNumber)
+      scanner.fail(number_of_vertex(fmt::format("a number of at most {} characters", kLongestNumber), found),
+                   scanner.last_token());
     if (!parse_double(word, number)) scanner.fail(number_of_vertex("a number", found), scanner.last_token());
     if (!std::isfinite(number)) scanner.fail(number_of_vertex("a finite number", found), scanner.last_token());
     if (found < count) numbers.push_back(number);
@@ -222,7 +226,7 @@ const ply::Property& find_scalar(const MeshFile& source, const ply::Element& ver
   }
   if (!found)
     throw InvalidInput(fmt::format("{}: expected a vertex property '{}' of single numbers, found none (there are {})",
-                                   source.path, name, fmt::join(known, ", ")));
+                                   source.path, name, nearest_names(name, known)));
   return *found;
 }
 
