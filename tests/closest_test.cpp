@@ -100,7 +100,7 @@ TEST_CASE("closest: points on ways up from the surface have the answers of one b
   query.answer_along_ways(points, begin, hints, answers);
   double worst = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto& [distance, triangle, feature, point] = answers[i];
+    const auto& [distance, triangle, feature, tied, point] = answers[i];
     worst = std::max({worst, std::abs(distance - query(points[i], 0).distance),
                       std::abs((points[i] - point).length() - distance),
                       std::abs(std::sqrt(surface.closest_on(triangle, points[i]).squared_distance) - distance)});

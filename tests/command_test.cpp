@@ -299,7 +299,7 @@ TEST_CASE("command: check measures any two meshes", "[command]") {
   check_failure(shell, "check sphere.obj box.obj", 2, "box.obj");
   check_failure(shell, "check sphere.obj none.obj", 2, "none.obj");
   check_failure(shell, "check sphere.obj", 1, "OFFSET");
-  check_failure(shell, "check sphere.obj out.obj -d x", 1, "'x'");
+  check_failure(shell, "check sphere.obj out.obj -d 1x", 1, "'1x'");
 }
 
 TEST_CASE("command: behind -- names may start with a dash", "[command]") {

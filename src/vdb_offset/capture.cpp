@@ -258,7 +258,7 @@ void Capture::measure_vertices() {
   CaptureStatistics& statistics = result_.statistics;
   double squares = 0;
   for (std::size_t v = 0; v < count; ++v) {
-    const auto& [distance, triangle, feature, point] = closest[v];
+    const auto& [distance, triangle, feature, tied, point] = closest[v];
     const double error = std::abs(distance - level_->distance()) / level_->distance();
     statistics.worst_error = std::max(statistics.worst_error, error);
     squares += error * error;

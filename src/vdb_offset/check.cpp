@@ -8,11 +8,12 @@
 
 #include "vdb_offset/closest.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/workpiece.h"
 
 namespace vdb_offset {
 namespace {
 
-void require_usable(PolygonView source, std::span<const Vec3d> positions) {
+void require_usable(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
   if (source.face_count() == 0) throw InvalidInput("check: expected a source with faces, found none");
   if (positions.size() != source.positions.size())
     throw InvalidInput("check: expected as many vertices as the source's " + std::to_string(source.positions.size()) +
@@ -21,42 +22,46 @@ void require_usable(PolygonView source, std::span<const Vec3d> positions) {
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(positions[v][k]))
         throw InvalidInput("check: vertex " + std::to_string(v) + ": expected finite coordinates");
+  if (options.distance && !options.distance->uniform() && options.distance->count() != positions.size())
+    throw InvalidInput("check: expected a distance for each of " + std::to_string(positions.size()) +
+                       " vertices, got " + std::to_string(options.distance->count()));
 }
 
-/// The offset's places and the source's, vertex by vertex of the surface.
-struct Places {
-  std::vector<Vec3d> source, offset;
+/// Where the body's vertices stand in the offset; what is no part of the mesh stays.
+std::vector<Vec3d> places_of(const Surface& surface, std::span<const Vec3d> source, std::span<const Vec3d> positions) {
+  std::vector<Vec3d> places(source.begin(), source.end());
+  for (std::size_t w = 0; w < places.size(); ++w)
+    if (surface.representative[w] != kNone) places[w] = positions[surface.representative[w]];
+  return places;
+}
+
+/// Vertices that stand elsewhere than the one that they are to move with. What has been welded with a tolerance keeps
+/// its own place where it stays.
+std::size_t count_torn(const Surface& surface, PolygonView source, std::span<const Vec3d> positions) {
   std::size_t torn = 0;
-
-  Places(const Surface& surface, PolygonView mesh, std::span<const Vec3d> positions) {
-    source.reserve(surface.representative.size());
-    offset.reserve(surface.representative.size());
-    for (const auto v : surface.representative) {
-      source.push_back(mesh.positions[v]);
-      offset.push_back(positions[v]);
-    }
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-      const std::uint32_t w = surface.welded[v];
-      if (w == kNone || positions[v] == offset[w]) continue;
-      torn += offset[w] != source[w] || positions[v] != mesh.positions[v];  // what stays may stay beside it
-    }
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (surface.welded[v] == kNone) continue;
+    const auto first = surface.representative[surface.welded[v]];
+    const bool stays = positions[v] == source.positions[v] && positions[first] == source.positions[first];
+    torn += !stays && positions[v] != positions[first];
   }
-};
+  return torn;
+}
 
-/// The median distance, with the sign of the side that most vertices lie on.
-double find_distance(const ClosestQuery& query, std::span<const Vec3d> places) {
-  const Surface& surface = query.surface();
+/// The median distance of the front's vertices, with the sign of the side that most of them lie on.
+double find_distance(const Body& body, std::span<const Vec3d> places) {
+  const Surface& front = body.front.surface();
   std::vector<Vec3d> points;
-  points.reserve(places.size());
-  for (const Vec3d& p : places) points.push_back(p - surface.origin);
-  const std::vector<Closest> closest = closest_points(query, points);
+  for (std::uint32_t v = 0; v < places.size(); ++v)
+    if (body.on_front(v)) points.push_back(places[v] - front.origin);
+  const std::vector<Closest> closest = closest_points(body.front, points);
   std::vector<double> distance;
   distance.reserve(closest.size());
   std::ptrdiff_t outside = 0;
   for (std::size_t v = 0; v < closest.size(); ++v) {
-    const auto& [d, triangle, feature, point] = closest[v];
+    const auto& [d, triangle, feature, tied, point] = closest[v];
     distance.push_back(d);
-    outside += surface.pseudonormal(triangle, feature).dot(points[v] - point) < 0 ? -1 : 1;
+    outside += front.pseudonormal(triangle, feature).dot(points[v] - point) < 0 ? -1 : 1;
   }
   const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
   std::nth_element(distance.begin(), middle, distance.end());
@@ -64,13 +69,13 @@ double find_distance(const ClosestQuery& query, std::span<const Vec3d> places) {
 }
 
 /// States and distances of the input's vertices.
-void judge_vertices(const Surface& surface, const FaultFinder& finder, const Precision& precision,
-                    CheckResult& result) {
-  const double target = std::abs(result.distance), epsilon = precision.epsilon();
+void judge_vertices(const Surface& surface, const FaultFinder& finder, const Distances& distances,
+                    const Precision& precision, CheckResult& result) {
+  const double epsilon = precision.epsilon();
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     const std::uint32_t w = surface.welded[v];
     if (w == kNone) continue;
-    const double error = finder.distance_of(w) - target,
+    const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
                  tolerance = 1e-6 * target + epsilon * finder.places()[w].length();
     result.achieved[v] = finder.distance_of(w);
     result.states[v] = std::abs(error) <= tolerance ? VertexState::Reached : VertexState::Limited;
@@ -79,37 +84,46 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Pre
   }
 }
 
-void measure(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
-  const InMetric space(source, options.metric), moved({positions, source.corners, source.face_begin}, options.metric);
-  Surface surface = build_surface(space.view(), options.weld, options.orient);
-  result.facts = options.metric.even() ? surface.facts : build_surface(source, options.weld, options.orient).facts;
-  place(surface, surface.facts.diagonal / 256);
-  const ClosestQuery query(surface);
-  const Places places(surface, space.view(), moved.view().positions), in_file(surface, source, positions);
-  const FileFrame file{space, in_file.source, in_file.offset};
-  result.torn = places.torn;
-  result.distance = options.distance ? *options.distance : find_distance(query, places.offset);
+void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
+  const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
+  Workpiece work = build_workpiece(space.view(), {options.only, options.obstacles, options.weld, options.orient});
+  result.facts = options.metric.even() ? work.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
+  place(work, work.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
+  const Surface& surface = work.surface();
+  const ClosestQuery query(work.front);
+  std::optional<ClosestQuery> obstacle_query;
+  std::optional<Obstacles> obstacles;
+  if (work.obstacles) obstacles.emplace(Obstacles{obstacle_query.emplace(*work.obstacles), options.clearance});
+  Body body = work.body(query, obstacles ? &*obstacles : nullptr, false);
+  const std::vector<Vec3d> source = work.source(space.view()),
+                           places = places_of(surface, source, moved.view().positions), in_file = work.source(mesh),
+                           placed_in_file = places_of(surface, in_file, positions);
+  const FileFrame file{space, in_file, placed_in_file};
+  if (!options.metric.even()) body.file = &file;
+  result.torn = count_torn(surface, mesh, positions);
+  result.distances = options.distance ? *options.distance : Distances(find_distance(body, places));
+  std::size_t disagreeing = 0;
+  const Distances distances = distances_on_body(work, options.border, result.distances, disagreeing);
+  result.distances = distances_of_input(surface, distances);
+  result.distance = result.distances.farthest();
   if (result.distance == 0) {
     for (std::size_t v = 0; v < result.states.size(); ++v)
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  Body body{query, surface, {}, {}, {}, nullptr, false};
-  if (!options.metric.even()) body.file = &file;
-  const Distances distances(result.distance);
-  FaultFinder finder(body, places.source, distances, {});
-  finder.look_everywhere([&](std::uint32_t v) { return places.offset[v]; });
+  FaultFinder finder(body, source, distances, {});
+  finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().size();
   result.crossings_near_source = finder.crossings_near_source();
-  judge_vertices(surface, finder, options.precision, result);
-  result.interior = measure_interior(body, places.offset, distances);
+  judge_vertices(surface, finder, distances, options.precision, result);
+  result.interior = measure_interior(body, places, distances);
 }
 
 }  // namespace
 
 CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
-  require_usable(source, positions);
+  require_usable(source, positions, options);
   CheckResult result;
   result.states.assign(positions.size(), VertexState::Unused);
   result.achieved.assign(positions.size(), 0.0);

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "vdb_offset/lanes.h"
 #include "vdb_offset/morton.h"
@@ -187,7 +188,7 @@ class ClosestQuery::Search {
   /// Through these blocks of lowest boxes, which must hold all that may be nearer.
   Closest run_through(std::span<const std::uint32_t> blocks) {
     for (const auto block : blocks) open(0, block);
-    return {std::sqrt(best_.squared_distance), triangle_, best_.feature, best_.point};
+    return {std::sqrt(best_.squared_distance), triangle_, best_.feature, tied_, best_.point};
   }
 
   Closest run() {
@@ -197,7 +198,7 @@ class ClosestQuery::Search {
       if (visit.squared_distance > limit_) continue;
       open(visit.level, visit.node);
     }
-    return {std::sqrt(best_.squared_distance), triangle_, best_.feature, best_.point};
+    return {std::sqrt(best_.squared_distance), triangle_, best_.feature, tied_, best_.point};
   }
 
  private:
@@ -209,8 +210,28 @@ class ClosestQuery::Search {
 
   /// A box is left out only if it is farther than the best by more than float rounding can hide.
   void tighten() {
-    const float reach = (static_cast<float>(std::sqrt(best_.squared_distance) * query_.scale_) + rounding_) * 1.000001f;
+    const double distance = std::sqrt(best_.squared_distance), tie = query_.farthest_tie(distance);
+    const float reach = (static_cast<float>(distance * query_.scale_) + rounding_) * 1.000001f;
     limit_ = reach * reach;
+    tie_ = tie * tie;
+  }
+
+  /// Whether two points that are as near are not the same, as that of an edge or a corner is on each triangle there.
+  static bool are_apart(const TrianglePoint& a, const TrianglePoint& b) {
+    constexpr double kApart = 1e-12;
+    return (a.point - b.point).lengthSqr() > kApart * a.squared_distance;
+  }
+
+  void compare(std::uint32_t other) {
+    const TrianglePoint candidate = surface_.closest_on(other, x_);
+    if (candidate.squared_distance >= best_.squared_distance) {
+      tied_ = tied_ || (candidate.squared_distance <= tie_ && are_apart(candidate, best_));
+      return;
+    }
+    const TrianglePoint before = std::exchange(best_, candidate);
+    triangle_ = other;
+    tighten();
+    tied_ = before.squared_distance <= tie_ && (tied_ || are_apart(before, candidate));
   }
 
   /// Puts the siblings that are near enough on the stack, the nearest last, so that it is taken first; lowest boxes are
@@ -240,12 +261,7 @@ class ClosestQuery::Search {
          near &= near - 1) {
       const int at = std::countr_zero(near);
       if (squared[at] > limit_) continue;
-      const std::uint32_t other = leaf * kLeafSize + static_cast<std::uint32_t>(at);
-      const TrianglePoint candidate = surface_.closest_on(other, x_);
-      if (candidate.squared_distance >= best_.squared_distance) continue;
-      best_ = candidate;
-      triangle_ = other;
-      tighten();
+      compare(leaf * kLeafSize + static_cast<std::uint32_t>(at));
     }
   }
 
@@ -256,6 +272,8 @@ class ClosestQuery::Search {
   TrianglePoint best_;
   float local_[3];  // x in the tree's units
   float rounding_, limit_ = 0;
+  double tie_ = 0;  // a point no farther than the root of this is as near as the closest
+  bool tied_ = false;
   std::array<Visit, kWidth * 12> stack_;  // 8^12 leaves are far more than 2^31 triangles
   std::size_t depth_ = 0;
 };
@@ -427,7 +445,7 @@ class ClosestQuery::Ways {
     for (std::size_t p = first; p < last; ++p) {
       std::uint32_t triangle = hints[p];
       const TrianglePoint walked = query_.surface_.walk_to_closest(points_[p], triangle);
-      walked_[p] = {std::sqrt(walked.squared_distance), triangle, walked.feature, walked.point};
+      walked_[p] = {std::sqrt(walked.squared_distance), triangle, walked.feature, false, walked.point};
       if (walked_[p].distance > walked_[farthest].distance) farthest = p;
     }
     const Vec3d& centre = points_[farthest];
@@ -453,7 +471,7 @@ class ClosestQuery::Ways {
       if (triangle == best.triangle) return best.distance;
       const TrianglePoint candidate = query_.surface_.closest_on(triangle, points_[p]);
       if (candidate.squared_distance < best.distance * best.distance)
-        best = {std::sqrt(candidate.squared_distance), triangle, candidate.feature, candidate.point};
+        best = {std::sqrt(candidate.squared_distance), triangle, candidate.feature, false, candidate.point};
       return best.distance;
     });
     answers_[p] = best;

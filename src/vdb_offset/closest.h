@@ -17,6 +17,7 @@ struct Closest {
   double distance;  ///< Unsigned, world units.
   std::uint32_t triangle;
   Feature feature;
+  bool tied;  ///< Another point of the surface is as near, but for rounding; not told by answer_along_ways().
   Vec3d point;
 };
 
@@ -53,6 +54,20 @@ class ClosestQuery {
   void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
                          std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 
+  /// Calls visit(point) for all points of the surface, one a triangle, that are as near to x as the closest one, but
+  /// for what rounding may have made of that: the same ones in each frame that the surface may stand in.
+  template <class Visit>
+  void visit_as_near(const Vec3d& x, double distance, Visit&& visit) const {
+    const double farthest = farthest_tie(distance);
+    const Ball ball{x, farthest};
+    collect_together({&ball, 1}, [&](std::size_t, const NearTriangles& near) {
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        const TrianglePoint point = surface_.closest_on(near.triangle(i), x);
+        if (point.squared_distance <= farthest * farthest) visit(point.point);
+      }
+    });
+  }
+
   struct Ball {
     Vec3d centre;
     double radius;  ///< World units.
@@ -82,6 +97,10 @@ class ClosestQuery {
   static constexpr std::size_t kMostBlocks = 48;
   using Blocks = std::array<std::uint32_t, kMostBlocks>;
 
+  /// Far more than what two frames round differently, and far less than what a file's numbers tell apart.
+  double farthest_tie(double distance) const {
+    return distance * (1 + 1e-9) + 2.5e-8 * static_cast<double>(slack_) / scale_;
+  }
   Rectangles rectangles_of(std::size_t leaf) const;
   std::size_t find_blocks(std::span<const Ball> balls, Blocks& blocks) const;
   static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);

@@ -40,7 +40,8 @@ class CurveChecker {
   }
 
   void run() {
-    result_.distance = options_.distance ? *options_.distance : find_distance();
+    result_.distance = options_.distance ? options_.distance->farthest() : find_distance();
+    result_.distances = Distances(result_.distance);
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p)
       if (drawn_.vertex[p] != kNone) result_.states[p] = VertexState::Reached;
     if (result_.distance == 0) return;

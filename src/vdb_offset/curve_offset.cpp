@@ -53,9 +53,13 @@ class CurvePipeline {
     }
     make_field();
     draw();
-    for (const Distances& d : wanted) distances_.push_back(on_line(d));
+    std::vector<std::size_t> disagreeing(wanted.size(), 0);
+    for (std::size_t i = 0; i < wanted.size(); ++i) distances_.push_back(on_line(wanted[i], disagreeing[i]));
     std::vector<Paths> paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
-    for (std::size_t i = 0; i < wanted.size(); ++i) results.push_back(finish(wanted[i], distances_[i], paths[i]));
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      results.push_back(finish(wanted[i], distances_[i], paths[i]));
+      results[i].statistics.disagreeing_distances = disagreeing[i];
+    }
     if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
     return results;
   }
@@ -65,7 +69,7 @@ class CurvePipeline {
     make_field();
     draw();
     std::vector<Distances> on_points;
-    for (const Distances& each : heights) on_points.push_back(on_line(each));
+    for (const Distances& each : heights) on_points.push_back(on_line(each, shared_.disagreeing_distances));
     distances_.push_back(on_points.back());
     std::vector<Paths> paths = march(Ridges::Smooth);
     OffsetStatistics statistics = shared_;
@@ -105,8 +109,8 @@ class CurvePipeline {
   }
 
   /// The distances of the line's vertices: points at one place go as one, by the mean.
-  Distances on_line(const Distances& of_points) {
-    shared_.disagreeing_distances = 0;
+  Distances on_line(const Distances& of_points, std::size_t& disagreeing) const {
+    disagreeing = 0;
     if (of_points.uniform()) return of_points;
     std::vector<double> sum(drawn_.source.size(), 0.0);
     std::vector<std::uint32_t> copies(sum.size(), 0), apart(sum.size(), 0);
@@ -119,7 +123,7 @@ class CurvePipeline {
     for (std::uint32_t p = 0; p < plane_.points.size(); ++p) {
       if (drawn_.vertex[p] == kNone || plane_.chains.place[p] != p) continue;
       const auto v = drawn_.vertex[p];
-      shared_.disagreeing_distances += apart[v];
+      disagreeing += apart[v];
       sum[v] = apart[v] ? sum[v] / copies[v] : of_points[p];
     }
     return Distances(std::move(sum));

@@ -53,7 +53,7 @@ FloatBox CurveQuery::box_of(std::size_t leaf) const {
 
 Closest CurveQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
   const TrianglePoint best = near(x, hint);
-  return {std::sqrt(best.squared_distance), hint, best.feature, best.point};
+  return {std::sqrt(best.squared_distance), hint, best.feature, false, best.point};
 }
 
 TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {

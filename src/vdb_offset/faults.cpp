@@ -28,23 +28,15 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
     : body_(body),
       surface_(body.surface),
       source_(source),
-      distances_(distances),
-      near_(1e-3 * distances.scale()),
-      precision_(precision),
-      place_(source.begin(), source.end()),
-      away_(source.size()),
-      distance_(source.size()),
-      closest_(source.size(), kNone),
-      right_side_(source.size(), 1),
+      stands_(body, source, distances, precision),
       fault_(surface_.triangles.size(), Fault::None),
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
       position_(source.size(), Position::AsBefore) {
-  if (body.file) written_.assign(body.file->source.begin(), body.file->source.end());
   if (body.off_source) source_finder_.emplace(surface_, source_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
   if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
-  if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, place_, distances_);
+  if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, places(), distances);
   if (!source_crossings) {
     finder_.emplace(surface_, in_file());
     source_crossings = finder_->all();
@@ -116,9 +108,7 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
       crossings_.push_back(pair);
   } else if (first) {
     for (const TrianglePair& pair : finder_->all())
-      if (!is_fault(pair)) continue;
-      else if (matters(pair.first) && matters(pair.second)) crossings_.push_back(pair);
-      else ++crossings_near_source_;
+      if (is_fault(pair) && matters(pair.first) && matters(pair.second)) crossings_.push_back(pair);
   } else {
     add_crossings_of_updated();
   }
@@ -128,63 +118,6 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
 void FaultFinder::look_at_rim(const Indices& moved, const Indices& touched) {
   if (!rim_) return;
   rim_->look(moved, touched, *finder_, other_skin_finder_ ? *other_skin_finder_ : *source_finder_, *source_crossings_);
-}
-
-/// Whether a vertex stands where its path ended, rounded: then what was found there holds here to as much, phi being
-/// 1-Lipschitz.
-bool FaultFinder::is_known(std::uint32_t v, const Vec3d& x, const Paths& ends) const {
-  constexpr double kSamePlace = 1e-11, kLittle = 1e-2;
-  const double same = kSamePlace * ends.achieved[v] + std::min(2 * rounding(v), kLittle * ends.achieved[v]);
-  return ends.closest[v] != kNone && (x - surface_.vertices[v] - ends.displacement[v]).length() <= same;
-}
-
-void FaultFinder::measure(std::span<const std::uint32_t> vertices, const Paths* ends) {
-  const Surface& front = body_.front.surface();
-  Indices unknown;
-  std::vector<Vec3d> points;
-  std::vector<std::uint32_t> hints;
-  for (const auto v : vertices) {
-    const std::uint32_t before = std::exchange(closest_[v], kNone);
-    distance_[v] = 0;
-    away_[v] = Vec3d(0.0);
-    right_side_[v] = 1;
-    // What stands where it was is on the front, or no part of it.
-    if (place_[v] == source_[v] || !body_.on_front(v)) continue;
-    const Vec3d x = place_[v] - front.origin;
-    if (ends && is_known(v, x, *ends)) {
-      std::uint32_t triangle = ends->closest[v];
-      const TrianglePoint nearest = front.walk_to_closest(x, triangle);
-      take(v, x, {std::sqrt(nearest.squared_distance), triangle, nearest.feature, nearest.point});
-      continue;
-    }
-    unknown.push_back(v);
-    points.push_back(x);
-    hints.push_back(before != kNone ? before : body_.hint(v));
-  }
-  std::vector<Closest> answers(points.size());
-  body_.front.answer_together(points, hints, answers);
-  for (std::size_t i = 0; i < unknown.size(); ++i) take(unknown[i], points[i], answers[i]);
-}
-
-void FaultFinder::take(std::uint32_t v, const Vec3d& x, const Closest& closest) {
-  const Surface& front = body_.front.surface();
-  distance_[v] = closest.distance;
-  closest_[v] = closest.triangle;
-  away_[v] = x - closest.point;
-  const int side = distances_[v] < 0 ? -1 : 1;
-  if (front.facts.closed() && front.facts.oriented() && closest.distance > near_)
-    right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
-}
-
-double FaultFinder::rounding(std::uint32_t v) const {
-  double size = 0;
-  for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(place_[v][k]));
-  return size * precision_.epsilon();
-}
-
-Vec3d FaultFinder::twice_area(std::uint32_t t, std::span<const Vec3d> at) const {
-  const auto& [a, b, c] = surface_.triangles[t];
-  return (at[b] - at[a]).cross(at[c] - at[a]);
 }
 
 bool FaultFinder::has_bound(std::uint32_t t) const {
@@ -201,10 +134,10 @@ bool FaultFinder::goes_along(std::uint32_t resting, std::uint32_t other) const {
 FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
   constexpr double kCollapsed = 1e-6;
   if (body_.rests(t)) return Fault::None;
-  const Vec3d before = twice_area(t, source_), now = twice_area(t, place_);
+  const Vec3d before = stands_.twice_area(t, source_), now = stands_.twice_area(t, places());
   if (!(before.lengthSqr() > 0)) return Fault::None;
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
-  const bool against = body_.is_front(t) ? faces_against_front(t, before, now) : now.dot(before) < 0;
+  const bool against = body_.is_front(t) ? stands_.faces_against_front(t) : now.dot(before) < 0;
   if (against) return Fault::Inverted;
   return is_crowded(t) ? Fault::Crowded : Fault::None;
 }
@@ -213,7 +146,7 @@ FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
 bool FaultFinder::is_crowded(std::uint32_t t) const {
   if (!clearance_ && !source_finder_) return false;
   const auto& corners = surface_.triangles[t];
-  if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return place_[v] == source_[v]; }))
+  if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stands_.place(v) == source_[v]; }))
     return false;
   if (source_finder_ && body_.is_front(t) && meets_source(t)) return true;
   if (other_skin_finder_ && body_.is_front(t) && meets_other_skin(t)) return true;
@@ -227,7 +160,8 @@ bool FaultFinder::is_near_obstacle(std::uint32_t t) const {
   const double clearance = body_.obstacles->clearance,
                bound = body_.obstacles->start ? body_.obstacles->start->bound[t] : clearance,
                slack = bound < clearance ? std::max({rounding(a), rounding(b), rounding(c)}) : 0;
-  return clearance_->is_crowded({place_[a] - origin, place_[b] - origin, place_[c] - origin}, bound, slack);
+  return clearance_->is_crowded({stands_.place(a) - origin, stands_.place(b) - origin, stands_.place(c) - origin},
+                                bound, slack);
 }
 
 /// What stays is in nobody's way here, as edges slide along it; but where it rests, that at the border is, too, in the
@@ -238,10 +172,10 @@ bool FaultFinder::meets_source(std::uint32_t t) const {
   for (const auto v : corners) {
     if (body_.resting_faces > 0) break;
     double farthest = 0;
-    for (const auto w : corners) farthest = std::max(farthest, (place_[w] - place_[v]).length());
-    if (distance_[v] * kFreeShare > farthest) return false;
+    for (const auto w : corners) farthest = std::max(farthest, (stands_.place(w) - stands_.place(v)).length());
+    if (stands_.distance(v) * kFreeShare > farthest) return false;
   }
-  const Indices met = source_finder_->met_by(t, place_);
+  const Indices met = source_finder_->met_by(t, places());
   return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
     if (body_.rests(s) && has_bound(s)) return !has_bound(t);
     return body_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));
@@ -249,7 +183,7 @@ bool FaultFinder::meets_source(std::uint32_t t) const {
 }
 
 bool FaultFinder::meets_other_skin(std::uint32_t t) const {
-  const Indices met = other_skin_finder_->met_by(t, place_);
+  const Indices met = other_skin_finder_->met_by(t, places());
   return std::any_of(met.begin(), met.end(),
                      [&](std::uint32_t s) { return body_.is_front(s) && !source_crossings_->sheets_cross(s, t); });
 }
@@ -262,28 +196,12 @@ Indices FaultFinder::caught() {
     const auto& corners = surface_.triangles[t];
     const bool folded = folded_[corners[0]] || folded_[corners[1]] || folded_[corners[2]];
     if (!folded || fault_[t] != Fault::Crowded) continue;
-    for (const auto s : source_finder_->met_by(t, place_))
+    for (const auto s : source_finder_->met_by(t, places()))
       for (const auto v : surface_.triangles[s])
         if (folded_[v] && std::find(corners.begin(), corners.end(), v) != corners.end()) caught.push_back(v);
   }
   sort_unique(caught);
   return caught;
-}
-
-/// At each corner and at the centre, as far as they are off the front; with none of them, against the source's normal.
-bool FaultFinder::faces_against_front(std::uint32_t t, const Vec3d& before, const Vec3d& now) const {
-  const auto& [a, b, c] = surface_.triangles[t];
-  const int side = distances_[a] + distances_[b] + distances_[c] < 0 ? -1 : 1;
-  bool any = false;
-  for (const auto v : {a, b, c}) {
-    if (distance_[v] < near_) continue;
-    any = true;
-    if (side * now.dot(away_[v]) >= 0) return false;
-  }
-  const Vec3d centre = (place_[a] + place_[b] + place_[c]) / 3.0 - body_.front.surface().origin;
-  const Closest closest = body_.front(centre, body_.hint(a));
-  if (closest.distance >= near_) return side * now.dot(centre - closest.point) < 0;
-  return any || now.dot(before) < 0;
 }
 
 void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of) {
@@ -297,7 +215,6 @@ void FaultFinder::look_at_ends(const Paths& paths) {
 void FaultFinder::look_everywhere(const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends) {
   Indices everything(source_.size());
   std::iota(everything.begin(), everything.end(), 0u);
-  crossings_near_source_ = 0;
   look(everything, place_of, ends, Crossings::All);
 }
 
@@ -307,29 +224,14 @@ void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint
 
 void FaultFinder::look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
                        Crossings crossings) {
-  constexpr std::size_t kBlock = 64;
-  const auto look_at = [&](std::size_t block) {
-    const auto some = std::span(moved).subspan(block * kBlock, std::min(kBlock, moved.size() - block * kBlock));
-    for (const auto v : some) put(v, place_of(v));
-    measure(some, ends);
-  };
-  for_each_index((moved.size() + kBlock - 1) / kBlock, look_at, 1);
+  stands_.move(moved, place_of, ends);
   const Indices touched = triangles_around(moved);
+  if (ends) stands_.look_around(touched);
   for_each_index(
       touched.size(), [&](std::size_t i) { fault_[touched[i]] = judge(touched[i]); }, 64);
   replace(faces_, touched, [&](std::uint32_t t) { return fault_[t] != Fault::None; });
   replace(misplaced_, moved, [&](std::uint32_t v) { return is_misplaced(v); });
   look_for_crossings(moved, touched, crossings);
-}
-
-/// What has not moved keeps its bytes.
-void FaultFinder::put(std::uint32_t v, const Vec3d& place) {
-  if (body_.file) {
-    written_[v] = body_.file->of(v, source_[v], place, precision_);
-    place_[v] = place == source_[v] ? place : body_.file->space.metric().to(written_[v]);
-  } else {
-    place_[v] = place == source_[v] ? place : precision_(place);
-  }
 }
 
 void FaultFinder::try_out(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of) {
@@ -347,8 +249,7 @@ void FaultFinder::remember(const Indices& moved) {
   before_ = {moved, triangles_around(moved), {}, {}, crossings_};
   before_.stands.reserve(moved.size());
   for (const auto v : moved) {
-    before_.stands.push_back(
-        {place_[v], body_.file ? written_[v] : place_[v], away_[v], distance_[v], closest_[v], right_side_[v]});
+    before_.stands.push_back(stands_[v]);
     position_[v] = Position::Out;
   }
   before_.faults.reserve(before_.triangles.size());
@@ -384,13 +285,7 @@ void FaultFinder::take_back(const Indices& vertices) {
     return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), i) - sorted.begin());
   };
   for (const auto v : vertices) {
-    const Stand& stand = before_.stands[index_of(before_.vertices, v)];
-    place_[v] = stand.place;
-    if (body_.file) written_[v] = stand.written;
-    away_[v] = stand.away;
-    distance_[v] = stand.distance;
-    closest_[v] = stand.closest;
-    right_side_[v] = stand.right_side;
+    stands_.put_back(v, before_.stands[index_of(before_.vertices, v)]);
     position_[v] = Position::AsBefore;
   }
   const Indices touched = triangles_around(vertices);
@@ -427,16 +322,13 @@ void FaultFinder::take_back_crossings(const Indices& touched) {
   add_crossings_of_updated();
 }
 
-bool FaultFinder::is_misplaced(std::uint32_t v) const {
-  if (is_beyond_wall(v)) return true;
-  return !right_side_[v] || distance_[v] > std::abs(distances_[v]) * (1 + kReachedTolerance) + rounding(v);
-}
+bool FaultFinder::is_misplaced(std::uint32_t v) const { return is_beyond_wall(v) || stands_.is_misplaced(v); }
 
 bool FaultFinder::is_beyond_wall(std::uint32_t v) const {
   const Surface& front = body_.front.surface();
-  if (front.walls.empty() || !body_.on_front(v) || place_[v] == source_[v]) return false;
+  if (front.walls.empty() || !body_.on_front(v) || stands_.place(v) == source_[v]) return false;
   const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
-  return vdb_offset::is_beyond_wall(front, on_front, place_[v] - front.origin, rounding(v));
+  return vdb_offset::is_beyond_wall(front, on_front, stands_.place(v) - front.origin, rounding(v));
 }
 
 FaultCounts FaultFinder::count() const {
@@ -447,6 +339,17 @@ FaultCounts FaultFinder::count() const {
                                        : counts.crowded);
   counts.crossings = crossings_.size() + (rim_ ? rim_->count() : 0);
   return counts;
+}
+
+std::size_t FaultFinder::crossings_near_source() {
+  Indices near;
+  for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
+    if (!matters(t)) near.push_back(t);
+  if (near.empty()) return 0;
+  update_finder(near);
+  const std::vector<TrianglePair> pairs = finder_->of_updated();
+  return static_cast<std::size_t>(
+      std::count_if(pairs.begin(), pairs.end(), [&](const TrianglePair& pair) { return is_fault(pair); }));
 }
 
 Indices FaultFinder::wrong_vertices() {

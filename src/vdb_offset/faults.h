@@ -15,6 +15,7 @@
 #include "vdb_offset/near_crossings.h"
 #include "vdb_offset/precision.h"
 #include "vdb_offset/rim_crossings.h"
+#include "vdb_offset/stands.h"
 
 namespace vdb_offset {
 
@@ -32,12 +33,13 @@ struct FaultCounts {
 /// What is wrong with an offset of a surface, as its vertices are moved about.
 ///
 /// A face is inverted if it faces against the direction away from the front at its centre and at each corner (there,
-/// its distance has folded over) or, being no part of the front, against its own source; collapsed if its area is below
-/// 1e-6 of the source's, crowded if it is too near to an obstacle
+/// its distance has folded over; see Stands) or, being no part of the front, against its own source; collapsed if its
+/// area is below 1e-6 of the source's, crowded if it is too near to an obstacle
 /// or meets the source where it must not: anywhere but where sheets of the source cross (see near_crossings.h).
 /// Of a shell, the other skin must not be met either, and the rim is judged as well (see rim_crossings.h).
-/// Crossings are found with exact predicates. All is judged on coordinates as they will be written, and only around
-/// what has moved since the last look. The result does not depend on the number of threads.
+/// Crossings are found with exact predicates. All is judged on coordinates as they will be written, by these alone,
+/// whatever way led there: another look at the same places finds the same. Only what is around what has moved is judged
+/// anew. The result does not depend on the number of threads.
 class FaultFinder {
  public:
   /// `source` holds where the body's vertices stand in the input, world coordinates; they begin there. `distances` are
@@ -91,40 +93,32 @@ class FaultFinder {
   Indices wrong_vertices();
 
   /// Exact distance of a vertex as it was last looked at.
-  double distance_of(std::uint32_t vertex) const { return distance_[vertex]; }
+  double distance_of(std::uint32_t vertex) const { return stands_.distance(vertex); }
   /// The front's triangle that is closest to it; kNone if it is where it was, or not on the front.
-  std::uint32_t closest_to(std::uint32_t vertex) const { return closest_[vertex]; }
+  std::uint32_t closest_to(std::uint32_t vertex) const { return stands_.closest(vertex); }
   /// How far the precision's rounding may have moved a vertex.
-  double rounding(std::uint32_t vertex) const;
-  bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }
+  double rounding(std::uint32_t vertex) const { return stands_.rounding(vertex); }
+  bool on_right_side(std::uint32_t vertex) const { return stands_.on_right_side(vertex); }
   /// World coordinates, as they will be written.
-  std::span<const Vec3d> places() const { return place_; }
+  std::span<const Vec3d> places() const { return stands_.places(); }
   const std::vector<TrianglePair>& source_crossings() const { return source_crossings_->pairs(); }
-  /// New pairs within two rings of one of those, which has to slide, when everything was last looked at.
-  std::size_t crossings_near_source() const { return crossings_near_source_; }
+  /// New pairs within two rings of one of those, which has to slide: as things stand. Looks for them.
+  std::size_t crossings_near_source();
 
  private:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
 
-  /// What is known of a vertex where it stands.
-  struct Stand {
-    Vec3d place, written, away;  ///< `away` is the way there from the surface; `written` only in a metric's space.
-    double distance;
-    std::uint32_t closest;
-    std::uint8_t right_side;
-  };
   /// How things were before vertices were moved. Sorted, as are the triangles around them.
   struct Before {
     Indices vertices, triangles;
-    std::vector<Stand> stands;
+    std::vector<Stands::Stand> stands;
     std::vector<Fault> faults;
     std::vector<TrianglePair> crossings;  // all
   };
 
   void find_folded();
-  void put(std::uint32_t vertex, const Vec3d& place);
   /// What decides where triangles meet.
-  std::span<const Vec3d> in_file() const { return body_.file ? written_ : place_; }
+  std::span<const Vec3d> in_file() const { return stands_.in_file(); }
   Indices triangles_around(const Indices& vertices);
   enum class Crossings { All, OneOfEach };
   enum class Position : std::uint8_t { AsBefore, Out, ToTakeBack };
@@ -132,12 +126,8 @@ class FaultFinder {
   void look(const Indices& moved, const std::function<Vec3d(std::uint32_t)>& place_of, const Paths* ends,
             Crossings crossings);
   void remember(const Indices& moved);
-  void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
-  bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
-  void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest);
   bool is_misplaced(std::uint32_t vertex) const;
   bool is_beyond_wall(std::uint32_t vertex) const;
-  Vec3d twice_area(std::uint32_t triangle, std::span<const Vec3d> at) const;
   Fault judge(std::uint32_t triangle) const;
   bool has_bound(std::uint32_t triangle) const;
   bool goes_along(std::uint32_t resting, std::uint32_t other) const;
@@ -145,7 +135,6 @@ class FaultFinder {
   bool is_near_obstacle(std::uint32_t triangle) const;
   bool meets_source(std::uint32_t triangle) const;
   bool meets_other_skin(std::uint32_t triangle) const;
-  bool faces_against_front(std::uint32_t triangle, const Vec3d& before, const Vec3d& now) const;
   bool is_fault(const TrianglePair& pair) const;
   bool still_touches(const TrianglePair& pair) const;
   bool matters(std::uint32_t triangle) const;
@@ -162,21 +151,13 @@ class FaultFinder {
   const Body& body_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
-  const Distances& distances_;
-  double near_;  // what is nearer to the front says nothing about sides
-  Precision precision_;
-  std::vector<Vec3d> place_, away_;  // of each vertex: where it stands, and the way there from the surface
-  std::vector<Vec3d> written_;       // of each vertex: its place in the file, if that is another space
-  std::vector<double> distance_;
-  std::vector<std::uint32_t> closest_;
-  std::vector<std::uint8_t> right_side_;
+  Stands stands_;
   std::vector<std::uint8_t> folded_;  // of each vertex; empty until something may be caught
   std::vector<Fault> fault_;          // of each triangle
   IndexGatherer touched_;             // triangles
   IndexGatherer wrong_;               // vertices
   Indices faces_, misplaced_;
   std::vector<TrianglePair> crossings_;
-  std::size_t crossings_near_source_ = 0;
   Before before_;
   std::vector<Position> position_;        // of each vertex, beside what was before
   std::optional<CrossingFinder> finder_;  // from the first look on

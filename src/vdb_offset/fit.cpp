@@ -38,7 +38,7 @@ class Other {
   /// Signed, if it is a solid.
   double gap_at(const Vec3d& world, std::uint32_t hint = 0) const {
     const Vec3d x = world - surface_.origin;
-    const auto [distance, triangle, feature, point] = query_(x, hint);
+    const auto [distance, triangle, feature, tied, point] = query_(x, hint);
     return is_solid() && surface_.pseudonormal(triangle, feature).dot(x - point) < 0 ? -distance : distance;
   }
 
@@ -274,7 +274,7 @@ class Fitting {
     for (std::size_t w = 0; w < other.vertices.size(); ++w) {
       if (std::exchange(seen[other.component[w]], std::uint8_t{1})) continue;
       const Vec3d x = other.vertices[w] + other.origin - result.origin;
-      const auto [distance, triangle, feature, point] = query(x, 0);
+      const auto [distance, triangle, feature, tied, point] = query(x, 0);
       enclosed += result.pseudonormal(triangle, feature).dot(x - point) < 0;
     }
     return enclosed;

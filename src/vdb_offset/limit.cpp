@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
@@ -79,7 +80,6 @@ class Limiter {
         faults_(faults),
         followed_(followed) {
     statistics_.source_crossings = faults_.source_crossings().size();
-    statistics_.crossings_near_source = faults_.crossings_near_source();
     statistics_.before = faults_.count();
   }
 
@@ -112,11 +112,10 @@ class Limiter {
       ++moving;
       const bool stayed = paths_.displacement[v] == way(v);
       paths_.displacement[v] = way(v);
+      const double distance = faults_.distance_of(v), before = std::exchange(paths_.achieved[v], distance);
       if (stayed) continue;
       if (set) mended[v] = 1;
-      const double distance = faults_.distance_of(v);
-      lost += std::max(0.0, paths_.achieved[v] - distance) / target;
-      paths_.achieved[v] = distance;
+      lost += std::max(0.0, before - distance) / target;
       paths_.closest[v] = faults_.closest_to(v);
       if (std::abs(distance - target) <= kReachedTolerance * target + faults_.rounding(v)) {
         paths_.state[v] = VertexState::Reached;  // one that had collided may have slid to where there is room
@@ -126,6 +125,8 @@ class Limiter {
       }
     }
     statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
+    statistics_.left = faults_.count();
+    statistics_.crossings_near_source = faults_.crossings_near_source();
     if (set) {
       const std::vector<std::uint8_t> none(source_.size(), 0);
       *set = {distances_, paths_.displacement, paths_.achieved, std::move(mended), none, none, is_much_wrong()};

@@ -56,31 +56,6 @@ OffsetResult unmoved(PolygonView mesh) {
   return result;
 }
 
-/// The distances of the body's vertices: the mean of those of the input's vertices at one place, who go as one; 0 for
-/// what stays.
-Distances distances_on(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing) {
-  const bool all_move = work.front_vertex.empty();
-  if (of_input.uniform() && all_move) return of_input;
-  const Surface& surface = work.surface();
-  const std::size_t count = surface.vertices.size();
-  std::vector<double> sum(count, 0.0);
-  std::vector<std::uint32_t> copies(count, 0), apart(count, 0);
-  for (std::size_t v = 0; v < surface.welded.size(); ++v) {
-    const auto w = surface.welded[v];
-    if (w == kNone) continue;
-    sum[w] += of_input[v];
-    ++copies[w];
-    apart[w] += of_input[v] != of_input[surface.representative[w]];
-  }
-  for (std::size_t w = 0; w < count; ++w) {
-    disagreeing += apart[w];
-    const bool stays = !all_move && (work.front_vertex[w] == kNone || (border == Border::Fixed && work.at_border[w]));
-    if (stays) sum[w] = 0;
-    else sum[w] = apart[w] ? sum[w] / copies[w] : of_input[surface.representative[w]];  // not rounded where all agree
-  }
-  return Distances(std::move(sum));
-}
-
 /// Those of the front's vertices among the body's.
 Distances distances_on_front(const Workpiece& work, const Distances& of_body) {
   if (work.front_vertex.empty() || of_body.uniform()) return of_body;
@@ -110,15 +85,6 @@ Paths paths_of_body(const Workpiece& work, Paths of_front) {
   for (std::size_t w = 0; w < count; ++w)
     if (work.front_vertex[w] != kNone) paths.trace[w] = std::move(of_front.trace[work.front_vertex[w]]);
   return paths;
-}
-
-/// Hands the surface's distances back to the input's vertices.
-Distances distances_of_input(const Surface& surface, const Distances& distances) {
-  if (distances.uniform()) return distances;
-  std::vector<double> each(surface.welded.size(), 0.0);
-  for (std::size_t v = 0; v < each.size(); ++v)
-    if (surface.welded[v] != kNone) each[v] = distances[surface.welded[v]];
-  return Distances(std::move(each));
 }
 
 /// Hands the surface vertices' paths to the input's vertices.
@@ -182,17 +148,19 @@ class Pipeline {
     prepare(farthest, {.results = wanted.size()});
     // The body is complete by now, obstacles and all.
     if (options_.off_source) junctions_ = find_junctions(work_.front, mesh_, options_.only);
-    for (const Distances& distances : wanted) asked_.push_back(on_body(distances));
+    std::vector<std::size_t> disagreeing(wanted.size(), 0);
+    for (std::size_t i = 0; i < wanted.size(); ++i) asked_.push_back(on_body(wanted[i], disagreeing[i]));
     for (const Distances& asked : asked_) distances_.push_back(without_junctions(asked));
     std::vector<OffsetResult> results(wanted.size());
     if (goes_anywhere(farthest)) {
       make(results);
       if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
     } else {
-      if (work_.obstacles) place(work_, std::max(work_.front.facts.diagonal, kLeastSize) / 256);
+      if (work_.obstacles) place(work_, std::max(work_.front.facts.diagonal, kLeastSize) / 256, options_.symmetry, 0);
       look_around();
       for (std::size_t i = 0; i < results.size(); ++i) results[i] = stay(distances_[i]);
     }
+    for (std::size_t i = 0; i < results.size(); ++i) results[i].statistics.disagreeing_distances = disagreeing[i];
     return results;
   }
 
@@ -200,7 +168,7 @@ class Pipeline {
   LayersResult grow(std::span<const Distances> heights, CellRules rules) {
     prepare(farthest_of(heights.last(1)), {.layers = heights.size()});
     std::vector<Distances> on_vertices;
-    for (const Distances& each : heights) on_vertices.push_back(on_body(each));
+    for (const Distances& each : heights) on_vertices.push_back(on_body(each, shared_.disagreeing_distances));
     distances_.push_back(on_vertices.back());
     std::vector<Paths> paths = march(Ridges::Smooth);
     OffsetStatistics statistics = shared_;
@@ -222,6 +190,7 @@ class Pipeline {
                            options_.progress);
     }
     statistics.limit.left = faults->count();
+    statistics.limit.crossings_near_source = faults->crossings_near_source();
     statistics.borders = borders(paths.front());
     statistics.room = room(paths.front(), distances_.front());
     if (surroundings_) {
@@ -242,9 +211,9 @@ class Pipeline {
     if (goes_anywhere(farthest)) make_field(farthest, yield);
   }
 
-  Distances on_body(const Distances& of_input) {
-    shared_.disagreeing_distances = 0;
-    return distances_on(work_, options_.border, of_input, shared_.disagreeing_distances);
+  Distances on_body(const Distances& of_input, std::size_t& disagreeing) const {
+    disagreeing = 0;
+    return distances_on_body(work_, options_.border, of_input, disagreeing);
   }
 
   bool is_junction(std::size_t vertex) const {
@@ -426,8 +395,7 @@ class Pipeline {
     if (file_) bring_to_file(surface, result);
     result.distances = distances_of_input(surface, draft.asked);
     tell_of_junctions(result);
-    std::vector<Vec3d> places = source_;
-    for (std::size_t w = 0; w < places.size(); ++w) places[w] += draft.paths.displacement[w];
+    const std::vector<Vec3d> places = as_written(draft.paths);
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
       if (surroundings_) result.statistics.obstacles = surroundings_->facts(as_written(draft.paths));
@@ -485,7 +453,7 @@ class Pipeline {
     inner_skin_ = source_;
     for (std::size_t w = 0; w < inner_skin_.size(); ++w) {
       const auto v = surface.representative[w];
-      if (v != kNone && result.positions[v] != inner_skin_[w]) inner_skin_[w] = options_.precision(result.positions[v]);
+      if (v != kNone) inner_skin_[w] = options_.precision(source_[w], result.positions[v]);
     }
   }
 

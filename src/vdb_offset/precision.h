@@ -26,6 +26,9 @@ struct Precision {
     return Vec3d((*this)(q[0]), (*this)(q[1]), (*this)(q[2])) * scale;
   }
 
+  /// The same of a place that something has gone to from `source`; what has not moved keeps its bytes.
+  Vec3d operator()(const Vec3d& source, const Vec3d& place) const { return place == source ? place : (*this)(place); }
+
   /// Most that a number may change by, relative to itself, arithmetic on the way included.
   double epsilon() const {
     return kind == Kind::Double ? 0x1p-51 : kind == Kind::Single ? 0x1p-23 : 0x1p-51 + 5 * std::pow(10.0, -digits);

@@ -400,7 +400,7 @@ std::string check_json(const CheckResult& result, const std::string& source, con
                        {"vertices_beyond", result.beyond},
                        {"vertices_on_wrong_side", result.wrong_side},
                        {"vertices_torn", result.torn},
-                       {"achieved", achieved_json(summarise(result.states, result.achieved, result.distance))},
+                       {"achieved", achieved_json(summarise(result.states, result.achieved, result.distances))},
                        {"face_interior_error", interior_json(result.interior)}};
   return as_text(report);
 }

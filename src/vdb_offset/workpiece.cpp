@@ -93,4 +93,35 @@ void place(Workpiece& work, double voxel_size, const SymmetryOptions& symmetry, 
   work.off_front.resize(work.whole->triangles.size(), 1);
 }
 
+Distances distances_on_body(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing) {
+  const bool all_move = work.front_vertex.empty();
+  if (of_input.uniform() && all_move) return of_input;
+  const Surface& surface = work.surface();
+  const std::size_t count = surface.vertices.size();
+  std::vector<double> sum(count, 0.0);
+  std::vector<std::uint32_t> copies(count, 0), apart(count, 0);
+  for (std::size_t v = 0; v < surface.welded.size(); ++v) {
+    const auto w = surface.welded[v];
+    if (w == kNone) continue;
+    sum[w] += of_input[v];
+    ++copies[w];
+    apart[w] += of_input[v] != of_input[surface.representative[w]];
+  }
+  for (std::size_t w = 0; w < count; ++w) {
+    disagreeing += apart[w];
+    const bool stays = !all_move && (work.front_vertex[w] == kNone || (border == Border::Fixed && work.at_border[w]));
+    if (stays) sum[w] = 0;
+    else sum[w] = apart[w] ? sum[w] / copies[w] : of_input[surface.representative[w]];  // not rounded where all agree
+  }
+  return Distances(std::move(sum));
+}
+
+Distances distances_of_input(const Surface& surface, const Distances& distances) {
+  if (distances.uniform()) return distances;
+  std::vector<double> each(surface.welded.size(), 0.0);
+  for (std::size_t v = 0; v < each.size(); ++v)
+    if (surface.welded[v] != kNone) each[v] = distances[surface.welded[v]];
+  return Distances(std::move(each));
+}
+
 }  // namespace vdb_offset

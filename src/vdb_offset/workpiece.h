@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "vdb_offset/body.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/surface.h"
 
 namespace vdb_offset {
@@ -52,5 +54,12 @@ Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options);
 /// which goes farther than `reach`.
 /// \throw InvalidInput as hold_in_planes()
 void place(Workpiece& workpiece, double voxel_size, const SymmetryOptions& symmetry, double reach);
+
+/// The distances of the body's vertices: the mean of those of the input's vertices at one place, which go as one; 0 for
+/// what stays. `disagreeing` grows by how many of them are asked for another than the first there. \pre placed
+Distances distances_on_body(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing);
+
+/// Hands the distances of a surface's vertices back to the input's.
+Distances distances_of_input(const Surface& surface, const Distances& distances);
 
 }  // namespace vdb_offset

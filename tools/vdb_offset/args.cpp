@@ -367,13 +367,7 @@ void check_fit(const Raw& raw, Arguments& args) {
 
 void check_distances(const Raw& raw, Arguments& args) {
   if (args.axes || !args.fit.empty()) return;
-  for (const std::string& text : raw.distances) args.distances.push_back(parse_request("--distance", text, args));
-  require(raw.distances.empty() || raw.distance_from.empty(), "--distance-from: expected it or --distance, got both");
-  if (!raw.distance_from.empty()) {
-    const bool property = raw.distance_from.starts_with("ply:");
-    args.distances.push_back(
-        parse_request("--distance-from", property ? raw.distance_from : "@" + raw.distance_from, args));
-  }
+  args.distances = parse_distances(raw.distances, raw.distance_from, args);
   require(!args.distances.empty() || scene::is_scene(args.input),
           "--distance: expected a distance (a scene alone brings its own)");
   require(args.distances.size() < 2 || args.output != "-", "OUTPUT: expected a file for each distance, got '-'");
@@ -486,32 +480,16 @@ void check_even(const Arguments& args) {
 
 void check_surroundings(const Raw& raw, Arguments& args) {
   args.only_texts = raw.only;
-  for (const std::string& text : raw.only) {
-    try {
-      args.only.push_back(io::parse_selector(text));
-    } catch (const InvalidOption& error) {
-      throw UsageError(std::string("--only: ") + error.what());
-    }
-  }
+  args.only = parse_only(raw.only);
   require(raw.only.empty() || !scene::is_scene(args.input), "--only: expected a mesh, as a scene names its own part");
-  if (raw.border) {
-    require(*raw.border == "slide" || *raw.border == "fixed" || *raw.border == "free",
-            fmt::format("--border: expected 'slide', 'fixed' or 'free', got '{}'", *raw.border));
-    args.border = *raw.border == "slide" ? Border::Slide : *raw.border == "fixed" ? Border::Fixed : Border::Free;
-  }
+  if (raw.border) args.border = parse_border(*raw.border);
   args.symmetry_texts = raw.symmetry;
   for (const std::string& text : raw.symmetry) {
     args.options.symmetry.find = args.options.symmetry.find && text != "none";
     if (text != "none") args.options.symmetry.planes.push_back(parse_plane(text));
   }
+  args.clearance = parse_clearance(raw.clearance);
   if (raw.clearance.empty()) return;
-  try {
-    args.clearance = scene::parse_distance(raw.clearance);
-  } catch (const InvalidInput&) {
-    args.clearance.value = -1;
-  }
-  require(args.clearance.value >= 0,
-          fmt::format("--clearance: expected a number of world units or percent, 0 or more, got '{}'", raw.clearance));
   require(!args.obstacles.empty() || !args.fit.empty(), "--clearance: expected it with --obstacle or --fit");
   require(args.fit.empty() || args.clearance.value > 0,
           fmt::format("--clearance: expected one above 0 with --fit, got '{}'", raw.clearance));
@@ -556,6 +534,16 @@ void check(const Raw& raw, Arguments& args) {
 
 }  // namespace
 
+std::vector<DistanceRequest> parse_distances(const std::vector<std::string>& texts, const std::string& from,
+                                             const Arguments& args) {
+  require(texts.empty() || from.empty(), "--distance-from: expected it or --distance, got both");
+  std::vector<DistanceRequest> requests;
+  for (const std::string& text : texts) requests.push_back(parse_request("--distance", text, args));
+  if (!from.empty())
+    requests.push_back(parse_request("--distance-from", from.starts_with("ply:") ? from : "@" + from, args));
+  return requests;
+}
+
 std::optional<io::Format> format_of(const std::string& path, const Arguments& args) {
   const auto format = io::format_of(path);
   return format ? format : args.format;
@@ -576,6 +564,37 @@ DistanceRequest parse_request(const std::string& text) {
     return {text.substr(1), {}, text.substr(1)};
   }
   return {text, scene::parse_distance_or_expression(text), {}};
+}
+
+std::vector<io::Selector> parse_only(const std::vector<std::string>& texts) {
+  std::vector<io::Selector> only;
+  for (const std::string& text : texts) {
+    try {
+      only.push_back(io::parse_selector(text));
+    } catch (const InvalidOption& error) {
+      throw UsageError(std::string("--only: ") + error.what());
+    }
+  }
+  return only;
+}
+
+Border parse_border(const std::string& text) {
+  require(text == "slide" || text == "fixed" || text == "free",
+          fmt::format("--border: expected 'slide', 'fixed' or 'free', got '{}'", text));
+  return text == "slide" ? Border::Slide : text == "fixed" ? Border::Fixed : Border::Free;
+}
+
+scene::Distance parse_clearance(const std::string& text) {
+  scene::Distance clearance;
+  if (text.empty()) return clearance;
+  try {
+    clearance = scene::parse_distance(text);
+  } catch (const InvalidInput&) {
+    clearance.value = -1;
+  }
+  require(clearance.value >= 0,
+          fmt::format("--clearance: expected a number of world units or percent, 0 or more, got '{}'", text));
+  return clearance;
 }
 
 WeldOptions parse_weld(const std::string& text) {

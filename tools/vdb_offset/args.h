@@ -89,6 +89,19 @@ std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mes
 /// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
 DistanceRequest parse_request(const std::string& text);
 
+/// What --distance, any number of times, or --distance-from was given. \throw UsageError
+std::vector<DistanceRequest> parse_distances(const std::vector<std::string>& texts, const std::string& from,
+                                             const Arguments& args);
+
+/// group=NAME, material=NAME or faces=FILE, each. \throw UsageError
+std::vector<io::Selector> parse_only(const std::vector<std::string>& texts);
+
+/// 'slide', 'fixed' or 'free'. \throw UsageError
+Border parse_border(const std::string& text);
+
+/// World units or percent, 0 or more; 0 if empty. \throw UsageError
+scene::Distance parse_clearance(const std::string& text);
+
 /// 'auto', 'exact', 'none' or a tolerance. \throw UsageError
 WeldOptions parse_weld(const std::string& text);
 

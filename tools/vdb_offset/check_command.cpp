@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "args.h"
 #include "inputs.h"
@@ -24,14 +25,19 @@ namespace {
 constexpr const char* kCheckAbout =
     "Measures OFFSET as an offset of SOURCE, whichever program made it: exact distances of all vertices, inverted\n"
     "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
-    "Both must have the same vertices and faces in the same order; or they are curves, with the same points.";
+    "Both must have the same vertices and faces in the same order; or they are curves, with the same points. What an\n"
+    "offset by vdb_offset was told of distances, parts, obstacles, welding and orientation has to be told here as "
+    "well;\n"
+    "then both find the same.";
 
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
 struct CheckArguments {
-  std::string source, offset, distance, distance_xy, distance_z, weld = "auto", orient = "keep", report;
-  int threads = 0;
+  std::string source, offset, distance, distance_from, distance_xy, distance_z, border = "slide", clearance;
+  std::string weld = "auto", orient = "keep", report;
+  std::vector<std::string> only, obstacles;
+  int threads = 0, digits = 0;
   bool json = false, strict = false, close = false;
 };
 
@@ -40,12 +46,24 @@ void declare(CLI::App& app, CheckArguments& args) {
       ->required();
   app.add_option("OFFSET", args.offset, "Mesh or curves after")->required();
   app.add_option("-d,--distance", args.distance,
-                 "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward [the median of "
-                 "what is found]")
+                 "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
+                 "expression [the median of what is found]")
       ->type_name("D");
   app.add_option("--distance-xy", args.distance_xy, "Instead, with --distance-z: as it was for the offset")
       ->type_name("A");
   app.add_option("--distance-z", args.distance_z, "The same along z")->type_name("B");
+  app.add_option("--distance-from", args.distance_from,
+                 "Instead: a number for each vertex, as text or .npy, or ply:NAME, a vertex property of SOURCE")
+      ->type_name("FILE");
+  app.add_option("--only", args.only, "The part that was offset: group=NAME, material=NAME or faces=FILE; repeatable")
+      ->type_name("PART");
+  app.add_option("--border", args.border, "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]")
+      ->type_name("MODE");
+  app.add_option("--obstacle", args.obstacles, "Another mesh that nothing may touch; repeatable")->type_name("FILE");
+  app.add_option("--clearance", args.clearance, "How near to obstacles is too near [0]")->type_name("C");
+  app.add_option("--precision", args.digits,
+                 "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]")
+      ->type_name("N");
   app.add_option(
          "--weld", args.weld,
          "Vertices of SOURCE that count as one: 'auto', 'exact', 'none', or within TOL world units, as it was for the "
@@ -62,14 +80,30 @@ void declare(CLI::App& app, CheckArguments& args) {
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use is not at the distance");
 }
 
-std::optional<double> parse_distance(const std::string& text, PolygonView source) {
-  if (text.empty()) return std::nullopt;
-  try {
-    const scene::Distance distance = scene::parse_distance(text);
-    return distance.in_world_units(distance.percent ? used_diagonal(source) : 0);
-  } catch (const InvalidInput& error) {
-    throw UsageError(std::string("--") + error.what());
-  }
+/// The same, as the command that made the offset would have them.
+Arguments as_of_offset(const CheckArguments& args) {
+  Arguments all;
+  all.input = args.source;
+  all.output = args.offset;
+  all.obstacles = args.obstacles;
+  all.only = parse_only(args.only);
+  all.border = parse_border(args.border);
+  all.clearance = parse_clearance(args.clearance);
+  all.options.weld = parse_weld(args.weld);
+  all.options.orient = parse_orient(args.orient);
+  all.write.digits = args.digits;
+  std::vector<std::string> distances;
+  if (!args.distance.empty()) distances.push_back(args.distance);
+  all.distances = parse_distances(distances, args.distance_from, all);
+  return all;
+}
+
+void require_usable(const CheckArguments& args) {
+  if (args.threads < 0 || args.threads > 4096)
+    throw UsageError(fmt::format("--threads: expected 0 to 4096, got {}", args.threads));
+  if (args.digits < 0 || args.digits > 17)
+    throw UsageError(fmt::format("--precision: expected 1 to 17 digits, got {}", args.digits));
+  if (!args.clearance.empty() && args.obstacles.empty()) throw UsageError("--clearance: expected it with --obstacle");
 }
 
 void require_same_faces(const CheckArguments& args, const Polygons& source, const Polygons& offset) {
@@ -84,6 +118,16 @@ void require_same_faces(const CheckArguments& args, const Polygons& source, cons
                       : ""));
 }
 
+std::optional<double> parse_distance(const std::string& text, PolygonView source) {
+  if (text.empty()) return std::nullopt;
+  try {
+    const scene::Distance distance = scene::parse_distance(text);
+    return distance.in_world_units(distance.percent ? used_diagonal(source) : 0);
+  } catch (const InvalidInput& error) {
+    throw UsageError(std::string("--") + error.what());
+  }
+}
+
 /// The same points; a curve that was closed for one of the two may be open in the other.
 void require_same_points(const CheckArguments& args, const Curves& source, const Curves& offset) {
   if (source.positions.size() != offset.positions.size())
@@ -92,7 +136,7 @@ void require_same_points(const CheckArguments& args, const Curves& source, const
 }
 
 void print(const CheckResult& result, bool curves) {
-  const AchievedSummary achieved = summarise(result.states, result.achieved, Distances(result.distance));
+  const AchievedSummary achieved = summarise(result.states, result.achieved, result.distances);
   const char* const vertices = curves ? "points" : "vertices";
   fmt::print("distance    {:.9g}: {:.3f} % of {} {} there, {} beyond, {} on the wrong side\n", result.distance,
              100 * achieved.share_reached, achieved.vertices, vertices, result.beyond, result.wrong_side);
@@ -102,8 +146,9 @@ void print(const CheckResult& result, bool curves) {
   fmt::print("{}off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
              curves ? "at middles  " : "in faces    ", 100 * result.interior.mean, 100 * result.interior.quantile_99,
              100 * result.interior.worst);
-  fmt::print("{}{} inverted, {} collapsed\n", curves ? "segments    " : "faces       ", result.faults.inverted,
-             result.faults.collapsed);
+  fmt::print("{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
+             result.faults.collapsed,
+             result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
   fmt::print("crossings   {} new pairs of {}; {} in the source, {} beside those\n", result.faults.crossings,
              curves ? "segments" : "triangles", result.source_crossings, result.crossings_near_source);
   if (result.facts.seams.vertices > 0)
@@ -113,27 +158,48 @@ void print(const CheckResult& result, bool curves) {
   fmt::print("{}\n", result.valid() ? "valid" : "not valid");
 }
 
-CheckResult measure_curves(const CheckArguments& args, CheckOptions& options) {
+CheckResult measure_curves(const CheckArguments& args) {
   io::CurveFile source = io::read_curves(args.source);
   const io::CurveFile offset = io::read_curves(args.offset);
-  if (args.weld != "auto" || args.orient != "keep")
-    throw UsageError("--weld, --orient: expected meshes, as these are not for curves");
+  for (const auto& [name, given] : {std::pair{"--weld", args.weld != "auto"},
+                                    {"--orient", args.orient != "keep"},
+                                    {"--only", !args.only.empty()},
+                                    {"--obstacle", !args.obstacles.empty()},
+                                    {"--distance-from", !args.distance_from.empty()}})
+    if (given) throw UsageError(fmt::format("{}: expected meshes, as this is not for curves", name));
   if (args.close) close_curves(source.file.polygons);
   require_same_points(args, source.file.polygons, offset.file.polygons);
-  options.distance = parse_distance(args.distance, source.file.polygons.view());
+  CheckOptions options;
+  options.threads = args.threads;
+  if (const auto distance = parse_distance(args.distance, source.file.polygons.view())) options.distance = *distance;
   return check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
 }
 
-CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisDistances>& axes,
-                           CheckOptions& options) {
+CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisDistances>& axes) {
   if (args.close) throw UsageError("--close: expected curves, as this is not for meshes");
-  const io::MeshFile source = io::read_mesh(args.source), offset = io::read_mesh(args.offset);
-  for (const io::MeshFile* const file : {&source, &offset}) tell_remarks(*file);
-  require_same_faces(args, source.polygons, offset.polygons);
-  options.distance = parse_distance(args.distance, source.polygons.view());
-  if (axes) std::tie(options.metric, options.distance) = settle_axes(*axes, source.polygons.view());
-  options.precision = io::precision_of(args.offset, offset);
-  return check_offset(source.polygons.view(), offset.polygons.positions, options);
+  Arguments made = as_of_offset(args);
+  Source source = read_source(made);
+  const io::MeshFile offset = io::read_mesh(args.offset);
+  tell_remarks(offset);
+  require_same_faces(args, source.file->polygons, offset.polygons);
+  const std::vector<Distances> distances = settle_options(source, made);
+  const OffsetOptions& of_offset = made.options;
+  CheckOptions options;
+  options.only = of_offset.only;
+  options.border = of_offset.border;
+  options.obstacles = of_offset.obstacles;
+  options.clearance = of_offset.clearance;
+  options.weld = of_offset.weld;
+  options.orient = of_offset.orient;
+  options.precision = io::precision_of(args.offset, offset, made.write);
+  options.threads = args.threads;
+  if (!distances.empty()) options.distance = distances.front();
+  if (axes) {
+    const auto [metric, distance] = settle_axes(*axes, source.view());
+    options.metric = metric;
+    options.distance = distance;
+  }
+  return check_offset(source.view(), offset.polygons.positions, options);
 }
 
 }  // namespace
@@ -152,22 +218,17 @@ int run_check(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (check --help lists the options)", error.what()));
   }
-  if (args.threads < 0 || args.threads > 4096)
-    throw UsageError(fmt::format("--threads: expected 0 to 4096, got {}", args.threads));
+  require_usable(args);
   const auto axes = parse_axes(args.distance_xy, args.distance_z);
   if (axes && !args.distance.empty()) throw UsageError("--distance: expected it without --distance-xy");
-  CheckOptions options;
-  options.weld = parse_weld(args.weld);
-  options.orient = parse_orient(args.orient);
-  options.threads = args.threads;
   const bool curves = holds_curves(args.source);
   if (curves && axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
-  const CheckResult result = curves ? measure_curves(args, options) : measure_meshes(args, axes, options);
+  const CheckResult result = curves ? measure_curves(args) : measure_meshes(args, axes);
   const std::string json = check_json(result, args.source, args.offset);
   if (!args.report.empty()) write_file(args.report, json);
   if (args.json) fmt::print("{}", json);
   else print(result, curves);
-  const bool all_there = summarise(result.states, result.achieved, Distances(result.distance)).share_reached == 1;
+  const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
   return result.valid() && (all_there || !args.strict) ? 0 : 3;
 }
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "args.h"
 #include "check_command.h"
@@ -49,7 +51,33 @@ bool is_as_asked(const OffsetResult& result, bool of_curves) {
   return reached == 1;
 }
 
-/// Exit code 3 if a scene's expectations, or --strict, are not met.
+std::string in_words(const FaultCounts& counts) {
+  std::vector<std::string> words;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) words.push_back(fmt::format("{} {}", count, what));
+  };
+  add(counts.inverted, "inverted faces");
+  add(counts.collapsed, "collapsed faces");
+  add(counts.crowded, "faces where they may not be");
+  add(counts.crossings, "new pairs of triangles that meet");
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// Names the outputs that are not valid, though they were to be. False if there are none.
+bool tell_faults(const Arguments& args, std::span<const OffsetResult> results) {
+  bool any = false;
+  const std::vector<Destination> places = destinations(args);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const FaultCounts& left = results[i].statistics.limit.left;
+    if (left.total() == 0) continue;
+    any = true;
+    fmt::print(stderr, "vdb_offset: {}: not valid: {} are left\n", i < places.size() ? places[i].mesh : "--inner",
+               in_words(left));
+  }
+  return any;
+}
+
+/// Exit code 3 if a result is not valid, or what a scene expects, or --strict, is not met.
 int judge(const Arguments& args, const Source& source, std::span<const OffsetResult> results,
           const std::optional<ShellFacts>& shell) {
   std::vector<std::string> failed;
@@ -58,7 +86,7 @@ int judge(const Arguments& args, const Source& source, std::span<const OffsetRes
     for (std::string& expectation : scene::unmet(source.scene->expect, *shell))
       failed.push_back(std::move(expectation));
   for (const std::string& expectation : failed) fmt::print(stderr, "vdb_offset: {}: {}\n", args.input, expectation);
-  if (!failed.empty()) return kProcessing;
+  if (!failed.empty() || tell_faults(args, results)) return kProcessing;
   if (!args.strict) return kDone;
   return std::all_of(results.begin(), results.end(),
                      [&](const OffsetResult& result) { return is_as_asked(result, source.curves.has_value()); })
