@@ -12,12 +12,12 @@
 namespace vdb_offset {
 namespace {
 
-/// The source as it is in the file, its triangles in the same order.
-std::shared_ptr<const CaptureSource> unscaled(const Surface& scaled, const Metric& metric) {
+/// The source as it is in the file, its triangles in the same order: all of it, for what comes along from there.
+std::shared_ptr<const CaptureSource> unscaled(const Surface& scaled, const Metric& metric, Orient orient) {
   Surface surface = scaled;
   for (Vec3d& v : surface.vertices) v = metric.from(v + scaled.origin);
   place_in_frame(surface, metric.from(scaled.origin));
-  return std::make_shared<const CaptureSource>(std::move(surface));
+  return std::make_shared<const CaptureSource>(std::move(surface), std::nullopt, 0.0, orient);
 }
 
 /// What is wrong with triangles as they will be written.
@@ -58,7 +58,7 @@ CaptureResult capture_in_metric(PolygonView mesh, const CaptureOptions& options,
   });
   result.statistics.mending.left = faults_of(result.polygons.view());
   result.statistics.source = build_surface(mesh, options.weld, options.orient).facts;
-  result.source = unscaled(result.source->surface, metric);
+  result.source = unscaled(result.source->surface, metric, options.orient);
   return result;
 }
 

@@ -71,7 +71,7 @@ class Traveller {
     const auto first = leave_along_ridge(tolerance);
     if (!first) return std::nullopt;
     const RidgeWay way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
-        first->x, {first->phi, first->triangle, first->feature, first->x - first->away});
+        first->x, {first->phi, first->triangle, first->feature, false, first->x - first->away});
     if (!way.found) return std::nullopt;
     if (trace_) {
       trace_->push_back(first->x - origin_);
