@@ -463,8 +463,9 @@ class Limiter {
     keep_valid(before);
   }
 
-  /// What may be put somewhere else than its way leads.
+  /// What may be put somewhere else than its way leads; not what an obstacle may have stopped.
   bool may_settle(std::uint32_t v) const {
+    if (body_.obstacles && paths_.state[v] == VertexState::Collision) return false;
     return distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v) && is_short(v);
   }
 
