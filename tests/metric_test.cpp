@@ -92,7 +92,7 @@ TEST_CASE("metric: a run is valid as written, and check agrees", "[metric]") {
       for (std::size_t v = 0; v < written.size(); ++v)
         if (written[v] != mesh.positions[v]) written[v] = options.precision(written[v]);
       const CheckResult found = check_offset(
-          mesh.view(), written, {.distance = xy, .precision = options.precision, .metric = options.metric});
+          mesh.view(), written, {.distance = Distances(xy), .metric = options.metric, .precision = options.precision});
       CHECK(found.valid());
       CHECK(found.beyond == 0);
       const auto reached = [](const std::vector<VertexState>& states) {
