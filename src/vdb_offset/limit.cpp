@@ -469,6 +469,12 @@ class Limiter {
     return distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v) && is_short(v);
   }
 
+  std::uint32_t vertex_of_front(std::uint32_t v) const {
+    return body_.front_vertex.empty() ? v : body_.front_vertex[v];
+  }
+  /// Whether a vertex, which is on the front, has to stay in planes.
+  bool is_held(std::uint32_t v) const { return body_.front.surface().is_held(vertex_of_front(v)); }
+
   /// The short vertices with which most is lost, first those with the most.
   std::vector<std::uint32_t> vertices_to_settle() {
     const double least = kLeastSettled * stakes_.whole_area();
@@ -496,6 +502,7 @@ class Limiter {
     for (const auto v : vertices_to_settle()) {
       if (trials >= kMostTrials) break;
       if (!is_short(v)) continue;
+      if (lines == Stakes::Lines::All && is_held(v)) continue;
       for (const Vec3d& place : stakes_.places(v, lines)) {
         ++trials;
         if (!settle_at(v, place)) continue;
@@ -515,9 +522,15 @@ class Limiter {
   /// False, and nothing has changed, if more is lost than won.
   bool settle_at(std::uint32_t vertex, const Vec3d& place) {
     std::vector<Old> old{{vertex, whole_way_[vertex], share_[vertex]}};
-    whole_way_[vertex] = round_way(place - surface_.vertices[vertex], std::abs(distances_[vertex]));
+    Vec3d whole_way = place - surface_.vertices[vertex];
+    if (is_held(vertex)) whole_way = body_.front.surface().along_border(vertex_of_front(vertex), whole_way);
+    whole_way_[vertex] = round_way(whole_way, std::abs(distances_[vertex]));
     share_[vertex] = 1;
     look({vertex});
+    if (is_short(vertex)) {
+      put_back(old);
+      return false;
+    }
     double lost = 0;
     while (faults_.any() || !faults_.misplaced().empty()) {
       const Indices in_the_way = vertices_to_pull();
