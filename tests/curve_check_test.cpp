@@ -118,7 +118,8 @@ TEST_CASE("curve layers: at a concave corner, segments keep a share of the wall'
     const LayersResult layers = grow_curve_layers(curves.view(), heights, {});
     const CurveCells cells = make_curve_cells(curves.view(), layers);
     const LayerQuality quality = measure_curve_cells(cells, layers);
-    CHECK(quality.least_segment >= 0.15);
+    // A fifth of the wall's along the front; straight across its right-angled corner that is less.
+    CHECK(quality.least_segment >= 0.2 * std::sqrt(0.5));
     CHECK(*std::min_element(quality.scaled_jacobian.begin(), quality.scaled_jacobian.end()) > 0.3f);
     for (std::size_t k = 1; k <= 10; ++k) {
       const std::vector<Vec3d> front = layers.stacks.surface(k);

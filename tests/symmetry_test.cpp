@@ -138,6 +138,19 @@ TEST_CASE("symmetry: a flat sheet leaves its own plane, and its sides stay in th
   }
 }
 
+TEST_CASE("symmetry: what rounding leaves of a flat sheet's normal does not hold its border", "[symmetry]") {
+  // Its border lies in its own plane, wherever that is, and turns at every vertex.
+  Polygons mesh = scene::patch(1, 1e-30, 8);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    for (const int k : {0, 1}) mesh.positions[v][k] += 0.03 * std::sin(double(7 * v + 3 * std::size_t(k)));
+  for (const Polygons& sheet : {mesh, turned_about(mesh)}) {
+    const OffsetResult result = offset(sheet.view(), options_at(0.2));
+    CHECK(result.statistics.borders.held_vertices == 0);
+    for (std::size_t v = 0; v < sheet.positions.size(); ++v)
+      CHECK((result.positions[v] - sheet.positions[v]).length() == Approx(0.2));
+  }
+}
+
 TEST_CASE("symmetry: a wavy patch keeps to the four planes of its sides, and its corners to two", "[symmetry]") {
   Polygons mesh = scene::patch(1, 0.1, 24);
   for (Vec3d& p : mesh.positions) p[2] += 0.3 * p[0] * p[1] + 0.2 * std::cos(4 * p[0] + 3 * p[1]);

@@ -115,12 +115,17 @@ class PlaneFinder {
     return number;
   }
 
-  /// Whether a way in the plane leads off all faces around a vertex of it.
-  bool is_in_reach(std::uint32_t v, const Vec3d& normal) const {
-    Vec3d n = surface_.vertex_normals[v];
-    n -= normal * normal.dot(n);
-    return n.lengthSqr() > 0 && least_cosine(surface_, v, n.unit()) >= kWithinReach;
+  /// Whether a way at right angles to these leads off all faces around a vertex. What rounding leaves of a normal
+  /// across such a way is none.
+  bool leads_off(std::uint32_t v, std::span<const Vec3d> conormals, double least) const {
+    const Vec3d& normal = surface_.vertex_normals[v];
+    Vec3d along = normal;
+    for (const Vec3d& c : conormals) along -= c * c.dot(along);
+    return along.length() > least * normal.length() && least_cosine(surface_, v, along.unit()) >= least;
   }
+
+  /// Whether a way in the plane leads off all faces around a vertex of it.
+  bool is_in_reach(std::uint32_t v, const Vec3d& normal) const { return leads_off(v, {&normal, 1}, kWithinReach); }
 
   /// Whether one of the faces around a vertex lies in the plane: it has to leave that.
   bool has_face_in(const SymmetryPlane& plane, std::uint32_t v) const {
@@ -315,18 +320,14 @@ class PlaneFinder {
       for (std::uint8_t i = 0; i < count; ++i) left -= conormal[i] * conormal[i].dot(left);
       if (!(left.length() > kSamePlane)) continue;
       conormal[count] = left.unit();
-      if (each.plane >= named_ && count > 0 && !leaves_a_way(v, std::span(conormal).first(count + 1u))) continue;
+      if (each.plane >= named_ && count > 0 &&
+          (count == 2 || !leads_off(v, std::span(conormal).first(count + 1u), kWithinReach / 2)))
+        continue;
       if (++count == 3) break;
     }
     surface_.held[v] = count;
     surface_.conormals[v] = conormal[0];
     if (count == 2) surface_.second_conormals.emplace_back(v, conormal[1]);
-  }
-
-  bool leaves_a_way(std::uint32_t v, std::span<const Vec3d> conormals) const {
-    Vec3d n = surface_.vertex_normals[v];
-    for (const Vec3d& c : conormals) n -= c * c.dot(n);
-    return conormals.size() < 3 && n.lengthSqr() > 0 && least_cosine(surface_, v, n.unit()) >= kWithinReach / 2;
   }
 
   /// What hangs together with vertices that a plane holds, and is on one side of it, has a wall there.

@@ -53,7 +53,7 @@ class ChainOrder {
         points_.size(), [&](std::size_t i) { arrived_[i] = look(i); }, 64);
     if (chain_.closed && !cut()) return 0;
     sort_front();
-    if (spacing_ == Spacing::AsItIs && std::is_sorted(order_.begin(), order_.end())) return 0;
+    if (order_.empty() || (spacing_ == Spacing::AsItIs && std::is_sorted(order_.begin(), order_.end()))) return 0;
     space();
     const std::vector<Block> blocks = pool();
     std::atomic<std::size_t> moved = 0;
