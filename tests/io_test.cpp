@@ -201,7 +201,7 @@ TEST_CASE("io: faulty content is refused with its place", "[io]") {
       {"a.obj", "v 0 0 0\nf 1 1 -2\n", "line 2", "'-2'"},
       {"a.obj", "v 0 0 0\nf 1 1\n", "line 2", "3 corners"},
       {"a.obj", "v 0 0 0\nf 1 1 x\n", "line 2", "'x'"},
-      {"a.obj", "v 0 0 0\nf 1//1 1//1 1//1\n", "line 2", "normal index up to 0"},
+      {"a.obj", "v 0 0 0\nvn 0 0 1\nf 1//1 1//2 1//1\n", "line 3", "normal index up to 1"},
       {"a.obj", "\x01\x02\x03 zz\n", "line 1", "a line of an OBJ file"},
       {"a.off", "OFX\n", "line 1", "OFF"},
       {"a.off", "OFF\n353535235358 1 0\n", "line 2", "rest of the file"},

@@ -54,7 +54,12 @@ io::MeshFile shell_there_and_back(const Folder& folder, const io::MeshFile& file
                                              file.polygons.positions, {}, file.precision);
   lost = io::write_shell(path, file, shell).lost;
   io::MeshFile back = io::read_mesh(path);
-  CHECK(back.polygons.positions == shell.polygons.positions);
+  if (file.format == Format::Stl) {
+    CHECK(back.polygons.face_count() == 2 * file.polygons.face_count() + 2 * shell.rim.size());
+    return back;
+  }
+  for (std::size_t v = 0; v < shell.polygons.positions.size(); ++v)
+    CHECK(back.polygons.positions[v] == file.precision(shell.polygons.positions[v]));
   CHECK(back.polygons.corners == shell.polygons.corners);
   return back;
 }
@@ -140,7 +145,7 @@ TEST_CASE("ply: strips that are wrong are refused, and beside faces they are no 
   const auto strip = [](const std::string& row) { return strips_header("ascii", "int", 1) + kPoints + row; };
   check_refused(Format::Ply, strip("3 0 1 4\n"), "below 4, got 4");
   check_refused(Format::Ply, strip("3 0 1 -2\n"),
-                "line 13: expected a vertex index, or -1 at the end of a strip, got -2");
+                "line 14: expected a vertex index, or -1 at the end of a strip, got -2");
   check_refused(Format::Ply, strip("-3 0 1 2\n"), "a list length from 0 on, got -3");
   check_refused(Format::Ply, strip("4 0 1 2\n"), "expected a vertex index or -1");
   check_refused(Format::Ply, strip("2 0 1\n"), "at least one face");

@@ -17,7 +17,7 @@
 namespace vdb_offset {
 namespace {
 
-// Two roundings of a coordinate, in three of them, differ by less than four units.
+// What a few roundings make of one place, in each of three coordinates.
 constexpr double kUnitsApart = 4;
 // Of the diagonal: a crack that no one means, whatever the coordinates could tell apart.
 constexpr double kNothingOfDiagonal = 1e-9;
@@ -340,7 +340,8 @@ double unit_in_last_place(const std::vector<double>& numbers, double largest) {
   const std::vector<double> large = those_from(most / 1000);
   const bool single = !large.empty() && std::all_of(large.begin(), large.end(), is_single);
   const int digits = single ? std::numeric_limits<float>::digits : std::numeric_limits<double>::digits;
-  return std::max(std::ldexp(1.0, std::ilogb(largest) - digits + 1), decimal_unit(those_from(most / 10), most));
+  // Decimal digits are rounded once, at the end: two of them differ by a unit at most.
+  return std::max(std::ldexp(1.0, std::ilogb(largest) - digits + 1), decimal_unit(those_from(most / 10), most) / 2);
 }
 
 SeamFacts close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first) {

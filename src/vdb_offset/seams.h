@@ -18,8 +18,8 @@ namespace vdb_offset {
 SeamFacts close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first);
 
 /// The unit in the last place of a number as large as `largest` (> 0), judged by numbers that a file holds: that of
-/// single precision if they all are, or look like ones that were; that of their decimal digits if these are as many for
-/// most of those near the largest; else that of double precision.
+/// single precision if they all are, or look like ones that were; half that of their decimal digits if these are as
+/// many for most of those near the largest; else that of double precision.
 double unit_in_last_place(const std::vector<double>& numbers, double largest);
 
 }  // namespace vdb_offset
