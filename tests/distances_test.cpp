@@ -488,10 +488,11 @@ TEST_CASE("vertex property: of a PLY in every encoding, beside lists and other e
     return message<InvalidInput>([&] { io::vertex_property(file, name); });
   };
   for (const char* name : {"thick", "ring", "id", ""})
-    CHECK(complaint_of(ascii, name) ==
-          fmt::format("a.ply: expected a vertex property '{}' of single numbers, found none (there are x, y, level, z, "
-                      "thickness, depth, fine)",
-                      name));
+    CHECK_THAT(complaint_of(ascii, name),
+               Catch::StartsWith(fmt::format(
+                   "a.ply: expected a vertex property '{}' of single numbers, found none (there are ", name)) &&
+                   Catch::EndsWith(" and 2 more)"));
+  CHECK_THAT(complaint_of(ascii, "thick"), Catch::Contains("there are thickness, "));
   const auto replaced = [&](const std::string& from, const std::string& to) {
     return ply_of("ascii", std::string(text).replace(text.find(from), from.size(), to));
   };
