@@ -174,6 +174,15 @@ TEST_CASE("symmetry: a wavy patch keeps to the four planes of its sides, and its
   CHECK(result.statistics.borders.planes.size() == 4);
 }
 
+TEST_CASE("symmetry: what of a smooth border lies in a plane by chance is not held", "[symmetry]") {
+  // A tube whose rims are waves: each has places where it hardly turns, and where it is highest.
+  const Polygons mesh = open_tube(600, 4, [](double turn, double z) {
+    const double a = 2 * std::numbers::pi * turn;
+    return Vec3d(std::cos(a), std::sin(a), z + 0.2 * std::sin(3 * a) * (2 * z - 1) + 0.1 * std::cos(2 * a));
+  });
+  CHECK(offset(mesh.view(), options_at(0.05)).statistics.borders.held_vertices == 0);
+}
+
 TEST_CASE("symmetry: a named plane holds what lies on it, where it cannot be told from the border", "[symmetry]") {
   // One quad that rises by 20 degrees from its straight edge in y = 0.
   Polygons mesh;

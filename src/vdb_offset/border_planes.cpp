@@ -28,6 +28,8 @@ constexpr double kMostInReach = 0.9;
 constexpr std::size_t kManyEdges = 4, kFewEdges = 2;
 // A piece has to be so many times wider than that to tell of a plane, and not of a line.
 constexpr double kWideEnough = 8;
+// Where a piece ends, its border leaves the plane by this sine at least.
+constexpr double kLeaves = 0.02;
 // Planes are the same that differ by such an angle.
 constexpr double kSamePlane = 1e-4;
 // Normals of faces in one plane.
@@ -249,9 +251,25 @@ class PlaneFinder {
     const auto piece = all.subspan(first, last - first + 1);
     const Fit found = fit(piece);
     const bool on_axis = is_axis(found.plane.normal);
-    if (found.shape != Shape::Plane || last - first < (on_axis ? kFewEdges : kManyEdges)) return first + 1;
+    if (found.shape != Shape::Plane || last - first < (on_axis ? kFewEdges : kManyEdges) ||
+        !leaves_at_ends(all, first, last, found.plane))
+      return first + 1;
     hold_piece(piece, found.plane);
     return last;
+  }
+
+  /// Whether a border leaves the plane of a piece abruptly before and behind it. Any smooth one nearly lies in a plane
+  /// for a few edges, here and there, and leaves that little by little.
+  bool leaves_at_ends(std::span<const std::uint32_t> all, std::size_t first, std::size_t last,
+                      const SymmetryPlane& plane) const {
+    const bool closed = all.front() == all.back();
+    const auto leaves = [&](std::uint32_t from, std::uint32_t to) {
+      const Vec3d &a = surface_.vertices[from], &b = surface_.vertices[to];
+      return std::abs(plane.height(b)) > std::max(kLeaves * (b - a).length(), kWideEnough * tolerance_);
+    };
+    if ((first > 0 || closed) && !leaves(all[first], all[first > 0 ? first - 1 : all.size() - 2])) return false;
+    const bool at_end = last + 1 == all.size();
+    return (at_end && !closed) || leaves(all[last], all[at_end ? 1 : last + 1]);
   }
 
   /// The last vertex of the straight piece that begins at one.
