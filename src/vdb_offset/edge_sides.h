@@ -17,19 +17,30 @@ struct EdgeSide {
   std::uint32_t corner;      ///< As an index into PolygonView::corners.
 };
 
-/// Calls visit(corner, from, to) for the sides of the faces that have an extent: not for those between corners at one
-/// place, nor for faces that are no more than a line. In parallel. `place` is of each vertex.
+/// Calls visit(corner, from, to) for the sides of a face that has an extent: not for those between corners at one
+/// place, nor if it is no more than a line. `place` is of each vertex.
+template <class Visit>
+void visit_sides(PolygonView mesh, std::span<const std::uint32_t> place, std::size_t f, Visit&& visit) {
+  const auto face = mesh.face(f);
+  const std::uint32_t first = mesh.face_begin[f];
+  if (face.size() == 3) {
+    const std::uint32_t a = place[face[0]], b = place[face[1]], c = place[face[2]];
+    if (a == b || b == c || c == a) return;
+    visit(first, a, b), visit(first + 1, b, c), visit(first + 2, c, a);
+    return;
+  }
+  const auto from = [&](std::size_t k) { return place[face[k]]; };
+  const auto to = [&](std::size_t k) { return place[face[k + 1 < face.size() ? k + 1 : 0]]; };
+  std::size_t sides = 0;
+  for (std::size_t k = 0; k < face.size(); ++k) sides += from(k) != to(k);
+  for (std::size_t k = 0; sides > 2 && k < face.size(); ++k)
+    if (from(k) != to(k)) visit(first + static_cast<std::uint32_t>(k), from(k), to(k));
+}
+
+/// The same for all faces, in parallel.
 template <class Visit>
 void for_each_side(PolygonView mesh, std::span<const std::uint32_t> place, Visit&& visit) {
-  for_each_index(mesh.face_count(), [&](std::size_t f) {
-    const auto face = mesh.face(f);
-    const auto from = [&](std::size_t k) { return place[face[k]]; };
-    const auto to = [&](std::size_t k) { return place[face[k + 1 < face.size() ? k + 1 : 0]]; };
-    std::size_t sides = 0;
-    for (std::size_t k = 0; k < face.size(); ++k) sides += from(k) != to(k);
-    for (std::size_t k = 0; sides > 2 && k < face.size(); ++k)
-      if (from(k) != to(k)) visit(mesh.face_begin[f] + static_cast<std::uint32_t>(k), from(k), to(k));
-  });
+  for_each_index(mesh.face_count(), [&](std::size_t f) { visit_sides(mesh, place, f, visit); });
 }
 
 /// The sides of all faces, by the edges that they run along.

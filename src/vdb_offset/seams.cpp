@@ -1,5 +1,9 @@
 #include "vdb_offset/seams.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -34,24 +38,32 @@ struct BorderEdge {
 /// bucket that did not come to zero can be borders: none at all on a closed surface.
 class EdgeSums {
  public:
-  EdgeSums(PolygonView polygons, std::span<const std::uint32_t> place)
-      : sums_(std::bit_ceil(polygons.corners.size() / 4 + 16), 0) {
-    for_each_side(polygons, place, [&](auto, std::uint32_t from, std::uint32_t to) {
-      const std::uint64_t hash = mix(key(from, to)), value = mix(hash + 1);
-      std::atomic_ref(sums_[bucket(hash)]).fetch_add(from < to ? value : -value, std::memory_order_relaxed);
+  EdgeSums(PolygonView polygons, std::span<const std::uint32_t> place) : sums_(kBuckets, 0) {
+    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts(kBuckets, 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), kRun), [&](const auto& range) {
+      std::vector<std::uint64_t>& part = parts.local();
+      for (std::size_t f = range.begin(); f != range.end(); ++f)
+        visit_sides(polygons, place, f, [&](auto, std::uint32_t from, std::uint32_t to) {
+          const std::uint64_t hash = mix(key(from, to)), value = mix(hash + 1);
+          part[hash % kBuckets] += from < to ? value : -value;
+        });
     });
+    for (const std::vector<std::uint64_t>& part : parts)
+      for (std::size_t i = 0; i < kBuckets; ++i) sums_[i] += part[i];
   }
   bool all_cancel() const {
     return std::all_of(sums_.begin(), sums_.end(), [](std::uint64_t sum) { return sum == 0; });
   }
-  bool cancels(std::uint32_t from, std::uint32_t to) const { return sums_[bucket(mix(key(from, to)))] == 0; }
+  bool cancels(std::uint32_t from, std::uint32_t to) const { return sums_[mix(key(from, to)) % kBuckets] == 0; }
 
   static std::uint64_t key(std::uint32_t from, std::uint32_t to) {
     return std::uint64_t{std::min(from, to)} << 32 | std::max(from, to);
   }
 
  private:
-  std::size_t bucket(std::uint64_t hash) const { return hash & (sums_.size() - 1); }
+  // As many as stay in a core's cache.
+  static constexpr std::size_t kBuckets = 1 << 15, kRun = 1 << 14;
+
   std::vector<std::uint64_t> sums_;
 };
 
