@@ -20,6 +20,8 @@ class ObstacleGuard {
     constexpr int kMostBalls = 1000;
     const double length = (to - from).length(), touching = kTouches * length;
     if (!(length > 0)) return to;
+    // What shrinks may slide along what it touches, as where a part rests on it: the gap stays what it was.
+    if (side_ < 0 && bound_ <= touching && gap_at(to) <= touching) return to;
     const Vec3d way = (to - from) / length;
     double gone = 0;
     for (int i = 0; i < kMostBalls && gone < length; ++i) {
