@@ -48,7 +48,10 @@ bool is_axis(const Vec3d& normal) {
 /// A vertex and a plane that is to hold it, by number.
 struct Hold {
   std::uint32_t vertex, plane;
-  auto operator<=>(const Hold&) const = default;
+  bool operator==(const Hold&) const = default;
+  bool operator<(const Hold& other) const {
+    return vertex != other.vertex ? vertex < other.vertex : plane < other.plane;
+  }
 };
 
 class PlaneFinder {

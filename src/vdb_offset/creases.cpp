@@ -18,7 +18,7 @@ constexpr double kSharp = 0.9;
 constexpr double kCorner = 0.2;
 
 /// Two or three sheets, each by a triangle that a place on it is closest to.
-struct Sheets {
+struct CreaseSheets {
   std::array<std::uint32_t, 3> triangle;
   std::size_t count;
 };
@@ -87,7 +87,7 @@ class CreaseFinder {
   }
 
   /// The place nearest to a vertex, by Newton's method, that has the distance to all of these sheets.
-  std::optional<std::pair<Vec3d, std::uint32_t>> meet(std::size_t v, Sheets sheets) const {
+  std::optional<std::pair<Vec3d, std::uint32_t>> meet(std::size_t v, CreaseSheets sheets) const {
     constexpr int kMostSteps = 12;
     Vec3d x = places_[v];
     for (int step = 0; step < kMostSteps; ++step) {

@@ -16,7 +16,7 @@ namespace vdb_offset {
 namespace {
 
 // How far off the curves' plane an offset may be, by their extent, as plane_of() has it.
-constexpr double kFlat = 1e-6;
+constexpr double kFlatCurve = 1e-6;
 
 void require_usable(CurvesView source, std::span<const Vec3d> positions) {
   if (positions.size() != source.positions.size())
@@ -68,7 +68,7 @@ class CurveChecker {
       const std::uint32_t v = drawn_.vertex[p];
       if (v == kNone) continue;
       const double off = std::abs(normal.dot(positions[p] - plane_.frame.origin));
-      if (off > kFlat * (result_.facts.diagonal + (positions[p] - plane_.frame.origin).length()))
+      if (off > kFlatCurve * (result_.facts.diagonal + (positions[p] - plane_.frame.origin).length()))
         throw InvalidInput("check: expected points in the plane of the source, found point " + std::to_string(p) +
                            " (from 0) " + std::to_string(off) + " off it");
       if (first[v] == kNone) {

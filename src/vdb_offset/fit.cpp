@@ -15,7 +15,7 @@
 namespace vdb_offset {
 namespace {
 
-constexpr std::size_t kMostRounds = 24, kPatience = 4;
+constexpr std::size_t kMostOffsets = 24, kPatience = 4;
 
 // Aimed at beyond the clearance, as a share of it, and what counts as far enough: so that rounding does not matter.
 constexpr double kBeyond = 3e-7, kFarEnough = 1e-6;
@@ -125,7 +125,7 @@ class Fitting {
     facts.near_at_start = short_;
     auto best_so_far = std::pair(short_, -gap_);
     std::size_t fruitless = 0;
-    while (short_ > 0 && facts.rounds < kMostRounds && fruitless < kPatience && deepen()) {
+    while (short_ > 0 && facts.rounds < kMostOffsets && fruitless < kPatience && deepen()) {
       OffsetResult next = offset_by_depths();
       ++facts.rounds;
       find_stuck(next);

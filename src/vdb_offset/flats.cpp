@@ -18,7 +18,7 @@ constexpr double kThin = 0.02;
 // Sine of the least angle between two flat parts with an edge between them that tells where it runs.
 constexpr double kLeastAngle = 0.05;
 // Cosine of an angle that normals of one plane do not enclose, but for triangles that hardly have an area.
-constexpr double kAlike = 0.9999;
+constexpr double kAlikeNormals = 0.9999;
 // A triangle's height in tolerances, from which on it tells a plane.
 constexpr double kClearHeight = 8;
 
@@ -75,7 +75,7 @@ class FlatMerger {
     const Vec3d& first = normal[star[0]];
     const Vec3d* second = nullptr;
     for (const auto t : star) {
-      if (first.dot(normal[t]) > kAlike || (second && second->dot(normal[t]) > kAlike)) continue;
+      if (first.dot(normal[t]) > kAlikeNormals || (second && second->dot(normal[t]) > kAlikeNormals)) continue;
       if (second) return false;
       second = &normal[t];
     }

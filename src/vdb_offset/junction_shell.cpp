@@ -151,7 +151,8 @@ class JunctionShell {
       const auto [back_from, back_to] = along(gap.corner[1], gap.side[1]);  // which runs the other way
       faces.push_back({{to, from, back_to, back_from}, {face, gap.corner[0]}});
       // Split into the triangles that the offset was judged by (see rim_crossings.h).
-      if (input_.sheets.is_turned(face)) std::ranges::rotate(faces.back().corners, faces.back().corners.begin() + 1);
+      if (input_.sheets.is_turned(face))
+        std::rotate(faces.back().corners.begin(), faces.back().corners.begin() + 1, faces.back().corners.end());
       note_end(ends, from, back_to, face, gap.corner[0]);
       note_end(ends, back_from, to, face, gap.corner[0]);
     }

@@ -25,7 +25,7 @@ namespace {
 // small, as the skins of a shell touch where a vertex has not moved at all. Of a wrong face's corners that one goes
 // back with which least is lost, and those with which no more than so many times as much is; the others once these have
 // spent all but a share of their way.
-constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1, kAlike = 4, kSpent = 0.1;
+constexpr double kKept = 0.8, kLastShare = 1e-4, kBent = 0.1, kAlikeStakes = 4, kSpent = 0.1;
 
 // Where a precedent is followed, hardly any patch of more vertices than so many is freed that has not been already.
 constexpr std::size_t kFollowedVertices = 60;
@@ -395,7 +395,7 @@ class Limiter {
         if (share_[v] > kSpent) least = std::min(least, stakes_[v]);
       });
       for_each_corner([&](std::uint32_t v) {
-        if (share_[v] <= kSpent || stakes_[v] <= kAlike * least) gathered_.add(v);
+        if (share_[v] <= kSpent || stakes_[v] <= kAlikeStakes * least) gathered_.add(v);
       });
     });
     for (const auto v : faults_.misplaced()) gathered_.add(v);

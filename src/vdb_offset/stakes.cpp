@@ -19,7 +19,7 @@ constexpr double kOfDead = 0.01;
 constexpr double kLive = 1 - 1e-9;
 
 // Where on such a way the live part begins is found to a small part of it.
-constexpr int kHalvings = 12;
+constexpr int kStakeHalvings = 12;
 
 constexpr std::size_t kMostPlaces = 8;
 
@@ -121,7 +121,7 @@ std::optional<Vec3d> Stakes::first_live(std::uint32_t v, std::uint32_t t, const 
   if (!found.live) return std::nullopt;
   if (const Image at_vertex = image(v, t, Vec3d(0.0), hint); at_vertex.live) return at_vertex.place;
   double dead = 0, live = kInThird;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kStakeHalvings; ++i) {
     const double middle = (dead + live) / 2;
     const Image there = image(v, t, way * middle, hint);
     (there.live ? live : dead) = middle;

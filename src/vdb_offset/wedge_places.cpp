@@ -15,9 +15,9 @@ namespace {
 // they are entirely on their faces' planes.
 constexpr double kLongestMitre = 4, kRoom = 6, kOnPlanes = 3;
 // Faces across an edge whose normals are no farther apart (sine of the angle) are one.
-constexpr double kOnePlane = 1e-4;
+constexpr double kSamePlane = 1e-4;
 // Planes' normals span no more than what has this share of their sum of squares.
-constexpr double kFlat = 0.004;
+constexpr double kFlatCorner = 0.004;
 // With more than this of it they make a crease, as two do that meet at 30 degrees.
 constexpr double kCrease = 0.065;
 // Rounds of spreading what junctions are moved by.
@@ -42,7 +42,7 @@ class Planes {
     for (int k = 0; k < 3; ++k) {
       const Vec3d axis = axes.col(k);
       creases_ += sizes[k] > kCrease * weight_;
-      if (sizes[k] > kFlat * weight_) solution_ += axis * (axis.dot(sum_) / sizes[k]);
+      if (sizes[k] > kFlatCorner * weight_) solution_ += axis * (axis.dot(sum_) / sizes[k]);
       else free_.push_back(axis);
     }
   }
@@ -130,7 +130,7 @@ class WedgePlacer {
     visit_edges(mesh_, sheets_.place, [&](auto, std::span<const EdgeSide> sides) {
       if (sides.size() != 2) return;
       const std::uint32_t a = face_of(sides[0].corner), b = face_of(sides[1].corner);
-      if (!(unit_normal(a).cross(unit_normal(b)).length() < kOnePlane)) return;
+      if (!(unit_normal(a).cross(unit_normal(b)).length() < kSamePlane)) return;
       others[a].push_back(b);
       others[b].push_back(a);
     });

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kHandful = 5, kFew = 12;
 // Names are compared, and shown, up to there.
-constexpr std::size_t kLongestName = 48;
+constexpr std::size_t kLongestShown = 48;
 constexpr std::size_t kLongestPhrase = 160;
 
 /// How many letters have to be put in, taken out or changed to make one word of the other (Levenshtein), whatever the
@@ -43,13 +43,13 @@ std::string shown(std::string_view name, std::size_t longest) {
 std::string nearest_names(std::string_view wanted, const std::vector<std::string>& known) {
   std::vector<std::pair<std::size_t, std::size_t>> by_edits(known.size());
   for (std::size_t i = 0; i < known.size(); ++i)
-    by_edits[i] = {edits(wanted.substr(0, kLongestName), std::string_view(known[i]).substr(0, kLongestName)), i};
+    by_edits[i] = {edits(wanted.substr(0, kLongestShown), std::string_view(known[i]).substr(0, kLongestShown)), i};
   const std::size_t count = std::min(known.size(), kHandful);
   std::partial_sort(by_edits.begin(), by_edits.begin() + static_cast<std::ptrdiff_t>(count), by_edits.end());
   if (known.size() <= kHandful)
     std::sort(by_edits.begin(), by_edits.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + shown(known[by_edits[i].second], kLongestName);
+  for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + shown(known[by_edits[i].second], kLongestShown);
   return known.size() <= kHandful ? text : fmt::format("{} and {} more", text, known.size() - count);
 }
 
