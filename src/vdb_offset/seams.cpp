@@ -110,6 +110,7 @@ class Borders {
     }
     begin_.push_back(ends_.size());
     std::vector<double> lengths;
+    lengths.reserve(edges.size());
     for (const auto& [a, b] : edges) lengths.push_back((positions[a] - positions[b]).length());
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
