@@ -92,7 +92,8 @@ class BinaryOffParser {
     file_.polygons.close_face();
     const std::int64_t colours = whole("a number of a face's colour components");
     if (colours < 0 || colours > 4) fail("0 to 4 components of a face's colour", fmt::format("{}", colours), at_ - 4);
-    if (left() < 4 * static_cast<std::uint64_t>(colours)) whole("a component of a face's colour");
+    if (static_cast<std::uint64_t>(colours) > left() / 4)
+      fail(fmt::format("{} components of a face's colour", colours), "the end of the file", at_);
     at_ += 4 * static_cast<std::uint64_t>(colours);
   }
 
