@@ -26,13 +26,13 @@ struct Run {
 };
 
 /// A folder with a sphere in it, and the command run inside.
-class Shell {
+class ShellCommand {
  public:
-  Shell() {
+  ShellCommand() {
     fs::create_directories(path_);
     io::write_mesh(file("sphere.obj"), scene::icosphere(1, 3).view());
   }
-  ~Shell() { fs::remove_all(path_); }
+  ~ShellCommand() { fs::remove_all(path_); }
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   bool has(const std::string& name) const { return fs::exists(path_ / name); }
   std::size_t count() const {
@@ -62,7 +62,7 @@ class Shell {
 };
 
 /// Exit code and message of a call that must fail and leave nothing behind.
-void check_failure(const Shell& shell, const std::string& arguments, int code, const std::string& message) {
+void check_failure(const ShellCommand& shell, const std::string& arguments, int code, const std::string& message) {
   INFO(arguments);
   const std::size_t before = shell.count();
   const Run run = shell(arguments);
@@ -76,7 +76,7 @@ void check_failure(const Shell& shell, const std::string& arguments, int code, c
 }  // namespace
 
 TEST_CASE("command: what is inside out is told, and which option enlarges it", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   Polygons sphere = scene::icosphere(1, 3);
   std::reverse(sphere.corners.begin(), sphere.corners.end());
   io::write_mesh(shell.file("reversed.obj"), sphere.view());
@@ -109,7 +109,7 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
 }
 
 TEST_CASE("command: distances of each vertex, as an expression and from files", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   const auto radii = [&](const std::string& name) {
     std::vector<double> r;
     for (const Vec3d& p : io::read_mesh(shell.file(name)).polygons.positions) r.push_back(p.length());
@@ -142,7 +142,7 @@ TEST_CASE("command: distances of each vertex, as an expression and from files", 
 }
 
 TEST_CASE("command: thickness by the surface's own parameters", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream file(shell.file("strip.obj"));
   for (int i = 0; i <= 8; ++i)
     for (int j = 0; j <= 4; ++j) file << "v " << i << ' ' << j << " 0\n";
@@ -161,7 +161,7 @@ TEST_CASE("command: thickness by the surface's own parameters", "[command]") {
 }
 
 TEST_CASE("command: several distances, one output each", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   CHECK(shell("sphere.obj out.obj -d 0.1 -d 0.2 -d -0.1 --report r.json").code == 0);
   for (const auto& [number, radius] : {std::pair{"001", 1.1}, {"002", 1.2}, {"003", 0.9}}) {
     const auto positions = io::read_mesh(shell.file("out_" + std::string(number) + ".obj")).polygons.positions;
@@ -178,7 +178,7 @@ TEST_CASE("command: several distances, one output each", "[command]") {
 }
 
 TEST_CASE("command: parts, obstacles and shells", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream(shell.file("two.obj")) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
                                           "g left\nf 1 2 3 4\ng right\nf 2 5 6 3\n";
   CHECK(shell("two.obj left.obj -d 0.1 --only group=left --border free").code == 0);
@@ -219,7 +219,7 @@ TEST_CASE("command: parts, obstacles and shells", "[command]") {
 }
 
 TEST_CASE("command: 0 and an output when all is well", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   const Run run = shell("sphere.obj out.obj --distance 0.1");
   CHECK(run.code == 0);
   CHECK(run.err.empty());
@@ -233,7 +233,7 @@ TEST_CASE("command: 0 and an output when all is well", "[command]") {
 }
 
 TEST_CASE("command: help and version", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   const Run help = shell("--help");
   CHECK(help.code == 0);
   for (const char* word : {"--distance", "--voxel-size", "--voxels-per-distance", "--collision", "--solver", "--weld",
@@ -244,7 +244,7 @@ TEST_CASE("command: help and version", "[command]") {
 }
 
 TEST_CASE("command: --states tells of every vertex", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   CHECK(shell("sphere.obj out.obj -d 0.1 --states s.csv -q").code == 0);
   const std::string csv = shell.slurp(shell.file("s.csv"));
   const io::MeshFile source = io::read_mesh(shell.file("sphere.obj"));
@@ -259,7 +259,7 @@ TEST_CASE("command: --states tells of every vertex", "[command]") {
 }
 
 TEST_CASE("command: --paths draws a line for each vertex that moves", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   CHECK(shell("sphere.obj out.obj -d 0.1 -d 0.2 --paths p.obj -q").code == 0);
   const io::MeshFile source = io::read_mesh(shell.file("sphere.obj")), out = io::read_mesh(shell.file("out_002.obj"));
   const Curves paths = io::read_curves(shell.file("p_002.obj")).file.polygons;
@@ -278,7 +278,7 @@ TEST_CASE("command: --paths draws a line for each vertex that moves", "[command]
 }
 
 TEST_CASE("command: check measures any two meshes", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   CHECK(shell("sphere.obj out.obj -d 0.1 -q").code == 0);
   const Run text = shell("check sphere.obj out.obj");
   CHECK(text.code == 0);
@@ -303,7 +303,7 @@ TEST_CASE("command: check measures any two meshes", "[command]") {
 }
 
 TEST_CASE("command: behind -- names may start with a dash", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   fs::rename(shell.file("sphere.obj"), shell.file("-in.obj"));
   CHECK(shell("-d 0.1 -- -in.obj -out.obj").code == 0);
   CHECK(shell.has("-out.obj"));
@@ -318,7 +318,7 @@ TEST_CASE("command: behind -- names may start with a dash", "[command]") {
 }
 
 TEST_CASE("command: reports of names that are no UTF-8", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   const std::string name = "a\xff\xc3.obj";
   std::ofstream file(shell.file(name));
   file << "g sk\xe9\n";
@@ -343,7 +343,7 @@ TEST_CASE("command: reports of names that are no UTF-8", "[command]") {
 }
 
 TEST_CASE("command: seams that are closed, and those that look like it", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   const auto write = [&](const std::string& name, double gap) {
     Polygons box = scene::box(Vec3d(1), 4, true);
     const auto first = static_cast<std::uint32_t>(box.positions.size());
@@ -375,7 +375,7 @@ TEST_CASE("command: seams that are closed, and those that look like it", "[comma
 }
 
 TEST_CASE("command: faces that name normals which are not there", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream(shell.file("a.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n";
   const Run run = shell("a.obj b.obj -d 0.1");
   CHECK(run.code == 0);
@@ -384,7 +384,7 @@ TEST_CASE("command: faces that name normals which are not there", "[command]") {
 }
 
 TEST_CASE("command: 1 for wrong usage", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   check_failure(shell, "", 1, "INPUT");
   check_failure(shell, "sphere.obj", 1, "OUTPUT");
   check_failure(shell, "sphere.obj out.obj", 1, "--distance");
@@ -407,7 +407,7 @@ TEST_CASE("command: 1 for wrong usage", "[command]") {
 }
 
 TEST_CASE("command: 2 for input that cannot be read", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   check_failure(shell, "none.obj out.obj --distance 1", 2, "none.obj: cannot be opened");
   std::ofstream(shell.file("broken.obj")) << "v 0 0 0\nf 1 2 3\n";
   check_failure(shell, "broken.obj out.obj --distance 1", 2, "broken.obj, line 2");
@@ -416,7 +416,7 @@ TEST_CASE("command: 2 for input that cannot be read", "[command]") {
 }
 
 TEST_CASE("command: 3 for work that is refused or falls short", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --voxel-size 1e-4 --max-memory 100M", 3, "would fit");
   const std::string plates = std::string(SCENE_DIR) + "/plates_closing.json";
   CHECK(shell("'" + plates + "' out.obj").code == 0);
@@ -433,14 +433,14 @@ TEST_CASE("command: 3 for work that is refused or falls short", "[command]") {
 }
 
 TEST_CASE("command: 4 for output that cannot be written", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   check_failure(shell, "sphere.obj no/such/out.obj --distance 0.1", 4, "cannot be written");
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --report no/such/report.json", 4, "report.json");
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --report /dev/full", 4, "cannot be written");
 }
 
 TEST_CASE("command: a dry run tells the plan and writes nothing", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   const Run run = shell("sphere.obj out.obj --distance 1% --dry-run --report r.json");
   CHECK(run.code == 0);
   for (const char* word : {"voxel size", "leaf nodes", "voxels", "MiB", "s on"})
@@ -449,7 +449,7 @@ TEST_CASE("command: a dry run tells the plan and writes nothing", "[command]") {
 }
 
 TEST_CASE("command: the report has the keys that scripts rely on", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   REQUIRE(shell("sphere.obj out.obj --distance 5% --report report.json --save-vdb field.vdb").code == 0);
   const auto report = nlohmann::json::parse(shell.slurp(shell.file("report.json")));
   CHECK(report["distance"].get<double>() == Approx(0.05 * report["mesh"]["diagonal"].get<double>()));
@@ -468,14 +468,14 @@ TEST_CASE("command: the report has the keys that scripts rely on", "[command]") 
 }
 
 TEST_CASE("command: same bytes for any number of threads", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   REQUIRE(shell("sphere.obj one.obj --distance=-3% --threads 1").code == 0);
   REQUIRE(shell("sphere.obj two.obj --distance=-3% --threads 2").code == 0);
   CHECK(shell.slurp(shell.file("one.obj")) == shell.slurp(shell.file("two.obj")));
 }
 
 TEST_CASE("command: an interrupt ends it by that signal and leaves nothing", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   io::write_mesh(shell.file("big.obj"), scene::bumpy_sphere(1, 0.4, 2, 1, 7).view());
   const std::size_t before = shell.count();
   const std::string input = shell.file("big.obj"), output = shell.file("out.obj");
@@ -495,7 +495,7 @@ TEST_CASE("command: an interrupt ends it by that signal and leaves nothing", "[c
 }
 
 TEST_CASE("command: layers go to volume files, or to a surface each", "[command][layers]") {
-  const Shell shell;
+  const ShellCommand shell;
   const std::string layers = " --layers 4 --first-height 0.01 --growth 1.5 ";
   for (const char* name : {"out.vtu", "out.msh", "out.cgns", "out.su2", "case/polyMesh"}) {
     INFO(name);
@@ -519,7 +519,7 @@ TEST_CASE("command: layers go to volume files, or to a surface each", "[command]
 }
 
 TEST_CASE("command: heights of layers from a file, and structured blocks", "[command][layers]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream(shell.file("heights.txt")) << "# above the wall\n0.01\n\n0.5 % # of the diagonal\n0.04 + 0.01*z\n";
   const Run run = shell("sphere.obj out.vtu --heights heights.txt");
   CHECK(run.code == 0);
@@ -538,7 +538,7 @@ TEST_CASE("command: heights of layers from a file, and structured blocks", "[com
 }
 
 TEST_CASE("command: heights of layers for each vertex from a file", "[command][layers]") {
-  const Shell shell;
+  const ShellCommand shell;
   const auto source = io::read_mesh(shell.file("sphere.obj"));
   std::filesystem::create_directory(shell.file("given"));
   std::ofstream numbers(shell.file("given/numbers.txt"));
@@ -563,7 +563,7 @@ TEST_CASE("command: heights of layers for each vertex from a file", "[command][l
 }
 
 TEST_CASE("command: options of layers that do not go together", "[command][layers]") {
-  const Shell shell;
+  const ShellCommand shell;
   for (const auto& [arguments, message] :
        {std::pair{"out.vtu --distance 1", "--layers"},
         {"out.obj --distance 1 --growth 1.2", "--growth: expected it with --layers"},
@@ -580,7 +580,7 @@ TEST_CASE("command: options of layers that do not go together", "[command][layer
 }
 
 TEST_CASE("command: a captured surface, its report and what comes along", "[command][capture]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream(shell.file("square.obj")) << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                                              "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3 4/4\n";
   const Run run = shell("square.obj tube.obj -d 0.1 --mode iso --voxel-size 0.05 --report tube.json --strict");
@@ -614,7 +614,7 @@ TEST_CASE("command: a captured surface, its report and what comes along", "[comm
 }
 
 TEST_CASE("command: a hollow solid by captured skins", "[command][capture]") {
-  const Shell shell;
+  const ShellCommand shell;
   const std::string iso = " --mode iso --shell --voxel-size 0.1 --report out.json ";
   for (const char* distance : {"-d -0.2", "-d 0.2", "-d 0.1 --inner 0.1"}) {
     const Run run = shell("sphere.obj out.obj" + iso + distance);
@@ -635,7 +635,7 @@ TEST_CASE("command: a hollow solid by captured skins", "[command][capture]") {
 }
 
 TEST_CASE("command: options of captured surfaces that do not go together", "[command][capture]") {
-  const Shell shell;
+  const ShellCommand shell;
   const std::string iso = "sphere.obj out.obj -d 0.1 --mode iso ";
   check_failure(shell, "sphere.obj out.obj -d 0.1 --mode front", 1, "--mode: expected 'topology' or 'iso'");
   check_failure(shell, "sphere.obj out.obj -d 0.1 --adaptivity 0.5", 1, "--adaptivity: expected it with --mode iso");
@@ -661,7 +661,7 @@ TEST_CASE("command: options of captured surfaces that do not go together", "[com
 }
 
 TEST_CASE("command: curves are offset, reported, and refuse what is for meshes", "[command][curves]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream(shell.file("square.dat")) << "A square\n1 0\n1 1\n0 1\n0 0\n1 0\n";
   const Run run = shell("square.dat out.dat --distance 0.5 --report r.json --states s.csv");
   REQUIRE(run.code == 0);
@@ -694,7 +694,7 @@ TEST_CASE("command: curves are offset, reported, and refuse what is for meshes",
 }
 
 TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][curves][layers]") {
-  const Shell shell;
+  const ShellCommand shell;
   std::ofstream(shell.file("square.dat")) << "1 0\n1 1\n0 1\n0 0\n1 0\n";
   const std::string layers = " --layers 3 --first-height 0.1 --growth 1.5 ";
   const Run run = shell("square.dat out.vtu" + layers + "--report r.json --states s.csv");
@@ -726,7 +726,7 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
 }
 
 TEST_CASE("command: distances by axis and fits, and what goes with them", "[command]") {
-  const Shell shell;
+  const ShellCommand shell;
   Polygons floor = scene::box(Vec3d(4, 4, 1), 2, true);
   for (Vec3d& p : floor.positions) p[2] -= 1.55;  // its upper side at -1.05
   io::write_mesh(shell.file("floor.obj"), floor.view());
@@ -735,6 +735,15 @@ TEST_CASE("command: distances by axis and fits, and what goes with them", "[comm
   CHECK(shell("sphere.obj thin.obj --distance-xy -0.1 --distance-z -0.05").code == 0);
   CHECK(shell("check sphere.obj thin.obj --distance-xy -0.1 --distance-z -0.05 --strict").code == 0);
   CHECK(shell("check sphere.obj thin.obj -d -0.1 --strict").code == 3);
+  CHECK(shell("floor.obj across.obj --distance-xy -0.1 --distance-z 0").code == 0);
+  CHECK(shell("check floor.obj across.obj --distance-xy -0.1 --distance-z 0 --strict").code == 0);
+  const io::MeshFile across = io::read_mesh(shell.file("across.obj"));
+  for (std::size_t v = 0; v < floor.positions.size(); ++v)
+    for (int k = 0; k < 3; ++k) {
+      const double side = k == 2 ? 0.5 : 2, by = k == 2 ? 1e-4 : 0.1, centre = k == 2 ? -1.55 : 0;
+      const double from = floor.positions[v][k] - centre, to = across.polygons.positions[v][k] - centre;
+      if (std::abs(std::abs(from) - side) < 1e-9) CHECK(to == Approx(std::copysign(side - by, from)).epsilon(1e-6));
+    }
   CHECK(shell("sphere.obj loose.stl --fit floor.obj --clearance 0.1 --strict --report fit.json").code == 0);
   const auto report = nlohmann::json::parse(shell.slurp(shell.file("fit.json")));
   CHECK(report["fit"]["gap"].get<double>() >= 0.1 * (1 - 1e-6));
@@ -742,7 +751,7 @@ TEST_CASE("command: distances by axis and fits, and what goes with them", "[comm
   CHECK(shell("sphere.obj same.obj -d 0 --obstacle floor.obj --clearance 0.1 --strict").code == 3);
   CHECK(shell("sphere.obj same.obj -d 0 --obstacle floor.obj --clearance 0.01 --strict").code == 0);
   check_failure(shell, "sphere.obj o.obj --distance-xy 1", 1, "--distance-z");
-  check_failure(shell, "sphere.obj o.obj --distance-xy 1 --distance-z 0", 1, "other than 0");
+  check_failure(shell, "sphere.obj o.obj --distance-xy 0 --distance-z 0", 1, "not 0");
   check_failure(shell, "sphere.obj o.obj --distance-xy 1 --distance-z -1", 1, "the sign of --distance-xy");
   check_failure(shell, "sphere.obj o.obj --distance-xy 1 --distance-z 1 -d 1", 1, "--distance");
   check_failure(shell, "sphere.obj o.obj --fit floor.obj", 1, "--clearance");

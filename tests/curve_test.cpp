@@ -174,7 +174,7 @@ TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are
   require_honest(star_of_twelve, result);
 }
 
-TEST_CASE("curves: points of a rough curve that overtake each other are put back in order", "[curves]") {
+TEST_CASE("curves: points of a rough curve that overtake each other are put back in order", "[curves][long]") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> noise(0, 4e-3);
   for (const bool closed : {true, false}) {

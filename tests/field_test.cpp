@@ -203,7 +203,7 @@ TEST_CASE("sweep: voxels of the front keep their bits", "[sweep]") {
   }
 }
 
-TEST_CASE("sweep: an eikonal field converges at first order", "[sweep]") {
+TEST_CASE("sweep: an eikonal field converges at first order", "[sweep][long]") {
   // Exact values in a band of one voxel, distance 0.1 from a sphere fine enough to stand for the true one.
   const Polygons sphere = scene::icosphere(0.5, 6);
   std::vector<double> errors;

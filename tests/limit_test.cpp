@@ -327,7 +327,7 @@ TEST_CASE("limit: solids that close on each other stop before they touch", "[lim
     CHECK((v < base ? -1 : 1) * result.positions[v][0] > -0.01 * 0.1);
 }
 
-TEST_CASE("limit: corners of a wrong face that are not to blame for it go on", "[limit]") {
+TEST_CASE("limit: corners of a wrong face that are not to blame for it go on", "[limit][long]") {
   // Faces reach from the bore, where there is room, to the teeth, where there is none.
   const Polygons gear = scene::gear(18, 0.8, 1, 0.3, 0.3, 2);
   double reached = 0;
@@ -342,7 +342,7 @@ TEST_CASE("limit: corners of a wrong face that are not to blame for it go on", "
   CHECK(reached > 0.9);
 }
 
-TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limit]") {
+TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limit][long]") {
   const std::pair<Polygons, std::vector<double>> cases[] = {
       {scene::gear(18, 0.8, 1, 0.3, 0.3, 6), {-0.125, -0.12, -0.115, -0.11, -0.105}},
       {scene::naca_wing("2412", 1, 1, 80, 40), {-0.042}}};

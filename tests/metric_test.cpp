@@ -22,7 +22,7 @@ Polygons in_space(const Polygons& mesh, const Metric& metric) {
   return all;
 }
 
-OffsetOptions options_of(double xy, double z) {
+OffsetOptions axis_options(double xy, double z) {
   OffsetOptions options;
   options.distance = xy;
   options.metric = Metric::of_half_axes(xy, z);
@@ -34,7 +34,7 @@ OffsetOptions options_of(double xy, double z) {
 TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes", "[metric]") {
   const Polygons cube = scene::box(Vec3d(1, 1, 1), 10, true);
   for (const Collision collision : {Collision::Merge, Collision::Limit}) {
-    OffsetOptions options = options_of(-0.1, -0.3);
+    OffsetOptions options = axis_options(-0.1, -0.3);
     options.collision = collision;
     const OffsetResult in = offset(cube.view(), options);
     CHECK(test::share(in, VertexState::Reached) == 1);
@@ -45,7 +45,7 @@ TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes"
           CHECK(in.positions[v][k] == Approx(std::clamp(cube.positions[v][k], -side, side)).margin(1e-9));
         }
     }
-    options = options_of(0.1, 0.3);
+    options = axis_options(0.1, 0.3);
     options.collision = collision;
     const OffsetResult out = offset(cube.view(), options);
     CHECK(test::share(out, VertexState::Reached) == 1);
@@ -65,7 +65,7 @@ TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes"
 TEST_CASE("metric: every vertex is on the ellipsoids around the surface", "[metric][oracle]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.1, 2, 5, 4);
   for (const auto& [xy, z] : {std::pair{0.05, 0.15}, {-0.06, -0.02}}) {
-    const OffsetOptions options = options_of(xy, z);
+    const OffsetOptions options = axis_options(xy, z);
     const OffsetResult result = offset(mesh.view(), options);
     CHECK(test::share(result, VertexState::Reached) > 0.99);
     CHECK(result.statistics.limit.left.total() == 0);
@@ -84,7 +84,7 @@ TEST_CASE("metric: a run is valid as written, and check agrees", "[metric]") {
   const Polygons mesh = scene::torus(1, 0.4, 24, 12);
   for (const auto kind : {Precision::Kind::Double, Precision::Kind::Single, Precision::Kind::Digits}) {
     for (const auto& [xy, z] : {std::pair{0.12, 0.04}, {-0.35, -0.1}, {-0.2, -0.39}}) {
-      OffsetOptions options = options_of(xy, z);
+      OffsetOptions options = axis_options(xy, z);
       options.precision = {kind, 6};
       const OffsetResult result = offset(mesh.view(), options);
       CHECK(result.statistics.limit.left.total() == 0);
@@ -106,7 +106,7 @@ TEST_CASE("metric: a run is valid as written, and check agrees", "[metric]") {
 TEST_CASE("metric: what does not move along an axis keeps that coordinate's bits", "[metric]") {
   Polygons mesh = scene::cylinder(1, 2, 32, 7, 2);
   for (Vec3d& p : mesh.positions) p[2] = p[2] * 0.3 + 0.1;
-  const OffsetResult result = offset(mesh.view(), options_of(0.1, 0.03));
+  const OffsetResult result = offset(mesh.view(), axis_options(0.1, 0.03));
   std::size_t walls = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3d& p = mesh.positions[v];
@@ -146,12 +146,12 @@ TEST_CASE("metric: curves in an upright plane go by ellipses", "[metric][curves]
   }
   square.close_face();
   const Distances distance(-0.1);
-  const OffsetOptions options = options_of(-0.1, -0.4);
+  const OffsetOptions options = axis_options(-0.1, -0.4);
   OffsetResult result = offset_curves(square.view(), {&distance, 1}, options).front();
   // Which way round is outward depends on the side that the plane is seen from.
   if (result.positions[0][0] < 0) {
     const Distances other(0.1);
-    result = offset_curves(square.view(), {&other, 1}, options_of(0.1, 0.4)).front();
+    result = offset_curves(square.view(), {&other, 1}, axis_options(0.1, 0.4)).front();
   }
   for (std::size_t p = 0; p < square.positions.size(); ++p) {
     const Vec3d& from = square.positions[p];
@@ -163,11 +163,11 @@ TEST_CASE("metric: curves in an upright plane go by ellipses", "[metric][curves]
 
 TEST_CASE("metric: what is a length in the file is refused", "[metric]") {
   const Polygons mesh = scene::icosphere(1, 1);
-  OffsetOptions options = options_of(0.1, 0.2);
+  OffsetOptions options = axis_options(0.1, 0.2);
   const std::vector<Distances> heights = {Distances(0.1)};
   CHECK_THROWS_WITH(grow_layers(mesh.view(), heights, options), Catch::Contains("metric"));
   options.obstacles = mesh.view();
   CHECK_THROWS_WITH(offset(mesh.view(), options), Catch::Contains("metric"));
-  options = options_of(0.1, -0.2);
+  options = axis_options(0.1, -0.2);
   CHECK_THROWS_WITH(offset(mesh.view(), options), Catch::Contains("above 0"));
 }

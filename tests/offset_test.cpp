@@ -62,7 +62,7 @@ Polygons dyadic(Polygons mesh) {
 
 }  // namespace
 
-TEST_CASE("offset: sphere of the paper's size, both ways, three voxel sizes", "[offset]") {
+TEST_CASE("offset: sphere of the paper's size, both ways, three voxel sizes", "[offset][long]") {
   const Polygons sphere = scene::icosphere(0.5, 6);
   REQUIRE(sphere.positions.size() == 40962);
   for (const double distance : {0.1, -0.1})

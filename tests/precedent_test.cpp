@@ -121,7 +121,7 @@ TEST_CASE("precedent: what could not be freed is held back at less, too, and tol
   }
 }
 
-TEST_CASE("precedent: states are honest where much is held back and eased", "[precedent][several]") {
+TEST_CASE("precedent: states are honest where much is held back and eased", "[precedent][several][long]") {
   const Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
   const std::vector<Distances> distances = {-0.06, -0.08, -0.1, -0.1};  // the last two are equal
   const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});

@@ -2,6 +2,7 @@
 
 #include <openvdb/math/Quat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -61,7 +62,8 @@ unsigned number_from_environment(const char* name, unsigned otherwise) {
 
 Seeds random_seeds(unsigned count) {
   const unsigned first = number_from_environment("VDB_OFFSET_RANDOM_FIRST", 1);
-  return {first, first + number_from_environment("VDB_OFFSET_RANDOM_COUNT", count)};
+  const unsigned most = number_from_environment("VDB_OFFSET_RANDOM_MOST", count);
+  return {first, first + number_from_environment("VDB_OFFSET_RANDOM_COUNT", std::min(count, most))};
 }
 
 RandomScene random_scene(unsigned seed) {

@@ -12,8 +12,8 @@ struct RandomScene {
 };
 RandomScene random_scene(unsigned seed);
 
-/// The seeds to try: `count` of them, from 1 on, if VDB_OFFSET_RANDOM_COUNT and VDB_OFFSET_RANDOM_FIRST say nothing
-/// else.
+/// The seeds to try: `count` of them, but at most VDB_OFFSET_RANDOM_MOST, from 1 on, if VDB_OFFSET_RANDOM_COUNT and
+/// VDB_OFFSET_RANDOM_FIRST say nothing else.
 struct Seeds {
   unsigned first, end;
 };

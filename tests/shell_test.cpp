@@ -555,7 +555,7 @@ TEST_CASE("shell: an obj without groups, with late materials and objects, and wi
         "g rim\nusemtl\ns off\nf 2 1 6 7\nf 4 3 8 9\nf 1 4 9 6\nusemtl red\r\nf 5 2 7 10\nf 3 5 10 8\n");
 }
 
-TEST_CASE("shell: a large obj with seams, groups and materials, face by face", "[shell]") {
+TEST_CASE("shell: a large obj with seams, groups and materials, face by face", "[shell][long]") {
   const Polygons patch = scene::patch(1, 0.1, 150);
   for (const bool relative : {false, true}) {
     std::string obj = "mtllib a.mtl\n";
