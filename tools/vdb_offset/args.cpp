@@ -130,7 +130,9 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
          "--distance-xy", raw.distance_xy,
          "Instead of --distance, with --distance-z: how far within the plane of x and y, world units or percent")
       ->type_name("A");
-  app.add_option("--distance-z", raw.distance_z, "With --distance-xy, of its sign: how far along z")->type_name("B");
+  app.add_option("--distance-z", raw.distance_z,
+                 "With --distance-xy, of its sign: how far along z; 0 is a thousandth of A")
+      ->type_name("B");
   app.add_option("--only", raw.only,
                  "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME' or "
                  "'faces=FILE' (indices from 0, or a 0 or 1 for each face); may be repeated")

@@ -8,22 +8,20 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Beyond this, what is told of one axis drowns in the rounding of the other.
+// Beyond this, what is told of one axis drowns in the rounding of the other; 0 stands for it.
 constexpr double kMostRatio = 1000;
 
 scene::Distance parse_one(const char* option, const std::string& text) {
-  scene::Distance distance;
   try {
-    distance = scene::parse_distance(text);
+    return scene::parse_distance(text);
   } catch (const InvalidInput&) {
     throw UsageError(fmt::format("{}: expected a number of world units or percent, got '{}'", option, text));
   }
-  if (distance.value == 0)
-    throw UsageError(
-        fmt::format("{}: expected a distance other than 0, got '{}' (a thousandth of the other leaves that "
-                    "direction next to as it is)",
-                    option, text));
-  return distance;
+}
+
+scene::Distance least_beside(scene::Distance other) {
+  other.value /= kMostRatio;
+  return other;
 }
 
 }  // namespace
@@ -33,7 +31,11 @@ std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string
   if (xy.empty() || z.empty())
     throw UsageError(
         fmt::format("--distance-{}: expected it with --distance-{}", xy.empty() ? "z" : "xy", xy.empty() ? "xy" : "z"));
-  const AxisDistances axes{parse_one("--distance-xy", xy), parse_one("--distance-z", z)};
+  AxisDistances axes{parse_one("--distance-xy", xy), parse_one("--distance-z", z)};
+  if (axes.xy.value == 0 && axes.z.value == 0)
+    throw UsageError(fmt::format("--distance-z: expected one that is not 0, as --distance-xy is, got '{}'", z));
+  if (axes.xy.value == 0) axes.xy = least_beside(axes.z);
+  if (axes.z.value == 0) axes.z = least_beside(axes.xy);
   if ((axes.xy.value < 0) != (axes.z.value < 0))
     throw UsageError(fmt::format("--distance-z: expected the sign of --distance-xy, got '{}' and '{}'", z, xy));
   return axes;
