@@ -5,6 +5,7 @@
 
 #include "folder.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/triangle_places.h"
 
 using namespace vdb_offset;
 
@@ -28,6 +29,10 @@ Converted converted(const std::string& from, const std::string& bytes, const std
     CHECK(back.polygons.positions == positions);
     CHECK(back.polygons.corners == file.polygons.corners);
     CHECK(back.polygons.face_begin == file.polygons.face_begin);
+  } else {
+    const auto places = io::places_in_triangles(file.polygons.view(), back.polygons.view());
+    REQUIRE(places.has_value());
+    for (std::size_t v = 0; v < positions.size(); ++v) CHECK((*places)[v] == Vec3d(openvdb::Vec3s(positions[v])));
   }
   return {slurp(folder.file("out." + to)), result.lost};
 }
@@ -196,6 +201,23 @@ TEST_CASE("convert: a moved vertex gets a new normal", "[io]") {
   CHECK(converted("obj", nan, "off", up).lost.empty());
   CHECK(converted("obj", nan, "off").lost == "normals");
   CHECK_THAT(converted("obj", nan, "off").bytes, Catch::StartsWith("OFF\n"));
+}
+
+TEST_CASE("convert: where vertices stand is told by triangles", "[io]") {
+  // Two prongs that the fan around the first corner does not cover, and a quad.
+  const std::string fork = "v 1 1 0\nv 2 3 0\nv 0 3 0\nv 0 0 0\nv 2 0 0\nv 4 0 0\nv 4 3 0\nf 1 2 3 4 5\nf 2 5 6 7\n";
+  converted("obj", fork, "stl", Vec3d(0.125, 0.25, 1));
+  const io::MeshFile mesh = io::parse_mesh("a.obj", io::Format::Obj, fork + "v 9 9 9\n");
+  const Folder folder;
+  io::write_mesh(folder.file("a.stl"), mesh.polygons.view());
+  Polygons triangles = io::read_mesh(folder.file("a.stl")).polygons;
+  REQUIRE(triangles.face_count() == 5);
+  const auto places = io::places_in_triangles(mesh.polygons.view(), triangles.view());
+  REQUIRE(places.has_value());
+  CHECK(*places == mesh.polygons.positions);
+  CHECK_FALSE(io::places_in_triangles(triangles.view(), mesh.polygons.view()));
+  triangles.positions[4][2] += 1;  // of a corner that a vertex has more of
+  CHECK_FALSE(io::places_in_triangles(mesh.polygons.view(), triangles.view()));
 }
 
 TEST_CASE("convert: all at once, there and back", "[io]") {

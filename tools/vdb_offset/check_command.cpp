@@ -17,6 +17,7 @@
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/triangle_places.h"
 #include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
@@ -25,10 +26,10 @@ namespace {
 constexpr const char* kCheckAbout =
     "Measures OFFSET as an offset of SOURCE, whichever program made it: exact distances of all vertices, inverted\n"
     "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
-    "Both must have the same vertices and faces in the same order; or they are curves, with the same points. What an\n"
-    "offset by vdb_offset was told of distances, parts, obstacles, welding and orientation has to be told here as "
-    "well;\n"
-    "then both find the same.";
+    "Both must have the same vertices and faces in the same order, or OFFSET their triangles, as STL has them; or "
+    "they\n"
+    "are curves, with the same points. What an offset by vdb_offset was told of distances, parts, obstacles, welding\n"
+    "and orientation has to be told here as well; then both find the same.";
 
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
@@ -106,10 +107,12 @@ void require_usable(const CheckArguments& args) {
   if (!args.clearance.empty() && args.obstacles.empty()) throw UsageError("--clearance: expected it with --obstacle");
 }
 
-void require_same_faces(const CheckArguments& args, const Polygons& source, const Polygons& offset) {
+/// Of the source's vertices in the offset: of the same faces, or of the triangles that STL has of them.
+std::vector<Vec3d> places_of(const CheckArguments& args, const Polygons& source, const Polygons& offset) {
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
-    return;
+    return offset.positions;
+  if (auto places = io::places_in_triangles(source.view(), offset.view())) return std::move(*places);
   throw InvalidInput(
       fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", args.offset, args.source,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
@@ -181,7 +184,7 @@ CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisD
   Source source = read_source(made);
   const io::MeshFile offset = io::read_mesh(args.offset);
   tell_remarks(offset);
-  require_same_faces(args, source.file->polygons, offset.polygons);
+  const std::vector<Vec3d> places = places_of(args, source.file->polygons, offset.polygons);
   const std::vector<Distances> distances = settle_options(source, made);
   const OffsetOptions& of_offset = made.options;
   CheckOptions options;
@@ -199,7 +202,7 @@ CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisD
     options.metric = metric;
     options.distance = distance;
   }
-  return check_offset(source.view(), offset.polygons.positions, options);
+  return check_offset(source.view(), places, options);
 }
 
 }  // namespace
