@@ -34,15 +34,14 @@ std::size_t crossings(const Polygons& mesh, const std::vector<Vec3d>& positions)
 }
 
 /// What limit() says is left is what is found in what is written: nothing.
-void check_agreement(const Polygons& mesh, double distance, const Precision& precision) {
+void check_agreement(const Polygons& mesh, const Distances& distance, const Precision& precision) {
   OffsetOptions options;
   options.distance = distance;
   options.precision = precision;
   const OffsetResult result = offset(mesh.view(), options);
   std::vector<Vec3d> written(result.positions.size());
   for (std::size_t v = 0; v < written.size(); ++v) written[v] = precision(mesh.positions[v], result.positions[v]);
-  const CheckResult found =
-      check_offset(mesh.view(), written, {.distance = Distances(distance), .precision = precision});
+  const CheckResult found = check_offset(mesh.view(), written, {.distance = distance, .precision = precision});
   const FaultCounts &left = result.statistics.limit.left, &there = found.faults;
   CHECK(left.inverted == there.inverted);
   CHECK(left.collapsed == there.collapsed);
@@ -448,6 +447,18 @@ TEST_CASE("limit: out and back again, a smooth shape is what it was", "[limit][p
     CHECK((back.positions[v] - before[v]).length() < edge * edge / (2 * minor));
 }
 
+TEST_CASE("limit: what stays is judged as it is in a coarser format", "[limit]") {
+  Polygons mesh = scene::icosphere(0.01, 4);
+  std::vector<double> distances;
+  for (Vec3d& p : mesh.positions) {
+    distances.push_back(p[2] > 0.001 ? 0.001 : 0);
+    p += Vec3d(100);
+  }
+  for (const bool rounds_all : {false, true})
+    check_agreement(mesh, Distances(distances), {.kind = Precision::Kind::Single, .rounds_all = rounds_all});
+  check_agreement(mesh, Distances(distances), {.kind = Precision::Kind::Digits, .digits = 7, .rounds_all = true});
+}
+
 TEST_CASE("limit: random scenes are what they say in three formats", "[limit][property][random]") {
   const test::Seeds seeds = test::random_seeds(30);
   for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
@@ -455,6 +466,7 @@ TEST_CASE("limit: random scenes are what they say in three formats", "[limit][pr
     // Text of as many digits as there are, or of six; numbers of single precision, of which each face may have its own.
     check_agreement(scene.mesh, scene.distance, {});
     check_agreement(scene.mesh, scene.distance, {Precision::Kind::Digits, 6});
+    check_agreement(scene.mesh, scene.distance, {.kind = Precision::Kind::Single, .rounds_all = true});
     for (Vec3d& p : scene.mesh.positions) p = Vec3d(openvdb::Vec3s(p));
     check_agreement(scene.mesh, scene.distance, {Precision::Kind::Single});
     check_agreement(test::torn(scene.mesh), scene.distance, {Precision::Kind::Single});

@@ -37,7 +37,8 @@ struct FileFrame {
   /// Of a vertex that is put to a place in that space.
   Vec3d of(std::size_t vertex, const Vec3d& from, const Vec3d& to, const Precision& precision) const {
     if (!places.empty()) return places[vertex];
-    return to == from ? source[vertex] : precision(space.moved(source[vertex], from, to));
+    const Vec3d& before = source[vertex];
+    return precision(before, to == from ? before : space.moved(before, from, to));
   }
 };
 
@@ -68,6 +69,10 @@ struct Body {
   /// Triangles of an obstacle never move.
   bool is_obstacle(std::uint32_t triangle) const {
     return obstacles && triangle >= surface.triangles.size() - obstacles->query.surface().triangles.size();
+  }
+  /// Nor do its vertices, which are behind all others, nor are they written.
+  bool is_of_obstacle(std::uint32_t vertex) const {
+    return obstacles && vertex >= surface.vertices.size() - obstacles->query.surface().vertices.size();
   }
   bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }

@@ -111,7 +111,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  FaultFinder finder(body, source, distances, {});
+  FaultFinder finder(body, source, distances, options.precision);
   finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().size();

@@ -64,10 +64,11 @@ Indices FaultFinder::triangles_around(const Indices& vertices) {
   return touched_.take();
 }
 
-/// Whether a pair that meets is not to.
+/// Whether a pair that meets is not to. What has not moved is as it was, even if a coarser format makes it meet.
 bool FaultFinder::is_fault(const TrianglePair& pair) const {
   return !goes_along(pair.first, pair.second) && !goes_along(pair.second, pair.first) &&
-         !std::binary_search(source_crossings().begin(), source_crossings().end(), pair) && !still_touches(pair);
+         !std::binary_search(source_crossings().begin(), source_crossings().end(), pair) && !still_touches(pair) &&
+         (stands_.has_moved_corner(pair.first) || stands_.has_moved_corner(pair.second));
 }
 
 /// Whether a face that met an obstacle from the start does no more than touch one.
@@ -131,9 +132,10 @@ bool FaultFinder::goes_along(std::uint32_t resting, std::uint32_t other) const {
   return body_.rests(resting) && (has_bound(resting) || has_bound(other));
 }
 
+/// Faces that have not moved may be anywhere, obstacles themselves above all.
 FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
   constexpr double kCollapsed = 1e-6;
-  if (body_.rests(t)) return Fault::None;
+  if (body_.rests(t) || !stands_.has_moved_corner(t)) return Fault::None;
   const Vec3d before = stands_.twice_area(t, source_), now = stands_.twice_area(t, places());
   if (!(before.lengthSqr() > 0)) return Fault::None;
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
@@ -142,12 +144,8 @@ FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
   return is_crowded(t) ? Fault::Crowded : Fault::None;
 }
 
-/// Faces that have not moved may be anywhere, obstacles themselves above all.
 bool FaultFinder::is_crowded(std::uint32_t t) const {
   if (!clearance_ && !source_finder_) return false;
-  const auto& corners = surface_.triangles[t];
-  if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stands_.place(v) == source_[v]; }))
-    return false;
   if (source_finder_ && body_.is_front(t) && meets_source(t)) return true;
   if (other_skin_finder_ && body_.is_front(t) && meets_other_skin(t)) return true;
   return clearance_ && is_near_obstacle(t);
@@ -326,7 +324,7 @@ bool FaultFinder::is_misplaced(std::uint32_t v) const { return is_beyond_wall(v)
 
 bool FaultFinder::is_beyond_wall(std::uint32_t v) const {
   const Surface& front = body_.front.surface();
-  if (front.walls.empty() || !body_.on_front(v) || stands_.place(v) == source_[v]) return false;
+  if (front.walls.empty() || !body_.on_front(v) || !stands_.has_moved(v)) return false;
   const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
   return vdb_offset::is_beyond_wall(front, on_front, stands_.place(v) - front.origin, rounding(v));
 }

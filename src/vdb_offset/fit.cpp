@@ -164,7 +164,7 @@ class Fitting {
     places_.resize(surface_.vertices.size());
     for (std::size_t w = 0; w < places_.size(); ++w) {
       const auto v = surface_.representative[w];
-      places_[w] = positions[v] == mesh_.positions[v] ? positions[v] : options_.precision(positions[v]);
+      places_[w] = options_.precision(mesh_.positions[v], positions[v]);
     }
     std::vector<double> before(near_.size());
     for (std::size_t t = 0; t < near_.size(); ++t) before[t] = near_[t].gap;
@@ -252,7 +252,7 @@ class Fitting {
   double least_gap(std::span<const Vec3d> positions) const {
     const auto at = [&](std::uint32_t w) {
       const auto v = surface_.representative[w];
-      return positions[v] == mesh_.positions[v] ? positions[v] : options_.precision(positions[v]);
+      return options_.precision(mesh_.positions[v], positions[v]);
     };
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t w = 0; w < surface_.vertices.size(); ++w) least = std::min(least, other_.gap_at(at(w)));

@@ -21,6 +21,8 @@ constexpr double kLeastAngle = 0.05;
 constexpr double kAlikeNormals = 0.9999;
 // A triangle's height in tolerances, from which on it tells a plane.
 constexpr double kClearHeight = 8;
+// Where fewer vertices are in flat parts, next to nothing would be won.
+constexpr double kWorthMerging = 0.02;
 
 using List = std::vector<std::uint32_t>;
 
@@ -37,6 +39,7 @@ class FlatMerger {
   /// What lost a neighbour, or has others, is looked at again.
   std::size_t run() {
     List turn = find_flat();
+    if (static_cast<double>(turn.size()) < kWorthMerging * static_cast<double>(mesh_.vertices.size())) return 0;
     std::size_t taken = 0;
     while (!turn.empty()) {
       touched_.clear();

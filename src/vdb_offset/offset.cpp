@@ -442,8 +442,10 @@ class Pipeline {
 
   std::vector<Vec3d> as_written(const Paths& paths) const {
     std::vector<Vec3d> places = source_;
+    const auto& of_mesh = work_.surface().representative;
     for (std::size_t w = 0; w < places.size(); ++w)
-      if (paths.displacement[w] != Vec3d(0.0)) places[w] = options_.precision(places[w] + paths.displacement[w]);
+      if (w < of_mesh.size() && of_mesh[w] != kNone)
+        places[w] = options_.precision(places[w], places[w] + paths.displacement[w]);
     return places;
   }
 

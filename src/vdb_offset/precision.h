@@ -14,6 +14,8 @@ struct Precision {
   int digits = 17;  ///< Significant decimal digits; for Kind::Digits, 1 .. 17.
   /// Places are so many times as large as the file has them.
   Vec3d scale{1.0};
+  /// What has not moved is written anew as well, as in a file of another format; else it keeps its bytes.
+  bool rounds_all = false;
 
   double operator()(double value) const {
     return kind == Kind::Double   ? value
@@ -26,8 +28,16 @@ struct Precision {
     return Vec3d((*this)(q[0]), (*this)(q[1]), (*this)(q[2])) * scale;
   }
 
-  /// The same of a place that something has gone to from `source`; what has not moved keeps its bytes.
-  Vec3d operator()(const Vec3d& source, const Vec3d& place) const { return place == source ? place : (*this)(place); }
+  /// The same of a place that something has gone to from `source`.
+  Vec3d operator()(const Vec3d& source, const Vec3d& place) const {
+    return place == source && !rounds_all ? place : (*this)(place);
+  }
+
+  /// Whether a place is stored as `stored`.
+  bool is_same(const Vec3d& place, const Vec3d& stored) const {
+    if (scale != Vec3d(1.0)) return (*this)(place) == stored;
+    return (*this)(place[0]) == stored[0] && (*this)(place[1]) == stored[1] && (*this)(place[2]) == stored[2];
+  }
 
   /// Most that a number may change by, relative to itself, arithmetic on the way included.
   double epsilon() const {

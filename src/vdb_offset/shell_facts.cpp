@@ -81,7 +81,7 @@ void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const 
 std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Precision& precision) {
   std::vector<Vec3d> written = shell.polygons.positions;
   for (std::uint32_t v = 0; v < written.size(); ++v)
-    if (written[v] != mesh.positions[shell.source_vertex(v)]) written[v] = precision(written[v]);
+    written[v] = precision(mesh.positions[shell.source_vertex(v)], written[v]);
   return written;
 }
 

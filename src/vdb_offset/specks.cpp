@@ -48,21 +48,17 @@ std::size_t drop_specks(Polygons& mesh, double volume) {
   const auto largest = std::max_element(volumes.begin(), volumes.end()) - volumes.begin();
   const auto is_speck = [&](std::size_t v) { return volumes[v] < volume && static_cast<std::ptrdiff_t>(v) != largest; };
   std::vector<std::uint8_t> dropped(mesh.positions.size(), 0);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    if (const std::uint32_t of = piece[mesh.corners[mesh.face_begin[f]]]; is_speck(of)) dropped[of] = 1;
+  const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
+  if (count == 0) return 0;
   Polygons kept;
-  kept.corners.reserve(mesh.corners.size());
-  kept.face_begin.reserve(mesh.face_begin.size());
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.view().face(f);
-    const std::uint32_t of = piece[face[0]];
-    if (is_speck(of)) {
-      dropped[of] = 1;
-      continue;
-    }
+    if (dropped[piece[face[0]]]) continue;
     kept.corners.insert(kept.corners.end(), face.begin(), face.end());
     kept.close_face();
   }
-  const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
-  if (count == 0) return 0;
   kept.positions = std::move(mesh.positions);
   mesh = std::move(kept);
   return count;

@@ -54,14 +54,25 @@ void Stands::move(const Indices& vertices, const std::function<Vec3d(std::uint32
   });
 }
 
-/// What has not moved keeps its bytes.
 void Stands::put(std::uint32_t v, const Vec3d& place) {
+  if (body_.is_of_obstacle(v)) return;
   if (body_.file) {
     written_[v] = body_.file->of(v, source_[v], place, precision_);
-    place_[v] = place == source_[v] ? place : body_.file->space.metric().to(written_[v]);
+    place_[v] = written_[v] == body_.file->source[v] ? source_[v] : body_.file->space.metric().to(written_[v]);
   } else {
     place_[v] = precision_(source_[v], place);
   }
+}
+
+bool Stands::has_moved(std::uint32_t v) const {
+  if (body_.is_of_obstacle(v)) return false;
+  const Vec3d &before = body_.file ? body_.file->source[v] : source_[v], &now = in_file()[v];
+  return now != before && !precision_.is_same(before, now);
+}
+
+bool Stands::has_moved_corner(std::uint32_t t) const {
+  const auto& corners = surface_.triangles[t];
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return has_moved(v); });
 }
 
 /// Whether a vertex stands where its path ended, rounded: then the closest point is no nearer, to as much, than the one
@@ -78,7 +89,7 @@ void Stands::measure(std::span<const std::uint32_t> vertices, const Paths* ends)
   Indices unknown;
   for (const auto v : vertices) {
     // What stands where it was is on the front, or no part of it.
-    if (place_[v] == source_[v] || !body_.on_front(v)) {
+    if (!has_moved(v) || !body_.on_front(v)) {
       away_[v] = Vec3d(0.0);
       distance_[v] = 0;
       closest_[v] = kNone;

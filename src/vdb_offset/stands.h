@@ -47,6 +47,9 @@ class Stands {
   /// The same in the file, where that is another space.
   std::span<const Vec3d> in_file() const { return body_.file ? written_ : place_; }
   const Vec3d& place(std::uint32_t vertex) const { return place_[vertex]; }
+  /// Whether a vertex stands elsewhere than where it stood, and than that is in a coarser format.
+  bool has_moved(std::uint32_t vertex) const;
+  bool has_moved_corner(std::uint32_t triangle) const;
   double distance(std::uint32_t vertex) const { return distance_[vertex]; }
   std::uint32_t closest(std::uint32_t vertex) const { return closest_[vertex]; }
   bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }

@@ -84,10 +84,12 @@ MeshFile parse_mesh(const std::string& name, Format format, std::string bytes) {
 Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const bool same = format == source.format;
-  if (format == Format::Stl && !same) return {Precision::Kind::Single};
   const bool text = same ? source.encoding == Encoding::Ascii : format != Format::Ply;
-  if (text && options.digits > 0) return {Precision::Kind::Digits, options.digits};
-  return same ? source.precision : Precision{};
+  Precision precision = same ? source.precision : Precision{};
+  if (format == Format::Stl && !same) precision = {Precision::Kind::Single};
+  else if (text && options.digits > 0) precision = {Precision::Kind::Digits, options.digits};
+  precision.rounds_all = !same;
+  return precision;
 }
 
 WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
