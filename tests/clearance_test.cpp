@@ -3,6 +3,7 @@
 #include <random>
 
 #include "oracles.h"
+#include "vdb_offset/check.h"
 #include "vdb_offset/clearance.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/scene/shapes.h"
@@ -35,6 +36,19 @@ double least_distance(const Polygons& mesh, const std::vector<Vec3d>& positions,
   return least;
 }
 
+/// What a run says of what it made is what is found in it.
+void check_as_found(const Polygons& mesh, const OffsetResult& result, const OffsetOptions& options) {
+  const CheckResult found =
+      check_offset(mesh.view(), result.positions,
+                   {.distance = options.distance, .obstacles = options.obstacles, .clearance = options.clearance});
+  CHECK(found.faults.total() == result.statistics.limit.left.total());
+  CHECK(found.source_crossings == result.statistics.limit.source_crossings);
+  REQUIRE(found.obstacles);
+  CHECK(found.obstacles->gap == result.statistics.obstacles->gap);
+  CHECK(found.obstacles->starting_gap == result.statistics.obstacles->starting_gap);
+  CHECK(found.obstacles->near == result.statistics.obstacles->near);
+}
+
 }  // namespace
 
 TEST_CASE("clearance: what moves away from an obstacle that is too near is free", "[clearance]") {
@@ -52,6 +66,7 @@ TEST_CASE("clearance: what moves away from an obstacle that is too near is free"
   CHECK(in.statistics.obstacles->gap == Approx(lowest(in.positions) - pole + start).epsilon(1e-9));
   CHECK(in.statistics.obstacles->gap > start + 0.04);
   CHECK(in.statistics.obstacles->near > 0);
+  check_as_found(sphere, in, options);
   // Outward, what is too near already stays, and all that has room goes.
   options.distance = 0.3;
   const OffsetResult out = offset(sphere.view(), options);
@@ -62,6 +77,7 @@ TEST_CASE("clearance: what moves away from an obstacle that is too near is free"
     CHECK(out.positions[v][2] - pole + start >= std::min(gap, 0.1) * (1 - 1e-6));
     if (sphere.positions[v][2] > 0) CHECK(out.states[v] == VertexState::Reached);
   }
+  check_as_found(sphere, out, options);
 }
 
 TEST_CASE("clearance: what rests on an obstacle may shrink off it, and does not grow through it", "[clearance]") {
@@ -83,6 +99,7 @@ TEST_CASE("clearance: what rests on an obstacle may shrink off it, and does not 
     for (std::size_t v = 0; v < box.positions.size(); ++v)
       for (int k = 0; k < 3; ++k)
         CHECK(in.positions[v][k] == Approx(std::clamp(box.positions[v][k], -0.4, 0.4)).margin(1e-9));
+    check_as_found(box, in, options);
     options.distance = 0.1;
     const OffsetResult out = offset(box.view(), options);
     CHECK(out.statistics.limit.left.total() == 0);
@@ -91,6 +108,7 @@ TEST_CASE("clearance: what rests on an obstacle may shrink off it, and does not 
     CHECK(out.statistics.obstacles->near > 0);
     for (std::size_t v = 0; v < box.positions.size(); ++v)
       if (box.positions[v][2] == 0.5) CHECK(out.states[v] == VertexState::Reached);
+    check_as_found(box, out, options);
   }
 }
 

@@ -152,9 +152,11 @@ Surface Capture::extract(const Lattice& lattice) {
         fmt::format("capture: expected a surface at distance {:.6g}, found none (nothing inside is that "
                     "far from the surface, or only what is thinner than a voxel of {:.6g})",
                     options_.distance, h_));
-  if (!options_.keep_specks) result_.statistics.dropped_specks = drop_specks(mesh, h_ * h_ * h_);
   for_each_index(mesh.positions.size(), [&](std::size_t v) { mesh.positions[v] = as_written(mesh.positions[v]); });
-  return build_surface(mesh.view(), {.enabled = false});
+  Surface surface = build_surface(mesh.view(), {.enabled = false});
+  if (options_.keep_specks || surface.facts.components == 1) return surface;
+  result_.statistics.dropped_specks = drop_specks(mesh, h_ * h_ * h_);
+  return result_.statistics.dropped_specks == 0 ? surface : build_surface(mesh.view(), {.enabled = false});
 }
 
 void Capture::mend_on_surface(Surface& mesh) {

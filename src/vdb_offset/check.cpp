@@ -91,13 +91,15 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   place(work, work.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
   const Surface& surface = work.surface();
   const ClosestQuery query(work.front);
-  std::optional<ClosestQuery> obstacle_query;
-  std::optional<Obstacles> obstacles;
-  if (work.obstacles) obstacles.emplace(Obstacles{obstacle_query.emplace(*work.obstacles), options.clearance});
-  Body body = work.body(query, obstacles ? &*obstacles : nullptr, false);
   const std::vector<Vec3d> source = work.source(space.view()),
                            places = places_of(surface, source, moved.view().positions), in_file = work.source(mesh),
                            placed_in_file = places_of(surface, in_file, positions);
+  std::optional<Surroundings> surroundings;
+  if (work.obstacles) {
+    surroundings.emplace(work, source, options.clearance);
+    result.obstacles = surroundings->facts(places);
+  }
+  Body body = work.body(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, placed_in_file};
   if (!options.metric.even()) body.file = &file;
   result.torn = count_torn(surface, mesh, positions);
@@ -111,10 +113,12 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  FaultFinder finder(body, source, distances, options.precision);
+  std::optional<std::vector<TrianglePair>> source_crossings;
+  if (surroundings) source_crossings = surroundings->source_crossings();
+  FaultFinder finder(body, source, distances, options.precision, std::move(source_crossings));
   finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
   result.faults = finder.count();
-  result.source_crossings = finder.source_crossings().size();
+  result.source_crossings = finder.source_crossings().size() - (surroundings ? surroundings->crossing() : 0);
   result.crossings_near_source = finder.crossings_near_source();
   judge_vertices(surface, finder, distances, options.precision, result);
   result.interior = measure_interior(body, places, distances);

@@ -8,6 +8,7 @@
 
 #include "vdb_offset/faults.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/surroundings.h"
 
 namespace vdb_offset {
 
@@ -41,7 +42,8 @@ struct CheckResult {
   std::size_t torn = 0;        ///< Vertices that moved as one in the source and stand apart in the offset.
   FaultCounts faults;
   std::size_t source_crossings = 0, crossings_near_source = 0;
-  InteriorError interior;  ///< Of all faces.
+  InteriorError interior;                  ///< Of all faces.
+  std::optional<ObstacleFacts> obstacles;  ///< If there are any.
 
   bool valid() const { return faults.total() + wrong_side + torn == 0; }
 };

@@ -388,20 +388,21 @@ std::string report_json(const CaptureStatistics& statistics, const RunFacts& run
 }
 
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {
-  const Json report = {{"version", version()},
-                       {"source", source},
-                       {"offset", offset},
-                       {"valid", result.valid()},
-                       {"distance", result.distance},
-                       {"mesh", facts_json(result.facts)},
-                       {"faults", faults_json(result.faults)},
-                       {"source_crossings", result.source_crossings},
-                       {"crossings_near_source", result.crossings_near_source},
-                       {"vertices_beyond", result.beyond},
-                       {"vertices_on_wrong_side", result.wrong_side},
-                       {"vertices_torn", result.torn},
-                       {"achieved", achieved_json(summarise(result.states, result.achieved, result.distances))},
-                       {"face_interior_error", interior_json(result.interior)}};
+  Json report = {{"version", version()},
+                 {"source", source},
+                 {"offset", offset},
+                 {"valid", result.valid()},
+                 {"distance", result.distance},
+                 {"mesh", facts_json(result.facts)},
+                 {"faults", faults_json(result.faults)},
+                 {"source_crossings", result.source_crossings},
+                 {"crossings_near_source", result.crossings_near_source},
+                 {"vertices_beyond", result.beyond},
+                 {"vertices_on_wrong_side", result.wrong_side},
+                 {"vertices_torn", result.torn},
+                 {"achieved", achieved_json(summarise(result.states, result.achieved, result.distances))},
+                 {"face_interior_error", interior_json(result.interior)}};
+  if (result.obstacles) report["obstacles"] = obstacles_json(*result.obstacles);
   return as_text(report);
 }
 

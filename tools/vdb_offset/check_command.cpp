@@ -157,6 +157,9 @@ void print(const CheckResult& result, bool curves) {
   if (result.facts.seams.vertices > 0)
     fmt::print("seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",
                result.facts.seams.vertices, result.facts.seams.widest);
+  if (result.obstacles)
+    fmt::print("obstacles   gap {:.6g}, {:.6g} at the start; {} triangles nearer than the clearance\n",
+               result.obstacles->gap, result.obstacles->starting_gap, result.obstacles->near);
   if (result.torn) fmt::print("torn        {} {} are apart from others that they stood with\n", result.torn, vertices);
   fmt::print("{}\n", result.valid() ? "valid" : "not valid");
 }
