@@ -77,8 +77,11 @@ class CurvePipeline {
     LayerStack stack;
     {
       const StageTimer timer(statistics.seconds, Stage::Layers);
-      stack = stack_curves({*query_, drawn_.source, on_points.back(), options_.precision}, on_points, paths.front(),
-                           options_.progress);
+      const PlaneCurves plane{*query_, drawn_.source, on_points.back(), options_.precision};
+      CurveFaults faults(plane);
+      stack = stack_curves(plane, on_points, faults, paths.front(), options_.progress);
+      statistics.limit.left = faults.count();
+      statistics.limit.crossings_near_source = faults.crossings_near_source();
     }
     statistics.room = room(on_points.back(), paths.front());
     return hand_over(std::move(statistics), on_points, paths.front(), stack);

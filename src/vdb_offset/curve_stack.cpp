@@ -18,8 +18,8 @@ bool turns(const Vec3d& a, const Vec3d& b, const Vec3d& c, double sign) {
 class CurveStacker final : public Stacker {
  public:
   CurveStacker(const PlaneCurves& curves, std::span<const Vec3d> source, std::span<const Distances> heights,
-               Paths& paths)
-      : Stacker(source, curves.line().origin, heights, paths), curves_(curves), faults_(curves) {}
+               CurveFaults& faults, Paths& paths)
+      : Stacker(source, curves.line().origin, heights, paths), curves_(curves), faults_(faults) {}
 
  private:
   bool moves(std::uint32_t p) const override { return heights_.back()[p] != 0; }
@@ -73,20 +73,20 @@ class CurveStacker final : public Stacker {
   double distance_of(std::uint32_t p) const override { return faults_.distance_of(p); }
 
   const PlaneCurves& curves_;
-  CurveFaults faults_;
+  CurveFaults& faults_;
 };
 
 }  // namespace
 
-LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, Paths& paths,
-                        const ProgressCallback& callback) {
+LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, CurveFaults& faults,
+                        Paths& paths, const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   const double z = curves.line().vertices.front()[2] + curves.line().origin[2];
   std::vector<Vec3d> source;
   source.reserve(curves.source.size());
   for (const Vec2d& p : curves.source) source.emplace_back(p[0], p[1], z);
-  return CurveStacker(curves, source, heights, paths).run(progress);
+  return CurveStacker(curves, source, heights, faults, paths).run(progress);
 }
 
 }  // namespace vdb_offset
