@@ -313,7 +313,7 @@ TEST_CASE("capture: the result does not depend on the number of threads", "[capt
   CaptureOptions options;
   options.distance = 0.03;
   options.grid.voxel_size = 0.04;
-  options.adaptivity = GENERATE(0.0, 0.2);
+  options.adaptivity = GENERATE(std::optional<double>(), std::optional(0.0), std::optional(0.2));
   options.threads = 1;
   const CaptureResult alone = capture(gear.view(), options);
   options.threads = 2;
@@ -322,6 +322,7 @@ TEST_CASE("capture: the result does not depend on the number of threads", "[capt
   CHECK(alone.polygons.corners == together.polygons.corners);
   CHECK(alone.normals == together.normals);
   CHECK(alone.closest == together.closest);
+  CHECK((alone.statistics.merged_vertices > 0) == !options.adaptivity);
   check_sound(alone);
 }
 

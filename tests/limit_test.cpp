@@ -337,15 +337,15 @@ TEST_CASE("limit: corners of a wrong face that are not to blame for it go on", "
     CHECK(check_offset(gear.view(), result.positions, {.distance = distance}).valid());
     reached += test::share(result, VertexState::Reached) / 5;
   }
-  CHECK(held_back > 50);
-  CHECK(reached > 0.9);
+  CHECK(held_back > 20);
+  CHECK(reached > 0.99);
 }
 
 TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limit][long]") {
-  const std::pair<Polygons, std::vector<double>> cases[] = {
-      {scene::gear(18, 0.8, 1, 0.3, 0.3, 6), {-0.125, -0.12, -0.115, -0.11, -0.105}},
-      {scene::naca_wing("2412", 1, 1, 80, 40), {-0.042}}};
-  for (const auto& [mesh, distances] : cases) {
+  const std::tuple<Polygons, std::vector<double>, std::size_t> cases[] = {
+      {scene::gear(18, 0.8, 1, 0.3, 0.3, 6), {-0.125, -0.12, -0.115, -0.11, -0.105}, 5},
+      {scene::naca_wing("2412", 1, 1, 80, 40), {-0.042}, 100}};
+  for (const auto& [mesh, distances, most_steep] : cases) {
     std::size_t edges = 0, steep = 0;
     for (const double distance : distances) {
       const OffsetResult result = limited(mesh, distance);
@@ -362,7 +362,7 @@ TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limi
       }
     }
     REQUIRE(edges > 100);
-    CHECK(static_cast<double>(steep) < 0.02 * static_cast<double>(edges));
+    CHECK(steep <= most_steep);
   }
 }
 

@@ -68,4 +68,13 @@ inline constexpr Freeing kFreeings[] = {{{1, 30, true}, {1, kAnyNumber}},
                                         {{0.01, 10, false}, {0, 300}}};
 inline constexpr double kHopeless = 0.99;
 
+// What is in the way of a vertex that is put where there is room slides aside in these, one after the other, with so
+// many rings around. Of the first two each frees four times as many as of the others.
+struct Aside {
+  Untangler::Options options;
+  int rings;
+};
+inline constexpr Aside kAsides[] = {
+    {{1, 4, true, true}, 1}, {{1, 4, true, true, 0.5}, 1}, {{1, 30, false}, 1}, {{0.1, 10, true}, 1}};
+
 }  // namespace vdb_offset

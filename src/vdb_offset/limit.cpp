@@ -58,8 +58,11 @@ constexpr double kMuchMoreArea = 4;
 // Of the short vertices so many, those with the largest areas, are settled where there is room, unless what they lose
 // is less than that share of the whole area; with no more trials than so many in each turn. A trial takes others back
 // faster, and is given up once these lose more than a part of what is won, or so much is wrong.
-constexpr std::size_t kMostSettled = 2000, kMostTrials = 3000, kMostFaults = 200;
+constexpr std::size_t kMostSettled = 2000, kMostTrials = 3000, kMostFaults = 40;
 constexpr double kLeastSettled = 2e-5, kKeptInTrial = 0.6, kLastShareInTrial = 1e-3, kWorthLosing = 0.5;
+
+// More than so many do not slide aside for one.
+constexpr std::size_t kMostAside = 200;
 
 constexpr std::size_t kExpectedRounds = 32;
 
@@ -503,51 +506,88 @@ class Limiter {
       if (trials >= kMostTrials) break;
       if (!is_short(v)) continue;
       if (lines == Stakes::Lines::All && is_held(v)) continue;
-      for (const Vec3d& place : stakes_.places(v, lines)) {
+      const std::vector<Vec3d> places = stakes_.places(v, lines);
+      const auto found = std::find_if(places.begin(), places.end(), [&](const Vec3d& place) {
         ++trials;
-        if (!settle_at(v, place)) continue;
-        any = true;
-        break;
-      }
+        return settle_at({{v, place}});
+      });
+      any |= found != places.end() || (!places.empty() && settle_with_neighbours({v, places.front()}, lines, trials));
     }
     return any;
+  }
+
+  struct Move {
+    std::uint32_t vertex;
+    Vec3d place;
+  };
+
+  /// Puts a short vertex where it has its distance, and the short ones next to it where they have theirs.
+  bool settle_with_neighbours(const Move& move, Stakes::Lines lines, std::size_t& trials) {
+    std::vector<Move> moves{move};
+    gathered_.add(move.vertex);
+    for (const auto w : with_rings(gathered_.take(), 1)) {
+      if (w == move.vertex || !may_settle(w) || (lines == Stakes::Lines::All && is_held(w))) continue;
+      if (const std::vector<Vec3d> places = stakes_.places(w, lines); !places.empty())
+        moves.push_back({w, places.front()});
+    }
+    if (moves.size() > 1 && ++trials && settle_at(moves)) return true;
+    return std::any_of(std::begin(kAsides), std::end(kAsides), [&](const Aside& aside) {
+      ++trials;
+      return settle_at({move}, &aside);
+    });
   }
 
   struct Old {
     std::uint32_t vertex;
     Vec3d whole_way;
     double share;
+    bool was_short;
   };
+  Old old_of(std::uint32_t v) const { return {v, whole_way_[v], share_[v], is_short(v)}; }
+  static bool holds(const std::vector<Old>& old, std::uint32_t v) {
+    return std::any_of(old.begin(), old.end(), [&](const Old& o) { return o.vertex == v; });
+  }
+  /// What is at stake with those that were at their distance and are not now.
+  double lost_since(const std::vector<Old>& old) const {
+    double lost = 0;
+    for (const Old& o : old)
+      if (!o.was_short && is_short(o.vertex)) lost += stakes_[o.vertex];
+    return lost;
+  }
 
-  /// False, and nothing has changed, if more is lost than won.
-  bool settle_at(std::uint32_t vertex, const Vec3d& place) {
-    std::vector<Old> old{{vertex, whole_way_[vertex], share_[vertex]}};
-    Vec3d whole_way = place - surface_.vertices[vertex];
-    if (is_held(vertex)) whole_way = body_.front.surface().along_border(vertex_of_front(vertex), whole_way);
-    whole_way_[vertex] = round_way(whole_way, std::abs(distances_[vertex]));
-    share_[vertex] = 1;
-    look({vertex});
+  /// False, and nothing has changed, if more is lost than won, or the first one does not get where it is put.
+  bool settle_at(const std::vector<Move>& moves, const Aside* aside = nullptr) {
+    std::vector<Old> old;
+    Indices moved;
+    for (const auto& [v, place] : moves) {
+      old.push_back(old_of(v));
+      moved.push_back(v);
+      Vec3d whole_way = place - surface_.vertices[v];
+      if (is_held(v)) whole_way = body_.front.surface().along_border(vertex_of_front(v), whole_way);
+      whole_way_[v] = round_way(whole_way, std::abs(distances_[v]));
+      share_[v] = 1;
+    }
+    const std::uint32_t vertex = moves.front().vertex;
+    sort_unique(moved);
+    look(moved);
     if (is_short(vertex)) {
       put_back(old);
       return false;
     }
-    double lost = 0;
+    if (aside) slide_aside(vertex, *aside, old);
     while (faults_.any() || !faults_.misplaced().empty()) {
       const Indices in_the_way = vertices_to_pull();
       bool in_vain = in_the_way.empty() || fault_count() > kMostFaults;
       for (const auto v : in_the_way) {
         in_vain |= v == vertex;
-        if (std::none_of(old.begin(), old.end(), [&](const Old& o) { return o.vertex == v; })) {
-          old.push_back({v, whole_way_[v], share_[v]});
-          if (!is_short(v)) lost += stakes_[v];
-        }
+        if (!holds(old, v)) old.push_back(old_of(v));
         share_[v] = share_[v] < kLastShareInTrial ? 0 : share_[v] * kKeptInTrial;
       }
-      if (in_vain || lost > kWorthLosing * stakes_[vertex]) {
+      if (!in_vain) look(in_the_way);
+      if (in_vain || lost_since(old) > kWorthLosing * stakes_[vertex]) {
         put_back(old);
         return false;
       }
-      look(in_the_way);
       ++statistics_.rounds;
     }
     for (const Old& o : old) pulled_.push_back(o.vertex);
@@ -555,12 +595,27 @@ class Limiter {
     return true;
   }
 
+  /// Lets what is in the way of a vertex, and what is around that, slide at its distance to where it is not.
+  void slide_aside(std::uint32_t vertex, const Aside& aside, std::vector<Old>& old) {
+    faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); });
+    Indices sliding = with_rings(gathered_.take(), aside.rings);
+    std::erase_if(sliding, [&](std::uint32_t v) { return v == vertex || !may_slide(v); });
+    if (sliding.empty() || sliding.size() > kMostAside) return;
+    stakes_.measure(sliding);
+    for (const auto v : sliding) {
+      if (!holds(old, v)) old.push_back(old_of(v));
+      share_[v] = 1;
+    }
+    Untangler(body_, distances_, aside.options)(sliding, whole_way_);
+    look(sliding);
+  }
+
   void put_back(const std::vector<Old>& old) {
     Indices vertices;
-    for (const auto& [v, whole_way, share] : old) {
-      whole_way_[v] = whole_way;
-      share_[v] = share;
-      vertices.push_back(v);
+    for (const Old& o : old) {
+      whole_way_[o.vertex] = o.whole_way;
+      share_[o.vertex] = o.share;
+      vertices.push_back(o.vertex);
     }
     sort_unique(vertices);
     look(vertices);
