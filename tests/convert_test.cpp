@@ -216,6 +216,8 @@ TEST_CASE("convert: where vertices stand is told by triangles", "[io]") {
   REQUIRE(places.has_value());
   CHECK(*places == mesh.polygons.positions);
   CHECK_FALSE(io::places_in_triangles(triangles.view(), mesh.polygons.view()));
+  // Ears of this one, cut one after the other, look like the fan of another that is turned by a corner.
+  converted("obj", "v 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nf 1 2 3 4 5 6\n", "stl", Vec3d(0.25, 0, 0));
   triangles.positions[4][2] += 1;  // of a corner that a vertex has more of
   CHECK_FALSE(io::places_in_triangles(mesh.polygons.view(), triangles.view()));
 }

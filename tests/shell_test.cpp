@@ -254,6 +254,25 @@ TEST_CASE("shell: of random sheets, nothing meets but where the source does", "[
   }
 }
 
+TEST_CASE("shell: what stays is where the source is in another format, too", "[shell]") {
+  Polygons mesh = scene::icosphere(0.01, 4);
+  std::vector<double> distances;
+  for (Vec3d& p : mesh.positions) {
+    distances.push_back(p[2] > 0.001 ? 0.001 : 0);
+    p += Vec3d(100);
+  }
+  OffsetOptions options;
+  options.distance = Distances(distances);
+  options.off_source = true;
+  options.precision = {.kind = Precision::Kind::Single, .rounds_all = true};
+  const OffsetResult result = offset(mesh.view(), options);
+  CHECK(result.statistics.limit.left.total() == 0);
+  for (std::size_t v = 0; v < distances.size(); ++v)
+    if (distances[v] > 0) CHECK(result.states[v] == VertexState::Reached);
+  const Shell shell = shell_of(mesh.view(), result, options);
+  CHECK(shell.facts.crossings + shell.facts.crossings_near_source == 0);
+}
+
 TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way faces run", "[shell]") {
   std::mt19937 engine(7);
   const auto in_box = [&](const Vec3d& lower, const Vec3d& upper) {

@@ -22,6 +22,8 @@ void require_usable(PolygonView source, std::span<const Vec3d> positions, const 
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(positions[v][k]))
         throw InvalidInput("check: vertex " + std::to_string(v) + ": expected finite coordinates");
+  if (!options.metric.even() && options.obstacles.face_count() > 0)
+    throw InvalidInput("check: expected no obstacles where distances differ by axis");
   if (options.distance && !options.distance->uniform() && options.distance->count() != positions.size())
     throw InvalidInput("check: expected a distance for each of " + std::to_string(positions.size()) +
                        " vertices, got " + std::to_string(options.distance->count()));
@@ -37,13 +39,16 @@ std::vector<Vec3d> places_of(const Surface& surface, std::span<const Vec3d> sour
 
 /// Vertices that stand elsewhere than the one that they are to move with. What has been welded with a tolerance keeps
 /// its own place where it stays.
-std::size_t count_torn(const Surface& surface, PolygonView source, std::span<const Vec3d> positions) {
+std::size_t count_torn(const Surface& surface, PolygonView source, std::span<const Vec3d> positions,
+                       const Precision& precision) {
   std::size_t torn = 0;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (surface.welded[v] == kNone) continue;
     const auto first = surface.representative[surface.welded[v]];
-    const bool stays = positions[v] == source.positions[v] && positions[first] == source.positions[first];
-    torn += !stays && positions[v] != positions[first];
+    const auto stays = [&](std::uint32_t w) {
+      return positions[w] == source.positions[w] || precision.stays(source.positions[w], positions[w]);
+    };
+    torn += positions[v] != positions[first] && !(stays(static_cast<std::uint32_t>(v)) && stays(first));
   }
   return torn;
 }
@@ -102,7 +107,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   Body body = work.body(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, placed_in_file};
   if (!options.metric.even()) body.file = &file;
-  result.torn = count_torn(surface, mesh, positions);
+  result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances = options.distance ? *options.distance : Distances(find_distance(body, places));
   std::size_t disagreeing = 0;
   const Distances distances = distances_on_body(work, options.border, result.distances, disagreeing);

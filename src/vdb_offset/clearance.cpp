@@ -159,7 +159,9 @@ bool ClearanceFinder::is_crowded(const TriangleCorners& triangle, double bound, 
 Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles, OfEach of_each) {
   const std::size_t count = surface.triangles.size() - obstacles.query.surface().triangles.size();
   const ClearanceFinder finder(obstacles);
-  const double held = obstacles.clearance * (1 - kHeld);
+  // What touches is to be told from what does not, though nothing is nearer than 0.
+  constexpr double kTouching = 1e-150;
+  const double held = obstacles.clearance * (1 - kHeld), most = std::max(obstacles.clearance, kTouching);
   Gap gap;
   if (of_each == OfEach::Yes) gap.of_each.resize(count);
   std::atomic<double> least = std::numeric_limits<double>::infinity();
@@ -170,8 +172,8 @@ Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obs
           const auto& [a, b, c] = surface.triangles[t];
           const Vec3d& origin = surface.origin;
           const double known = least.load(std::memory_order_relaxed);
-          const double found = finder.gap({places[a] - origin, places[b] - origin, places[c] - origin},
-                                          std::max(known, obstacles.clearance));
+          const double found =
+              finder.gap({places[a] - origin, places[b] - origin, places[c] - origin}, std::max(known, most));
           near += found < held || found == 0;
           if (of_each == OfEach::Yes) gap.of_each[t] = std::min(found, obstacles.clearance);
           for (double so_far = known; found < so_far && !least.compare_exchange_weak(so_far, found);) {

@@ -21,6 +21,16 @@ void replace(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
   std::sort(wrong.begin(), wrong.end());
 }
 
+/// Empty where what has not moved keeps its bytes.
+std::vector<Vec3d> rewrite(const Body& body, std::span<const Vec3d> source, const Precision& precision) {
+  std::vector<Vec3d> places;
+  if (!precision.rounds_all || body.file) return places;
+  places.assign(source.begin(), source.end());
+  for (std::uint32_t v = 0; v < places.size(); ++v)
+    if (!body.is_of_obstacle(v)) places[v] = precision(places[v]);
+  return places;
+}
+
 }  // namespace
 
 FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
@@ -28,15 +38,17 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
     : body_(body),
       surface_(body.surface),
       source_(source),
+      rewritten_(rewrite(body, source, precision)),
+      staying_(rewritten_.empty() ? source : rewritten_),
       stands_(body, source, distances, precision),
       fault_(surface_.triangles.size(), Fault::None),
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
       position_(source.size(), Position::AsBefore) {
-  if (body.off_source) source_finder_.emplace(surface_, source_);
+  if (body.off_source) source_finder_.emplace(surface_, staying_);
   if (body.obstacles) clearance_.emplace(*body.obstacles);
   if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
-  if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? source_ : body.other_skin, places(), distances);
+  if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? staying_ : body.other_skin, places(), distances);
   if (!source_crossings) {
     finder_.emplace(surface_, in_file());
     source_crossings = finder_->all();

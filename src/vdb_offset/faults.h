@@ -151,6 +151,8 @@ class FaultFinder {
   const Body& body_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
+  std::vector<Vec3d> rewritten_;    // the source as it is written, if that is another than it is
+  std::span<const Vec3d> staying_;  // where what does not move stands: either
   Stands stands_;
   std::vector<std::uint8_t> folded_;  // of each vertex; empty until something may be caught
   std::vector<Fault> fault_;          // of each triangle

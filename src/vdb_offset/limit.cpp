@@ -525,7 +525,9 @@ class Limiter {
   bool settle_with_neighbours(const Move& move, Stakes::Lines lines, std::size_t& trials) {
     std::vector<Move> moves{move};
     gathered_.add(move.vertex);
-    for (const auto w : with_rings(gathered_.take(), 1)) {
+    const Indices around = with_rings(gathered_.take(), 1);
+    if (around.size() > kMostAside) return false;
+    for (const auto w : around) {
       if (w == move.vertex || !may_settle(w) || (lines == Stakes::Lines::All && is_held(w))) continue;
       if (const std::vector<Vec3d> places = stakes_.places(w, lines); !places.empty())
         moves.push_back({w, places.front()});
@@ -574,12 +576,16 @@ class Limiter {
       put_back(old);
       return false;
     }
-    if (aside) slide_aside(vertex, *aside, old);
+    if (aside && !slide_aside(vertex, *aside, old)) {
+      put_back(old);
+      return false;
+    }
     while (faults_.any() || !faults_.misplaced().empty()) {
       const Indices in_the_way = vertices_to_pull();
-      bool in_vain = in_the_way.empty() || fault_count() > kMostFaults;
+      const bool in_vain = in_the_way.empty() || fault_count() > kMostFaults ||
+                           std::binary_search(in_the_way.begin(), in_the_way.end(), vertex);
       for (const auto v : in_the_way) {
-        in_vain |= v == vertex;
+        if (in_vain) break;
         if (!holds(old, v)) old.push_back(old_of(v));
         share_[v] = share_[v] < kLastShareInTrial ? 0 : share_[v] * kKeptInTrial;
       }
@@ -595,12 +601,13 @@ class Limiter {
     return true;
   }
 
-  /// Lets what is in the way of a vertex, and what is around that, slide at its distance to where it is not.
-  void slide_aside(std::uint32_t vertex, const Aside& aside, std::vector<Old>& old) {
+  /// Lets what is in the way of a vertex, and what is around that, slide at its distance to where it is not. False if
+  /// nothing may, or too much would have to.
+  bool slide_aside(std::uint32_t vertex, const Aside& aside, std::vector<Old>& old) {
     faults_.for_each_wrong_corner([&](std::uint32_t v) { gathered_.add(v); });
     Indices sliding = with_rings(gathered_.take(), aside.rings);
     std::erase_if(sliding, [&](std::uint32_t v) { return v == vertex || !may_slide(v); });
-    if (sliding.empty() || sliding.size() > kMostAside) return;
+    if (sliding.empty() || sliding.size() > kMostAside) return false;
     stakes_.measure(sliding);
     for (const auto v : sliding) {
       if (!holds(old, v)) old.push_back(old_of(v));
@@ -608,6 +615,7 @@ class Limiter {
     }
     Untangler(body_, distances_, aside.options)(sliding, whole_way_);
     look(sliding);
+    return true;
   }
 
   void put_back(const std::vector<Old>& old) {

@@ -33,8 +33,9 @@ struct Precision {
     return place == source && !rounds_all ? place : (*this)(place);
   }
 
-  /// Whether a place is stored as `stored`.
-  bool is_same(const Vec3d& place, const Vec3d& stored) const {
+  /// Whether `stored` is what is written of a place that has not moved.
+  bool stays(const Vec3d& place, const Vec3d& stored) const {
+    if (!rounds_all) return place == stored;
     if (scale != Vec3d(1.0)) return (*this)(place) == stored;
     return (*this)(place[0]) == stored[0] && (*this)(place[1]) == stored[1] && (*this)(place[2]) == stored[2];
   }

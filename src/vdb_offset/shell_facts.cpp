@@ -54,7 +54,7 @@ void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shel
 
 /// Vertices at one place count as one there, though one that has not moved keeps its own coordinates.
 void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written,
-                     std::span<const std::uint32_t> place, Shell& shell) {
+                     std::span<const std::uint32_t> place, const Precision& precision, Shell& shell) {
   std::vector<Vec3d> joined(written.begin(), written.end());
   for (std::size_t v = 0; v < joined.size(); ++v)
     if (place[v] != kNone) joined[v] = written[place[v]];
@@ -62,7 +62,9 @@ void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const 
   const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
   if (pairs.empty()) return;
   const std::vector<std::uint8_t> near = find_near_crossings(mesh, weld);
-  const auto has_moved = [&](std::uint32_t v) { return written[v] != mesh.positions[shell.source_vertex(v)]; };
+  const auto has_moved = [&](std::uint32_t v) {
+    return !precision.stays(mesh.positions[shell.source_vertex(v)], written[v]);
+  };
   const auto is_near = [&](std::uint32_t v) { return near[shell.source_vertex(v)] != 0; };
   const auto any_corner = [&](const TrianglePair& pair, const auto& holds) {
     for (const auto t : {pair.first, pair.second})
@@ -99,7 +101,7 @@ void count_facts(PolygonView mesh, const WeldOptions& weld, const Precision& pre
   const std::vector<Vec3d> written = written_positions(mesh, shell, precision);
   count_edges(place, shell);
   count_pinched(mesh, written, shell);
-  count_crossings(mesh, weld, written, place, shell);
+  count_crossings(mesh, weld, written, place, precision, shell);
   shell.facts.volume = enclosed_volume({written, shell.polygons.corners, shell.polygons.face_begin});
 }
 

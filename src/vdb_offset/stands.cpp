@@ -67,7 +67,7 @@ void Stands::put(std::uint32_t v, const Vec3d& place) {
 bool Stands::has_moved(std::uint32_t v) const {
   if (body_.is_of_obstacle(v)) return false;
   const Vec3d &before = body_.file ? body_.file->source[v] : source_[v], &now = in_file()[v];
-  return now != before && !precision_.is_same(before, now);
+  return now != before && !precision_.stays(before, now);
 }
 
 bool Stands::has_moved_corner(std::uint32_t t) const {

@@ -198,6 +198,7 @@ CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisD
   options.weld = of_offset.weld;
   options.orient = of_offset.orient;
   options.precision = io::precision_of(args.offset, offset, made.write);
+  options.precision.rounds_all = source.file->format != offset.format;
   options.threads = args.threads;
   if (!distances.empty()) options.distance = distances.front();
   if (axes) {
@@ -227,6 +228,7 @@ int run_check(int argc, const char* const* argv) {
   require_usable(args);
   const auto axes = parse_axes(args.distance_xy, args.distance_z);
   if (axes && !args.distance.empty()) throw UsageError("--distance: expected it without --distance-xy");
+  if (axes && !args.obstacles.empty()) throw UsageError("--obstacle: expected it without --distance-xy");
   const bool curves = holds_curves(args.source);
   if (curves && axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
   const CheckResult result = curves ? measure_curves(args) : measure_meshes(args, axes);
