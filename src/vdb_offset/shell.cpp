@@ -133,12 +133,6 @@ void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<
 
 }  // namespace
 
-std::uint32_t Shell::skin_face(std::uint32_t source_face) const {
-  if (faces.empty()) return source_face;
-  const auto found = std::lower_bound(faces.begin(), faces.end(), source_face);
-  return found != faces.end() && *found == source_face ? static_cast<std::uint32_t>(found - faces.begin()) : kNone;
-}
-
 Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
                  const Precision& precision, std::span<const std::uint8_t> only) {
   if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())

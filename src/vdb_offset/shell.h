@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -84,7 +85,11 @@ struct Shell {
     return faces.empty() ? static_cast<std::uint32_t>(face % count) : faces[face % count];
   }
   /// The outer skin's face over one of the mesh's; kNone if that is not part of the shell.
-  std::uint32_t skin_face(std::uint32_t source_face) const;
+  std::uint32_t skin_face(std::uint32_t source_face) const {
+    if (faces.empty()) return source_face;
+    const auto found = std::lower_bound(faces.begin(), faces.end(), source_face);
+    return found != faces.end() && *found == source_face ? static_cast<std::uint32_t>(found - faces.begin()) : kNone;
+  }
   /// The mesh's vertex that one comes from.
   std::uint32_t source_vertex(std::uint32_t vertex) const {
     const std::size_t count = source_vertices();
