@@ -448,12 +448,7 @@ TEST_CASE("limit: out and back again, a smooth shape is what it was", "[limit][p
 }
 
 TEST_CASE("limit: what stays is judged as it is in a coarser format", "[limit]") {
-  Polygons mesh = scene::icosphere(0.01, 4);
-  std::vector<double> distances;
-  for (Vec3d& p : mesh.positions) {
-    distances.push_back(p[2] > 0.001 ? 0.001 : 0);
-    p += Vec3d(100);
-  }
+  const auto [mesh, distances] = test::far_sphere();
   for (const bool rounds_all : {false, true})
     check_agreement(mesh, Distances(distances), {.kind = Precision::Kind::Single, .rounds_all = rounds_all});
   check_agreement(mesh, Distances(distances), {.kind = Precision::Kind::Digits, .digits = 7, .rounds_all = true});

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "vdb_offset/cell_quality.h"
+#include "vdb_offset/scene/shapes.h"
 
 namespace vdb_offset::test {
 namespace {
@@ -38,6 +39,16 @@ void for_each_triangle(PolygonView mesh, Visit&& visit) {
 }
 
 }  // namespace
+
+std::pair<Polygons, std::vector<double>> far_sphere() {
+  Polygons mesh = scene::icosphere(0.01, 4);
+  std::vector<double> distances;
+  for (Vec3d& p : mesh.positions) {
+    distances.push_back(p[2] > 0.001 ? 0.001 : 0);
+    p += Vec3d(100);
+  }
+  return {std::move(mesh), std::move(distances)};
+}
 
 Polygons torn(const Polygons& mesh) {
   Polygons soup;

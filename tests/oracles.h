@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "vdb_offset/layer_quality.h"
@@ -9,6 +10,9 @@ namespace vdb_offset::test {
 
 /// Every face with corners of its own, as STL and hard-edge exports store them.
 Polygons torn(const Polygons& mesh);
+
+/// So small and far from the origin that single precision moves each vertex, and distances to grow its upper part by.
+std::pair<Polygons, std::vector<double>> far_sphere();
 
 /// Distance from x to the nearest triangle of a fan-triangulated mesh, by trying them all in a way that shares
 /// nothing with the library: projection onto the plane and signed areas, else the three segments.

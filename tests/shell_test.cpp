@@ -255,12 +255,7 @@ TEST_CASE("shell: of random sheets, nothing meets but where the source does", "[
 }
 
 TEST_CASE("shell: what stays is where the source is in another format, too", "[shell]") {
-  Polygons mesh = scene::icosphere(0.01, 4);
-  std::vector<double> distances;
-  for (Vec3d& p : mesh.positions) {
-    distances.push_back(p[2] > 0.001 ? 0.001 : 0);
-    p += Vec3d(100);
-  }
+  const auto [mesh, distances] = test::far_sphere();
   OffsetOptions options;
   options.distance = Distances(distances);
   options.off_source = true;

@@ -497,7 +497,7 @@ class Limiter {
   }
 
   /// Puts short vertices, one by one, where live points around them go; there is room for these, and what is in the way
-  /// of their faces goes back, if less is lost with that. False if none has found a place.
+  /// of their faces goes back or aside, if less is lost with that. False if none has found a place.
   bool settle(Stakes::Lines lines) {
     if (faults_.any()) return false;
     std::size_t trials = 0;
@@ -506,12 +506,7 @@ class Limiter {
       if (trials >= kMostTrials) break;
       if (!is_short(v)) continue;
       if (lines == Stakes::Lines::All && is_held(v)) continue;
-      const std::vector<Vec3d> places = stakes_.places(v, lines);
-      const auto found = std::find_if(places.begin(), places.end(), [&](const Vec3d& place) {
-        ++trials;
-        return settle_at({{v, place}});
-      });
-      any |= found != places.end() || (!places.empty() && settle_with_neighbours({v, places.front()}, lines, trials));
+      any |= settle(v, lines, trials);
     }
     return any;
   }
@@ -521,22 +516,35 @@ class Limiter {
     Vec3d place;
   };
 
-  /// Puts a short vertex where it has its distance, and the short ones next to it where they have theirs.
-  bool settle_with_neighbours(const Move& move, Stakes::Lines lines, std::size_t& trials) {
+  /// In the first of its places that it can be put in; else, in the first, with its neighbours, or while these slide.
+  bool settle(std::uint32_t v, Stakes::Lines lines, std::size_t& trials) {
+    const auto try_at = [&](const std::vector<Move>& moves, const Aside* aside) {
+      ++trials;
+      return settle_at(moves, aside);
+    };
+    const std::vector<Vec3d> places = stakes_.places(v, lines);
+    if (places.empty()) return false;
+    for (const Vec3d& place : places)
+      if (try_at({{v, place}}, nullptr)) return true;
+    const Move move{v, places.front()};
+    const std::vector<Move> together = with_short_neighbours(move, lines);
+    if (together.size() > 1 && try_at(together, nullptr)) return true;
+    return std::any_of(std::begin(kAsides), std::end(kAsides),
+                       [&](const Aside& aside) { return try_at({move}, &aside); });
+  }
+
+  /// And where the short vertices next to it have their distances; not where there are many.
+  std::vector<Move> with_short_neighbours(const Move& move, Stakes::Lines lines) {
     std::vector<Move> moves{move};
     gathered_.add(move.vertex);
     const Indices around = with_rings(gathered_.take(), 1);
-    if (around.size() > kMostAside) return false;
+    if (around.size() > kMostAside) return moves;
     for (const auto w : around) {
       if (w == move.vertex || !may_settle(w) || (lines == Stakes::Lines::All && is_held(w))) continue;
       if (const std::vector<Vec3d> places = stakes_.places(w, lines); !places.empty())
         moves.push_back({w, places.front()});
     }
-    if (moves.size() > 1 && ++trials && settle_at(moves)) return true;
-    return std::any_of(std::begin(kAsides), std::end(kAsides), [&](const Aside& aside) {
-      ++trials;
-      return settle_at({move}, &aside);
-    });
+    return moves;
   }
 
   struct Old {
@@ -558,7 +566,7 @@ class Limiter {
   }
 
   /// False, and nothing has changed, if more is lost than won, or the first one does not get where it is put.
-  bool settle_at(const std::vector<Move>& moves, const Aside* aside = nullptr) {
+  bool settle_at(const std::vector<Move>& moves, const Aside* aside) {
     std::vector<Old> old;
     Indices moved;
     for (const auto& [v, place] : moves) {
@@ -572,11 +580,7 @@ class Limiter {
     const std::uint32_t vertex = moves.front().vertex;
     sort_unique(moved);
     look(moved);
-    if (is_short(vertex)) {
-      put_back(old);
-      return false;
-    }
-    if (aside && !slide_aside(vertex, *aside, old)) {
+    if (is_short(vertex) || (aside && !slide_aside(vertex, *aside, old))) {
       put_back(old);
       return false;
     }
@@ -584,12 +588,7 @@ class Limiter {
       const Indices in_the_way = vertices_to_pull();
       const bool in_vain = in_the_way.empty() || fault_count() > kMostFaults ||
                            std::binary_search(in_the_way.begin(), in_the_way.end(), vertex);
-      for (const auto v : in_the_way) {
-        if (in_vain) break;
-        if (!holds(old, v)) old.push_back(old_of(v));
-        share_[v] = share_[v] < kLastShareInTrial ? 0 : share_[v] * kKeptInTrial;
-      }
-      if (!in_vain) look(in_the_way);
+      if (!in_vain) pull_in_trial(in_the_way, old);
       if (in_vain || lost_since(old) > kWorthLosing * stakes_[vertex]) {
         put_back(old);
         return false;
@@ -599,6 +598,14 @@ class Limiter {
     for (const Old& o : old) pulled_.push_back(o.vertex);
     sort_unique(pulled_);
     return true;
+  }
+
+  void pull_in_trial(const Indices& vertices, std::vector<Old>& old) {
+    for (const auto v : vertices) {
+      if (!holds(old, v)) old.push_back(old_of(v));
+      share_[v] = share_[v] < kLastShareInTrial ? 0 : share_[v] * kKeptInTrial;
+    }
+    look(vertices);
   }
 
   /// Lets what is in the way of a vertex, and what is around that, slide at its distance to where it is not. False if
