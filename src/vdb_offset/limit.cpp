@@ -58,11 +58,14 @@ constexpr double kMuchMoreArea = 4;
 // Of the short vertices so many, those with the largest areas, are settled where there is room, unless what they lose
 // is less than that share of the whole area; with no more trials than so many in each turn. A trial takes others back
 // faster, and is given up once these lose more than a part of what is won, or so much is wrong.
-constexpr std::size_t kMostSettled = 2000, kMostTrials = 3000, kMostFaults = 40;
-constexpr double kLeastSettled = 2e-5, kKeptInTrial = 0.6, kLastShareInTrial = 1e-3, kWorthLosing = 0.5;
+constexpr std::size_t kMostSettled = 2000, kMostTrials = 3000, kMostFaults = 150;
+constexpr double kLeastSettled = 2e-5, kKeptInTrial = 0.6, kLastShareInTrial = 1e-3, kWorthLosing = 0.8;
 
 // More than so many do not slide aside for one.
 constexpr std::size_t kMostAside = 200;
+
+// A feature goes along with a vertex if no edge that leads there is longer than this share of the distance.
+constexpr double kReaches[] = {0.01, 0.1, 0.3};
 
 constexpr std::size_t kExpectedRounds = 32;
 
@@ -380,7 +383,9 @@ class Limiter {
   }
 
   /// Whether a vertex has any of its way left to go back.
-  bool may_go_back(std::uint32_t v) const { return share_[v] != 0 && body_.on_front(v) && whole_way_[v] != Vec3d(0.0); }
+  bool may_go_back(std::uint32_t v) const {
+    return v != pinned_ && share_[v] != 0 && body_.on_front(v) && whole_way_[v] != Vec3d(0.0);
+  }
 
   /// Of each fault's corners those that are to go back: with which little is lost, and which have gone far back
   /// already. Of what a rim meets, and of what is in the wrong place, all.
@@ -467,10 +472,11 @@ class Limiter {
   }
 
   /// What may be put somewhere else than its way leads; not what an obstacle may have stopped.
-  bool may_settle(std::uint32_t v) const {
+  bool may_leave_its_way(std::uint32_t v) const {
     if (body_.obstacles && paths_.state[v] == VertexState::Collision) return false;
-    return distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v) && is_short(v);
+    return distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v);
   }
+  bool may_settle(std::uint32_t v) const { return may_leave_its_way(v) && is_short(v); }
 
   std::uint32_t vertex_of_front(std::uint32_t v) const {
     return body_.front_vertex.empty() ? v : body_.front_vertex[v];
@@ -516,7 +522,8 @@ class Limiter {
     Vec3d place;
   };
 
-  /// In the first of its places that it can be put in; else, in the first, with its neighbours, or while these slide.
+  /// In the first of its places that it can be put in; else, in the first, with its neighbours, with the small feature
+  /// that it is part of, or while what is in the way slides.
   bool settle(std::uint32_t v, Stakes::Lines lines, std::size_t& trials) {
     const auto try_at = [&](const std::vector<Move>& moves, const Aside* aside) {
       ++trials;
@@ -529,6 +536,11 @@ class Limiter {
     const Move move{v, places.front()};
     const std::vector<Move> together = with_short_neighbours(move, lines);
     if (together.size() > 1 && try_at(together, nullptr)) return true;
+    std::size_t fewer = 1;
+    for (const double reach : kReaches) {
+      const std::vector<Move> feature = with_near_vertices(move, reach);
+      if (feature.size() > std::exchange(fewer, feature.size()) && try_at(feature, nullptr)) return true;
+    }
     return std::any_of(std::begin(kAsides), std::end(kAsides),
                        [&](const Aside& aside) { return try_at({move}, &aside); });
   }
@@ -547,6 +559,26 @@ class Limiter {
     return moves;
   }
 
+  /// And what edges join to it of which none is longer than a share of the distance, by the same way: a feature that
+  /// small goes along as it is.
+  std::vector<Move> with_near_vertices(const Move& move, double reach) {
+    std::vector<Move> moves{move};
+    const Vec3d way = move.place - surface_.vertices[move.vertex];
+    const double longest = reach * std::abs(distances_[move.vertex]);
+    for (std::size_t i = 0; i < moves.size() && moves.size() <= kMostAside; ++i) {
+      const Vec3d& from = surface_.vertices[moves[i].vertex];
+      for (const auto t : surface_.triangles_around(moves[i].vertex))
+        for (const auto w : surface_.triangles[t]) {
+          const bool is_near = (surface_.vertices[w] - from).length() <= longest &&
+                               (surface_.vertices[w] - surface_.vertices[move.vertex]).length() <= 2 * longest;
+          if (!is_near || !may_go_along(w) || holds(moves, w)) continue;
+          moves.push_back({w, surface_.vertices[w] + way});
+        }
+    }
+    return moves;
+  }
+  bool may_go_along(std::uint32_t v) const { return may_leave_its_way(v) && !is_held(v); }
+
   struct Old {
     std::uint32_t vertex;
     Vec3d whole_way;
@@ -554,6 +586,9 @@ class Limiter {
     bool was_short;
   };
   Old old_of(std::uint32_t v) const { return {v, whole_way_[v], share_[v], is_short(v)}; }
+  static bool holds(const std::vector<Move>& moves, std::uint32_t v) {
+    return std::any_of(moves.begin(), moves.end(), [&](const Move& move) { return move.vertex == v; });
+  }
   static bool holds(const std::vector<Old>& old, std::uint32_t v) {
     return std::any_of(old.begin(), old.end(), [&](const Old& o) { return o.vertex == v; });
   }
@@ -579,15 +614,17 @@ class Limiter {
     }
     const std::uint32_t vertex = moves.front().vertex;
     sort_unique(moved);
+    stakes_.measure(moved);
     look(moved);
     if (is_short(vertex) || (aside && !slide_aside(vertex, *aside, old))) {
       put_back(old);
       return false;
     }
     while (faults_.any() || !faults_.misplaced().empty()) {
+      pinned_ = vertex;
       const Indices in_the_way = vertices_to_pull();
-      const bool in_vain = in_the_way.empty() || fault_count() > kMostFaults ||
-                           std::binary_search(in_the_way.begin(), in_the_way.end(), vertex);
+      pinned_ = kNone;
+      const bool in_vain = in_the_way.empty() || fault_count() > kMostFaults;
       if (!in_vain) pull_in_trial(in_the_way, old);
       if (in_vain || lost_since(old) > kWorthLosing * stakes_[vertex]) {
         put_back(old);
@@ -636,8 +673,8 @@ class Limiter {
     look(vertices);
   }
 
-  /// Takes those around a pulled vertex back as well, as far as its dip is too steep; who stays pulled altogether need
-  /// not be followed.
+  /// Takes those around a pulled vertex back as well, as far as its dip is too steep; not who is at its distance, and
+  /// who stays pulled altogether need not be followed.
   void ease() {
     Indices eased, open = pulled_;
     const std::vector<double> before = share_;
@@ -649,7 +686,7 @@ class Limiter {
         for (const auto w : surface_.triangles[t]) {
           if (distances_[w] == 0 || !body_.on_front(w)) continue;
           const double most = share_[v] + steepest_change(w, v);
-          if (!(share_[w] > most) || stakes_.area(w) > kMuchMoreArea * stakes_.area(v)) continue;
+          if (!(share_[w] > most) || !is_short(w) || stakes_.area(w) > kMuchMoreArea * stakes_.area(v)) continue;
           share_[w] = most;
           eased.push_back(w);
           open.push_back(w);
@@ -701,6 +738,7 @@ class Limiter {
   std::vector<double> share_;         // of the way that a vertex goes
   std::optional<Refusals> refusals_;  // if any was pulled back
   std::uint64_t turn_ = 0;            // of letting out
+  std::uint32_t pinned_ = kNone;      // does not go back
   Indices pulled_;                    // vertices that have been pulled back at some time
   Patches patches_;                   // that are being untangled
   IndexGatherer gathered_;            // vertices
