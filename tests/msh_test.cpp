@@ -4,8 +4,10 @@
 #include <set>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/msh_entities.h"
 #include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/io/wall_names.h"
 #include "vdb_offset/layer_cells.h"
 #include "vdb_offset/scene/shapes.h"
 #include "volume_meshes.h"
@@ -115,6 +117,81 @@ VolumeMesh pipe() {
   return layers_on(mesh, {}, -0.05);
 }
 
+/// A house of 3 x 3 unit cubes on the ground, where it is open, and on its roof a chimney of two more: an ASCII STL of
+/// six solids.
+std::string house_with_chimney() {
+  using Cube = std::array<int, 3>;
+  std::set<Cube> cubes = {{1, 1, 1}, {1, 1, 2}};
+  for (const int i : {0, 1, 2})
+    for (const int j : {0, 1, 2}) cubes.insert({i, j, 0});
+  std::map<std::string, std::string> solids;
+  for (const Cube& cube : cubes)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1}) {
+        Cube next = cube;
+        next[axis] += 2 * side - 1;
+        if (next[2] < 0 || cubes.contains(next)) continue;
+        std::array<Cube, 4> face = {cube, cube, cube, cube};
+        for (const std::size_t k : {1, 2}) ++face[k][(axis + 1) % 3];
+        for (const std::size_t k : {2, 3}) ++face[k][(axis + 2) % 3];
+        for (Cube& corner : face) corner[axis] += side;
+        if (side == 0) std::swap(face[1], face[3]);
+        const bool chimney = cube[2] > 0;
+        const std::string wall = std::string(axis == 0 ? "x" : "y") + (side == 1 ? "_most" : "_least");
+        std::string& text = solids[axis == 2 ? (chimney ? "outlet" : "roof") : chimney ? "chimney" : wall];
+        for (const auto& [b, c] : {std::pair(1, 2), std::pair(2, 3)}) {
+          text += "facet normal 0 0 0\nouter loop\n";
+          for (const int k : {0, b, c}) {
+            text += "vertex";
+            for (const int x : face[static_cast<std::size_t>(k)]) text += " " + std::to_string(x);
+            text += "\n";
+          }
+          text += "endloop\nendfacet\n";
+        }
+      }
+  std::string stl;
+  for (const auto& [name, text] : solids) stl += "solid " + name + "\n" + text + "endsolid " + name + "\n";
+  return stl;
+}
+
+/// Has Gmsh fill a box above the ground around layers: they are surface `outer`, and meet the ground at curve `rim`.
+std::string fill_above_ground(std::size_t outer, std::size_t rim) {
+  return "Merge \"layers.msh\";\n"
+         "Point(1001) = {-4, -4, 0, 2}; Point(1002) = {7, -4, 0, 2};\n"
+         "Point(1003) = {7, 7, 0, 2}; Point(1004) = {-4, 7, 0, 2};\n"
+         "Line(1001) = {1001, 1002}; Line(1002) = {1002, 1003};\n"
+         "Line(1003) = {1003, 1004}; Line(1004) = {1004, 1001};\n"
+         "Curve Loop(1001) = {1001, 1002, 1003, 1004}; Plane Surface(1001) = {1001};\n"
+         "box[] = Extrude {0, 0, 8} { Surface{1001}; };\n"
+         "Delete { Volume{box[1]}; }\n"
+         "Delete { Surface{1001}; }\n"
+         "Curve Loop(1002) = {" +
+         std::to_string(rim) +
+         "}; Plane Surface(1101) = {1001, 1002};\n"
+         "Surface Loop(1001) = {1101, box[0], box[2], box[3], box[4], box[5], " +
+         std::to_string(outer) +
+         "};\n"
+         "Volume(1001) = {1001};\n"
+         "Physical Volume(\"around\", 1001) = {1001}; Physical Surface(\"ground\", 1002) = {1101};\n"
+         "Physical Surface(\"far\", 1003) = {box[0], box[2], box[3], box[4], box[5]};\n"
+         "Mesh.MshFileVersion = 2.2; Mesh.Binary = 0;\n";
+}
+
+/// Of a file of any version.
+std::vector<int> numbers_of_groups(const std::string& text) {
+  std::istringstream in(text.substr(text.find("$PhysicalNames") + 14));
+  std::size_t count = 0;
+  in >> count;
+  std::vector<int> numbers(count);
+  for (int& number : numbers) {
+    int dimension = 0;
+    std::string name;
+    in >> dimension >> number >> name;
+  }
+  CHECK(in);
+  return numbers;
+}
+
 /// Coordinates that several nodes of an ASCII file of version 2.2 have.
 std::size_t repeated_nodes(const std::string& text) {
   std::istringstream in(text.substr(text.find("$Nodes") + 6));
@@ -181,7 +258,7 @@ TEST_CASE("msh: each opening of a pipe is a patch, and curves are named by what 
   }
   io::write_volume(folder.file("pipe.msh"), mesh);
   const std::string text = slurp(folder.file("pipe.msh"));
-  for (const char* const name : {"1 1 \"wall-sides_1\"", "1 4 \"outer-sides_2\"", "2 3 \"sides_1\"", "3 1 \"layers\""})
+  for (const char* const name : {"1 6 \"wall-sides_1\"", "1 9 \"outer-sides_2\"", "2 3 \"sides_1\"", "3 5 \"layers\""})
     CHECK_THAT(text, Contains(name));
   if (!installed("gmsh")) return;
   const std::string output = output_of(folder, "gmsh -check " + folder.file("pipe.msh"));
@@ -217,4 +294,43 @@ TEST_CASE("msh: Gmsh fills the space around layers with no node twice", "[msh]")
   const std::string filled = slurp(folder.file("filled.msh"));
   CHECK_THAT(filled, Contains("\"upper-lower\""));
   CHECK(repeated_nodes(filled) == 0);
+}
+
+TEST_CASE("msh: a chimney of several solids is filled around by Gmsh and goes on to OpenFOAM by its names", "[msh]") {
+  const Folder folder;
+  const io::MeshFile file = io::read_mesh(folder.write("chimney.stl", house_with_chimney()));
+  const VolumeMesh mesh = layers_on(file.polygons, io::wall_names(file), 0.2);
+  std::vector<std::string> names;
+  for (const VolumePatch& patch : mesh.patches) names.push_back(patch.name);
+  CHECK(names == std::vector<std::string>{"chimney", "outlet", "roof", "x_least", "x_most", "y_least", "y_most",
+                                          "outer", "sides"});
+  check_entities(mesh);
+  const io::MshEntities entities = io::find_entities(mesh);
+  CHECK(entities.curves.size() == 15);  // eight edges of walls, four on the ground, around the chimney twice, the rim
+  const auto rim = std::find_if(entities.curves.begin(), entities.curves.end(), [&](const auto& curve) {
+    return entities.groups[curve.group] == std::vector<std::uint32_t>{7, 8};
+  });
+  REQUIRE(rim != entities.curves.end());
+
+  io::write_volume(folder.file("layers.msh"), mesh);
+  std::vector<int> groups = numbers_of_groups(slurp(folder.file("layers.msh")));
+  CHECK(groups.size() == 9 + 1 + entities.groups.size());
+  std::sort(groups.begin(), groups.end());
+  CHECK(std::adjacent_find(groups.begin(), groups.end()) == groups.end());  // gmshToFoam knows them by numbers alone
+  if (!installed("gmsh")) return;
+  folder.write("fill.geo",
+               fill_above_ground(8, static_cast<std::size_t>(std::distance(entities.curves.begin(), rim)) + 1));
+  const std::string output =
+      output_of(folder, "gmsh -3 " + folder.file("fill.geo") + " -o " + folder.file("filled.msh"));
+  INFO(output);
+  CHECK_THAT(output, !Contains("Error") && Contains("Done meshing 3D"));
+  CHECK(repeated_nodes(slurp(folder.file("filled.msh"))) == 0);
+  if (!installed("gmshToFoam") || !installed("checkMesh")) return;
+  gmsh_to_foam(folder, "filled.msh", "polyMesh");
+  CHECK_THAT(check_mesh_of(folder, "polyMesh"), Contains("Mesh OK."));
+  const std::string boundary = slurp(folder.file("polyMesh/boundary"));
+  for (const char* const name :
+       {"chimney", "outlet", "roof", "x_least", "x_most", "y_least", "y_most", "sides", "ground", "far"})
+    CHECK_THAT(boundary, Contains(std::string("\n    ") + name + "\n"));
+  CHECK_THAT(slurp(folder.file("polyMesh/faceZones")), Contains("\nouter\n"));
 }

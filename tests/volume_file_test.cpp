@@ -373,7 +373,7 @@ TEST_CASE("volume file: polyMesh refuses patches that are not the boundary", "[v
 TEST_CASE("volume file: msh read by Gmsh", "[volume_file]") {
   const Folder folder;
   io::write_volume(folder.file("mesh.msh"), mixed_cells());
-  CHECK_THAT(slurp(folder.file("mesh.msh")), Contains("3 1 \"layers\"") && Contains("2 1 \"the__wall_\""));
+  CHECK_THAT(slurp(folder.file("mesh.msh")), Contains("3 4 \"layers\"") && Contains("2 1 \"the__wall_\""));
   if (!installed("gmsh")) return;
   folder.write("read.geo",
                "Merge \"mesh.msh\";\n"

@@ -154,12 +154,17 @@ std::string output_of(const Folder& folder, const std::string& command) {
   return output;
 }
 
-std::string check_mesh_of(const Folder& folder, const std::string& name) {
+namespace {
+
+// Debian leaves it to who calls to tell where the settings are.
+const std::string kFoamSettings = "WM_PROJECT_DIR=${WM_PROJECT_DIR:-/usr/share/openfoam} ";
+
+/// A case for OpenFOAM that has no mesh yet.
+std::filesystem::path empty_foam_case(const Folder& folder) {
   const std::filesystem::path inside = folder.path / "case";
   std::filesystem::create_directories(inside / "constant");
   std::filesystem::create_directories(inside / "system");
   std::filesystem::remove(inside / "constant/polyMesh");
-  std::filesystem::create_directory_symlink(folder.path / name, inside / "constant/polyMesh");
   const auto write = [&](const std::string& object, const std::string& entries) {
     folder.write("case/system/" + object,
                  "FoamFile { version 2.0; format ascii; class dictionary; object " + object + "; }\n" + entries + "\n");
@@ -167,9 +172,21 @@ std::string check_mesh_of(const Folder& folder, const std::string& name) {
   write("controlDict", "startFrom startTime; startTime 0; stopAt endTime; endTime 0; deltaT 1; writeInterval 1;");
   write("fvSchemes", "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {}");
   write("fvSolution", "");
-  // Debian leaves it to who calls to tell where the settings are.
-  return output_of(
-      folder, "WM_PROJECT_DIR=${WM_PROJECT_DIR:-/usr/share/openfoam} checkMesh -constant -case " + inside.string());
+  return inside;
+}
+
+}  // namespace
+
+std::string check_mesh_of(const Folder& folder, const std::string& name) {
+  const std::filesystem::path inside = empty_foam_case(folder);
+  std::filesystem::create_directory_symlink(folder.path / name, inside / "constant/polyMesh");
+  return output_of(folder, kFoamSettings + "checkMesh -constant -case " + inside.string());
+}
+
+void gmsh_to_foam(const Folder& folder, const std::string& msh, const std::string& name) {
+  const std::filesystem::path inside = empty_foam_case(folder);
+  output_of(folder, kFoamSettings + "gmshToFoam -keepOrientation -case " + inside.string() + " " + folder.file(msh));
+  std::filesystem::rename(inside / "constant/polyMesh", folder.path / name);
 }
 
 }  // namespace vdb_offset::test

@@ -37,4 +37,7 @@ std::string output_of(const Folder& folder, const std::string& command);
 /// What OpenFOAM's checkMesh prints of a mesh, the folder's subfolder of this name.
 std::string check_mesh_of(const Folder& folder, const std::string& name);
 
+/// Has OpenFOAM's gmshToFoam make that subfolder of a text of Gmsh's version 2.2, its cells as they are.
+void gmsh_to_foam(const Folder& folder, const std::string& msh, const std::string& name);
+
 }  // namespace vdb_offset::test

@@ -22,6 +22,13 @@ constexpr int kPoint = 0, kCurve = 1, kSurface = 2, kVolume = 3, kVolumeTag = 1;
 
 int tag_of(std::size_t number) { return static_cast<int>(number) + 1; }
 
+/// Of physical groups: surfaces, then the volume, then curves. Gmsh itself tells groups of several dimensions apart
+/// that have one number, but gmshToFoam names its patches by the number alone.
+int group_tag(const VolumeMesh& mesh, int dimension, std::size_t number) {
+  const std::size_t surfaces = mesh.patches.size();
+  return tag_of(dimension == kSurface ? number : dimension == kVolume ? surfaces : surfaces + 1 + number);
+}
+
 /// Elements of one type on one curve or surface or in the volume.
 struct MshBlock {
   int dimension, tag, type;
@@ -83,9 +90,13 @@ std::string msh_names(const VolumeMesh& mesh, const MshEntities& entities) {
   for (const auto& patches : entities.groups) groups.push_back(group_name(words, patches));
   groups = distinct_words(groups, kLongest);
   std::string text = fmt::format("$PhysicalNames\n{}\n", groups.size() + words.size() + 1);
-  for (std::size_t i = 0; i < groups.size(); ++i) text += fmt::format("{} {} \"{}\"\n", kCurve, tag_of(i), groups[i]);
-  for (std::size_t i = 0; i < words.size(); ++i) text += fmt::format("{} {} \"{}\"\n", kSurface, tag_of(i), words[i]);
-  return text + fmt::format("{} {} \"layers\"\n$EndPhysicalNames\n", kVolume, kVolumeTag);
+  const auto add = [&](int dimension, std::size_t number, const std::string& name) {
+    text += fmt::format("{} {} \"{}\"\n", dimension, group_tag(mesh, dimension, number), name);
+  };
+  for (std::size_t i = 0; i < groups.size(); ++i) add(kCurve, i, groups[i]);
+  for (std::size_t i = 0; i < words.size(); ++i) add(kSurface, i, words[i]);
+  add(kVolume, 0, "layers");
+  return text + "$EndPhysicalNames\n";
 }
 
 template <class Corners>
@@ -132,18 +143,18 @@ std::string msh_entities(const VolumeMesh& mesh, const MshEntities& entities) {
   }
   for (std::size_t i = 0; i < entities.curves.size(); ++i) {
     const auto& [points, group] = entities.curves[i];
-    append_entity(bytes, tag_of(i), box_of(mesh, points), tag_of(group),
+    append_entity(bytes, tag_of(i), box_of(mesh, points), group_tag(mesh, kCurve, group),
                   {corner_tags[points.front()], -corner_tags[points.back()]});
   }
   for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
     std::vector<int> curves;
     for (const auto& [curve, forwards] : entities.around[i])
       curves.push_back(forwards ? tag_of(curve) : -tag_of(curve));
-    append_entity(bytes, tag_of(i), box_of(mesh, mesh.patches[i].corners), tag_of(i), curves);
+    append_entity(bytes, tag_of(i), box_of(mesh, mesh.patches[i].corners), group_tag(mesh, kSurface, i), curves);
   }
   std::vector<int> surfaces;
   for (std::size_t i = 0; i < mesh.patches.size(); ++i) surfaces.push_back(tag_of(i));
-  append_entity(bytes, kVolumeTag, box_of(mesh, mesh.corners), kVolumeTag, surfaces);
+  append_entity(bytes, kVolumeTag, box_of(mesh, mesh.corners), group_tag(mesh, kVolume, 0), surfaces);
   return bytes + "\n$EndEntities\n";
 }
 
