@@ -108,6 +108,69 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
   CHECK_THAT(wrong.err, Catch::Contains("'keep' or 'fix-direction-only'"));
 }
 
+namespace {
+
+/// A mesh without the faces that lie across an axis at one of its ends, or at both; turned round, if so told.
+Polygons opened(const Polygons& whole, std::size_t axis, bool at_both, bool turned) {
+  double least = 1e300, most = -1e300;
+  for (const Vec3d& p : whole.positions) {
+    least = std::min(least, p[static_cast<int>(axis)]);
+    most = std::max(most, p[static_cast<int>(axis)]);
+  }
+  Polygons mesh;
+  mesh.positions = whole.positions;
+  for (std::size_t f = 0; f < whole.face_count(); ++f) {
+    std::vector<std::uint32_t> face(whole.view().face(f).begin(), whole.view().face(f).end());
+    const auto all_at = [&](double end) {
+      return std::all_of(face.begin(), face.end(),
+                         [&](auto v) { return whole.positions[v][static_cast<int>(axis)] == end; });
+    };
+    if (all_at(least) || (at_both && all_at(most))) continue;
+    if (turned) std::reverse(face.begin(), face.end());
+    mesh.corners.insert(mesh.corners.end(), face.begin(), face.end());
+    mesh.close_face();
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("command: layers that end on the wrong side of what is open are told of the option that turns them",
+          "[command][layers]") {
+  const ShellCommand shell;
+  const std::string told = "if faces point the wrong way, ";
+  const auto coverage = [&] {
+    return nlohmann::json::parse(shell.slurp(shell.file("r.json")))["layers"]["coverage"].get<double>();
+  };
+  const Polygons tube = scene::cylinder(1, 3, 40, 10, 1), wing = scene::naca_wing("0012", 1, 1, 60, 20);
+  for (const std::string name : {"tube", "wing"}) {
+    INFO(name);
+    const bool is_tube = name == "tube";
+    for (const bool turned : {false, true})
+      io::write_mesh(shell.file(name + (turned ? "_in.obj" : "_out.obj")),
+                     opened(is_tube ? tube : wing, is_tube ? 2 : 1, is_tube, turned).view());
+    // As thick as there is no room for inside.
+    const std::string thickness = is_tube ? "1.5" : "0.1";
+    const std::string to = " o.vtu --report r.json --layers 4 ", total = "--total-thickness " + thickness;
+    CHECK_THAT(shell(name + "_in.obj" + to + total).out, Catch::Contains(told + "--total-thickness -" + thickness));
+    CHECK(coverage() < 0.5);
+    // As told it is done, and there is no more to tell; nor is there where faces point outward.
+    for (const std::string& arguments : {"_in.obj" + to + "--total-thickness -" + thickness, "_out.obj" + to + total}) {
+      CHECK_THAT(shell(name + arguments).out, !Catch::Contains(told));
+      CHECK(coverage() > 0.99);
+    }
+    CHECK_THAT(shell(name + "_out.obj" + to + "--total-thickness -" + thickness).out,
+               Catch::Contains(told + "--total-thickness " + thickness + " goes there"));
+    // Inward is what was meant, where there is room.
+    CHECK_THAT(shell(name + "_in.obj" + to + "--total-thickness 0.001").out, !Catch::Contains(told));
+  }
+  CHECK_THAT(shell("tube_in.obj o.vtu --layers 4 --first-height 0.4").out,
+             Catch::Contains(told + "--first-height -0.4 goes there"));
+  std::ofstream(shell.file("heights.txt")) << "0.5\n1.5\n";
+  CHECK_THAT(shell("tube_in.obj o.vtu --heights heights.txt").out,
+             Catch::Contains(told + "heights below 0 goes there"));
+}
+
 TEST_CASE("command: distances of each vertex, as an expression and from files", "[command]") {
   const ShellCommand shell;
   const auto radii = [&](const std::string& name) {
@@ -556,6 +619,13 @@ TEST_CASE("command: heights of layers for each vertex from a file", "[command][l
   check_radii("--heights given/heights.txt", "s_002.obj");
   check_radii("--layers 3 --total-thickness @given/numbers.txt", "s_003.obj");
   check_radii("-d @given/numbers.txt", "s.obj");
+  // Copies that disagree at one height alone are told.
+  std::ofstream(shell.file("seam.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n";
+  std::ofstream(shell.file("given/inner.txt")) << "0.01\n0.01\n0.01\n0.02\n0.02\n0.02\n";
+  std::ofstream(shell.file("given/seam.txt")) << "@inner.txt\n0.05\n";
+  CHECK_THAT(shell("seam.obj s.vtu --heights given/seam.txt").out,
+             Catch::Contains("2 vertices stand with one of which another distance was asked"));
+  CHECK_THAT(shell("seam.obj s.vtu --layers 2 --total-thickness 0.05").out, !Catch::Contains("another distance"));
   check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height ply:thickness", 2, "sphere.obj");
   check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height @missing.txt", 2, "missing.txt");
   check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height @", 1, "--first-height");
