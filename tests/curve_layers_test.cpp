@@ -169,6 +169,8 @@ TEST_CASE("curves: layers do not depend on the number of threads", "[curves][lay
   options.threads = 1;
   const LayersResult one = grow_curve_layers(curves.view(), heights, options);
   CHECK(one.layer_statistics.thinned_vertices > 0);
+  CHECK(one.statistics.limit.limited_vertices ==
+        static_cast<std::size_t>(std::count(one.states.begin(), one.states.end(), VertexState::Limited)));
   options.threads = 4;
   const LayersResult four = grow_curve_layers(curves.view(), heights, options);
   for (std::size_t k = 0; k <= one.count(); ++k) CHECK(one.stacks.surface(k) == four.stacks.surface(k));

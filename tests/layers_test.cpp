@@ -277,6 +277,46 @@ TEST_CASE("layers: those of two plates stop before each other", "[layers]") {
     if (std::abs(wall) < 0.051) CHECK(wall * outer > 0);
   }
   CHECK(grown.layers.layer_statistics.thinned_vertices > 0);
+  // What is told of vertices that were held back is so of the layers as they ended.
+  const LimitStatistics& limit = grown.layers.statistics.limit;
+  const auto& states = grown.layers.states;
+  CHECK(limit.limited_vertices > 0);
+  CHECK(limit.limited_vertices ==
+        static_cast<std::size_t>(std::count(states.begin(), states.end(), VertexState::Limited)));
+  CHECK(limit.thickness_lost > 0);
+  CHECK(limit.thickness_lost < 1);
+}
+
+TEST_CASE("layers: the gap to obstacles is that of the surfaces as written", "[layers]") {
+  const Polygons mesh = scene::icosphere(1, 2);
+  Polygons above;
+  above.positions = {{-3, -3, 1.2}, {3, -3, 1.2}, {3, 3, 1.2}, {-3, 3, 1.2}};
+  above.add_face({0, 1, 2, 3});
+  OffsetOptions options;
+  options.obstacles = above.view();
+  options.precision = {.kind = Precision::Kind::Digits, .digits = 3};
+  const LayersResult layers = grow_layers(mesh.view(), growing(0.0333, 1.2, 2), options);
+  double highest = 0, highest_before = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3d& place = layers.stacks.of(v).back();
+    highest_before = std::max(highest_before, place[2]);
+    highest = std::max(highest, options.precision(place)[2]);
+  }
+  REQUIRE(layers.statistics.obstacles);
+  CHECK(std::abs(highest - highest_before) > 1e-5);
+  CHECK(layers.statistics.obstacles->gap == Approx(1.2 - highest).epsilon(1e-9));
+}
+
+TEST_CASE("layers: copies of a vertex that disagree at one height alone are counted", "[layers]") {
+  const Polygons mesh = test::torn(scene::icosphere(1, 1));
+  std::vector<double> first(mesh.positions.size(), 0.01);
+  first[0] = 0.02;
+  const std::vector<Distances> heights = {Distances(first), Distances(0.05)};
+  const auto others = std::count(mesh.positions.begin(), mesh.positions.end(), mesh.positions[0]) - 1;
+  REQUIRE(others > 0);
+  // Those that are not asked what the first one is.
+  CHECK(grow_layers(mesh.view(), heights, {}).statistics.disagreeing_distances == static_cast<std::size_t>(others));
+  CHECK(grow_layers(mesh.view(), growing(0.01, 1.2, 2), {}).statistics.disagreeing_distances == 0);
 }
 
 TEST_CASE("layers: a vertex that no way up suits keeps none, and cells close around it", "[layers]") {

@@ -69,9 +69,14 @@ class CurvePipeline {
     make_field();
     draw();
     std::vector<Distances> on_points;
-    for (const Distances& each : heights) on_points.push_back(on_line(each, shared_.disagreeing_distances));
+    for (const Distances& each : heights) {
+      std::size_t disagreeing = 0;
+      on_points.push_back(on_line(each, disagreeing));
+      shared_.disagreeing_distances = std::max(shared_.disagreeing_distances, disagreeing);
+    }
     distances_.push_back(on_points.back());
     std::vector<Paths> paths = march(Ridges::Smooth);
+    const std::vector<double> marched = paths.front().achieved;
     OffsetStatistics statistics = shared_;
     limit(on_points.back(), paths.front(), statistics, Spacing::Even);
     LayerStack stack;
@@ -83,6 +88,7 @@ class CurvePipeline {
       statistics.limit.left = faults.count();
       statistics.limit.crossings_near_source = faults.crossings_near_source();
     }
+    count_held_back(paths.front(), on_points.back(), marched, statistics.limit);
     statistics.room = room(on_points.back(), paths.front());
     return hand_over(std::move(statistics), on_points, paths.front(), stack);
   }

@@ -225,4 +225,19 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
   return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
 }
 
+void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,
+                     LimitStatistics& statistics) {
+  double lost = 0;
+  std::size_t moving = 0;
+  statistics.limited_vertices = 0;
+  for (std::size_t v = 0; v < paths.state.size(); ++v) {
+    const double target = std::abs(asked[v]);
+    if (target == 0 || paths.state[v] == VertexState::Unused) continue;
+    ++moving;
+    statistics.limited_vertices += paths.state[v] == VertexState::Limited;
+    lost += std::max(0.0, distances_before[v] - paths.achieved[v]) / target;
+  }
+  statistics.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
+}
+
 }  // namespace vdb_offset

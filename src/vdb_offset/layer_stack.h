@@ -6,6 +6,7 @@
 
 #include "vdb_offset/columns.h"
 #include "vdb_offset/faults.h"
+#include "vdb_offset/limit.h"
 #include "vdb_offset/progress.h"
 #include "vdb_offset/propagate.h"
 #include "vdb_offset/slide.h"
@@ -42,5 +43,10 @@ struct LayerStack {
 LayerStack stack_layers(const Body& body, const BorderSlides* slides, const CellColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& progress = {});
+
+/// Tells once layers are grown how many vertices of their outermost surface are held back, and what was taken from them
+/// since they had gone these `distances_before` that.
+void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,
+                     LimitStatistics& statistics);
 
 }  // namespace vdb_offset

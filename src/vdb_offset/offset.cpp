@@ -168,9 +168,14 @@ class Pipeline {
   LayersResult grow(std::span<const Distances> heights, CellRules rules) {
     prepare(farthest_of(heights.last(1)), {.layers = heights.size()});
     std::vector<Distances> on_vertices;
-    for (const Distances& each : heights) on_vertices.push_back(on_body(each, shared_.disagreeing_distances));
+    for (const Distances& each : heights) {
+      std::size_t disagreeing = 0;
+      on_vertices.push_back(on_body(each, disagreeing));
+      shared_.disagreeing_distances = std::max(shared_.disagreeing_distances, disagreeing);
+    }
     distances_.push_back(on_vertices.back());
     std::vector<Paths> paths = march(Ridges::Smooth);
+    const std::vector<double> marched = paths.front().achieved;
     OffsetStatistics statistics = shared_;
     const Body body = work_.body(*query_, keep_away(), true, slides_ ? mesh_.face_count() : 0);
     const std::vector<Vec3d> source = work_.source(mesh_);
@@ -191,11 +196,12 @@ class Pipeline {
     }
     statistics.limit.left = faults->count();
     statistics.limit.crossings_near_source = faults->crossings_near_source();
+    count_held_back(paths.front(), distances_.front(), marched, statistics.limit);
     statistics.borders = borders(paths.front());
     statistics.room = room(paths.front(), distances_.front());
     if (surroundings_) {
       statistics.limit.source_crossings -= surroundings_->crossing();
-      statistics.obstacles = surroundings_->facts(outermost(stack.stacks));
+      statistics.obstacles = surroundings_->facts(outermost_as_written(stack.stacks, source));
     }
     return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
   }
@@ -512,10 +518,11 @@ class Pipeline {
     return result;
   }
 
-  static std::vector<Vec3d> outermost(const Stacks& stacks) {
-    std::vector<Vec3d> places;
-    places.reserve(stacks.vertices());
-    for (std::size_t w = 0; w < stacks.vertices(); ++w) places.push_back(stacks.of(w).back());
+  std::vector<Vec3d> outermost_as_written(const Stacks& stacks, const std::vector<Vec3d>& source) const {
+    std::vector<Vec3d> places = source;
+    const auto& of_mesh = work_.surface().representative;
+    for (std::size_t w = 0; w < places.size(); ++w)
+      if (w < of_mesh.size() && of_mesh[w] != kNone) places[w] = options_.precision(source[w], stacks.of(w).back());
     return places;
   }
 

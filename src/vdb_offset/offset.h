@@ -68,7 +68,8 @@ struct OffsetStatistics {
   std::array<double, kStageCount> seconds{};  ///< By Stage.
   std::array<std::size_t, kVertexStateCount> vertices_by_state{};
   std::size_t straight_vertices = 0;
-  std::size_t disagreeing_distances = 0;  ///< Vertices that move with one of which another distance was asked.
+  std::size_t disagreeing_distances = 0;  ///< Vertices that move with one of which another distance was asked;
+                                          ///< of layers, at the height at which most do.
   LimitStatistics limit;
   BorderFacts borders;
   SideRoom room;

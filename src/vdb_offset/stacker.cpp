@@ -213,7 +213,7 @@ bool Stacker::straighten() {
     bend_[v] = Vec3d(0.0);
     stood_[v] = {};
   }
-  stack_.statistics.straightened += corners.size();
+  straightened_.insert(straightened_.end(), corners.begin(), corners.end());
   move(corners);
   return true;
 }
@@ -289,6 +289,7 @@ Indices Stacker::take_back(const std::vector<double>& before, const Snapshot& sn
 }
 
 void Stacker::finish() {
+  for (const auto v : straightened_) stack_.statistics.straightened += stack_.share[v] > 0;
   for (std::uint32_t v = 0; v < source_.size(); ++v) {
     if (!moves(v)) continue;
     if (!is_at_end(v)) paths_.displacement[v] = outermost(v) - source_[v];

@@ -141,6 +141,7 @@ class Stacker {
   std::vector<std::uint8_t> thinned_;  // in how many rounds a vertex was
   std::vector<std::uint8_t> wrong_column_;
   Indices wrong_columns_;
+  Indices straightened_;
 };
 
 }  // namespace vdb_offset

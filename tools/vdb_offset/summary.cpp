@@ -172,6 +172,12 @@ void print_curve_ends(std::FILE* out, const Source& source) {
              open.size(), plural(open.size()), open.front().gap, open.front().length);
 }
 
+void print_disagreeing(std::FILE* out, const Arguments& args, const OffsetStatistics& statistics) {
+  if (statistics.disagreeing_distances > 0)
+    fmt::print(out, "{} {} stand with one of which another distance was asked; they go the mean\n",
+               statistics.disagreeing_distances, args.curves ? "points" : "vertices");
+}
+
 /// What of the input leaves a result in doubt.
 void print_doubts(std::FILE* out, const Arguments& args, const Source& source, const OffsetStatistics& statistics,
                   const Distances& distances) {
@@ -292,9 +298,7 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
   print_states(out, result);
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
   if (shell) print_shell(out, outcome.to.mesh, *shell);
-  if (result.statistics.disagreeing_distances > 0)
-    fmt::print(out, "{} {} stand with one of which another distance was asked; they go the mean\n",
-               result.statistics.disagreeing_distances, vertices);
+  print_disagreeing(out, args, result.statistics);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, args.options.clearance);
   print_doubts(out, args, source, result.statistics, result.distances);
@@ -350,6 +354,7 @@ void print_layers_summary(const Arguments& args, const Source& source, const Lay
   if (args.verbose) print_details(stdout, result.statistics, result.heights.back(), args.curves);
   fmt::print("{}: {}", args.output, summary(report));
   fmt::print("{:.2f} s\n", total_seconds);
+  print_disagreeing(stdout, args, result.statistics);
   if (result.statistics.obstacles) print_obstacles(stdout, *result.statistics.obstacles, args.options.clearance);
   print_doubts(stdout, args, source, result.statistics, result.heights.back());
 }
