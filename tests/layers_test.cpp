@@ -287,7 +287,7 @@ TEST_CASE("layers: those of two plates stop before each other", "[layers]") {
   CHECK(limit.thickness_lost < 1);
 }
 
-TEST_CASE("layers: the gap to obstacles is that of the surfaces as written", "[layers]") {
+TEST_CASE("layers: distances and the gap to obstacles are those of the surfaces as written", "[layers]") {
   const Polygons mesh = scene::icosphere(1, 2);
   Polygons above;
   above.positions = {{-3, -3, 1.2}, {3, -3, 1.2}, {3, 3, 1.2}, {-3, 3, 1.2}};
@@ -296,14 +296,18 @@ TEST_CASE("layers: the gap to obstacles is that of the surfaces as written", "[l
   options.obstacles = above.view();
   options.precision = {.kind = Precision::Kind::Digits, .digits = 3};
   const LayersResult layers = grow_layers(mesh.view(), growing(0.0333, 1.2, 2), options);
-  double highest = 0, highest_before = 0;
+  double highest = 0, most_off = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3d& place = layers.stacks.of(v).back();
-    highest_before = std::max(highest_before, place[2]);
-    highest = std::max(highest, options.precision(place)[2]);
+    const auto places = layers.stacks.of(v);
+    CHECK(places[0] == mesh.positions[v]);
+    for (const std::size_t k : {1, 2}) CHECK(places[k] == options.precision(places[k]));
+    CHECK(layers.first_achieved[v] == Approx(test::brute_force_distance(mesh.view(), places[1])).epsilon(1e-9));
+    CHECK(layers.achieved[v] == Approx(test::brute_force_distance(mesh.view(), places[2])).epsilon(1e-9));
+    most_off = std::max(most_off, std::abs(layers.first_achieved[v] - 0.0333) / 0.0333);
+    highest = std::max(highest, places[2][2]);
   }
+  CHECK(most_off > 1e-3);  // three digits are few
   REQUIRE(layers.statistics.obstacles);
-  CHECK(std::abs(highest - highest_before) > 1e-5);
   CHECK(layers.statistics.obstacles->gap == Approx(1.2 - highest).epsilon(1e-9));
 }
 

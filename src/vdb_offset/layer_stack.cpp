@@ -225,6 +225,25 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
   return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
 }
 
+void round_layers(const Body& body, std::span<const Vec3d> source, std::span<const std::uint32_t> of_mesh,
+                  const Precision& precision, LayerStack& stack, Paths& paths) {
+  if (precision.kind == Precision::Kind::Double && precision.scale == Vec3d(1.0)) return;
+  for_each_index(of_mesh.size(), [&](std::size_t i) {
+    const auto v = static_cast<std::uint32_t>(i);
+    // Layers that are not there stay on the wall.
+    if (of_mesh[v] == kNone || stack.stacks.is_flat(v)) return;
+    const auto places = stack.stacks.of(v);
+    for (Vec3d& place : places.subspan(1)) place = precision(source[v], place);
+    if (!body.on_front(v)) return;
+    const auto distance_at = [&](const Vec3d& place) {
+      return body.front(place - body.front.surface().origin, body.hint(v)).distance;
+    };
+    paths.displacement[v] = places.back() - source[v];
+    stack.first_achieved[v] = distance_at(places[1]);
+    paths.achieved[v] = distance_at(places.back());
+  });
+}
+
 void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,
                      LimitStatistics& statistics) {
   double lost = 0;

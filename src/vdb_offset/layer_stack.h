@@ -44,6 +44,11 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& progress = {});
 
+/// Puts layers where a file has them that keeps coordinates so precisely, and finds the distances of the first layer
+/// and the outermost one there. `of_mesh` are the vertices that are written. The wall stays.
+void round_layers(const Body& body, std::span<const Vec3d> source, std::span<const std::uint32_t> of_mesh,
+                  const Precision& precision, LayerStack& stack, Paths& paths);
+
 /// Tells once layers are grown how many vertices of their outermost surface are held back, and what was taken from them
 /// since they had gone these `distances_before` that.
 void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,

@@ -193,6 +193,7 @@ class Pipeline {
       columns.emplace(mesh_, body, source, rules);
       stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, *faults, paths.front(),
                            options_.progress);
+      round_layers(body, source, work_.surface().representative, options_.precision, stack, paths.front());
     }
     statistics.limit.left = faults->count();
     statistics.limit.crossings_near_source = faults->crossings_near_source();
@@ -201,7 +202,7 @@ class Pipeline {
     statistics.room = room(paths.front(), distances_.front());
     if (surroundings_) {
       statistics.limit.source_crossings -= surroundings_->crossing();
-      statistics.obstacles = surroundings_->facts(outermost_as_written(stack.stacks, source));
+      statistics.obstacles = surroundings_->facts(outermost(stack.stacks));
     }
     return hand_over(std::move(statistics), *columns, paths.front(), std::move(stack), on_vertices);
   }
@@ -518,11 +519,10 @@ class Pipeline {
     return result;
   }
 
-  std::vector<Vec3d> outermost_as_written(const Stacks& stacks, const std::vector<Vec3d>& source) const {
-    std::vector<Vec3d> places = source;
-    const auto& of_mesh = work_.surface().representative;
-    for (std::size_t w = 0; w < places.size(); ++w)
-      if (w < of_mesh.size() && of_mesh[w] != kNone) places[w] = options_.precision(source[w], stacks.of(w).back());
+  static std::vector<Vec3d> outermost(const Stacks& stacks) {
+    std::vector<Vec3d> places;
+    places.reserve(stacks.vertices());
+    for (std::size_t w = 0; w < stacks.vertices(); ++w) places.push_back(stacks.of(w).back());
     return places;
   }
 
