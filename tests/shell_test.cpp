@@ -186,11 +186,11 @@ TEST_CASE("shell: a rim stops before what stands in its way", "[shell]") {
   const Shell shell = shell_of(mesh.view(), result, options);
   CHECK(shell.facts.crossings == 0);
   CHECK(shell.facts.pinched_vertices == 3);
-  for (const std::size_t v : {1, 2}) {  // those of the edge below the tip
-    CHECK(result.states[v] == VertexState::Limited);
-    CHECK(result.achieved[v] < 0.06);
-    CHECK(result.achieved[v] > 0.04);
-  }
+  // The edge between these runs below the tip, halfway, whichever of them goes farther.
+  const double halfway = (result.achieved[1] + result.achieved[2]) / 2;
+  CHECK(halfway < 0.06);
+  CHECK(halfway > 0.05);
+  CHECK(std::min(result.achieved[1], result.achieved[2]) > 0.01);
   for (const std::size_t v : {0, 3}) CHECK(result.states[v] == VertexState::Reached);
 }
 
