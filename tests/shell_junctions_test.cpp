@@ -202,6 +202,56 @@ TEST_CASE("shell junctions: cubes that share an edge, or a corner, are hollowed 
   }
 }
 
+TEST_CASE("shell junctions: cubes that share an edge get one skin around both, mitred on either side", "[shell]") {
+  for (const auto& [divisions, d] : {std::pair{1, 0.25}, {2, 1.0}})
+    for (const bool triangles : {false, true})
+      for (const std::uint32_t first : {0u, 1u}) {
+        INFO(divisions << ", " << triangles << ", " << first);
+        Polygons mesh;
+        add_moved(mesh, scene::box(Vec3d(2), divisions, triangles), Vec3d(2, 2, 0) * first);
+        add_moved(mesh, scene::box(Vec3d(2), divisions, triangles), Vec3d(2, 2, 0) * (1 - first));
+        const Made made = made_of(mesh, d);
+        check_thickness(mesh, made.shell, d);
+        CHECK(made.shell.facts.closed);
+        CHECK(made.shell.facts.oriented);
+        CHECK(made.shell.facts.crossings == 0);
+        CHECK(made.shell.facts.pinched_vertices == 0);
+        CHECK(made.shell.facts.short_junctions == 0);
+        // On the inner skin, which is the source, the edge is what it was; the outer one has none.
+        CHECK(made.shell.facts.non_manifold_edges == static_cast<std::size_t>(divisions));
+        // At either end, each cube's side there is as wide as two corners ask for.
+        CHECK(made.shell.facts.rim_triangles == 4);
+        CHECK(made.shell.facts.rim_quads == 0);
+        const double side = 2 + 2 * d;
+        CHECK(made.shell.facts.volume == Approx(2 * (side * side * side - 8) - 4 * d * d * side));
+        CHECK(summarise(made.result).share_reached == 1);
+      }
+}
+
+TEST_CASE("shell junctions: blocks that touch along edges which meet, or end within a wall", "[shell]") {
+  // On a lattice of cubes of edge 2, each with what the outer skin encloses beside them.
+  struct Case {
+    std::vector<Vec3d> cubes;
+    double around;
+  };
+  const double cube = 2.5 * 2.5 * 2.5, edge = 0.5 * 0.5 * 2.5;
+  // In a row, and as a step that turns: three cubes, two edges.
+  const Case cases[] = {{{{0, 0, 0}, {2, 2, 0}, {4, 4, 0}}, 3 * cube - 2 * edge},
+                        {{{0, 0, 0}, {2, 2, 0}, {4, 0, 0}}, 3 * cube - 2 * edge},
+                        {{{0, 0, 0}, {2, 2, 0}, {4, 2, 2}}, 3 * cube - 2 * edge}};
+  for (const Case& c : cases) {
+    Polygons mesh;
+    for (const Vec3d& at : c.cubes) add_moved(mesh, scene::box(Vec3d(2), 1, false), at);
+    const Made made = made_of(mesh, 0.25);
+    check_thickness(mesh, made.shell, 0.25);
+    CHECK(made.shell.facts.closed);
+    CHECK(made.shell.facts.oriented);
+    CHECK(made.shell.facts.crossings == 0);
+    CHECK(made.shell.facts.short_junctions == 0);
+    CHECK(made.shell.facts.volume == Approx(c.around - 8.0 * static_cast<double>(c.cubes.size())));
+  }
+}
+
 TEST_CASE("shell junctions: two faces that share a corner have a vertex each on their skins", "[shell]") {
   Polygons bow;
   bow.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 1, -0.5}, {2, 2, -0.5}, {1, 2, 0}};

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <tuple>
 
 #include "vdb_offset/edge_sides.h"
 #include "vdb_offset/parallel.h"
+#include "vdb_offset/wedge_cuts.h"
 
 namespace vdb_offset {
 namespace {
@@ -32,6 +36,8 @@ class JoinedSets {
     b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
+  /// \pre all that are joined with it part as well
+  void part(std::uint32_t i) { parent_[i] = i; }
 
  private:
   std::vector<std::uint32_t> parent_;
@@ -57,11 +63,8 @@ class SideFinder {
   }
 
   SheetSides find() {
-    visit_edges(mesh_, sheets_.place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
-      if (sides.size() == 1) found_.gaps.push_back({{sides[0].corner, sides[0].corner}, {0, 1}, Vec3d(0.0)});
-      else if (sides.size() == 2) join_two(leaf_of(smaller, sides[0]), leaf_of(smaller, sides[1]));
-      else join_around(smaller, sides);
-    });
+    join_all();
+    cut_wedges();
     std::stable_sort(found_.gaps.begin(), found_.gaps.end(),
                      [](const auto& a, const auto& b) { return a.corner[0] < b.corner[0]; });
     number_wedges();
@@ -69,6 +72,54 @@ class SideFinder {
   }
 
  private:
+  /// One of the sectors at an edge of three faces or more, at one of its ends.
+  struct Sector {
+    std::uint32_t edge, place, corner;  // as 2 c + s
+  };
+
+  void join_all() {
+    edge_ = 0;
+    visit_edges(mesh_, sheets_.place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
+      ++edge_;
+      if (sides.size() == 1) leave_open({{sides[0].corner, sides[0].corner}, {0, 1}, Vec3d(0.0)});
+      else if (sides.size() == 2) join_two(leaf_of(smaller, sides[0]), leaf_of(smaller, sides[1]));
+      else join_around(smaller, sides);
+    });
+  }
+
+  /// Wedges that come by one edge twice: see find_cuts().
+  void cut_wedges() {
+    for (Sector& sector : sectors_) sector.corner = joined_.find(sector.corner);
+    const auto key = [](const Sector& s) { return std::tuple(s.edge, s.place, s.corner); };
+    std::sort(sectors_.begin(), sectors_.end(), [&](const Sector& a, const Sector& b) { return key(a) < key(b); });
+    for (std::size_t i = 1; i < sectors_.size(); ++i)
+      if (key(sectors_[i]) == key(sectors_[i - 1])) links_[sectors_[i].corner];
+    if (links_.empty()) return;
+    is_joined_ = true;
+    join_all();
+    for (const auto& [wedge, links] : links_) cut(links);
+  }
+
+  void cut(const std::vector<WedgeLink>& links) {
+    const std::vector<WedgeCut> cuts = find_cuts(mesh_, links);
+    if (cuts.empty()) return;
+    std::vector<std::uint8_t> is_cut(links.size(), 0);
+    for (const WedgeCut& cut : cuts) {
+      is_cut[cut.link] = 1;
+      const SheetSides::Gap& gap = links[cut.link].gap;
+      if (cut_.insert({gap.corner[0], gap.side[0]}).second) found_.gaps.push_back(gap);  // else at its other end, too
+      found_.shared.insert(found_.shared.end(), cut.shared.begin(), cut.shared.end());
+    }
+    for (const WedgeLink& link : links)
+      for (const auto corner : link.corners) joined_.part(corner);
+    for (std::size_t i = 0; i < links.size(); ++i)
+      if (!is_cut[i]) joined_.join(links[i].corners[0], links[i].corners[1]);
+  }
+
+  void leave_open(const SheetSides::Gap& gap) {
+    if (!is_joined_) found_.gaps.push_back(gap);
+  }
+
   std::uint32_t next(std::uint32_t corner) const {
     const std::uint32_t f = face_of_[corner];
     return corner + 1 < mesh_.face_begin[f + 1] ? corner + 1 : mesh_.face_begin[f];
@@ -82,9 +133,20 @@ class SideFinder {
     return leaf.forwards ? std::array{leaf.corner, other} : std::array{other, leaf.corner};
   }
 
-  void join(const Leaf& a, std::uint8_t side_of_a, const Leaf& b, std::uint8_t side_of_b) {
+  /// Or, when all are, keeps links of wedges that may be cut.
+  void join(const Leaf& a, std::uint8_t side_of_a, const Leaf& b, std::uint8_t side_of_b, bool is_sector = false) {
     const auto at_a = ends(a), at_b = ends(b);
-    for (std::size_t end = 0; end < 2; ++end) joined_.join(2 * at_a[end] + side_of_a, 2 * at_b[end] + side_of_b);
+    for (std::size_t end = 0; end < 2; ++end) {
+      const std::uint32_t own = 2 * at_a[end] + side_of_a, other = 2 * at_b[end] + side_of_b;
+      if (!is_joined_) {
+        joined_.join(own, other);
+        if (is_sector) sectors_.push_back({edge_, sheets_.place[mesh_.corners[at_a[end]]], own});
+      } else if (const auto links = links_.find(joined_.find(own)); links != links_.end()) {
+        links->second.push_back({{own, other},
+                                 is_sector ? edge_ : kNone,
+                                 {{a.corner, b.corner}, {side_of_a, side_of_b}, Vec3d(0.0)}});
+      }
+    }
   }
 
   bool agree(const Leaf& a, const Leaf& b) const {
@@ -108,7 +170,7 @@ class SideFinder {
       (sheets_.repeats[leaf.face] ? repeats : leaves).push_back(leaf);
     }
     if (leaves.empty()) std::swap(leaves, repeats);
-    if (leaves.size() == 1) found_.gaps.push_back({{leaves[0].corner, leaves[0].corner}, {0, 1}, Vec3d(0.0)});
+    if (leaves.size() == 1) leave_open({{leaves[0].corner, leaves[0].corner}, {0, 1}, Vec3d(0.0)});
     else if (leaves.size() == 2) join_two(leaves[0], leaves[1]);
     else join_sectors(leaves);
     for (const Leaf& repeat : repeats) follow(repeat, leaves);
@@ -152,8 +214,8 @@ class SideFinder {
       const std::uint8_t side_of_a = a.next_side(), side_of_b = b.previous_side();
       const std::optional<Vec3d> step =
           std::abs(sector - std::numbers::pi) < kOneLevel ? find_step(a, side_of_a, b, side_of_b) : std::nullopt;
-      if (step) found_.gaps.push_back({{a.corner, b.corner}, {side_of_a, side_of_b}, *step});
-      else join(a, side_of_a, b, side_of_b);
+      if (step) leave_open({{a.corner, b.corner}, {side_of_a, side_of_b}, *step});
+      else join(a, side_of_a, b, side_of_b, leaves.size() > 2);
     }
   }
 
@@ -184,6 +246,11 @@ class SideFinder {
   PolygonView mesh_;
   JoinedSets joined_;
   std::vector<std::uint32_t> face_of_;  // of each corner
+  std::uint32_t edge_ = 0;              // the how manieth is being looked at
+  std::vector<Sector> sectors_;
+  bool is_joined_ = false;
+  std::map<std::uint32_t, std::vector<WedgeLink>> links_;  // of wedges that come by an edge twice
+  std::set<std::pair<std::uint32_t, std::uint8_t>> cut_;   // a gap's first corner and side
   SheetSides found_;
 };
 

@@ -16,7 +16,8 @@ namespace vdb_offset {
 /// Around an edge, the faces there cut space into sectors; in each, the side of one face goes on as that of the next.
 /// An edge of two faces has two sectors, one of three has three, and in one where a single face ends, that face's own
 /// sides face each other. Sides that go on as each other have their corners at a vertex in common: a wedge of space.
-/// Around a vertex inside a sheet there are two, around one where n sheets meet, n.
+/// Around a vertex inside a sheet there are two, around one where n sheets meet, n; and where an edge of more than two
+/// faces ends and space goes all around that end, one for each of the sectors that it joins (see wedge_cuts.h).
 struct SheetSides {
   /// A sector in which sides do not go on as each other, and are to be joined by a face of a rim: where a face ends,
   /// or sheets on one plane are thick on different sides.
@@ -25,11 +26,16 @@ struct SheetSides {
     std::array<std::uint8_t, 2> side;
     Vec3d shift{0.0};  ///< Where both should lead for the sheets to hang together.
   };
+  /// A side at whose height another wedge should be, too: that which a corner, as 2 c + s, is part of.
+  struct SharedPlane {
+    std::uint32_t side, corner;
+  };
 
   /// wedge[2 c + s] is that of side s at corner c of the mesh; s is 0 for the side that the face faces, or else 1.
   std::vector<std::uint32_t> wedge;
   std::size_t wedges = 0;
   std::vector<Gap> gaps;  ///< By their first corners.
+  std::vector<SharedPlane> shared;
 };
 
 /// What is to be known of a mesh to tell its sides apart.

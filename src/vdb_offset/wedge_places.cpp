@@ -219,6 +219,7 @@ class WedgePlacer {
       }
     }
     add_steps();
+    add_shared();
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) {
       if (!result_.is_near[w] || has_first_side[w]) continue;
       planes_[slot_[w]].solve();
@@ -234,6 +235,15 @@ class WedgePlacer {
       for (std::size_t i = 0; i < 2; ++i)
         for (const std::uint32_t corner : {gap.corner[i], next(gap.corner[i])})
           planes_[slot_[sides_.wedge[2 * corner + gap.side[i]]]].add(gap.shift / length, length, 0.5);
+    }
+  }
+  void add_shared() {
+    for (const auto& [side, corner] : sides_.shared) {
+      const std::uint32_t c = side / 2, f = face_of(c);
+      const Vec3d normal = unit_normal(f);
+      planes_[slot_[sides_.wedge[corner]]].add(side % 2 == 0 ? normal : -normal,
+                                               sheets_.thickness_on(f, side % 2, mesh_.corners[c]),
+                                               std::max(angle_at(f, c), 0.2));
     }
   }
   std::uint32_t next(std::uint32_t corner) const {
