@@ -829,3 +829,29 @@ TEST_CASE("command: distances by axis and fits, and what goes with them", "[comm
   check_failure(shell, "sphere.obj o.obj --fit floor.obj --clearance 1 --mode iso", 1, "--mode iso");
   check_failure(shell, "sphere.obj o.obj --fit none.obj --clearance 1", 2, "none.obj");
 }
+
+TEST_CASE("command: an iso-surface that is valid on no lattice is not written", "[command][iso]") {
+  const ShellCommand run;
+  Polygons sphere = scene::icosphere(1, 3);
+  for (Vec3d& p : sphere.positions) p[0] += 104;  // where two digits leave next to nothing of x
+  io::write_mesh(run.file("far.obj"), sphere.view());
+  const Run made = run("far.obj out.obj --mode iso -d 0.3 --voxel-size 0.8 --precision 2 --report out.json");
+  CHECK(made.code == 3);
+  CHECK_THAT(made.err, Catch::Contains("on each of 4 lattices"));
+  CHECK(!run.has("out.obj"));
+  CHECK(!run.has("out.json"));
+}
+
+TEST_CASE("command: a scene brings what its shape is to fit, unless a distance is given", "[command][scene]") {
+  const ShellCommand run;
+  const std::string scene = std::string(SCENE_DIR) + "/peg_in_socket.json";
+  CHECK(run("'" + scene + "' peg.obj --strict --report peg.json").code == 0);
+  CHECK_THAT(run.slurp(run.file("peg.json")), Catch::Contains("\"triangles_too_near\": 0"));
+  CHECK(run("'" + scene + "' as_it_is.obj --distance 0").code == 0);
+  for (const std::string option : {"--shell", "--mode iso", "--dry-run", "--collision merge"}) {
+    const Run refused = run("'" + scene + "' no.obj " + option);
+    CHECK(refused.code == 1);
+    CHECK_THAT(refused.err, Catch::Contains("without a fit"));
+  }
+  CHECK(!run.has("no.obj"));
+}

@@ -6,6 +6,7 @@
 
 #include "oracles.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/fit.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;
@@ -43,7 +44,10 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     options.distance =
         scene::distances_of(scene.distance, scene.shape.view(), [&] { return vertex_normals(scene.shape.view()); }, {});
     scene.set(options);
-    const OffsetResult result = offset(scene.shape.view(), options);
+    const bool fits = scene.to_fit.face_count() > 0;
+    CHECK(fits == scene.expect.min_gap.has_value());
+    const OffsetResult result = fits ? fit(scene.shape.view(), scene.to_fit.view(), scene.clearance, options)
+                                     : offset(scene.shape.view(), options);
     CHECK(scene::unmet(scene.expect, scene.shape.view(), result) == std::vector<std::string>{});
     CHECK(scene.shell == scene.expect.volume.has_value());
     if (scene.shell)
@@ -52,7 +56,7 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     CHECK(scene.expect.min_reached);
     ++count;
   }
-  CHECK(count >= 26);
+  CHECK(count >= 27);
 }
 
 TEST_CASE("scenes: an expectation that does not hold is told", "[scene][oracle]") {
@@ -93,6 +97,7 @@ TEST_CASE("shapes: closed ones are closed, oriented outwards and of the right vo
                         {"box", scene::box(Vec3d(1, 2, 3), 4, false), 6, 1e-12},
                         {"torus", scene::torus(1, 0.4, 160, 80), 2 * pi * pi * 0.16, 0.01},
                         {"cylinder", scene::cylinder(0.5, 2, 96, 3, 4), pi / 2, 0.01},
+                        {"socket", scene::socket(1, 2, 0.5, 96, 3), pi * (2.25 * 2.5 - 2), 0.03},
                         {"plates", scene::plates(1, 0.1, 0.1, 4), 0.2, 1e-12},
                         {"naca_wing", scene::naca_wing("0012", 1, 2, 100, 4), 2 * 0.0817, 0.003},
                         {"naca_wing, cambered", scene::naca_wing("4415", 1, 1, 100, 4), 0.102, 0.004},

@@ -23,6 +23,19 @@ void add(Polygons& to, const Polygons& from) {
   }
 }
 
+/// A scene's mesh to fit takes the place of a distance, with all that the command line may not ask for then.
+void settle_fit_of_scene(Source& source, Arguments& args) {
+  for (const auto& [name, given] : {std::pair{"--mode iso", args.iso.has_value()},
+                                    {"--shell", args.shell},
+                                    {"--obstacle", source.obstacles.face_count() > 0},
+                                    {"--collision", args.collision.has_value()},
+                                    {"--save-vdb", !args.vdb.empty()},
+                                    {"--dry-run", args.dry_run}})
+    if (given) throw InvalidOption(fmt::format("{}: expected a scene without a fit, or a --distance", name));
+  source.to_fit = source.scene->to_fit;
+  args.distances.push_back({"fit", {}, {}});
+}
+
 void settle_scene(Source& source, Arguments& args) {
   scene::Scene& scene = *source.scene;
   const GridOptions given = args.options.grid;
@@ -34,6 +47,7 @@ void settle_scene(Source& source, Arguments& args) {
     scene.expect = {};
     return;
   }
+  if (scene.to_fit.face_count() > 0) return settle_fit_of_scene(source, args);
   const scene::Distance& own = scene.distance;
   args.distances.push_back(
       {own.expression ? own.expression->text() : fmt::format("{}{}", own.value, own.percent ? "%" : ""), own, {}});

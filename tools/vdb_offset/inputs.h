@@ -18,7 +18,8 @@ struct Source {
   std::optional<io::CurveFile> curves;
   std::vector<OpenCurve> closed;    ///< Those of the curves that have been closed (see --close),
   std::optional<Curves> as_closed;  ///< and all of them, if any were.
-  Polygons obstacles, to_fit;
+  Polygons obstacles;
+  std::optional<Polygons> to_fit;
 
   PolygonView view() const {
     return file        ? file->polygons.view()

@@ -30,7 +30,7 @@ enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 
 
 std::vector<OffsetResult> fit_input(const Arguments& args, const Source& source) {
   std::vector<OffsetResult> results;
-  results.push_back(fit(source.view(), source.to_fit.view(), args.options.clearance, args.options));
+  results.push_back(fit(source.view(), source.to_fit->view(), args.options.clearance, args.options));
   return results;
 }
 
@@ -139,9 +139,9 @@ int run(Arguments args) {
   writing.format = format_of(args.output, args);
   if (source.file) args.options.precision = io::precision_of(args.output, *source.file, writing);
   if (source.curves) args.options.precision = io::precision_of_curves(writing);
-  std::vector<OffsetResult> results = !args.fit.empty() ? fit_input(args, source)
-                                      : source.curves   ? offset_curves(source.view(), distances, args.options)
-                                                        : offset_several(source.view(), distances, args.options);
+  std::vector<OffsetResult> results = source.to_fit   ? fit_input(args, source)
+                                      : source.curves ? offset_curves(source.view(), distances, args.options)
+                                                      : offset_several(source.view(), distances, args.options);
   bar.show(Stage::Write, 0);
   if (interrupted()) throw Cancelled();
   const OffsetResult* const inner = args.inner ? &results.back() : nullptr;

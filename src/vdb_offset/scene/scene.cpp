@@ -109,6 +109,10 @@ Polygons make_shape(Reader shape) {
          return cylinder(r.number("radius"), r.number("height"), r.count("segments"), r.count("stacks"),
                          r.count("rings"));
        }},
+      {"socket",
+       [](Reader& r) {
+         return socket(r.number("radius"), r.number("depth"), r.number("wall"), r.count("segments"), r.count("stacks"));
+       }},
       {"plates",
        [](Reader& r) {
          return plates(r.number("width"), r.number("thickness"), r.number("gap"), r.count("divisions"));
@@ -181,13 +185,16 @@ Answer read_answer(Reader reader) {
   return answer;
 }
 
-Expectations read_expectations(Reader reader, bool shell) {
+Expectations read_expectations(Reader reader, bool shell, bool fits) {
   Expectations expect;
   expect.min_reached = reader.optional_number("min_reached");
   expect.max_reached = reader.optional_number("max_reached");
   expect.max_position_error = reader.optional_number("max_position_error");
   if (reader.find("answer")) expect.answer = read_answer(reader.object("answer"));
   if (expect.max_position_error && !expect.answer) reader.fail("an answer to measure 'max_position_error' against");
+  expect.min_gap = reader.optional_number("min_gap");
+  expect.max_gap = reader.optional_number("max_gap");
+  if ((expect.min_gap || expect.max_gap) && !fits) reader.fail("'offset.fit' where there is a gap");
   expect.volume = reader.optional_number("volume");
   expect.max_volume_error = reader.optional_number("max_volume_error");
   if (expect.volume.has_value() != expect.max_volume_error.has_value())
@@ -218,6 +225,16 @@ std::vector<std::uint8_t> faces_within(Reader box, PolygonView mesh) {
   return marks;
 }
 
+/// A mesh beside the scene's own, and how near they may be.
+Polygons read_beside(Reader beside, double& clearance) {
+  const Vec3d at = beside.vector("at");
+  clearance = beside.number("clearance", 0);
+  Polygons mesh = make_shape(beside.object("shape"));
+  for (Vec3d& p : mesh.positions) p += at;
+  beside.finish();
+  return mesh;
+}
+
 void read_part_and_obstacle(Reader& offset, Scene& scene) {
   if (offset.find("only")) scene.only = faces_within(offset.object("only"), scene.shape.view());
   if (offset.find("border")) {
@@ -225,13 +242,19 @@ void read_part_and_obstacle(Reader& offset, Scene& scene) {
     if (border != "slide" && border != "fixed" && border != "free") offset.fail("a border among slide, fixed, free");
     scene.border = border == "slide" ? Border::Slide : border == "fixed" ? Border::Fixed : Border::Free;
   }
-  if (!offset.find("obstacle")) return;
-  Reader obstacle = offset.object("obstacle");
-  const Vec3d at = obstacle.vector("at");
-  scene.clearance = obstacle.number("clearance", 0);
-  scene.obstacle = make_shape(obstacle.object("shape"));
-  for (Vec3d& p : scene.obstacle.positions) p += at;
-  obstacle.finish();
+  if (offset.find("obstacle")) scene.obstacle = read_beside(offset.object("obstacle"), scene.clearance);
+}
+
+/// How far the shape goes.
+void read_ways(Reader& offset, Scene& scene) {
+  if (!offset.find("fit")) {
+    scene.distance = read_distance(offset);
+    return;
+  }
+  for (const char* const other : {"distance", "obstacle", "shell", "collision"})
+    if (offset.find(other)) offset.fail(fmt::format("'fit' without '{}'", other));
+  scene.to_fit = read_beside(offset.object("fit"), scene.clearance);
+  if (!(scene.clearance > 0)) offset.fail("'fit' with a 'clearance' above 0");
 }
 
 json parse_file(const std::string& path) {
@@ -342,7 +365,7 @@ Scene read_scene(const std::string& path) {
   if (root.find("file")) scene.mesh_path = (std::filesystem::path(path).parent_path() / root.text("file")).string();
   else scene.shape = make_shape(root.object("shape"));
   Reader offset = root.object("offset");
-  scene.distance = read_distance(offset);
+  read_ways(offset, scene);
   if (offset.find("collision")) {
     const std::string collision = offset.text("collision");
     if (collision != "limit" && collision != "merge") offset.fail("a collision among limit, merge");
@@ -362,7 +385,7 @@ Scene read_scene(const std::string& path) {
     }
     grid.finish();
   }
-  if (root.find("expect")) scene.expect = read_expectations(root.object("expect"), scene.shell);
+  if (root.find("expect")) scene.expect = read_expectations(root.object("expect"), scene.shell, scene.to_fit.face_count() > 0);
   root.finish();
   return scene;
 }
@@ -389,6 +412,12 @@ std::vector<std::string> unmet(const Expectations& expect, PolygonView source, c
   if (expect.max_position_error && worst > *expect.max_position_error)
     failed.push_back(
         fmt::format("expected positions within {} of the answer, got {:.3g}", *expect.max_position_error, worst));
+  if (const auto& fit = result.statistics.fit) {
+    if (expect.min_gap && !(fit->gap >= *expect.min_gap))
+      failed.push_back(fmt::format("expected a gap of at least {}, got {:.9g}", *expect.min_gap, fit->gap));
+    if (expect.max_gap && !(fit->gap <= *expect.max_gap))
+      failed.push_back(fmt::format("expected a gap of at most {}, got {:.9g}", *expect.max_gap, fit->gap));
+  }
   return failed;
 }
 

@@ -60,6 +60,7 @@ struct Expectations {
   std::optional<double> min_reached, max_reached;  ///< Share of the vertices in use.
   std::optional<double> max_position_error;        ///< World units; needs an answer.
   std::optional<Answer> answer;
+  std::optional<double> min_gap, max_gap;  ///< Of a fit, world units: the least one that is left.
   std::optional<double> volume;            ///< Of a shell, world units^3.
   std::optional<double> max_volume_error;  ///< As a share of that; needs it.
 };
@@ -76,7 +77,8 @@ struct Scene {
   std::vector<std::uint8_t> only;  ///< As in OffsetOptions.
   Border border = Border::Slide;
   Polygons obstacle;
-  double clearance = 0;
+  Polygons to_fit;       ///< What is nearer to this than the clearance is to give way (see fit()), instead of `distance`.
+  double clearance = 0;  ///< To either.
   bool shell = false;  ///< Source and offset are to be joined into one solid.
   Expectations expect;
 

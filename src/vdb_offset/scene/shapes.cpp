@@ -210,6 +210,23 @@ Polygons cylinder(double radius, double height, int segments, int stacks, int ri
   return builder.take();
 }
 
+Polygons socket(double radius, double depth, double wall, int segments, int stacks) {
+  require_length("a radius", radius);
+  require_length("a depth", depth);
+  require_length("a wall", wall);
+  require_count("segments", segments, 3);
+  require_count("stacks", stacks, 1);
+  Builder builder;
+  const auto between = [&](double from, double to, int k) { return from + (to - from) * k / stacks; };
+  builder.grid(segments, stacks,
+               [&](int i, int k) { return on_circle(radius + wall, i, segments, between(-wall, depth, k)); });
+  builder.grid(stacks, segments, [&](int k, int i) { return on_circle(radius, i, segments, between(0, depth, k)); });
+  builder.grid(segments, 1, [&](int i, int j) { return on_circle(j ? radius + wall : 0, i, segments, -wall); });
+  builder.grid(segments, 1, [&](int i, int j) { return on_circle(j ? 0 : radius, i, segments, 0); });
+  builder.grid(segments, 1, [&](int i, int j) { return on_circle(j ? radius : radius + wall, i, segments, depth); });
+  return builder.take();
+}
+
 Polygons plates(double width, double thickness, double gap, int divisions) {
   require_length("a width", width);
   require_length("a thickness", thickness);

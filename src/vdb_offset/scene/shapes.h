@@ -21,6 +21,9 @@ Polygons box(const Vec3d& size, int divisions, bool triangles);
 Polygons torus(double major, double minor, int segments, int sides);
 /// Along z, closed by flat caps of `rings` rings.
 Polygons cylinder(double radius, double height, int segments, int stacks, int rings);
+/// Along z, closed: a round block with a hole into it from above, whose floor is at z = 0 and whose mouth is at
+/// z = `depth`; `wall` thick around and below.
+Polygons socket(double radius, double depth, double wall, int segments, int stacks);
 /// Two square boxes, one above the other, `gap` apart along z; the gap is centred at z = 0.
 Polygons plates(double width, double thickness, double gap, int divisions);
 /// Open: two rectangles that meet along the y axis and enclose `angle` degrees, opening upwards; seen from inside.
