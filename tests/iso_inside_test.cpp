@@ -295,11 +295,16 @@ TEST_CASE("flats: a tilted cube of many triangles is one of twelve", "[iso]") {
     p = Vec3d(0.6 * p[0] - 0.8 * p[1], 0.8 * p[0] + 0.6 * p[1], p[2]) + Vec3d(0.1, 0.2, 0.3);
   Surface mesh = build_surface(cube.view(), {});
   const std::size_t vertices = mesh.vertices.size();
-  CHECK(merge_flats(mesh, 1e-9) == vertices - 8);
+  CHECK(merge_flats(mesh, 1e-9).vertices == vertices - 8);
   CHECK(mesh.triangles.size() == 12);
   CHECK(CrossingFinder(mesh, mesh.vertices).all().empty());
+  Surface plate = build_surface(scene::box({4, 3, 0.1}, 20, true).view(), {});
+  const MergedFlats merged = merge_flats(plate, 1e-9);
+  CHECK(plate.triangles.size() < 200);
+  CHECK(find_faults_of(plate, merged.changed).total() == 0);
+  CHECK(find_faults(plate).total() == 0);
   Surface sphere = build_surface(scene::icosphere(1, 3).view(), {});
-  CHECK(merge_flats(sphere, 1e-9) == 0);
+  CHECK(merge_flats(sphere, 1e-9).vertices == 0);
 }
 
 TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", "[iso]") {

@@ -138,6 +138,25 @@ TEST_CASE("metric: an iso-surface is at ellipsoids, too, and valid as written", 
   CHECK(result.statistics.source.diagonal == Approx(std::sqrt(3.0)));
 }
 
+TEST_CASE("metric: what is told of an iso-surface is told of the file's coordinates", "[metric][iso]") {
+  const Polygons mesh = scene::torus(1, 0.4, 24, 12);
+  const Metric metric = Metric::of_half_axes(0.1, 0.3);
+  for (const auto kind : {Precision::Kind::Double, Precision::Kind::Single, Precision::Kind::Digits}) {
+    CaptureOptions options;
+    options.distance = 0.1;
+    options.precision = {kind, 3};
+    options.grid.voxel_size = 0.05;
+    const CaptureResult result = capture_in_metric(mesh.view(), options, metric);
+    const Surface written = build_surface(result.polygons.view(), {});
+    CHECK(result.statistics.valid());
+    CHECK(written.facts.closed());
+    CHECK(result.statistics.vertices == written.vertices.size());
+    CHECK(result.statistics.components == written.facts.components);
+    CHECK(find_faults(written).total() == result.statistics.mending.left.total());
+    for (const Vec3d& p : result.polygons.positions) CHECK(options.precision(p) == p);
+  }
+}
+
 TEST_CASE("metric: curves in an upright plane go by ellipses", "[metric][curves]") {
   Curves square;
   for (const auto& [x, z] : {std::pair{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}, {0.0, 0.0}}) {
@@ -153,6 +172,11 @@ TEST_CASE("metric: curves in an upright plane go by ellipses", "[metric][curves]
     const Distances other(0.1);
     result = offset_curves(square.view(), {&other, 1}, axis_options(0.1, 0.4)).front();
   }
+  // The curves' own facts are told in their units.
+  const MeshFacts& facts = result.statistics.facts;
+  CHECK(facts.median_edge == Approx(2));
+  CHECK(facts.diagonal == Approx(std::sqrt(8.0)));
+  CHECK(plan_curves(square.view(), {&distance, 1}, options).facts.median_edge == Approx(2));
   for (std::size_t p = 0; p < square.positions.size(); ++p) {
     const Vec3d& from = square.positions[p];
     CHECK(result.positions[p][0] == Approx(from[0] == 0 ? 0.1 : 1.9).margin(1e-9));

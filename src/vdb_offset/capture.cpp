@@ -67,6 +67,7 @@ class Capture {
   Vec3d as_written(const Vec3d& local) const { return options_.precision(source().origin + local); }
   void hand_over(const Surface& mesh);
   Surface check_topology();
+  void tell_topology(const Surface& in_file);
   void measure_vertices();
   void measure_faces(const Surface& written);
 
@@ -177,10 +178,10 @@ void Capture::merge_where_flat(Surface& mesh) {
   std::vector<Vec3d> places = mesh.vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
   const double tolerance = kShareOfDistance * level_->distance() + options_.precision.epsilon() * farthest;
-  const std::size_t merged = merge_flats(mesh, tolerance);
-  if (merged == 0) return;
-  if (find_faults(mesh).total() == 0) {
-    result_.statistics.merged_vertices = merged;
+  const MergedFlats merged = merge_flats(mesh, tolerance);
+  if (merged.vertices == 0) return;
+  if (find_faults_of(mesh, merged.changed).total() == 0) {
+    result_.statistics.merged_vertices = merged.vertices;
     return;
   }
   mesh.vertices = std::move(places);
@@ -226,15 +227,28 @@ std::size_t count_pinched(const Surface& mesh) {
 Surface Capture::check_topology() {
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   Surface mesh = build_surface(result_.polygons.view(), {});
-  CaptureStatistics& statistics = result_.statistics;
-  statistics.vertices = mesh.vertices.size();
-  statistics.triangles = result_.polygons.face_count();
-  statistics.components = mesh.facts.components;
-  statistics.border_edges = mesh.facts.boundary_edges;
-  statistics.non_manifold_edges = mesh.facts.non_manifold_edges;
-  statistics.turned_edges = mesh.facts.orientation_conflicts;
-  statistics.pinched_vertices = count_pinched(mesh);
+  if (options_.precision.scale == Vec3d(1.0)) {
+    tell_topology(mesh);
+    return mesh;
+  }
+  // Rounding on the way to the file's own coordinates may decide otherwise.
+  Polygons file = result_.polygons;
+  for (Vec3d& p : file.positions) p = options_.precision.in_file(p);
+  const Surface in_file = build_surface(file.view(), {});
+  tell_topology(in_file);
+  result_.statistics.mending.left = find_faults(in_file);
   return mesh;
+}
+
+void Capture::tell_topology(const Surface& in_file) {
+  CaptureStatistics& statistics = result_.statistics;
+  statistics.vertices = in_file.vertices.size();
+  statistics.triangles = result_.polygons.face_count();
+  statistics.components = in_file.facts.components;
+  statistics.border_edges = in_file.facts.boundary_edges;
+  statistics.non_manifold_edges = in_file.facts.non_manifold_edges;
+  statistics.turned_edges = in_file.facts.orientation_conflicts;
+  statistics.pinched_vertices = count_pinched(in_file);
 }
 
 void Capture::measure_faces(const Surface& written) {

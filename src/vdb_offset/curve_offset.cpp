@@ -314,15 +314,13 @@ std::vector<OffsetResult> offset_curves_in_metric(CurvesView curves, std::span<c
   OffsetOptions even = options;
   even.metric = {};
   std::vector<OffsetResult> results = offset_curves(space.view(), distances, even);
+  const MeshFacts facts = facts_of(curves, chains_in_plane(curves));
   for (OffsetResult& result : results) {
     for (std::size_t p = 0; p < result.positions.size(); ++p)
       result.positions[p] = space.moved(curves.positions[p], space.view().positions[p], result.positions[p]);
     for (auto& path : result.paths)
       for (Vec3d& place : path) place = options.metric.from(place);
-    MeshFacts& facts = result.statistics.facts;
-    facts.lower = options.metric.from(facts.lower);
-    facts.upper = options.metric.from(facts.upper);
-    facts.diagonal = (facts.upper - facts.lower).length();
+    result.statistics.facts = facts;
   }
   return results;
 }
@@ -334,7 +332,9 @@ OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> dista
   const InMetric space(curves, options.metric);
   CurvePipeline pipeline(space.view(), options, thread_count(options.threads), layers);
   pipeline.prepare(distances);
-  return pipeline.statistics();
+  OffsetStatistics statistics = pipeline.statistics();
+  if (!options.metric.even()) statistics.facts = facts_of(curves, chains_in_plane(curves));
+  return statistics;
 }
 
 std::vector<OffsetResult> offset_curves(CurvesView curves, std::span<const Distances> distances,

@@ -34,13 +34,14 @@ struct Plane {
 class FlatMerger {
  public:
   FlatMerger(Surface& mesh, double tolerance)
-      : mesh_(mesh), tolerance_(tolerance), stars_(mesh.vertices.size()), is_gone_(mesh.triangles.size(), 0) {}
+      : mesh_(mesh), tolerance_(tolerance), stars_(mesh.vertices.size()), is_gone_(mesh.triangles.size(), 0), is_changed_(mesh.triangles.size(), 0) {}
 
   /// What lost a neighbour, or has others, is looked at again.
-  std::size_t run() {
+  MergedFlats run() {
+    MergedFlats merged;
     List turn = find_flat();
-    if (static_cast<double>(turn.size()) < kWorthMerging * static_cast<double>(mesh_.vertices.size())) return 0;
-    std::size_t taken = 0;
+    if (static_cast<double>(turn.size()) < kWorthMerging * static_cast<double>(mesh_.vertices.size())) return merged;
+    std::size_t& taken = merged.vertices;
     while (!turn.empty()) {
       touched_.clear();
       for (const auto v : turn) taken += try_to_take(v);
@@ -48,8 +49,8 @@ class FlatMerger {
       touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
       turn.swap(touched_);
     }
-    if (taken > 0) close_ranks();
-    return taken;
+    if (taken > 0) merged.changed = close_ranks();
+    return merged;
   }
 
  private:
@@ -243,15 +244,19 @@ class FlatMerger {
         continue;
       }
       std::replace(mesh_.triangles[t].begin(), mesh_.triangles[t].end(), v, w);
+      is_changed_[t] = 1;
       of_w.push_back(t);
     }
   }
 
-  void close_ranks() {
+  /// Returns those of the triangles left that have changed.
+  List close_ranks() {
+    List changed;
     std::vector<std::uint32_t> number(mesh_.vertices.size(), kNone);
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (std::size_t t = 0; t < is_gone_.size(); ++t)
       if (!is_gone_[t]) {
+        if (is_changed_[t]) changed.push_back(static_cast<std::uint32_t>(triangles.size()));
         triangles.push_back(mesh_.triangles[t]);
         for (const auto v : triangles.back()) number[v] = 0;
       }
@@ -266,17 +271,18 @@ class FlatMerger {
       for (auto& v : corners) v = number[v];
     mesh_.triangles = std::move(triangles);
     list_incident_triangles(mesh_);
+    return changed;
   }
 
   Surface& mesh_;
   double tolerance_;
   std::vector<List> stars_;  // of vertices whose triangles have changed; the others' are the mesh's
-  std::vector<std::uint8_t> is_gone_;
+  std::vector<std::uint8_t> is_gone_, is_changed_;  // of each triangle
   List touched_;
 };
 
 }  // namespace
 
-std::size_t merge_flats(Surface& mesh, double tolerance) { return FlatMerger(mesh, tolerance).run(); }
+MergedFlats merge_flats(Surface& mesh, double tolerance) { return FlatMerger(mesh, tolerance).run(); }
 
 }  // namespace vdb_offset

@@ -268,6 +268,15 @@ MeshFaults find_faults(const Surface& mesh) {
   return faults;
 }
 
+MeshFaults find_faults_of(const Surface& mesh, std::span<const std::uint32_t> triangles) {
+  CrossingFinder finder(mesh, mesh.vertices);
+  finder.update(triangles);
+  MeshFaults faults;
+  faults.crossings = finder.of_updated().size();
+  for (const auto t : triangles) faults.needles += stands_as_needle(mesh, t);
+  return faults;
+}
+
 MendStatistics mend(Surface& mesh, const Onto& onto) {
   MendStatistics statistics;
   std::vector<Vec3d> places;  // of the mesh that had the fewest faults

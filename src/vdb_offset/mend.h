@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "vdb_offset/surface.h"
 
@@ -18,6 +19,8 @@ struct MeshFaults {
 
 /// Of all pairs of a mesh's triangles. \pre the mesh is built
 MeshFaults find_faults(const Surface& mesh);
+/// Those that some triangles, sorted, take part in.
+MeshFaults find_faults_of(const Surface& mesh, std::span<const std::uint32_t> triangles);
 
 /// What mending found and did.
 struct MendStatistics {

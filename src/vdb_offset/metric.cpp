@@ -5,7 +5,6 @@
 #include <string>
 
 #include "vdb_offset/capture.h"
-#include "vdb_offset/crossings.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parallel.h"
 
@@ -18,19 +17,6 @@ std::shared_ptr<const CaptureSource> unscaled(const Surface& scaled, const Metri
   for (Vec3d& v : surface.vertices) v = metric.from(v + scaled.origin);
   place_in_frame(surface, metric.from(scaled.origin));
   return std::make_shared<const CaptureSource>(std::move(surface), std::nullopt, 0.0, orient);
-}
-
-/// What is wrong with triangles as they will be written.
-MeshFaults faults_of(PolygonView mesh) {
-  const Surface surface = build_surface(mesh, {});
-  MeshFaults faults;
-  faults.crossings = CrossingFinder(surface, surface.vertices).all().size();
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Vec3d ab = surface.vertices[b] - surface.vertices[a], ac = surface.vertices[c] - surface.vertices[a];
-    const double longest = std::max({ab.lengthSqr(), ac.lengthSqr(), (ac - ab).lengthSqr()});
-    faults.needles += is_needle(ab.cross(ac).lengthSqr(), longest);
-  }
-  return faults;
 }
 
 }  // namespace
@@ -52,11 +38,10 @@ CaptureResult capture_in_metric(PolygonView mesh, const CaptureOptions& options,
   CaptureResult result = capture(scaled.view(), inner);
   for_each_index(result.polygons.positions.size(), [&](std::size_t v) {
     Vec3d &place = result.polygons.positions[v], &normal = result.normals[v];
-    place = options.precision(metric.from(place));
+    place = inner.precision.in_file(place);
     normal = metric.to(normal);  // a gradient
     if (const double length = normal.length(); length > 0) normal /= length;
   });
-  result.statistics.mending.left = faults_of(result.polygons.view());
   result.statistics.source = build_surface(mesh, options.weld, options.orient).facts;
   result.source = unscaled(result.source->surface, metric, options.orient);
   return result;

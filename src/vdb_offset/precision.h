@@ -24,11 +24,16 @@ struct Precision {
   }
   Vec3d operator()(const Vec3d& p) const {
     if (scale == Vec3d(1.0)) return {(*this)(p[0]), (*this)(p[1]), (*this)(p[2])};
-    const Vec3d q = p / scale;
-    return Vec3d((*this)(q[0]), (*this)(q[1]), (*this)(q[2])) * scale;
+    return in_file(p) * scale;
   }
 
-  /// The same of a place that something has gone to from `source`.
+  /// What the file has of a place, without the scale.
+  Vec3d in_file(const Vec3d& p) const {
+    const Vec3d q = p / scale;
+    return {(*this)(q[0]), (*this)(q[1]), (*this)(q[2])};
+  }
+
+  /// What is kept of a place that something has gone to from `source`.
   Vec3d operator()(const Vec3d& source, const Vec3d& place) const {
     return place == source && !rounds_all ? place : (*this)(place);
   }
