@@ -225,8 +225,8 @@ TEST_CASE("shell junctions: cubes that share an edge get one skin around both, m
         CHECK(made.shell.facts.rim_quads == 0);
         const double side = 2 + 2 * d;
         CHECK(made.shell.facts.volume == Approx(2 * (side * side * side - 8) - 4 * d * d * side)
-                                              // Far from the junction it is edges' vertices that are at the distance.
-                                              .epsilon(divisions == 1 ? 1e-9 : 0.02));
+                                             // Far from the junction it is edges' vertices that are at the distance.
+                                             .epsilon(divisions == 1 ? 1e-9 : 0.02));
         CHECK(summarise(made.result).share_reached == 1);
       }
 }

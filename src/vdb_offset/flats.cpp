@@ -34,7 +34,11 @@ struct Plane {
 class FlatMerger {
  public:
   FlatMerger(Surface& mesh, double tolerance)
-      : mesh_(mesh), tolerance_(tolerance), stars_(mesh.vertices.size()), is_gone_(mesh.triangles.size(), 0), is_changed_(mesh.triangles.size(), 0) {}
+      : mesh_(mesh),
+        tolerance_(tolerance),
+        stars_(mesh.vertices.size()),
+        is_gone_(mesh.triangles.size(), 0),
+        is_changed_(mesh.triangles.size(), 0) {}
 
   /// What lost a neighbour, or has others, is looked at again.
   MergedFlats run() {

@@ -142,9 +142,8 @@ class SideFinder {
         joined_.join(own, other);
         if (is_sector) sectors_.push_back({edge_, sheets_.place[mesh_.corners[at_a[end]]], own});
       } else if (const auto links = links_.find(joined_.find(own)); links != links_.end()) {
-        links->second.push_back({{own, other},
-                                 is_sector ? edge_ : kNone,
-                                 {{a.corner, b.corner}, {side_of_a, side_of_b}, Vec3d(0.0)}});
+        links->second.push_back(
+            {{own, other}, is_sector ? edge_ : kNone, {{a.corner, b.corner}, {side_of_a, side_of_b}, Vec3d(0.0)}});
       }
     }
   }

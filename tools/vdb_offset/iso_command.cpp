@@ -87,8 +87,7 @@ CaptureResult capture_valid(const Arguments& args, const Source& source, const D
 /// With what is told of the mesh as it is.
 CaptureStatistics plan_of(const Arguments& args, const Source& source, const CaptureOptions& options) {
   CaptureStatistics statistics = plan_capture(InMetric(source.view(), args.options.metric).view(), options);
-  if (!args.options.metric.even())
-    statistics.source = build_surface(source.view(), options.weld, options.orient).facts;
+  if (!args.options.metric.even()) statistics.source = build_surface(source.view(), options.weld, options.orient).facts;
   return statistics;
 }
 

@@ -385,7 +385,8 @@ Scene read_scene(const std::string& path) {
     }
     grid.finish();
   }
-  if (root.find("expect")) scene.expect = read_expectations(root.object("expect"), scene.shell, scene.to_fit.face_count() > 0);
+  if (root.find("expect"))
+    scene.expect = read_expectations(root.object("expect"), scene.shell, scene.to_fit.face_count() > 0);
   root.finish();
   return scene;
 }

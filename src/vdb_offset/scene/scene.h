@@ -77,9 +77,9 @@ struct Scene {
   std::vector<std::uint8_t> only;  ///< As in OffsetOptions.
   Border border = Border::Slide;
   Polygons obstacle;
-  Polygons to_fit;       ///< What is nearer to this than the clearance is to give way (see fit()), instead of `distance`.
+  Polygons to_fit;  ///< What is nearer to this than the clearance is to give way (see fit()), instead of `distance`.
   double clearance = 0;  ///< To either.
-  bool shell = false;  ///< Source and offset are to be joined into one solid.
+  bool shell = false;    ///< Source and offset are to be joined into one solid.
   Expectations expect;
 
   /// Its part of the options: all but the distance, into `options`. They refer to the scene.
