@@ -1,14 +1,13 @@
 #include "vdb_offset/file_replace.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <functional>
 #include <utility>
 
 #include "vdb_offset/error.h"
@@ -16,33 +15,15 @@
 namespace vdb_offset {
 namespace {
 
-struct Remover;
-// For a signal handler, which may not do more than read it: the innermost one, as writing a file may end in writing
-// another one.
-std::atomic<const Remover*> last_remover = nullptr;
-
-/// Removes the temporary file unless it was renamed away.
-struct Remover {
-  std::string path;
-  const Remover* const outer;
-  explicit Remover(std::string temporary) : path(std::move(temporary)), outer(last_remover) { last_remover = this; }
-  Remover(const Remover&) = delete;
-  Remover& operator=(const Remover&) = delete;
-  ~Remover() {
-    last_remover = outer;
-    if (!path.empty()) ::unlink(path.c_str());
-  }
-  void release() {
-    last_remover = outer;
-    path.clear();
-  }
-};
+thread_local Replacements* innermost = nullptr;
 
 struct Descriptor {
   int fd;
   ~Descriptor() { close(); }
   bool close() { return fd < 0 || ::close(std::exchange(fd, -1)) == 0; }
 };
+
+std::string reason() { return std::strerror(errno); }
 
 /// The file that a path names: a link stays a link, and what it points to is replaced.
 std::filesystem::path resolved(const std::string& path) {
@@ -54,7 +35,12 @@ std::filesystem::path resolved(const std::string& path) {
   return target;
 }
 
-std::string reason() { return std::strerror(errno); }
+/// A device or a pipe cannot be replaced by a rename.
+bool is_written_in_place(const std::filesystem::path& target) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(target, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
 
 void write_all(const std::string& path, int file, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -67,11 +53,99 @@ void write_all(const std::string& path, int file, std::string_view bytes) {
 
 }  // namespace
 
+Replacements::Replacements(Sync sync) : outer_(innermost), sync_(sync) { innermost = this; }
+
+Replacements::~Replacements() {
+  innermost = outer_;
+  files_.clear();
+  while (!folders_.empty()) folders_.pop_back();  // the inner ones first
+}
+
+const std::string& Replacements::add_file(const std::filesystem::path& target, const std::string& path) {
+  const std::filesystem::path folder = target.parent_path();
+  if (std::none_of(files_.begin(), files_.end(), [&](const File& f) { return f.target.parent_path() == folder; }))
+    remove_stale_temporaries(folder);
+  files_.push_back({new_temporary_file(target, path), target, path});
+  return files_.back().temporary.path();
+}
+
+void Replacements::add_folders(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> missing;
+  std::error_code failed;
+  for (auto path = folder; !path.empty() && !std::filesystem::exists(path, failed); path = path.parent_path())
+    missing.push_back(path);
+  for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
+    if (!std::filesystem::create_directory(*path, failed) && failed)
+      throw WriteError(folder.string() + ": cannot be made: " + failed.message());
+    folders_.emplace_back(path->string(), Temporary::Kind::Folder);
+  }
+}
+
+void Replacements::commit(const std::function<void()>& when_in_place) {
+  if (outer_) {
+    std::move(files_.begin(), files_.end(), std::back_inserter(outer_->files_));
+    std::move(folders_.begin(), folders_.end(), std::back_inserter(outer_->folders_));
+  } else {
+    for (File& file : files_) finish(file);
+    const PuttingInPlace now;
+    std::size_t done = 0;
+    try {
+      for (; done < files_.size(); ++done) put_in_place(files_[done]);
+    } catch (const WriteError&) {
+      while (done > 0) put_back(files_[--done]);
+      throw;
+    }
+    for (File& file : files_)
+      if (!file.was_there || !file.can_go_back) file.temporary.keep();
+    for (Temporary& folder : folders_) folder.keep();
+    if (when_in_place) when_in_place();
+  }
+  files_.clear();  // with what was there before
+  folders_.clear();
+}
+
+/// All but its place.
+void Replacements::finish(File& file) const {
+  const Descriptor written{::open(file.temporary.path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC)};
+  struct stat before {};
+  file.was_there = ::stat(file.target.c_str(), &before) == 0;
+  if (file.was_there && ::fchmod(written.fd, before.st_mode & 07777) != 0) {
+    // Not every file system knows permissions.
+  }
+  if (sync_ == Sync::Yes && ::fsync(written.fd) != 0 && errno != EINVAL && errno != EBADF)
+    throw WriteError(file.path + ": cannot be written: " + reason());
+}
+
+void Replacements::put_in_place(File& file) const {
+  const char *const from = file.temporary.path().c_str(), *const to = file.target.c_str();
+  file.can_go_back = true;
+  if (file.was_there) {
+    struct stat now {};
+    if (::stat(to, &now) == 0 && S_ISDIR(now.st_mode)) errno = EISDIR;
+    else if (::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0) return;
+    else if (errno == EINVAL || errno == ENOSYS || errno == ENOTSUP || errno == ENOENT) {
+      file.can_go_back = false;
+      if (std::rename(from, to) == 0) return;
+    }
+  } else if (std::rename(from, to) == 0) {
+    return;
+  }
+  throw WriteError(file.path + ": cannot be replaced: " + reason());
+}
+
+void Replacements::put_back(File& file) {
+  const char *const temporary = file.temporary.path().c_str(), *const target = file.target.c_str();
+  if (!file.was_there) ::unlink(target);
+  else if (file.can_go_back) ::renameat2(AT_FDCWD, temporary, AT_FDCWD, target, RENAME_EXCHANGE);
+}
+
 void require_writable(const std::string& path) {
   if (path == "-") return;
   const std::filesystem::path target = resolved(path);
-  std::error_code ignored;
-  const bool in_place = std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored);
+  struct stat is {};
+  const bool missing = ::stat(target.c_str(), &is) != 0;
+  if (missing && errno != ENOENT) throw WriteError(path + ": cannot be written: " + reason());
+  const bool in_place = !missing && !S_ISREG(is.st_mode);
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
   if (::access(in_place ? target.c_str() : folder.c_str(), in_place ? W_OK : W_OK | X_OK) != 0)
     throw WriteError(path + ": cannot be written: " + reason());
@@ -79,43 +153,24 @@ void require_writable(const std::string& path) {
 
 void replace_file(const std::string& path, const std::function<void(const std::string&)>& write) {
   const std::filesystem::path target = resolved(path);
-  std::error_code ignored;
-  const auto status = std::filesystem::status(target, ignored);
-  // A device or a pipe cannot be replaced by a rename; it is written to as it is.
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return write(target.string());
-  // The ending stays last: writers that choose a format by it must see the same one.
-  const std::string name = fmt::format(".tmp-{}-{}", ::getpid(), std::hash<std::string>{}(target.string()) % 1000000);
-  Remover temporary((target.parent_path() / (name + target.extension().string())).string());
-  write(temporary.path);
-  if (std::filesystem::exists(status)) std::filesystem::permissions(temporary.path, status.permissions(), ignored);
-  if (std::rename(temporary.path.c_str(), target.c_str()) != 0)
-    throw WriteError(path + ": cannot be replaced: " + reason());
-  temporary.release();
+  if (is_written_in_place(target)) return write(target.string());
+  Replacements files;
+  write(files.add_file(target, path));
+  files.commit();
 }
 
-void write_file(const std::string& path, const std::function<void(const Sink&)>& produce,
-                const std::function<void()>& before_rename) {
-  if (path == "-") {
-    produce([](std::string_view bytes) { write_all("standard output", STDOUT_FILENO, bytes); });
-    if (before_rename) before_rename();
-    return;
-  }
+void write_file(const std::string& path, const std::function<void(const Sink&)>& produce) {
+  if (path == "-") return produce([](std::string_view bytes) { write_all("standard output", STDOUT_FILENO, bytes); });
   replace_file(path, [&](const std::string& temporary) {
-    Descriptor file{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+    Descriptor file{::open(temporary.c_str(), O_WRONLY | O_TRUNC | O_NOFOLLOW | O_CLOEXEC)};
     if (file.fd < 0) throw WriteError(path + ": cannot be written: " + reason());
     produce([&](std::string_view bytes) { write_all(path, file.fd, bytes); });
     if (!file.close()) throw WriteError(path + ": cannot be written: " + reason());
-    if (before_rename) before_rename();
   });
 }
 
-void write_file(const std::string& path, std::string_view bytes, const std::function<void()>& before_rename) {
-  write_file(
-      path, [&](const Sink& sink) { sink(bytes); }, before_rename);
-}
-
-void remove_temporary_file() noexcept {
-  for (const Remover* remover = last_remover; remover; remover = remover->outer) ::unlink(remover->path.c_str());
+void write_file(const std::string& path, std::string_view bytes) {
+  write_file(path, [&](const Sink& sink) { sink(bytes); });
 }
 
 }  // namespace vdb_offset

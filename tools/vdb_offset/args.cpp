@@ -52,7 +52,8 @@ Examples:
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
 
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
-met), 4 output; after Ctrl-C the process ends by that signal, and no output is left.
+met), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
+once they are put in place, all together, a signal changes nothing more.
 Report keys, library and guarantees: see the README.)";
 
 /// Bytes with an optional suffix K, M, G or T (binary), as in "4G" or "1.5 GiB".
@@ -220,6 +221,9 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
       ->type_name("FILE");
   app.add_option("--paths", args.paths, "Write the path of every vertex as a line: .obj (or .txt)")->type_name("FILE");
   app.add_option("--save-vdb", args.vdb, "Write phi and the closest triangles as OpenVDB grids")->type_name("FILE");
+  app.add_flag_callback(
+      "--no-sync", [&args] { args.sync = Replacements::Sync::No; },
+      "Do not wait until outputs are on the disk before they get their names");
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use falls short of the distance");
   app.add_flag("--dry-run", args.dry_run, "Read the input, print what would be done, write nothing");
   app.add_flag("-q,--quiet", args.quiet, "Print nothing but errors");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/captured_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/selection.h"
@@ -68,6 +69,7 @@ struct Arguments {
   bool close = false;                ///< Of those, join ends that are near each other.
   std::optional<io::Format> format;  ///< Of files whose ending names none.
   io::WriteOptions write;            ///< All but its format, which is the output's alone.
+  Replacements::Sync sync = Replacements::Sync::Yes;
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };
 

@@ -11,6 +11,7 @@
 
 #include "args.h"
 #include "inputs.h"
+#include "terminal.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_check.h"
 #include "vdb_offset/curve_line.h"
@@ -226,6 +227,8 @@ int run_check(int argc, const char* const* argv) {
     throw UsageError(fmt::format("{} (check --help lists the options)", error.what()));
   }
   require_usable(args);
+  const std::string inputs = args.source + " or " + args.offset;
+  tell_of_lost_input(inputs);
   const auto axes = parse_axes(args.distance_xy, args.distance_z);
   if (axes && !args.distance.empty()) throw UsageError("--distance: expected it without --distance-xy");
   if (axes && !args.obstacles.empty()) throw UsageError("--obstacle: expected it without --distance-xy");

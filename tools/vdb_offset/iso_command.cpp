@@ -7,6 +7,7 @@
 #include "summary.h"
 #include "vdb_offset/capture.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/captured_file.h"
 
 namespace vdb_offset::tool {
@@ -68,12 +69,10 @@ void write_captured(const Arguments& args, const Source& source, const io::Trans
   const auto writing = Clock::now();
   io::WriteOptions options = args.write;
   options.format = format_of(to.mesh, args);
-  options.before_rename = [&] {
-    result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-    if (!to.report.empty()) write_iso_report(args, to, result, start);
-  };
   if (source.file) tell_losses(args, to.mesh, io::write_captured(to.mesh, *source.file, transported, result, options));
   else io::write_captured(to.mesh, result, options);
+  result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!to.report.empty()) write_iso_report(args, to, result, start);
 }
 
 CaptureResult capture_valid(const Arguments& args, const Source& source, const Distances& distance,
@@ -108,12 +107,10 @@ void write_hollow(const Arguments& args, const Source& source, const Destination
   const auto writing = Clock::now();
   io::WriteOptions options = args.write;
   options.format = format_of(to.mesh, args);
-  options.before_rename = [&] {
-    captured.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-    if (!to.report.empty()) write_iso_report(args, to, captured, start, &hollow.facts, inner);
-  };
   const io::MeshFile* const file = source.file ? &*source.file : nullptr;
   tell_losses(args, to.mesh, io::write_hollow(to.mesh, file, hollow, captured, options));
+  captured.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!to.report.empty()) write_iso_report(args, to, captured, start, &hollow.facts, inner);
 }
 
 }  // namespace
@@ -136,17 +133,19 @@ void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressB
   if (args.inner) inner = capture_valid(args, source, distances.back(), places.front().mesh, transported);
   if (args.shell) require_inside(results.front());
   bar.show(Stage::Write, 0);
-  if (interrupted()) throw Cancelled();
   const CaptureResult* const inner_skin = inner ? &*inner : nullptr;
+  Replacements outputs(args.sync);
+  std::optional<Hollow> hollow;  // of one distance
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double distance = distances[i][0];
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
-    std::optional<Hollow> hollow;
-    if (args.shell) hollow = hollow_of(source, distance, results[i], inner_skin);
+    if (args.shell) hollow = hollow_of(source, distances[i][0], results[i], inner_skin);
     if (hollow) write_hollow(args, source, places[i], *hollow, results[i], inner_skin, start);
     else write_captured(args, source, transported, places[i], results[i], start);
-    bar.clear();
-    if (args.quiet) continue;
+  }
+  outputs.commit(ignore_interrupts);
+  bar.clear();
+  for (std::size_t i = 0; i < places.size() && !args.quiet; ++i) {
+    const double distance = distances[i][0];
     if (hollow)
       print_hollow_summary(args, places[i].mesh, distance, *hollow, results[i], inner_skin, seconds_since(start));
     else print_iso_summary(args, places[i].mesh, distance, results[i], seconds_since(start));

@@ -140,9 +140,9 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   Grown grown = grow(args, source, heights);
   LayersResult& layers = grown.layers;
   bar.show(Stage::Write, 0);
-  if (interrupted()) throw Cancelled();
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   const PolygonView mesh = source.view();
+  Replacements outputs(args.sync);
   if (!args.states.empty())
     io::write_states(args.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
                      {layers.states, layers.achieved, layers.heights.back()});
@@ -150,6 +150,7 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   write_cells(args, source, grown);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!args.report.empty()) write_layers_report(args, grown.layers, grown.report, start);
+  outputs.commit(ignore_interrupts);
   bar.clear();
   if (!args.quiet) print_layers_summary(args, source, grown.layers, grown.report, seconds_since(start));
   if (layers.statistics.obstacles && layers.statistics.obstacles->near > 0) return false;

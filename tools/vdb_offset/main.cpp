@@ -2,7 +2,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -110,7 +109,7 @@ int run(Arguments args) {
   ProgressBar bar(!args.quiet);
   args.options.progress = [&](Stage stage, double share) {
     bar.show(stage, share);
-    return interrupted() == 0;
+    return true;
   };
   if (!args.dry_run && !args.layers) require_places(args, destinations(args));
   bar.show(Stage::Read, 0);
@@ -143,29 +142,23 @@ int run(Arguments args) {
                                       : source.curves ? offset_curves(source.view(), distances, args.options)
                                                       : offset_several(source.view(), distances, args.options);
   bar.show(Stage::Write, 0);
-  if (interrupted()) throw Cancelled();
   const OffsetResult* const inner = args.inner ? &results.back() : nullptr;
-  std::optional<ShellFacts> shell;
+  std::vector<std::optional<ShellFacts>> shells;
+  Replacements outputs(args.sync);
   for (std::size_t i = 0; i < places.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
-    const Outcome outcome{places[i], results[i], inner};
-    shell = write_outputs(args, source, outcome, start);
-    bar.clear();
-    if (!args.quiet) print_summary(args, source, outcome, shell, seconds_since(start));
+    shells.push_back(write_outputs(args, source, {places[i], results[i], inner}, start));
   }
-  return judge(args, source, results, shell);
+  outputs.commit(ignore_interrupts);
+  bar.clear();
+  for (std::size_t i = 0; i < places.size() && !args.quiet; ++i)
+    print_summary(args, source, {places[i], results[i], inner}, shells[i], seconds_since(start));
+  return judge(args, source, results, shells.back());
 }
 
 int fail(ExitCode code, const char* message) {
   fmt::print(stderr, "vdb_offset: {}\n", message);
   return code;
-}
-
-/// Ends the way an uncaught signal would have, so that shells and scripts see it.
-int end_by_signal() {
-  std::signal(interrupted(), SIG_DFL);
-  std::raise(interrupted());
-  return kProcessing;
 }
 
 int guarded(int argc, char** argv) {
@@ -183,8 +176,6 @@ int guarded(int argc, char** argv) {
     return fail(kInput, error.what());
   } catch (const WriteError& error) {
     return fail(kOutput, error.what());
-  } catch (const Cancelled&) {
-    return end_by_signal();
   } catch (const std::bad_alloc&) {
     return fail(kProcessing, "out of memory (see --max-memory and --voxel-size)");
   } catch (const std::exception& error) {

@@ -213,11 +213,10 @@ std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& sou
   if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteOptions options = args.write;
   options.format = format_of(to.mesh, args);
-  options.before_rename = [&] {
-    outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-    if (!to.report.empty()) write_report(args, outcome, facts, start);
-  };
-  tell_losses(args, to.mesh, write_mesh_or_shell(source, outcome, shell, options));
+  const io::WriteResult written = write_mesh_or_shell(source, outcome, shell, options);
+  outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!to.report.empty()) write_report(args, outcome, facts, start);
+  tell_losses(args, to.mesh, written);
   return facts;
 }
 

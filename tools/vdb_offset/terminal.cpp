@@ -8,23 +8,36 @@
 #include <cstdio>
 #include <cstring>
 
-#include "vdb_offset/file_replace.h"
+#include "vdb_offset/temporary.h"
 
 namespace vdb_offset::tool {
 namespace {
 
-volatile std::sig_atomic_t caught = 0;
+constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
-// The second signal ends the process at once: the handler is taken away by the first.
-void remember(int signal) { caught = signal; }
+/// Ends the way an uncaught signal would have, so that shells and scripts see it.
+void end_by(int signal) {
+  if (!remove_temporaries()) return;
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);  // once the handler has returned
+}
 
-// All that a signal handler may touch.
-char lost_input[4096];
+// All that a signal handler may touch: how the message goes on before and behind the name of the input, and that.
+constexpr char kBeforeName[] = "vdb_offset: ",
+               kBehindName[] = ": expected a file that stays as it is, got one that was cut short\n";
+constexpr std::size_t kMostOfName = 400;
+const char* lost_input = "";
+
+void tell(const char* text, std::size_t size) {
+  const ssize_t ignored = ::write(STDERR_FILENO, text, size);
+  static_cast<void>(ignored);
+}
 
 void end_for_lost_input(int) {
-  const ssize_t ignored = ::write(STDERR_FILENO, lost_input, std::strlen(lost_input));
-  static_cast<void>(ignored);
-  remove_temporary_file();
+  tell(kBeforeName, sizeof kBeforeName - 1);
+  tell(lost_input, std::min(std::strlen(lost_input), kMostOfName));
+  tell(kBehindName, sizeof kBehindName - 1);
+  remove_temporaries();
   _exit(2);
 }
 
@@ -52,9 +65,9 @@ void ProgressBar::clear() {
 
 void catch_interrupts() {
   struct sigaction action {};
-  action.sa_handler = remember;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  action.sa_handler = end_by;
+  for (const int signal : kInterrupts) sigaddset(&action.sa_mask, signal);
+  for (const int signal : kInterrupts) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup and background jobs stay so
@@ -62,13 +75,13 @@ void catch_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of writing like any other
 }
 
-void tell_of_lost_input(const std::string& path) {
-  const std::string message =
-      fmt::format("vdb_offset: {:.4000}: expected a file that stays as it is, got one that was cut short\n", path);
-  std::copy_n(message.c_str(), message.size() + 1, lost_input);
-  std::signal(SIGBUS, end_for_lost_input);
+void ignore_interrupts() {
+  for (const int signal : kInterrupts) std::signal(signal, SIG_IGN);
 }
 
-int interrupted() { return caught; }
+void tell_of_lost_input(const std::string& path) {
+  lost_input = path.c_str();
+  std::signal(SIGBUS, end_for_lost_input);
+}
 
 }  // namespace vdb_offset::tool

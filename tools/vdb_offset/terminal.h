@@ -22,12 +22,13 @@ class ProgressBar {
   std::string shown_;
 };
 
-/// Makes Ctrl-C (and a polite kill) set a flag instead of ending the process, so that files are tidied up.
+/// From here on, Ctrl-C and the like (SIGINT, SIGTERM, SIGHUP, and SIGPIPE where nobody reads any more) end the process
+/// by that signal at once, whatever it is doing, and remove its temporary files; not while outputs are put in place.
 void catch_interrupts();
+/// For when the outputs are complete: what comes now changes nothing.
+void ignore_interrupts();
 /// Input files are mapped: one that is cut short while it is read ends the process by SIGBUS. From here on it ends with
-/// a message about `path`, no temporary file and exit code 2.
+/// a message about `path`, which has to stay as it is, no temporary file and exit code 2.
 void tell_of_lost_input(const std::string& path);
-/// The signal that came, or 0.
-int interrupted();
 
 }  // namespace vdb_offset::tool

@@ -42,16 +42,12 @@ WriteResult write_captured(const std::string& path, const MeshFile& source, cons
   WriteResult result;
   const Pieces pieces = convert(source, require_format(path, options.format), captured, transported,
                                 precision_of_captured(path, options), result);
-  write_pieces(path, pieces, [&] {
-    source.bytes.require_unchanged(source.path);
-    if (options.before_rename) options.before_rename();
-  });
+  write_pieces_of(source, path, pieces);
   return result;
 }
 
 void write_captured(const std::string& path, const CaptureResult& captured, const WriteOptions& options) {
-  write_pieces(path, convert(require_format(path, options.format), captured, precision_of_captured(path, options)),
-               options.before_rename);
+  write_pieces(path, convert(require_format(path, options.format), captured, precision_of_captured(path, options)));
 }
 
 WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
@@ -60,10 +56,8 @@ WriteResult write_hollow(const std::string& path, const MeshFile* source, const 
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;
   const Pieces pieces = is_skin ? convert(*source, format, hollow, captured, result) : convert(format, hollow, result);
-  write_pieces(path, pieces, [&] {
-    if (source) source->bytes.require_unchanged(source->path);
-    if (options.before_rename) options.before_rename();
-  });
+  if (source) write_pieces_of(*source, path, pieces);
+  else write_pieces(path, pieces);
   return result;
 }
 

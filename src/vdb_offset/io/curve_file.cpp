@@ -300,9 +300,7 @@ Precision precision_of_curves(const WriteOptions& options) {
 void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
   const Precision precision = precision_of_curves(options);
-  write_pieces(path, in_sections(as_file(format, curves, precision), {}), [&] {
-    if (options.before_rename) options.before_rename();
-  });
+  write_pieces(path, in_sections(as_file(format, curves, precision), {}));
 }
 
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
@@ -316,10 +314,7 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
       : format == CurveFormat::Svg
           ? in_sections(patch_svg(source.file.text(), source.svg, read.view(), positions, precision), {})
           : patch(source.file, positions, precision);
-  write_pieces(path, pieces, [&] {
-    source.file.bytes.require_unchanged(source.file.path);
-    if (options.before_rename) options.before_rename();
-  });
+  write_pieces_of(source.file, path, pieces);
 }
 
 }  // namespace vdb_offset::io

@@ -106,10 +106,7 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
   } else {
     pieces = convert(source, format, positions, precision, options.normals, result);
   }
-  write_pieces(path, pieces, [&] {
-    source.bytes.require_unchanged(source.path);
-    if (options.before_rename) options.before_rename();
-  });
+  write_pieces_of(source, path, pieces);
   return result;
 }
 
@@ -120,8 +117,7 @@ std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positio
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
-  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})),
-               options.before_rename);
+  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})));
 }
 
 }  // namespace vdb_offset::io

@@ -67,8 +67,6 @@ struct WriteOptions {
   std::optional<Format> format;  ///< By the file's ending, if not told.
   Normals normals = Normals::Recompute;
   int digits = 0;  ///< Significant digits of coordinates in text, 1 .. 17; 0: as many as read back to the same number.
-  /// Runs when the file is complete and not yet in place; if it throws, nothing is.
-  std::function<void()> before_rename;
 };
 
 struct WriteResult {

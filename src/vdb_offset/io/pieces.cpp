@@ -9,6 +9,7 @@
 
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/compression.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -65,9 +66,15 @@ Pieces in_a_row(std::vector<Pieces> files) {
           }};
 }
 
-void write_pieces(const std::string& path, const Pieces& pieces, const std::function<void()>& before_rename) {
-  write_file(
-      path, [&](const Sink& sink) { produce(pieces, compression_of(path), sink); }, before_rename);
+void write_pieces(const std::string& path, const Pieces& pieces) {
+  write_file(path, [&](const Sink& sink) { produce(pieces, compression_of(path), sink); });
+}
+
+void write_pieces_of(const MeshFile& source, const std::string& path, const Pieces& pieces) {
+  Replacements files;
+  write_pieces(path, pieces);
+  source.bytes.require_unchanged(source.path);
+  files.commit();
 }
 
 std::string join(const Pieces& pieces) {

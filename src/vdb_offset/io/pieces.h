@@ -7,6 +7,8 @@
 
 namespace vdb_offset::io {
 
+struct MeshFile;
+
 /// A file to be, in pieces that can be made in any order and from several threads at once.
 struct Pieces {
   std::size_t count;
@@ -27,7 +29,10 @@ Pieces in_a_row(std::vector<Pieces> files);
 
 /// Writes the pieces one behind the other to `path` (file_replace.h), a few of them in memory at a time; compressed,
 /// piece by piece, if the path ends in .gz or .zst. \throw WriteError
-void write_pieces(const std::string& path, const Pieces& pieces, const std::function<void()>& before_rename);
+void write_pieces(const std::string& path, const Pieces& pieces);
+
+/// The same of what was made of a file's bytes: if these have changed since, nothing is put in place. \throw ReadError
+void write_pieces_of(const MeshFile& source, const std::string& path, const Pieces& pieces);
 
 /// All of them in memory.
 std::string join(const Pieces& pieces);

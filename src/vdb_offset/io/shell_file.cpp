@@ -169,10 +169,7 @@ WriteResult write_shell(const std::string& path, const MeshFile& source, const S
   } else {
     pieces = convert(source, format, shell, precision, options.normals, result);
   }
-  write_pieces(path, pieces, [&] {
-    source.bytes.require_unchanged(source.path);
-    if (options.before_rename) options.before_rename();
-  });
+  write_pieces_of(source, path, pieces);
   return result;
 }
 
@@ -180,7 +177,7 @@ WriteResult write_shell(const std::string& path, const Shell& shell, const Write
   const Format format = require_format(path, options.format);
   const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
   WriteResult result;
-  write_pieces(path, convert(format, shell, precision, result), options.before_rename);
+  write_pieces(path, convert(format, shell, precision, result));
   return result;
 }
 

@@ -31,8 +31,7 @@ void write_plot3d(const std::string& path, const StructuredBlock& block) {
                    }};
   };
   write_pieces(path,
-               in_sections(fmt::format("{} {} {}\n", block.ni, block.nj, block.nk), {all_of(0), all_of(1), all_of(2)}),
-               {});
+               in_sections(fmt::format("{} {} {}\n", block.ni, block.nj, block.nk), {all_of(0), all_of(1), all_of(2)}));
 }
 
 void require_consistent(const std::string& path, const StructuredBlock& block) {

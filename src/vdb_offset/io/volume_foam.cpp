@@ -22,33 +22,6 @@ struct FoamFile {
   Pieces pieces;
 };
 
-/// The folders of a path that are not there yet. Unless kept, they go again.
-class NewFolders {
- public:
-  explicit NewFolders(const std::filesystem::path& folder) {
-    std::error_code failed;
-    for (auto path = folder; !path.empty() && !std::filesystem::exists(path, failed); path = path.parent_path())
-      made_.push_back(path);
-    failed.clear();
-    std::filesystem::create_directories(folder, failed);
-    if (failed) {
-      remove();
-      throw WriteError(folder.string() + ": cannot be made: " + failed.message());
-    }
-  }
-  NewFolders(const NewFolders&) = delete;
-  NewFolders& operator=(const NewFolders&) = delete;
-  ~NewFolders() { remove(); }
-  void keep() { made_.clear(); }
-
- private:
-  void remove() {
-    std::error_code ignored;
-    for (const auto& path : made_) std::filesystem::remove(path, ignored);
-  }
-  std::vector<std::filesystem::path> made_;  ///< The innermost first.
-};
-
 std::string foam_header(const char* type, const char* object, const std::string& note = "") {
   return fmt::format(
       "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {};\n{}    location    "
@@ -162,23 +135,16 @@ class FoamWriter {
   std::size_t inner_ = 0, boundary_ = 0;
 };
 
-/// Renames the files only when all are complete: each is written before the next one's replace_file() begins, and put
-/// in its place after that has ended.
-void replace_all(const std::filesystem::path& folder, std::span<const FoamFile> files) {
-  if (files.empty()) return;
-  write_pieces((folder / files.front().name).string(), files.front().pieces,
-               [&] { replace_all(folder, files.subspan(1)); });
-}
-
 }  // namespace
 
 FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh) {
   std::filesystem::path folder = std::filesystem::path(path).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   const FoamWriter writer(mesh);
-  NewFolders made(folder);
-  replace_all(folder, writer.files());
-  made.keep();
+  Replacements files;
+  files.add_folders(folder);
+  for (const FoamFile& file : writer.files()) write_pieces((folder / file.name).string(), file.pieces);
+  files.commit();
   return writer.quality();
 }
 

@@ -261,7 +261,7 @@ void write_msh(const std::string& path, const VolumeMesh& mesh) {
     if (!field.values.empty()) parts.push_back(msh_point_field(field));
   for (const VolumeField& field : mesh.cell_fields)
     if (!field.values.empty()) parts.push_back(msh_cell_field(field, blocks));
-  write_pieces(path, in_a_row(std::move(parts)), {});
+  write_pieces(path, in_a_row(std::move(parts)));
 }
 
 }  // namespace vdb_offset::io

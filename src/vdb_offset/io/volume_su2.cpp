@@ -58,7 +58,7 @@ void write_su2(const std::string& path, const VolumeMesh& mesh) {
                                in_sections(fmt::format("NMARK= {}\n", mesh.patches.size()), {})};
   const std::vector<std::string> tags = patch_words(mesh);
   for (std::size_t i = 0; i < mesh.patches.size(); ++i) parts.push_back(su2_marker(mesh.patches[i], tags[i]));
-  write_pieces(path, in_a_row(std::move(parts)), {});
+  write_pieces(path, in_a_row(std::move(parts)));
 }
 
 }  // namespace vdb_offset::io

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+
+namespace vdb_offset {
+
+/// A file or an empty folder that goes again with this object, or when remove_temporaries() is called, unless it is
+/// kept. Safe to use on any number of threads.
+class Temporary {
+ public:
+  enum class Kind { File, Folder };
+
+  /// Takes care of what is at `path`, or will be.
+  Temporary(std::string path, Kind kind);
+  Temporary(Temporary&& other) noexcept;
+  Temporary& operator=(Temporary&&) = delete;
+  ~Temporary();
+
+  const std::string& path() const;
+  /// It stays.
+  void keep();
+
+ private:
+  struct Known;
+  static Known& free_one();
+  /// For remove_temporaries(), which may be called at any moment.
+  static std::atomic<Known*> first_known;
+  friend bool remove_temporaries() noexcept;
+
+  Known* known_;  ///< Null once it is kept or moved from.
+};
+
+/// Makes an empty file beside `target`, of a name that nobody can guess and that was not there before. It is as long as
+/// any other: what the file system takes for the target it takes for it. The target's ending stays last, as writers
+/// choose a format by it. Who may read and write it is up to the process's mask. \throw WriteError, which names `path`
+Temporary new_temporary_file(const std::filesystem::path& target, const std::string& path);
+
+/// Removes files of new_temporary_file() that runs on this machine have left in a folder as they were killed.
+void remove_stale_temporaries(const std::filesystem::path& folder) noexcept;
+
+/// Removes all temporary files and folders that are there now; no others can be put in place from then on. For signal
+/// handlers that end the process. False, and nothing is removed, if files are being put in place.
+bool remove_temporaries() noexcept;
+
+/// While it lives, remove_temporaries() does nothing. One at a time: others wait, and for ever once the process ends.
+class PuttingInPlace {
+ public:
+  PuttingInPlace();
+  PuttingInPlace(const PuttingInPlace&) = delete;
+  PuttingInPlace& operator=(const PuttingInPlace&) = delete;
+  ~PuttingInPlace();
+};
+
+}  // namespace vdb_offset
