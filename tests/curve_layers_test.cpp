@@ -162,6 +162,23 @@ TEST_CASE("curves: where there is no room layers get thin, and stay valid", "[cu
   }
 }
 
+TEST_CASE("curves: distances of layers are those of the curves as written", "[curves][layers]") {
+  const Curves curves = star(60, [](double) { return 1.0; });
+  OffsetOptions options;
+  options.precision = {.kind = Precision::Kind::Digits, .digits = 3};
+  const LayersResult layers = grow_curve_layers(curves.view(), rising(0.1, 3), options);
+  double most_off = 0;
+  for (std::size_t p = 0; p < curves.positions.size(); ++p) {
+    const auto places = layers.stacks.of(p);
+    CHECK(places[0] == curves.positions[p]);
+    for (const std::size_t k : {1, 2, 3}) CHECK((places[k] - options.precision(places[k])).length() < 1e-15);
+    CHECK(layers.first_achieved[p] == Approx(distance_to(curves, places[1])).epsilon(1e-9));
+    CHECK(layers.achieved[p] == Approx(distance_to(curves, places[3])).epsilon(1e-9));
+    most_off = std::max(most_off, std::abs(layers.first_achieved[p] - 0.1 / 6) * 60);
+  }
+  CHECK(most_off > 1e-3);  // three digits are few
+}
+
 TEST_CASE("curves: layers do not depend on the number of threads", "[curves][layers]") {
   const Curves curves = comb(4, 0.3, 0.02);
   const std::vector<Distances> heights = rising(-0.4, 6);

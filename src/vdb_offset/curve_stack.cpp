@@ -86,7 +86,14 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   std::vector<Vec3d> source;
   source.reserve(curves.source.size());
   for (const Vec2d& p : curves.source) source.emplace_back(p[0], p[1], z);
-  return CurveStacker(curves, source, heights, faults, paths).run(progress);
+  LayerStack stack = CurveStacker(curves, source, heights, faults, paths).run(progress);
+  round_layers(
+      source, curves.precision, [](std::uint32_t) { return true; },
+      [&](std::uint32_t p, const Vec3d& place) -> std::optional<double> {
+        return curves.front(curves.in_frame({place[0], place[1]}), faults.around(p).front()).distance;
+      },
+      stack, paths);
+  return stack;
 }
 
 }  // namespace vdb_offset

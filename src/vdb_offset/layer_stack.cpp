@@ -225,22 +225,20 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
   return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
 }
 
-void round_layers(const Body& body, std::span<const Vec3d> source, std::span<const std::uint32_t> of_mesh,
-                  const Precision& precision, LayerStack& stack, Paths& paths) {
+void round_layers(std::span<const Vec3d> source, const Precision& precision,
+                  const std::function<bool(std::uint32_t)>& is_written,
+                  const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
+                  LayerStack& stack, Paths& paths) {
   if (precision.kind == Precision::Kind::Double && precision.scale == Vec3d(1.0)) return;
-  for_each_index(of_mesh.size(), [&](std::size_t i) {
+  for_each_index(source.size(), [&](std::size_t i) {
     const auto v = static_cast<std::uint32_t>(i);
     // Layers that are not there stay on the wall.
-    if (of_mesh[v] == kNone || stack.stacks.is_flat(v)) return;
+    if (!is_written(v) || stack.stacks.is_flat(v)) return;
     const auto places = stack.stacks.of(v);
     for (Vec3d& place : places.subspan(1)) place = precision(source[v], place);
-    if (!body.on_front(v)) return;
-    const auto distance_at = [&](const Vec3d& place) {
-      return body.front(place - body.front.surface().origin, body.hint(v)).distance;
-    };
     paths.displacement[v] = places.back() - source[v];
-    stack.first_achieved[v] = distance_at(places[1]);
-    paths.achieved[v] = distance_at(places.back());
+    if (const auto first = distance_at(v, places[1])) stack.first_achieved[v] = *first;
+    if (const auto last = distance_at(v, places.back())) paths.achieved[v] = *last;
   });
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,10 +46,13 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& progress = {});
 
-/// Puts layers where a file has them that keeps coordinates so precisely, and finds the distances of the first layer
-/// and the outermost one there. `of_mesh` are the vertices that are written. The wall stays.
-void round_layers(const Body& body, std::span<const Vec3d> source, std::span<const std::uint32_t> of_mesh,
-                  const Precision& precision, LayerStack& stack, Paths& paths);
+/// Puts layers where a file has them that keeps coordinates so precisely, and tells their first and last distances
+/// there, by distance_at(vertex, place), which is called in parallel; not of vertices that it has none for. The wall
+/// stays, and what is not written.
+void round_layers(std::span<const Vec3d> source, const Precision& precision,
+                  const std::function<bool(std::uint32_t)>& is_written,
+                  const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
+                  LayerStack& stack, Paths& paths);
 
 /// Tells once layers are grown how many vertices of their outermost surface are held back, and what was taken from them
 /// since they had gone these `distances_before` that.

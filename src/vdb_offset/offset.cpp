@@ -193,7 +193,13 @@ class Pipeline {
       columns.emplace(mesh_, body, source, rules);
       stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, *faults, paths.front(),
                            options_.progress);
-      round_layers(body, source, work_.surface().representative, options_.precision, stack, paths.front());
+      round_layers(
+          source, options_.precision, [&](std::uint32_t v) { return work_.surface().representative[v] != kNone; },
+          [&](std::uint32_t v, const Vec3d& place) -> std::optional<double> {
+            if (!body.on_front(v)) return std::nullopt;
+            return body.front(place - body.front.surface().origin, body.hint(v)).distance;
+          },
+          stack, paths.front());
     }
     statistics.limit.left = faults->count();
     statistics.limit.crossings_near_source = faults->crossings_near_source();
