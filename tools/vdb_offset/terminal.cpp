@@ -28,15 +28,15 @@ constexpr char kBeforeName[] = "vdb_offset: ",
 constexpr std::size_t kMostOfName = 400;
 const char* lost_input = "";
 
-void tell(const char* text, std::size_t size) {
+void write_error(const char* text, std::size_t size) {
   const ssize_t ignored = ::write(STDERR_FILENO, text, size);
   static_cast<void>(ignored);
 }
 
 void end_for_lost_input(int) {
-  tell(kBeforeName, sizeof kBeforeName - 1);
-  tell(lost_input, std::min(std::strlen(lost_input), kMostOfName));
-  tell(kBehindName, sizeof kBehindName - 1);
+  write_error(kBeforeName, sizeof kBeforeName - 1);
+  write_error(lost_input, std::min(std::strlen(lost_input), kMostOfName));
+  write_error(kBehindName, sizeof kBehindName - 1);
   remove_temporaries();
   _exit(2);
 }
