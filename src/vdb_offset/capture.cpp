@@ -44,6 +44,7 @@ class Capture {
     CaptureStatistics& statistics = result_.statistics;
     Surface written;
     do {
+      statistics.dropped_specks = statistics.merged_vertices = 0;  // those of another lattice are gone with it
       Surface mesh = extract(lattice_of(statistics.attempts, h_));
       mend_on_surface(mesh);
       if (!options_.adaptivity && statistics.mending.left.total() == 0) merge_where_flat(mesh);
@@ -175,17 +176,8 @@ void Capture::merge_where_flat(Surface& mesh) {
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   double farthest = 0;
   for (const Vec3d& p : mesh.vertices) farthest = std::max({farthest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-  std::vector<Vec3d> places = mesh.vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
   const double tolerance = kShareOfDistance * level_->distance() + options_.precision.epsilon() * farthest;
-  const MergedFlats merged = merge_flats(mesh, tolerance);
-  if (merged.vertices == 0) return;
-  if (find_faults_of(mesh, merged.changed).total() == 0) {
-    result_.statistics.merged_vertices = merged.vertices;
-    return;
-  }
-  mesh.vertices = std::move(places);
-  mesh.triangles = std::move(triangles);
+  result_.statistics.merged_vertices = merge_flats_soundly(mesh, tolerance);
 }
 
 std::optional<Vec3d> Capture::onto(const Vec3d& wish) {

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "vdb_offset/mend.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
@@ -23,6 +25,8 @@ constexpr double kAlikeNormals = 0.9999;
 constexpr double kClearHeight = 8;
 // Where fewer vertices are in flat parts, next to nothing would be won.
 constexpr double kWorthMerging = 0.02;
+// Looks for what crosses when flats are merged. With each, what stays around it is twice as many edges wide.
+constexpr int kMostLooks = 5;
 
 using List = std::vector<std::uint32_t>;
 
@@ -33,9 +37,10 @@ struct Plane {
 
 class FlatMerger {
  public:
-  FlatMerger(Surface& mesh, double tolerance)
+  FlatMerger(Surface& mesh, double tolerance, std::span<const std::uint8_t> stays)
       : mesh_(mesh),
         tolerance_(tolerance),
+        stays_(stays),
         stars_(mesh.vertices.size()),
         is_gone_(mesh.triangles.size(), 0),
         is_changed_(mesh.triangles.size(), 0) {}
@@ -53,7 +58,7 @@ class FlatMerger {
       touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
       turn.swap(touched_);
     }
-    if (taken > 0) merged.changed = close_ranks();
+    if (taken > 0) close_ranks(merged);
     return merged;
   }
 
@@ -68,7 +73,7 @@ class FlatMerger {
     std::vector<std::uint8_t> is_flat(mesh_.vertices.size(), 0);
     for_each_index(is_flat.size(), [&](std::size_t v) {
       const auto vertex = static_cast<std::uint32_t>(v);
-      is_flat[v] = has_two_normals(vertex, normal) && look_at(vertex).has_value();
+      is_flat[v] = !has_to_stay(vertex) && has_two_normals(vertex, normal) && look_at(vertex).has_value();
     });
     List flat;
     for (std::uint32_t v = 0; v < is_flat.size(); ++v)
@@ -211,9 +216,11 @@ class FlatMerger {
     return common == 2;
   }
 
+  bool has_to_stay(std::uint32_t v) const { return !stays_.empty() && stays_[v]; }
+
   bool try_to_take(std::uint32_t v) {
     const auto star = around(v);
-    if (star.size() < 3 || star.size() > kMostAround || is_gone_[star[0]] || !has(star[0], v)) return false;
+    if (has_to_stay(v) || star.size() < 3 || star.size() > kMostAround || is_gone_[star[0]] || !has(star[0], v)) return false;
     const auto flat = look_at(v);
     if (!flat) return false;
     double thinnest = 1;
@@ -253,14 +260,14 @@ class FlatMerger {
     }
   }
 
-  /// Returns those of the triangles left that have changed.
-  List close_ranks() {
-    List changed;
+  /// Tells what is left.
+  void close_ranks(MergedFlats& merged) {
     std::vector<std::uint32_t> number(mesh_.vertices.size(), kNone);
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (std::size_t t = 0; t < is_gone_.size(); ++t)
       if (!is_gone_[t]) {
-        if (is_changed_[t]) changed.push_back(static_cast<std::uint32_t>(triangles.size()));
+        if (is_changed_[t]) merged.changed.push_back(static_cast<std::uint32_t>(triangles.size()));
+        merged.triangle_before.push_back(static_cast<std::uint32_t>(t));
         triangles.push_back(mesh_.triangles[t]);
         for (const auto v : triangles.back()) number[v] = 0;
       }
@@ -268,6 +275,7 @@ class FlatMerger {
     for (std::size_t v = 0; v < number.size(); ++v)
       if (number[v] != kNone) {
         number[v] = count;
+        merged.vertex_before.push_back(static_cast<std::uint32_t>(v));
         mesh_.vertices[count++] = mesh_.vertices[v];
       }
     mesh_.vertices.resize(count);
@@ -275,18 +283,60 @@ class FlatMerger {
       for (auto& v : corners) v = number[v];
     mesh_.triangles = std::move(triangles);
     list_incident_triangles(mesh_);
-    return changed;
   }
 
   Surface& mesh_;
   double tolerance_;
+  std::span<const std::uint8_t> stays_;
   std::vector<List> stars_;  // of vertices whose triangles have changed; the others' are the mesh's
   std::vector<std::uint8_t> is_gone_, is_changed_;  // of each triangle
   List touched_;
 };
 
+/// Marks the neighbours of what is marked, so many edges away.
+void widen(std::vector<std::uint8_t>& marked, const Surface& mesh, int edges) {
+  List rim;
+  for (std::uint32_t v = 0; v < marked.size(); ++v)
+    if (marked[v]) rim.push_back(v);
+  for (List next; edges > 0; --edges, rim.swap(next)) {
+    next.clear();
+    for (const auto v : rim)
+      for (const auto t : mesh.triangles_around(v))
+        for (const auto w : mesh.triangles[t])
+          if (!std::exchange(marked[w], 1)) next.push_back(w);
+  }
+}
+
 }  // namespace
 
-MergedFlats merge_flats(Surface& mesh, double tolerance) { return FlatMerger(mesh, tolerance).run(); }
+MergedFlats merge_flats(Surface& mesh, double tolerance, std::span<const std::uint8_t> stays) {
+  return FlatMerger(mesh, tolerance, stays).run();
+}
+
+std::size_t merge_flats_soundly(Surface& mesh, double tolerance) {
+  const Surface before{.vertices = mesh.vertices,
+                       .triangles = mesh.triangles,
+                       .incident = mesh.incident,
+                       .incident_begin = mesh.incident_begin};
+  std::vector<std::uint8_t> stays;
+  for (int look = 0; look < kMostLooks; ++look) {
+    const MergedFlats merged = merge_flats(mesh, tolerance, stays);
+    const List faulty = merged.vertices > 0 ? find_faulty(mesh, merged.changed) : List();
+    if (faulty.empty()) return merged.vertices;
+    std::vector<std::uint8_t> around(before.vertices.size(), 0);
+    for (const auto t : faulty) {
+      for (const auto v : mesh.triangles[t]) around[merged.vertex_before[v]] = 1;
+      for (const auto v : before.triangles[merged.triangle_before[t]]) around[v] = 1;
+    }
+    widen(around, before, 1 << look);
+    stays.resize(around.size(), 0);
+    for (std::size_t v = 0; v < around.size(); ++v) stays[v] |= around[v];
+    mesh.vertices = before.vertices;
+    mesh.triangles = before.triangles;
+    mesh.incident = before.incident;
+    mesh.incident_begin = before.incident_begin;
+  }
+  return 0;
+}
 
 }  // namespace vdb_offset

@@ -268,17 +268,19 @@ MeshFaults find_faults(const Surface& mesh) {
   return faults;
 }
 
-MeshFaults find_faults_of(const Surface& mesh, std::span<const std::uint32_t> triangles) {
+std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std::uint32_t> some) {
   CrossingFinder finder(mesh, mesh.vertices);
-  finder.update(triangles);
-  MeshFaults faults;
-  faults.crossings = finder.of_updated().size();
-  for (const auto t : triangles) faults.needles += stands_as_needle(mesh, t);
-  return faults;
+  finder.update(some);
+  TriangleList faulty;
+  for (const auto& [s, t] : finder.of_updated()) faulty.insert(faulty.end(), {s, t});
+  for (const auto t : some)
+    if (stands_as_needle(mesh, t)) faulty.push_back(t);
+  make_set(faulty);
+  return faulty;
 }
 
 MendStatistics mend(Surface& mesh, const Onto& onto) {
-  MendStatistics statistics;
+  MendStatistics statistics, kept;
   std::vector<Vec3d> places;  // of the mesh that had the fewest faults
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (int fruitless = 0; fruitless < kFruitlessRounds;) {
@@ -291,6 +293,7 @@ MendStatistics mend(Surface& mesh, const Onto& onto) {
       wrong = round.wrong_triangles();
       if (first || round.faults().total() < statistics.left.total()) {
         statistics.left = round.faults();
+        kept = statistics;
         places = mesh.vertices;
         triangles = mesh.triangles;
         fruitless = 0;
@@ -308,7 +311,7 @@ MendStatistics mend(Surface& mesh, const Onto& onto) {
   mesh.vertices = std::move(places);
   mesh.triangles = std::move(triangles);
   list_incident_triangles(mesh);
-  return statistics;
+  return kept;
 }
 
 }  // namespace vdb_offset

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "vdb_offset/surface.h"
 
@@ -19,10 +20,10 @@ struct MeshFaults {
 
 /// Of all pairs of a mesh's triangles. \pre the mesh is built
 MeshFaults find_faults(const Surface& mesh);
-/// Those that some triangles, sorted, take part in.
-MeshFaults find_faults_of(const Surface& mesh, std::span<const std::uint32_t> triangles);
+/// The triangles that have faults in which some, sorted, take part: sorted.
+std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std::uint32_t> some);
 
-/// What mending found and did.
+/// What mending found and did, to the mesh that was kept.
 struct MendStatistics {
   MeshFaults before, left;
   std::size_t rounds = 0, moved_vertices = 0, flipped_edges = 0, split_edges = 0;
