@@ -308,15 +308,16 @@ TEST_CASE("flats: a tilted cube of many triangles is one of twelve", "[iso]") {
 }
 
 TEST_CASE("flats: what crosses when it is merged stays as it was, and only that", "[iso]") {
-  // Two plates one upon the other. The lower one has spikes, which are higher than the tolerance; the upper one gets out
-  // of their way so gently that each step is flat to within that.
+  // Two plates one upon the other. The lower one has spikes, which are higher than the tolerance; the upper one gets
+  // out of their way so gently that each step is flat to within that.
   constexpr double kStep = 0.0005, kTolerance = 2.2 * kStep, kEdge = 0.2;
   const Polygons plate = scene::box({4, 4, 1}, 20, true);
   Polygons both = together(plate, moved(plate, {0, 0, 1 + 0.1 * kStep}));
   const std::size_t of_plate = plate.positions.size();
-  const double top = std::max_element(plate.positions.begin(), plate.positions.end(), [](const Vec3d& a, const Vec3d& b) {
-                       return a[2] < b[2];
-                     })->z();
+  const double top =
+      std::max_element(plate.positions.begin(), plate.positions.end(), [](const Vec3d& a, const Vec3d& b) {
+        return a[2] < b[2];
+      })->z();
   for (std::size_t v = 0; v < both.positions.size(); ++v) {
     Vec3d& p = both.positions[v];
     if (std::abs(p[2] - top) > 0.01) continue;

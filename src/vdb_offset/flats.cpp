@@ -220,7 +220,8 @@ class FlatMerger {
 
   bool try_to_take(std::uint32_t v) {
     const auto star = around(v);
-    if (has_to_stay(v) || star.size() < 3 || star.size() > kMostAround || is_gone_[star[0]] || !has(star[0], v)) return false;
+    if (has_to_stay(v) || star.size() < 3 || star.size() > kMostAround || is_gone_[star[0]] || !has(star[0], v))
+      return false;
     const auto flat = look_at(v);
     if (!flat) return false;
     double thinnest = 1;

@@ -22,9 +22,9 @@ struct MergedFlats {
 ///
 /// Flat is what lies within `tolerance` (world units) of a plane, from a vertex to all its neighbours. What is closed
 /// and manifold stays so, faces stay on their planes and point where they pointed, and none gets longer and thinner
-/// than 1 to 50 that was not. Vertices that are marked in `stays` stay (empty: none has to). Cost: O(triangles), and some looks at each vertex taken out. The mesh's vertices,
-/// triangles and stars change; what else it tells is of the mesh as it was.
-/// \pre the mesh is built, not placed, and does not cross itself
+/// than 1 to 50 that was not. Vertices that are marked in `stays` stay (empty: none has to). Cost: O(triangles), and
+/// some looks at each vertex taken out. The mesh's vertices, triangles and stars change; what else it tells is of the
+/// mesh as it was. \pre the mesh is built, not placed, and does not cross itself
 MergedFlats merge_flats(Surface& mesh, double tolerance, std::span<const std::uint8_t> stays = {});
 
 /// The same, until no triangle crosses another, which what is flat to rounding alone may do: around those that do,
