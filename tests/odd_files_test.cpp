@@ -200,6 +200,27 @@ TEST_CASE("ply: a header whose lines end in carriage returns, before a text or b
   check_refused(Format::Ply, "ply\rformat ascii 1.0\relement vertex x\r", "line 3: expected a number of elements");
 }
 
+TEST_CASE("ply: the last line may lack its end, even if no other follows the vertices", "[io]") {
+  const std::string vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n",
+                    rows = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+  for (const char* const name : {"face", "tristrips"}) {
+    const io::MeshFile file = parse(
+        Format::Ply, fmt::format("ply\nformat ascii 1.0\n{}element {} 1\nproperty list uchar int vertex_indices\n{}",
+                                 vertices, name, rows));
+    CHECK(file.polygons.corners == Corners{0, 1, 2});
+  }
+}
+
+TEST_CASE("stl: a mark of byte order stands before a text, and stays", "[io]") {
+  const std::string text =
+      "\xef\xbb\xbfsolid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+      "0\nendloop\nendfacet\n"
+      "endsolid x\n";
+  const io::MeshFile file = parse(Format::Stl, text);
+  CHECK(file.polygons.face_count() == 1);
+  CHECK(moved(file, {0, 0, 0}) == text);
+}
+
 TEST_CASE("io: texts whose lines end in carriage returns are read and kept", "[io]") {
   const Folder folder;
   const std::pair<Format, std::string> texts[] = {

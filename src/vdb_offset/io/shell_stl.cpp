@@ -111,7 +111,7 @@ using SharedStlWriter = std::shared_ptr<const StlShellWriter>;
 
 /// Behind "solid", with the blank in front of it; of a file with several the first.
 std::string solid_name(const MeshFile& source, std::size_t& solids) {
-  Scanner scanner(source.path, source.text());
+  Scanner scanner(source.path, source.text(), byte_order_mark(source.text()));
   std::string name;
   for (solids = 0; !scanner.at_text_end(); scanner.next_line()) {
     if (!is_word(scanner.token(), "solid")) continue;

@@ -17,7 +17,8 @@ constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 
 class AsciiStlParser {
  public:
-  explicit AsciiStlParser(MeshFile& file) : file_(file), scanner_(file.path, file.text()) {}
+  explicit AsciiStlParser(MeshFile& file)
+      : file_(file), scanner_(file.path, file.text(), byte_order_mark(file.text())) {}
 
   void run() {
     while (!scanner_.at_text_end()) solid();
@@ -120,7 +121,7 @@ void parse_binary(MeshFile& file) {
 
 void parse_stl(MeshFile& file) {
   const std::string_view bytes = file.text();
-  const bool says_solid = is_word(Scanner(file.path, bytes).first_word(), "solid");
+  const bool says_solid = is_word(Scanner(file.path, bytes, byte_order_mark(bytes)).first_word(), "solid");
   const bool holds_header = bytes.size() >= kHeaderBytes;
   // Binary files may start with "solid" too; then their size tells. Bytes behind the last facet are kept.
   if (holds_header && (bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)} ||

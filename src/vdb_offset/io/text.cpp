@@ -48,8 +48,8 @@ LineRecords::LineRecords(std::string_view text, std::size_t begin, std::size_t c
   if (run > 0 && first_[run] < count && text.back() != '\n') ++first_[run];  // the last line's end is missing
   first_.resize(run + 1);
   cuts_.resize(run + 1);
-  // The last run may go on behind the last record.
-  if (run > 0 && first_[run] > count) {
+  // The last run may go on behind the last record, by a line whose end is missing, too.
+  if (run > 0 && first_[run] >= count) {
     std::size_t at = cuts_[run - 1];
     for (std::size_t i = first_[run - 1]; i < count; ++i) at = next_line(text, at);
     cuts_[run] = at;
