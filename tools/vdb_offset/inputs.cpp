@@ -123,6 +123,7 @@ std::vector<Distances> read_heights(const Source& source, const Arguments& args)
   const std::string& path = args.layers->heights;
   std::ifstream file(path);
   if (!file) throw ReadError(path + ": cannot be read");
+  if (std::filesystem::is_directory(path)) throw ReadError(path + ": expected a file, got a folder");
   std::vector<Distances> heights;
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {

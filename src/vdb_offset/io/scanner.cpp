@@ -14,13 +14,6 @@
 namespace vdb_offset::io {
 namespace {
 
-/// A token as a message can show it: short, and without control bytes.
-std::string shown(std::string_view token) {
-  std::string text;
-  for (const char c : token.substr(0, 24)) text += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
-  return token.size() > 24 ? text + "..." : text;
-}
-
 /// from_chars() knows no plus. False for two signs.
 bool skip_plus(const char*& first, const char* last) {
   if (first == last || *first != '+') return true;
@@ -29,6 +22,12 @@ bool skip_plus(const char*& first, const char* last) {
 }
 
 }  // namespace
+
+std::string in_short(std::string_view token, std::size_t most) {
+  std::string text;
+  for (const char c : token.substr(0, most)) text += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
+  return token.size() > most ? text + "..." : text;
+}
 
 bool is_word(std::string_view text, std::string_view word) {
   return std::equal(text.begin(), text.end(), word.begin(), word.end(),
@@ -117,7 +116,7 @@ double Scanner::number(const char* expected, std::uint64_t* at) {
   double value = 0;
   if (text.size() > kLongestNumber)
     fail_with(fmt::format("{} of at most {} characters", expected, kLongestNumber),
-              fmt::format("'{}' of {}", shown(text), text.size()), begin);
+              fmt::format("'{}' of {}", in_short(text), text.size()), begin);
   if (text.empty() || !parse_double(text, value)) fail(expected, begin);
   if (!std::isfinite(value)) fail(std::string(expected) + " that is finite", begin);
   if (at) *at = begin;
@@ -156,7 +155,7 @@ void Scanner::fail(const std::string& expected, std::size_t at) const {
   fail_with(expected,
             at >= text_.size() ? "the end of the file"
             : end == at        ? "the end of the line"
-                               : "'" + shown(text_.substr(at, end - at)) + "'",
+                               : "'" + in_short(text_.substr(at, end - at)) + "'",
             at);
 }
 

@@ -71,6 +71,9 @@ class Scanner {
   char line_end_ = '\n';
 };
 
+/// A token, or so many characters of it, as a message can show it: short, and without control bytes.
+std::string in_short(std::string_view token, std::size_t most = 24);
+
 /// Bytes that a UTF-8 byte order mark takes at the start of a text: 3 or 0.
 inline std::size_t byte_order_mark(std::string_view text) { return text.starts_with("\xef\xbb\xbf") ? 3 : 0; }
 

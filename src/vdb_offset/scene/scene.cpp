@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,8 @@
 #include <string_view>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/io/scanner.h"
 #include "vdb_offset/scene/shapes.h"
 
 namespace vdb_offset::scene {
@@ -29,6 +30,7 @@ class Reader {
       : path_(path), where_(std::move(where)), object_(object) {
     if (!object.is_object()) fail("an object");
   }
+  const std::string& path() const { return path_; }
   [[noreturn]] void fail(const std::string& expected) const {
     throw InvalidInput(fmt::format("{}: expected {} at '{}'", path_, expected, where_));
   }
@@ -80,7 +82,8 @@ class Reader {
   }
   void finish() const {
     for (const auto& [key, value] : object_.items())
-      if (!asked_.contains(key)) throw InvalidInput(fmt::format("{}: expected no key '{}'", path_, below(key)));
+      if (!asked_.contains(key))
+        throw InvalidInput(fmt::format("{}: expected no key '{}'", path_, below(io::in_short(key))));
   }
   [[noreturn]] const json& fail_missing(const std::string& key, const std::string& expected) const {
     throw InvalidInput(fmt::format("{}: expected {} at '{}'", path_, expected, below(key)));
@@ -146,7 +149,7 @@ Polygons make_shape(Reader shape) {
   if (maker == kMakers.end()) {
     std::vector<std::string> names(kMakers.size());
     std::transform(kMakers.begin(), kMakers.end(), names.begin(), [](const auto& known) { return known.first; });
-    shape.fail(fmt::format("a type among {}, not '{}',", fmt::join(names, ", "), type));
+    shape.fail(fmt::format("a type among {}, not '{}',", fmt::join(names, ", "), io::in_short(type)));
   }
   Polygons mesh = maker->second(shape);
   shape.finish();
@@ -206,7 +209,11 @@ Expectations read_expectations(Reader reader, bool shell, bool fits) {
 
 Distance read_distance(Reader& offset) {
   const json* value = offset.find("distance");
-  if (value && value->is_string()) return parse_distance_or_expression(value->get<std::string>());
+  try {
+    if (value && value->is_string()) return parse_distance_or_expression(value->get<std::string>());
+  } catch (const InvalidOption& error) {
+    throw InvalidInput(fmt::format("{}: {}", offset.path(), error.what()));
+  }
   return {offset.number("distance"), false, {}};
 }
 
@@ -257,13 +264,25 @@ void read_ways(Reader& offset, Scene& scene) {
   if (!(scene.clearance > 0)) offset.fail("'fit' with a 'clearance' above 0");
 }
 
+/// Refuses a key that an object has twice, one of which the parser would drop without a word.
+json::parser_callback_t require_keys_once(const std::string& path) {
+  return [&path, keys = std::vector<std::set<std::string>>()](int, json::parse_event_t event, json& parsed) mutable {
+    if (event == json::parse_event_t::object_start) keys.emplace_back();
+    else if (event == json::parse_event_t::object_end) keys.pop_back();
+    else if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      throw InvalidInput(fmt::format("{}: expected the key '{}' once, got it twice in an object", path,
+                                     io::in_short(parsed.get<std::string>())));
+    return true;
+  };
+}
+
 json parse_file(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw ReadError(path + ": cannot be opened");
+  constexpr std::size_t kLongestError = 200;  // the parser repeats what it has read
+  const io::FileBytes bytes = io::FileBytes::open(path);
   try {
-    return json::parse(file);
+    return json::parse(bytes.view(), require_keys_once(path));
   } catch (const json::exception& error) {
-    throw InvalidInput(fmt::format("{}: expected JSON: {}", path, error.what()));
+    throw InvalidInput(fmt::format("{}: expected JSON: {}", path, io::in_short(error.what(), kLongestError)));
   }
 }
 
