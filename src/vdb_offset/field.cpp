@@ -1,8 +1,12 @@
 #include "vdb_offset/field.h"
 
 #include <fmt/format.h>
-#include <openvdb/io/File.h>
+#include <openvdb/io/Archive.h>
 #include <openvdb/tools/SignedFloodFill.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/file_replace.h"
@@ -12,6 +16,11 @@ namespace {
 
 /// OpenVDB takes a transform whose determinant is below 3e-15 for singular.
 bool can_hold(double voxel_size) { return voxel_size * voxel_size * voxel_size > 3.1e-15; }
+
+/// What openvdb::io::File is over, which does not notice a full disk: its stream is its own.
+struct Archive : openvdb::io::Archive {
+  using openvdb::io::Archive::write;
+};
 
 }  // namespace
 
@@ -49,13 +58,12 @@ void save_vdb(const DistanceField& field, const std::string& path, bool closed_s
   }
   replace_file(path, [&](const std::string& temporary) {
     try {
-      openvdb::io::File file(temporary);
-      file.write(openvdb::GridPtrVec{phi, closest});
+      std::ofstream file(temporary, std::ios::binary);
+      file.exceptions(std::ios::badbit | std::ios::failbit);
+      Archive().write(file, openvdb::GridPtrVec{phi, closest}, true);
       file.close();
-      // A full disk goes unnoticed by the writer; a reader finds out.
-      openvdb::io::File written(temporary);
-      written.open(false);
-      written.getGrids();
+    } catch (const std::ios_base::failure&) {
+      throw WriteError(path + ": cannot be written: " + std::strerror(errno));
     } catch (const openvdb::Exception& error) {
       throw WriteError(path + ": cannot be written: " + error.what());
     }
