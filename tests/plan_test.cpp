@@ -45,6 +45,16 @@ TEST_CASE("plan: what does not fit is refused with the size that would", "[plan]
   CHECK_THROWS_WITH(plan_grid(sphere, 0.5, {}, 1000, 1), Catch::Contains("mesh itself does not fit"));
 }
 
+TEST_CASE("plan: voxels far larger than the mesh and its offset are refused", "[plan]") {
+  const Surface sphere = surface_of(scene::icosphere(1, 2));
+  const double coarsest = 4 * (sphere.facts.diagonal + 0.1);
+  CHECK(plan_grid(sphere, 0.1, {0.999 * coarsest, {}}, 0, 1).voxel_size == 0.999 * coarsest);
+  for (const double size : {1.001 * coarsest, 1e21}) {
+    CHECK_THROWS_AS(plan_grid(sphere, 0.1, {size, {}}, 0, 1), OutOfBudget);
+    CHECK_THROWS_AS(plan_grid(sphere, 0.1, {{}, 0.1 / size}, 0, 1), OutOfBudget);
+  }
+}
+
 TEST_CASE("plan: an automatic size grows until it fits", "[plan]") {
   const Surface sphere = surface_of(scene::icosphere(1, 4));
   const GridPlan free = plan_grid(sphere, 0.05, {}, 0, 1), tight = plan_grid(sphere, 0.05, {}, free.bytes - 1, 1);

@@ -169,10 +169,13 @@ bool fits(const GridPlan& plan, const MeshFacts& facts, std::size_t max_memory) 
 
 constexpr double kCoarser = 1.25;  // one step when looking for a size that fits
 
+/// A grid of a few voxels; beyond, there is nothing in it, and indices of voxels run out of digits in the end.
+double coarsest_useful(double diagonal, double distance) { return 4 * (diagonal + distance); }
+
 /// The finest size, in steps from `h`, that fits; 0 if even a grid of a few voxels does not.
 double coarsen_until_it_fits(const Surface& surface, const Reach& farthest, double h, std::size_t max_memory,
                              const PlanContext& context) {
-  const double coarsest = 4 * (surface.facts.diagonal + longer(farthest));
+  const double coarsest = coarsest_useful(surface.facts.diagonal, longer(farthest));
   for (; h < coarsest; h *= kCoarser)
     if (fits(estimate(surface, farthest, h, 1, context), surface.facts, max_memory)) return h;
   return 0;
@@ -220,6 +223,12 @@ void require_plannable(double diagonal, double distance, const GridOptions& opti
   for (const auto& given : {options.voxel_size, options.voxels_per_distance})
     if (given && (!std::isfinite(*given) || *given <= 0))
       throw InvalidInput(fmt::format("plan: expected a positive voxel size or voxels per distance, got {}", *given));
+  if (!options.voxel_size && !options.voxels_per_distance) return;
+  const double size = options.voxel_size ? *options.voxel_size : distance / *options.voxels_per_distance;
+  if (const double coarsest = coarsest_useful(diagonal, distance); size > coarsest)
+    throw OutOfBudget(fmt::format(
+        "plan: expected a voxel size of at most {:.6g}, four times the diagonal and the distance together, got {:.6g}",
+        coarsest, size));
 }
 
 VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options) {
