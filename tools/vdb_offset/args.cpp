@@ -7,8 +7,12 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <sstream>
 
+#include "messages.h"
+#include "vdb_offset/decimal.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -56,10 +60,14 @@ met), 4 output. Ctrl-C and the like end the process at once, by that signal, and
 once they are put in place, all together, a signal changes nothing more.
 Report keys, library and guarantees: see the README.)";
 
+// What is above this is 0 or more.
+constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
+
 /// Bytes with an optional suffix K, M, G or T (binary), as in "4G" or "1.5 GiB".
 std::size_t parse_size(const std::string& text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
   std::string suffix;
   for (const char* c = end; c != text.data() + text.size(); ++c)
     if (*c != ' ') suffix += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
@@ -76,8 +84,7 @@ std::size_t parse_size(const std::string& text) {
 /// What CLI11 fills in before it is checked.
 struct Raw {
   std::vector<std::string> distances, only, symmetry;
-  std::optional<std::size_t> layers;
-  std::optional<double> growth, adaptivity;
+  std::optional<std::string> layers, growth, adaptivity;
   std::string distance_from, distance_xy, distance_z, first_height, total_thickness, heights;
   bool structured = false, keep_specks = false;
   std::string max_memory, clearance, inner, weld = "auto", orient = "keep";
@@ -85,8 +92,8 @@ struct Raw {
   std::string mode = "topology";
   std::optional<std::string> inside;
   std::string normals = "recompute";
-  std::optional<double> voxel_size, voxels_per_distance;
-  int threads = 0;
+  std::optional<std::string> voxel_size, voxels_per_distance;
+  std::string threads = "0", precision = "0";
 };
 
 void declare(CLI::App& app, Arguments& args, Raw& raw) {
@@ -101,6 +108,7 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
          "several times: one output each")
       ->type_name("D")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   app.add_option("--mode", raw.mode,
                  "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "
@@ -139,6 +147,7 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
                  "'faces=FILE' (indices from 0, or a 0 or 1 for each face); may be repeated")
       ->type_name("PART")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   app.add_option("--border", raw.border,
                  "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]")
@@ -149,10 +158,12 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
          "repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told")
       ->type_name("PLANE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   app.add_option("--obstacle", args.obstacles, "A mesh that nothing may touch; may be repeated")
       ->type_name("FILE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   app.add_option("--clearance", raw.clearance,
                  "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]")
@@ -208,7 +219,7 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--normals", raw.normals,
                  "Normals of the file where faces moved: 'recompute' or 'keep' them as they are [recompute]")
       ->type_name("MODE");
-  app.add_option("--precision", args.write.digits,
+  app.add_option("--precision", raw.precision,
                  "Significant digits of moved coordinates in text, 1 to 17 [as many as read back to the same number]")
       ->type_name("N");
   app.add_option("--threads", raw.threads, "Threads; 0 takes all; the result is the same for any number [0]")
@@ -232,6 +243,15 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw UsageError(message);
+}
+
+/// Of an option that may be left out. `expected` says which numbers it takes.
+std::optional<double> parse_number(const char* option, const std::optional<std::string>& text, const char* expected,
+                                   double above, double most) {
+  if (!text) return std::nullopt;
+  const auto value = decimal<double>(*text);
+  require(value && *value > above && *value <= most, fmt::format("{}: expected {}, got '{}'", option, expected, *text));
+  return value;
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -321,8 +341,7 @@ void check_file_options(const Raw& raw, Arguments& args) {
   require(raw.normals == "recompute" || raw.normals == "keep",
           fmt::format("--normals: expected 'recompute' or 'keep', got '{}'", raw.normals));
   args.write.normals = raw.normals == "keep" ? io::Normals::Keep : io::Normals::Recompute;
-  require(args.write.digits >= 0 && args.write.digits <= 17,
-          fmt::format("--precision: expected 1 to 17 digits, got {}", args.write.digits));
+  args.write.digits = parse_count("--precision", raw.precision, 0, 17);
 }
 
 DistanceRequest parse_request(const std::string& option, const std::string& text, const Arguments& args) {
@@ -393,19 +412,15 @@ void check_layers(const Raw& raw, Arguments& args) {
                                     {"--structured", raw.structured}})
     require(asked || !given, fmt::format("{}: expected it with --layers", name));
   if (!asked) return;
-  constexpr std::size_t kMostLayers = 1000;
+  constexpr int kMostLayers = 1000;
   LayersRequest& layers = args.layers.emplace();
-  layers.count = raw.layers.value_or(0);
+  if (raw.layers) layers.count = static_cast<std::size_t>(parse_count("--layers", *raw.layers, 1, kMostLayers));
   layers.heights = raw.heights;
   layers.structured = raw.structured;
-  require(!raw.layers || (layers.count > 0 && layers.count <= kMostLayers),
-          fmt::format("--layers: expected 1 to {}, got {}", kMostLayers, layers.count));
   require(raw.heights.empty() + raw.first_height.empty() + raw.total_thickness.empty() == 2,
           "--layers: expected one of --first-height, --total-thickness and --heights");
   require(raw.heights.empty() || !raw.growth, "--growth: expected it with --first-height or --total-thickness");
-  layers.growth = raw.growth.value_or(layers.growth);
-  require(layers.growth > 0 && layers.growth <= 10,
-          fmt::format("--growth: expected a number above 0, up to 10, got {}", layers.growth));
+  layers.growth = parse_number("--growth", raw.growth, "a number above 0, up to 10", 0, 10).value_or(layers.growth);
   if (!raw.first_height.empty()) layers.first = parse_request("--first-height", raw.first_height, args);
   if (!raw.total_thickness.empty()) layers.total = parse_request("--total-thickness", raw.total_thickness, args);
   for (const auto& [name, given] : {std::pair{"--distance", !raw.distances.empty()},
@@ -461,9 +476,7 @@ void check_iso(const Raw& raw, Arguments& args) {
                                     {"--save-vdb", !args.vdb.empty()}})
     require(!given, fmt::format("{}: expected it without --mode iso", name));
   IsoRequest& iso = args.iso.emplace();
-  iso.adaptivity = raw.adaptivity;
-  require(!iso.adaptivity || (*iso.adaptivity >= 0 && *iso.adaptivity <= 1),
-          fmt::format("--adaptivity: expected a number from 0 to 1, got {}", iso.adaptivity.value_or(0)));
+  iso.adaptivity = parse_number("--adaptivity", raw.adaptivity, "a number from 0 to 1", kBelowZero, 1);
   iso.keep_specks = raw.keep_specks;
   const std::string inside = raw.inside.value_or("winding");
   require(inside == "winding" || inside == "never",
@@ -515,10 +528,9 @@ void check(const Raw& raw, Arguments& args) {
   check_even(args);
   check_surroundings(raw, args);
   require(!(raw.voxel_size && raw.voxels_per_distance), "--voxel-size: expected it or --voxels-per-distance, got both");
-  for (const auto& [name, value] :
-       {std::pair{"--voxel-size", raw.voxel_size}, {"--voxels-per-distance", raw.voxels_per_distance}})
-    require(!value || (*value > 0 && std::isfinite(*value)), fmt::format("{}: expected a number above 0", name));
-  args.options.grid = {raw.voxel_size, raw.voxels_per_distance};
+  constexpr double kAny = std::numeric_limits<double>::max();
+  args.options.grid = {parse_number("--voxel-size", raw.voxel_size, "a number above 0", 0, kAny),
+                       parse_number("--voxels-per-distance", raw.voxels_per_distance, "a number above 0", 0, kAny)};
   if (raw.collision) {
     require(*raw.collision == "limit" || *raw.collision == "merge",
             fmt::format("--collision: expected 'limit' or 'merge', got '{}'", *raw.collision));
@@ -531,8 +543,7 @@ void check(const Raw& raw, Arguments& args) {
   }
   args.options.weld = parse_weld(raw.weld);
   args.options.orient = parse_orient(raw.orient);
-  require(raw.threads >= 0 && raw.threads <= 4096, fmt::format("--threads: expected 0 to 4096, got {}", raw.threads));
-  args.options.threads = raw.threads;
+  args.options.threads = parse_count("--threads", raw.threads, 0, kMostThreads);
   require(!(args.quiet && args.verbose), "--quiet: expected it or --verbose, got both");
   args.options.max_memory =
       raw.max_memory.empty() ? std::max<std::size_t>(1, available_memory() / 5 * 4) : parse_size(raw.max_memory);
@@ -548,6 +559,13 @@ std::vector<DistanceRequest> parse_distances(const std::vector<std::string>& tex
   if (!from.empty())
     requests.push_back(parse_request("--distance-from", from.starts_with("ply:") ? from : "@" + from, args));
   return requests;
+}
+
+int parse_count(const char* option, const std::string& text, int least, int most) {
+  const auto value = decimal<int>(text);
+  require(value && *value >= least && *value <= most,
+          fmt::format("{}: expected {} to {}, got '{}'", option, least, most, text));
+  return *value;
 }
 
 std::optional<io::Format> format_of(const std::string& path, const Arguments& args) {
@@ -611,11 +629,10 @@ WeldOptions parse_weld(const std::string& text) {
     weld.enabled = false;
     return weld;
   }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), weld.tolerance);
-  if (error != std::errc() || end != text.data() + text.size() || !(weld.tolerance >= 0) ||
-      !std::isfinite(weld.tolerance))
-    throw UsageError(
-        fmt::format("--weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got '{}'", text));
+  const auto tolerance = decimal<double>(text);
+  require(tolerance && *tolerance >= 0,
+          fmt::format("--weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got '{}'", text));
+  weld.tolerance = *tolerance;
   return weld;
 }
 
@@ -627,12 +644,11 @@ Orient parse_orient(const std::string& text) {
 
 SymmetryPlane parse_plane(const std::string& text) {
   const auto number = [&](std::string_view word) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      throw UsageError(fmt::format(
-          "--symmetry: expected 'x=0' (or y, z), 'A,B,C,D' for A x + B y + C z = D, or 'none', got '{}'", text));
-    return value;
+    const auto value = decimal<double>(word);
+    require(value.has_value(),
+            fmt::format("--symmetry: expected 'x=0' (or y, z), 'A,B,C,D' for A x + B y + C z = D, or 'none', got '{}'",
+                        text));
+    return *value;
   };
   SymmetryPlane plane;
   const std::string_view given = text;
@@ -668,6 +684,12 @@ std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
   return arguments;
 }
 
+void print_as_asked(const CLI::App& app, const CLI::Success& asked) {
+  std::ostringstream text;
+  app.exit(asked, text, text);
+  fmt::print(Printout(), "{}", text.str());
+}
+
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "vdb_offset");
   app.footer(kMore);
@@ -678,7 +700,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   try {
     app.parse(reversed_arguments(argc, argv));
   } catch (const CLI::Success& success) {
-    app.exit(success);
+    print_as_asked(app, success);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (--help lists the options)", error.what()));

@@ -13,6 +13,11 @@
 #include "vdb_offset/offset.h"
 #include "vdb_offset/scene/scene.h"
 
+namespace CLI {
+class App;
+class Success;
+}  // namespace CLI
+
 namespace vdb_offset::tool {
 
 /// One distance that is asked for, and how.
@@ -73,6 +78,8 @@ struct Arguments {
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };
 
+constexpr int kMostThreads = 4096;  // --threads
+
 /// The format of a mesh by its name, or else the one that was given.
 std::optional<io::Format> format_of(const std::string& path, const Arguments& args);
 
@@ -95,6 +102,9 @@ DistanceRequest parse_request(const std::string& text);
 std::vector<DistanceRequest> parse_distances(const std::vector<std::string>& texts, const std::string& from,
                                              const Arguments& args);
 
+/// A whole number, in decimal digits. \throw UsageError
+int parse_count(const char* option, const std::string& text, int least, int most);
+
 /// group=NAME, material=NAME or faces=FILE, each. \throw UsageError
 std::vector<io::Selector> parse_only(const std::vector<std::string>& texts);
 
@@ -116,6 +126,9 @@ SymmetryPlane parse_plane(const std::string& text);
 /// The arguments behind a program's or a subcommand's name, the last one first, as CLI11 takes them. What stands behind
 /// `--` is a file's name, whatever it starts with.
 std::vector<std::string> reversed_arguments(int argc, const char* const* argv);
+
+/// Prints the help or the version.
+void print_as_asked(const CLI::App& app, const CLI::Success& asked);
 
 /// Parses the command line. Empty if it asked only for help or the version, which are then printed.
 /// \throw UsageError with one line that says what is wrong.

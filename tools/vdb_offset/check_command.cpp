@@ -11,6 +11,7 @@
 
 #include "args.h"
 #include "inputs.h"
+#include "messages.h"
 #include "terminal.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_check.h"
@@ -39,6 +40,7 @@ struct CheckArguments {
   std::string source, offset, distance, distance_from, distance_xy, distance_z, border = "slide", clearance;
   std::string weld = "auto", orient = "keep", report;
   std::vector<std::string> only, obstacles;
+  std::string threads_text = "0", digits_text = "0";
   int threads = 0, digits = 0;
   bool json = false, strict = false, close = false;
 };
@@ -58,12 +60,19 @@ void declare(CLI::App& app, CheckArguments& args) {
                  "Instead: a number for each vertex, as text or .npy, or ply:NAME, a vertex property of SOURCE")
       ->type_name("FILE");
   app.add_option("--only", args.only, "The part that was offset: group=NAME, material=NAME or faces=FILE; repeatable")
-      ->type_name("PART");
+      ->type_name("PART")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
   app.add_option("--border", args.border, "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]")
       ->type_name("MODE");
-  app.add_option("--obstacle", args.obstacles, "Another mesh that nothing may touch; repeatable")->type_name("FILE");
+  app.add_option("--obstacle", args.obstacles, "Another mesh that nothing may touch; repeatable")
+      ->type_name("FILE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
   app.add_option("--clearance", args.clearance, "How near to obstacles is too near [0]")->type_name("C");
-  app.add_option("--precision", args.digits,
+  app.add_option("--precision", args.digits_text,
                  "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]")
       ->type_name("N");
   app.add_option(
@@ -76,7 +85,7 @@ void declare(CLI::App& app, CheckArguments& args) {
       ->type_name("MODE");
   app.add_flag("--close", args.close,
                "SOURCE's curves were closed for the offset, where their ends are near each other");
-  app.add_option("--threads", args.threads, "Threads; 0 takes all [0]")->type_name("N");
+  app.add_option("--threads", args.threads_text, "Threads; 0 takes all [0]")->type_name("N");
   app.add_option("--report", args.report, "Write what is found as JSON")->type_name("FILE");
   app.add_flag("--json", args.json, "Print JSON, not text");
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use is not at the distance");
@@ -100,11 +109,12 @@ Arguments as_of_offset(const CheckArguments& args) {
   return all;
 }
 
+void settle_counts(CheckArguments& args) {
+  args.threads = parse_count("--threads", args.threads_text, 0, kMostThreads);
+  args.digits = parse_count("--precision", args.digits_text, 0, 17);
+}
+
 void require_usable(const CheckArguments& args) {
-  if (args.threads < 0 || args.threads > 4096)
-    throw UsageError(fmt::format("--threads: expected 0 to 4096, got {}", args.threads));
-  if (args.digits < 0 || args.digits > 17)
-    throw UsageError(fmt::format("--precision: expected 1 to 17 digits, got {}", args.digits));
   if (!args.clearance.empty() && args.obstacles.empty()) throw UsageError("--clearance: expected it with --obstacle");
 }
 
@@ -139,30 +149,32 @@ void require_same_points(const CheckArguments& args, const Curves& source, const
                                    source.positions.size(), offset.positions.size()));
 }
 
-void print(const CheckResult& result, bool curves) {
+void print(std::FILE* out, const CheckResult& result, bool curves) {
   const AchievedSummary achieved = summarise(result.states, result.achieved, result.distances);
   const char* const vertices = curves ? "points" : "vertices";
-  fmt::print("distance    {:.9g}: {:.3f} % of {} {} there, {} beyond, {} on the wrong side\n", result.distance,
+  fmt::print(out, "distance    {:.9g}: {:.3f} % of {} {} there, {} beyond, {} on the wrong side\n", result.distance,
              100 * achieved.share_reached, achieved.vertices, vertices, result.beyond, result.wrong_side);
-  fmt::print("achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
+  fmt::print(out, "achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
              achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,
              achieved.most);
-  fmt::print("{}off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
+  fmt::print(out, "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
              curves ? "at middles  " : "in faces    ", 100 * result.interior.mean, 100 * result.interior.quantile_99,
              100 * result.interior.worst);
-  fmt::print("{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
+  fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
              result.faults.collapsed,
              result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
-  fmt::print("crossings   {} new pairs of {}; {} in the source, {} beside those\n", result.faults.crossings,
+  fmt::print(out, "crossings   {} new pairs of {}; {} in the source, {} beside those\n", result.faults.crossings,
              curves ? "segments" : "triangles", result.source_crossings, result.crossings_near_source);
   if (result.facts.seams.vertices > 0)
-    fmt::print("seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",
+    fmt::print(out,
+               "seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",
                result.facts.seams.vertices, result.facts.seams.widest);
   if (result.obstacles)
-    fmt::print("obstacles   gap {:.6g}, {:.6g} at the start; {} triangles nearer than the clearance\n",
+    fmt::print(out, "obstacles   gap {:.6g}, {:.6g} at the start; {} triangles nearer than the clearance\n",
                result.obstacles->gap, result.obstacles->starting_gap, result.obstacles->near);
-  if (result.torn) fmt::print("torn        {} {} are apart from others that they stood with\n", result.torn, vertices);
-  fmt::print("{}\n", result.valid() ? "valid" : "not valid");
+  if (result.torn)
+    fmt::print(out, "torn        {} {} are apart from others that they stood with\n", result.torn, vertices);
+  fmt::print(out, "{}\n", result.valid() ? "valid" : "not valid");
 }
 
 CheckResult measure_curves(const CheckArguments& args) {
@@ -186,6 +198,7 @@ CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisD
   if (args.close) throw UsageError("--close: expected curves, as this is not for meshes");
   Arguments made = as_of_offset(args);
   Source source = read_source(made);
+  if (!source.file) throw InvalidInput(args.source + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(args.offset);
   tell_remarks(offset);
   const std::vector<Vec3d> places = places_of(args, source.file->polygons, offset.polygons);
@@ -222,10 +235,12 @@ int run_check(int argc, const char* const* argv) {
   try {
     app.parse(reversed_arguments(argc - 1, argv + 1));
   } catch (const CLI::Success& success) {
-    return app.exit(success);
+    print_as_asked(app, success);
+    return 0;
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (check --help lists the options)", error.what()));
   }
+  settle_counts(args);
   require_usable(args);
   const std::string inputs = args.source + " or " + args.offset;
   tell_of_lost_input(inputs);
@@ -237,8 +252,9 @@ int run_check(int argc, const char* const* argv) {
   const CheckResult result = curves ? measure_curves(args) : measure_meshes(args, axes);
   const std::string json = check_json(result, args.source, args.offset);
   if (!args.report.empty()) write_file(args.report, json);
-  if (args.json) fmt::print("{}", json);
-  else print(result, curves);
+  const Printout out(args.report == "-");
+  if (args.json) fmt::print(out, "{}", json);
+  else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
   return result.valid() && (all_there || !args.strict) ? 0 : 3;
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "messages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/vertex_numbers.h"
@@ -168,7 +169,7 @@ void write_curves(const std::string& path, const Source& source, std::span<const
 }
 
 void tell_remarks(const io::MeshFile& file) {
-  for (const std::string& remark : file.remarks) fmt::print(stderr, "vdb_offset: {}: {}\n", file.path, remark);
+  for (const std::string& remark : file.remarks) tell(fmt::format("{}: {}", file.path, remark));
 }
 
 Source read_source(const Arguments& args) {

@@ -13,6 +13,7 @@
 #include "inputs.h"
 #include "iso_command.h"
 #include "layers_command.h"
+#include "messages.h"
 #include "outputs.h"
 #include "summary.h"
 #include "terminal.h"
@@ -36,17 +37,16 @@ std::vector<OffsetResult> fit_input(const Arguments& args, const Source& source)
 /// Whether --strict can be content with a result. Says why, if not.
 bool is_as_asked(const OffsetResult& result, bool of_curves) {
   const OffsetStatistics& statistics = result.statistics;
-  const auto tell = [](std::size_t triangles, const char* what) {
-    if (triangles > 0)
-      fmt::print(stderr, "vdb_offset: --strict: {} triangles are nearer to {} than asked\n", triangles, what);
+  const auto is_clear = [](std::size_t triangles, const char* what) {
+    if (triangles > 0) tell(fmt::format("--strict: {} triangles are nearer to {} than asked", triangles, what));
     return triangles == 0;
   };
-  if (statistics.fit) return tell(statistics.fit->near, "the mesh that they are to fit");
-  if (statistics.obstacles && !tell(statistics.obstacles->near, "an obstacle")) return false;
+  if (statistics.fit) return is_clear(statistics.fit->near, "the mesh that they are to fit");
+  if (statistics.obstacles && !is_clear(statistics.obstacles->near, "an obstacle")) return false;
   const double reached = summarise(result).share_reached;
   if (reached < 1)
-    fmt::print(stderr, "vdb_offset: --strict: {:.4f} % of the {} fall short of the distance\n", 100 * (1 - reached),
-               of_curves ? "points" : "vertices");
+    tell(fmt::format("--strict: {:.4f} % of the {} fall short of the distance", 100 * (1 - reached),
+                     of_curves ? "points" : "vertices"));
   return reached == 1;
 }
 
@@ -70,8 +70,7 @@ bool tell_faults(const Arguments& args, std::span<const OffsetResult> results) {
     const FaultCounts& left = results[i].statistics.limit.left;
     if (left.total() == 0) continue;
     any = true;
-    fmt::print(stderr, "vdb_offset: {}: not valid: {} are left\n", i < places.size() ? places[i].mesh : "--inner",
-               in_words(left));
+    tell(fmt::format("{}: not valid: {} are left", i < places.size() ? places[i].mesh : "--inner", in_words(left)));
   }
   return any;
 }
@@ -84,7 +83,7 @@ int judge(const Arguments& args, const Source& source, std::span<const OffsetRes
   if (source.scene && source.scene->expect.volume)
     for (std::string& expectation : scene::unmet(source.scene->expect, *shell))
       failed.push_back(std::move(expectation));
-  for (const std::string& expectation : failed) fmt::print(stderr, "vdb_offset: {}: {}\n", args.input, expectation);
+  for (const std::string& expectation : failed) tell(fmt::format("{}: {}", args.input, expectation));
   if (!failed.empty() || tell_faults(args, results)) return kProcessing;
   if (!args.strict) return kDone;
   return std::all_of(results.begin(), results.end(),
@@ -157,15 +156,21 @@ int run(Arguments args) {
 }
 
 int fail(ExitCode code, const char* message) {
-  fmt::print(stderr, "vdb_offset: {}\n", message);
+  tell(message);
   return code;
+}
+
+int run(int argc, char** argv) {
+  if (is_check(argc, argv)) return run_check(argc, argv);
+  auto args = parse_arguments(argc, argv);
+  return args ? run(std::move(*args)) : kDone;
 }
 
 int guarded(int argc, char** argv) {
   try {
-    if (is_check(argc, argv)) return run_check(argc, argv);
-    auto args = parse_arguments(argc, argv);
-    return args ? run(std::move(*args)) : kDone;
+    const int code = run(argc, argv);
+    require_printed();
+    return code;
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const InvalidOption& error) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "messages.h"
 #include "vdb_offset/field.h"
 #include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/curve_file.h"
@@ -162,12 +163,12 @@ std::vector<Destination> destinations(const Arguments& args) {
 
 void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written) {
   if (args.quiet) return;
-  if (!written.lost.empty()) fmt::print(stderr, "vdb_offset: {}: not carried over: {}\n", path, written.lost);
+  if (!written.lost.empty()) tell(fmt::format("{}: not carried over: {}", path, written.lost));
   if (written.disagreeing_normals > 0)
-    fmt::print(stderr,
-               "vdb_offset: {}: {} normals (vn) are shared by vertices that ask for different ones now; they got "
-               "the mean (--normals keep leaves all as they were)\n",
-               path, written.disagreeing_normals);
+    tell(
+        fmt::format("{}: {} normals (vn) are shared by vertices that ask for different ones now; they got the mean "
+                    "(--normals keep leaves all as they were)",
+                    path, written.disagreeing_normals));
 }
 
 std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of) {

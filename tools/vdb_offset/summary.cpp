@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "messages.h"
 #include "vdb_offset/curve_line.h"
 #include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
 namespace {
+
+/// Whether standard output holds a file.
+bool output_is_taken(const Arguments& args) { return args.output == "-" || args.report == "-"; }
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
@@ -277,15 +281,16 @@ void print_iso_plan(std::FILE* out, const CaptureStatistics& statistics, double 
 }  // namespace
 
 void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest) {
-  print_facts(stdout, statistics.facts, args.curves);
-  print_plan(stdout, statistics, farthest);
-  print_seams(stdout, statistics.facts.seams, std::abs(farthest.farthest()));
-  if (!args.curves) print_orientation(stdout, statistics.facts, args.options.orient);
+  const Printout out;
+  print_facts(out, statistics.facts, args.curves);
+  print_plan(out, statistics, farthest);
+  print_seams(out, statistics.facts.seams, std::abs(farthest.farthest()));
+  if (!args.curves) print_orientation(out, statistics.facts, args.options.orient);
 }
 
 void print_summary(const Arguments& args, const Source& source, const Outcome& outcome,
                    const std::optional<ShellFacts>& shell, double total_seconds) {
-  std::FILE* const out = args.output == "-" ? stderr : stdout;  // standard output may be taken by the mesh
+  const Printout out(output_is_taken(args));
   const OffsetResult& result = outcome.result;
   const AchievedSummary achieved = summarise(result);
   const char* const vertices = source.curves ? "points" : "vertices";
@@ -305,9 +310,10 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
 }
 
 void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance) {
-  print_iso_plan(stdout, statistics, distance);
-  print_seams(stdout, statistics.source.seams, std::abs(distance));
-  print_orientation(stdout, statistics.source, args.options.orient);
+  const Printout out;
+  print_iso_plan(out, statistics, distance);
+  print_seams(out, statistics.source.seams, std::abs(distance));
+  print_orientation(out, statistics.source, args.options.orient);
 }
 
 void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
@@ -315,7 +321,7 @@ void print_hollow_summary(const Arguments& args, const std::string& path, double
   print_iso_summary(args, path, distance, captured, total_seconds);
   if (inner) print_iso_summary(args, path, inner->statistics.distance, *inner, total_seconds);
   const ShellFacts& shell = hollow.facts;
-  std::FILE* const out = args.output == "-" ? stderr : stdout;
+  const Printout out(output_is_taken(args));
   fmt::print(out, "{}: hollow solid {}, {}, volume {:.6g}, {} pairs of triangles meet", path,
              shell.closed ? "closed" : "not closed", shell.oriented ? "oriented" : "not oriented", shell.volume,
              shell.crossings);
@@ -327,7 +333,7 @@ void print_hollow_summary(const Arguments& args, const std::string& path, double
 
 void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
                        double total_seconds) {
-  std::FILE* const out = args.output == "-" ? stderr : stdout;
+  const Printout out(output_is_taken(args));
   const CaptureStatistics& found = result.statistics;
   const MeshFaults& left = found.mending.left;
   if (args.verbose) {
@@ -351,12 +357,13 @@ void print_iso_summary(const Arguments& args, const std::string& path, double di
 
 void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,
                           const LayerReport& report, double total_seconds) {
-  if (args.verbose) print_details(stdout, result.statistics, result.heights.back(), args.curves);
-  fmt::print("{}: {}", args.output, summary(report));
-  fmt::print("{:.2f} s\n", total_seconds);
-  print_disagreeing(stdout, args, result.statistics);
-  if (result.statistics.obstacles) print_obstacles(stdout, *result.statistics.obstacles, args.options.clearance);
-  print_doubts(stdout, args, source, result.statistics, result.heights.back());
+  const Printout out(output_is_taken(args));
+  if (args.verbose) print_details(out, result.statistics, result.heights.back(), args.curves);
+  fmt::print(out, "{}: {}", args.output, summary(report));
+  fmt::print(out, "{:.2f} s\n", total_seconds);
+  print_disagreeing(out, args, result.statistics);
+  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, args.options.clearance);
+  print_doubts(out, args, source, result.statistics, result.heights.back());
 }
 
 }  // namespace vdb_offset::tool

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <set>
 #include <string_view>
 
+#include "vdb_offset/decimal.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/io/scanner.h"
@@ -295,11 +295,11 @@ Distance parse_distance(const std::string& text) {
     distance.percent = true;
     number.remove_suffix(1);
   }
-  if (number.starts_with('+')) number.remove_prefix(1);
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), distance.value);
-  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(distance.value))
+  const auto value = decimal<double>(number);
+  if (!value)
     throw InvalidInput(
         fmt::format("distance: expected a number of world units, or of percent as in '1.5%', got '{}'", text));
+  distance.value = *value;
   return distance;
 }
 

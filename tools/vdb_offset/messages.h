@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace vdb_offset::tool {
+
+/// A text of at most so many bytes: what is longer loses its middle, never a part of a character.
+std::string shortened(std::string_view text, std::size_t most);
+
+/// A message as a terminal can show it, whatever names and values are in it: on one line, bytes that are no text as
+/// `\xff`, words and the whole of a length that can be read.
+std::string readable(std::string_view message);
+
+/// Prints `vdb_offset: MESSAGE` on standard error. If that is closed or full there is no place for it, and that is all.
+void tell(std::string_view message) noexcept;
+
+/// What is for the user to read: kept until it is complete, then printed on standard output or, if that is taken, on
+/// standard error. That it could not be is for require_printed() to find.
+class Printout {
+ public:
+  explicit Printout(bool output_is_taken = false);
+  ~Printout();
+  Printout(const Printout&) = delete;
+  Printout& operator=(const Printout&) = delete;
+  operator std::FILE*() const { return lines_; }
+
+ private:
+  bool on_error_;
+  char* text_ = nullptr;
+  std::size_t size_ = 0;
+  std::FILE* lines_;
+};
+
+/// \throw WriteError if anything that was printed on standard output did not get there
+void require_printed();
+
+}  // namespace vdb_offset::tool
