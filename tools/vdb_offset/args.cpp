@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -254,34 +253,10 @@ std::optional<double> parse_number(const char* option, const std::optional<std::
   return value;
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  namespace fs = std::filesystem;
-  std::error_code unknown;
-  return !a.empty() && !b.empty() && a != "-" &&
-         fs::weakly_canonical(fs::absolute(a, unknown), unknown) ==
-             fs::weakly_canonical(fs::absolute(b, unknown), unknown);
-}
-
-/// The output may be the input; no other two files may be one.
-void check_apart(const Arguments& args) {
-  std::vector<std::string> taken = {args.input, args.output};
-  for (const std::string& path : args.obstacles) {
-    require(!same_file(path, args.output), "--obstacle: expected a file other than the output, got " + path);
+void check_obstacles(const Arguments& args) {
+  for (const std::string& path : args.obstacles)
     require(format_of(path, args).has_value(),
             path + ": expected an obstacle that ends in .obj, .ply, .stl or .off (or these and .gz or .zst)");
-    taken.push_back(path);
-  }
-  require(!same_file(args.fit, args.output), "--fit: expected a file other than the output, got " + args.fit);
-  require(!same_file(args.fit, args.input), "--fit: expected a file other than the input, got " + args.fit);
-  taken.push_back(args.fit);
-  for (const auto& [name, path] : {std::pair{"--report", args.report},
-                                   {"--states", args.states},
-                                   {"--paths", args.paths},
-                                   {"--save-vdb", args.vdb}}) {
-    for (const std::string& other : taken)
-      require(!same_file(path, other), fmt::format("{}: expected a file of its own, got {}", name, path));
-    taken.push_back(path);
-  }
 }
 
 void require_structured(const Arguments& args) {
@@ -333,6 +308,7 @@ void check_file_options(const Raw& raw, Arguments& args) {
   require(args.paths.empty() ||
               (io::curve_format_of(args.paths) && io::curve_format_of(args.paths) != io::CurveFormat::Svg),
           args.paths + ": expected a file of paths that ends in .obj or .txt");
+  require(args.vdb != "-", "--save-vdb: expected a file, got '-'");
   if (raw.format) {
     args.format = io::format_of("." + *raw.format);
     require(args.format && raw.format->find('.') == std::string::npos,
@@ -392,6 +368,7 @@ void check_fit(const Raw& raw, Arguments& args) {
 
 void check_distances(const Raw& raw, Arguments& args) {
   if (args.axes || !args.fit.empty()) return;
+  if (!raw.distance_from.empty()) args.distance_option = "--distance-from";
   args.distances = parse_distances(raw.distances, raw.distance_from, args);
   require(!args.distances.empty() || scene::is_scene(args.input),
           "--distance: expected a distance (a scene alone brings its own)");
@@ -521,7 +498,7 @@ void check(const Raw& raw, Arguments& args) {
   args.curves = holds_curves(args.input);
   if (args.curves) check_curves(raw, args);
   else check_names(args);
-  check_apart(args);
+  check_obstacles(args);
   check_axes(raw, args);
   check_fit(raw, args);
   if (!args.layers) check_distances(raw, args);

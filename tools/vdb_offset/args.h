@@ -34,6 +34,7 @@ struct LayersRequest {
   double growth = 1.2;                          ///< Each layer's height by that of the one below.
   std::optional<DistanceRequest> first, total;  ///< One of them, unless there is a file.
   std::string heights;                          ///< Of all layers, from the wall on.
+  std::vector<std::string> files_of_heights;    ///< Those that this file names, once it is read.
   bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
 };
 
@@ -53,8 +54,9 @@ struct AxisDistances {
 /// What the command line asks for.
 struct Arguments {
   std::string input, output;
-  std::vector<DistanceRequest> distances;  ///< Empty for a scene that brings its own.
-  std::optional<DistanceRequest> inner;    ///< Of the inner skin of a shell, above 0.
+  std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own.
+  const char* distance_option = "--distance";  ///< What they were given with.
+  std::optional<DistanceRequest> inner;        ///< Of the inner skin of a shell, above 0.
   bool shell = false;
   std::optional<LayersRequest> layers;
   std::optional<IsoRequest> iso;

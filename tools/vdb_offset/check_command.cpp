@@ -12,6 +12,7 @@
 #include "args.h"
 #include "inputs.h"
 #include "messages.h"
+#include "places.h"
 #include "terminal.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_check.h"
@@ -112,6 +113,19 @@ Arguments as_of_offset(const CheckArguments& args) {
 void settle_counts(CheckArguments& args) {
   args.threads = parse_count("--threads", args.threads_text, 0, kMostThreads);
   args.digits = parse_count("--precision", args.digits_text, 0, 17);
+}
+
+/// The report may not take the place of what is measured, nor be mixed with what is printed.
+void require_report_apart(const CheckArguments& args) {
+  if (args.report.empty()) return;
+  Arguments made = as_of_offset(args);
+  if (!args.distance_from.empty()) made.distance_option = "--distance-from";
+  std::vector<Place> read = surroundings_of(made);
+  read.push_back({"SOURCE", args.source});
+  read.push_back({"OFFSET", args.offset});
+  require_apart(read, std::vector<Place>{{"--report", args.report}});
+  if (args.json && args.report == "-")
+    throw UsageError("--report: expected a file of its own, got -, which is that of --json (standard output)");
 }
 
 void require_usable(const CheckArguments& args) {
@@ -242,6 +256,7 @@ int run_check(int argc, const char* const* argv) {
   }
   settle_counts(args);
   require_usable(args);
+  require_report_apart(args);
   const std::string inputs = args.source + " or " + args.offset;
   tell_of_lost_input(inputs);
   const auto axes = parse_axes(args.distance_xy, args.distance_z);

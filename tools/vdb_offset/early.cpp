@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "messages.h"
-#include "vdb_offset/file_replace.h"
+#include "vdb_offset/temporary.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -42,7 +42,7 @@ namespace {
   } catch (...) {
     tell("ended unexpectedly");
   }
-  remove_temporary_file();
+  remove_temporaries();
   ::_exit(3);
 }
 

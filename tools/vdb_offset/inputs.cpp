@@ -120,7 +120,7 @@ std::vector<Distances> geometric_heights(const Source& source, const Arguments& 
 }
 
 /// One height a line; empty lines and what is behind a # do not count. Other files are looked for beside this one.
-std::vector<Distances> read_heights(const Source& source, const Arguments& args) {
+std::vector<Distances> read_heights(const Source& source, Arguments& args) {
   const std::string& path = args.layers->heights;
   std::ifstream file(path);
   if (!file) throw ReadError(path + ": cannot be read");
@@ -134,7 +134,10 @@ std::vector<Distances> read_heights(const Source& source, const Arguments& args)
     line = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
     try {
       DistanceRequest request = parse_request(line);
-      if (line.starts_with('@')) request.from = (std::filesystem::path(path).parent_path() / request.from).string();
+      if (line.starts_with('@')) {
+        request.from = (std::filesystem::path(path).parent_path() / request.from).string();
+        args.layers->files_of_heights.push_back(request.from);
+      }
       heights.push_back(evaluate(source, args, request));
     } catch (const Error& error) {
       throw InvalidInput(fmt::format("{}: line {}: {}", path, number, error.what()));

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "places.h"
 #include "summary.h"
 #include "vdb_offset/capture.h"
 #include "vdb_offset/error.h"
@@ -118,6 +119,7 @@ void write_hollow(const Arguments& args, const Source& source, const Destination
 void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar) {
   const std::vector<Distances> distances = settle_options(source, args);
   require_even(args, distances);
+  require_apart(args);
   const std::vector<Destination> places = destinations(args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {

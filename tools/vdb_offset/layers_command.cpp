@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "places.h"
 #include "summary.h"
 #include "vdb_offset/curve_cells.h"
 #include "vdb_offset/curve_offset.h"
@@ -115,8 +116,6 @@ void require_names(const Arguments& args, std::size_t layers) {
     if (io::volume_format_of(args.output) != io::VolumeFormat::Foam) require_writable(args.output);
     return;
   }
-  if (name_of_layer(args.output, 1, layers) == name_of_layer(args.output, 2, layers) && layers > 1)
-    throw UsageError(fmt::format("OUTPUT: expected names that differ, got {} twice (use {{i}})", args.output));
   for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(args.output, k, layers));
 }
 
@@ -124,6 +123,7 @@ void require_names(const Arguments& args, std::size_t layers) {
 
 bool run_layers(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar) {
   const std::vector<Distances> heights = settle_layers(source, args);
+  require_apart(args, heights.size());
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
     const auto outermost = std::span(heights).last(1);

@@ -15,6 +15,7 @@
 #include "layers_command.h"
 #include "messages.h"
 #include "outputs.h"
+#include "places.h"
 #include "summary.h"
 #include "terminal.h"
 #include "vdb_offset/curve_offset.h"
@@ -110,15 +111,18 @@ int run(Arguments args) {
     bar.show(stage, share);
     return true;
   };
+  require_apart(args);
   if (!args.dry_run && !args.layers) require_places(args, destinations(args));
   bar.show(Stage::Read, 0);
   Source source = read_source(args);
+  if (source.scene) require_apart(args, 0, source.scene->mesh_path);
   if (args.layers) return run_layers(args, source, start, bar) || !args.strict ? kDone : kProcessing;
   if (args.iso) {
     run_iso(args, source, start, bar);
     return kDone;
   }
   const std::vector<Distances> distances = settle_options(source, args);
+  require_apart(args);  // a scene has told of its distance by now
   const std::vector<Destination> places = destinations(args);
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {

@@ -154,10 +154,6 @@ std::vector<Destination> destinations(const Arguments& args) {
     const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
     all.push_back({named(args.output), named(args.report), named(args.states), named(args.paths), texts[i]});
   }
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (all[i].mesh == all[j].mesh)
-        throw UsageError(fmt::format("OUTPUT: expected names that differ, got {} twice (use {{i}})", all[i].mesh));
   return all;
 }
 

@@ -22,7 +22,7 @@ struct Destination {
 };
 
 /// One for each distance: `{i}` in a name becomes its number, from 001 on, `{d}` the distance as given; without either
-/// the number is put behind the name, if there are several. \throw UsageError if two would be one file.
+/// the number is put behind the name, if there are several.
 std::vector<Destination> destinations(const Arguments& args);
 
 /// What is written for one distance.

@@ -13,7 +13,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP};
 
 /// Ends the way an uncaught signal would have, so that shells and scripts see it.
 void end_by(int signal) {

@@ -22,8 +22,8 @@ class ProgressBar {
   std::string shown_;
 };
 
-/// From here on, Ctrl-C and the like (SIGINT, SIGTERM, SIGHUP, and SIGPIPE where nobody reads any more) end the process
-/// by that signal at once, whatever it is doing, and remove its temporary files; not while outputs are put in place.
+/// From here on, Ctrl-C and the like (SIGINT, SIGTERM, SIGHUP) end the process by that signal at once, whatever it is
+/// doing, and remove its temporary files; not while outputs are put in place.
 void catch_interrupts();
 /// For when the outputs are complete: what comes now changes nothing.
 void ignore_interrupts();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,6 +16,9 @@ enum class VolumeFormat : std::uint8_t { Vtu, Msh, Cgns, Su2, Foam };
 /// The format that a path stands for: by the ending .vtu, .msh, .cgns or .su2, in any case; a path whose last component
 /// is `polyMesh` is a folder of OpenFOAM's.
 std::optional<VolumeFormat> volume_format_of(std::string_view path);
+
+/// What is written into a polyMesh.
+inline constexpr std::array<const char*, 5> kFoamFiles = {"points", "faces", "owner", "neighbour", "boundary"};
 
 /// What writing found.
 struct VolumeWriteResult {

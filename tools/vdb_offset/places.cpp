@@ -1,0 +1,157 @@
+#include "places.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+
+#include "messages.h"
+#include "outputs.h"
+#include "vdb_offset/io/volume_file.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string number_of(const struct stat& file) { return fmt::format("{}:{}", file.st_dev, file.st_ino); }
+
+/// Takes whatever is written there, from anyone.
+bool is_null_device(const struct stat& file) { return S_ISCHR(file.st_mode) && file.st_rdev == makedev(1, 3); }
+
+/// Where a link leads whose target does not exist yet; any other path as it is.
+fs::path target_of(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code failed;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, failed)); ++i) {
+    const fs::path target = fs::read_symlink(path, failed);
+    if (failed) break;
+    path = path.parent_path() / target;
+  }
+  return path;
+}
+
+/// What two paths have in common if they are one file. Empty for what cannot clash.
+std::string identity_of(const std::string& path, int standard_stream) {
+  struct stat file {};
+  const bool exists = path == "-" ? ::fstat(standard_stream, &file) == 0 : ::stat(path.c_str(), &file) == 0;
+  if (path == "-" && (!exists || !S_ISREG(file.st_mode))) return fmt::format("-{}", standard_stream);
+  if (!exists) {
+    std::error_code unknown;
+    const fs::path whole = fs::weakly_canonical(target_of(fs::absolute(path, unknown)), unknown);
+    return unknown ? path : whole.string();
+  }
+  if (is_null_device(file)) return {};
+  struct stat stream {};
+  // As /dev/stdout, say.
+  if (!S_ISREG(file.st_mode) && ::fstat(standard_stream, &stream) == 0 && number_of(stream) == number_of(file))
+    return fmt::format("-{}", standard_stream);
+  return number_of(file);
+}
+
+std::string shown(const std::string& path) {
+  constexpr std::size_t kLongest = 120;
+  return shortened(path, kLongest);
+}
+
+[[noreturn]] void refuse(const Place& place, const Place& other) {
+  if (place.option == other.option)
+    throw UsageError(
+        fmt::format("{}: expected names that differ, got {} twice (use {{i}})", place.option, shown(place.path)));
+  throw UsageError(fmt::format("{}: expected a file of its own, got {}, which is that of {} ({})", place.option,
+                               shown(place.path), other.option, shown(other.path)));
+}
+
+void add(std::vector<Place>& places, const std::string& option, const std::string& path) {
+  if (!path.empty()) places.push_back({option, path, false});
+}
+
+/// The file that a distance comes from, if it does.
+void add_source_of(std::vector<Place>& places, const std::string& option, const DistanceRequest& request) {
+  if (!request.from.starts_with("ply:")) add(places, option, request.from);
+}
+
+std::vector<Place> read_by(const Arguments& args) {
+  std::vector<Place> places = surroundings_of(args);
+  places.insert(places.begin(), {"INPUT", args.input});
+  add(places, "--fit", args.fit);
+  if (args.inner) add_source_of(places, "--inner", *args.inner);
+  if (!args.layers) return places;
+  add(places, "--heights", args.layers->heights);
+  for (const std::string& path : args.layers->files_of_heights) add(places, "--heights", path);
+  if (args.layers->first) add_source_of(places, "--first-height", *args.layers->first);
+  if (args.layers->total) add_source_of(places, "--total-thickness", *args.layers->total);
+  return places;
+}
+
+void add_layers(std::vector<Place>& places, const Arguments& args, std::size_t layers) {
+  const auto volume = io::volume_format_of(args.output);
+  const bool is_one = volume || io::structured_format_of(args.output);
+  if (is_one) places.push_back({"OUTPUT", args.output});
+  else
+    for (std::size_t k = 1; k <= layers; ++k)
+      places.push_back({"OUTPUT", name_of_layer(args.output, k, layers), layers == 1});
+  if (volume == io::VolumeFormat::Foam)
+    for (const char* const name : io::kFoamFiles) places.push_back({"OUTPUT", (fs::path(args.output) / name).string()});
+  add(places, "--report", args.report);
+  add(places, "--states", args.states);
+}
+
+std::vector<Place> written_by(const Arguments& args, std::size_t layers) {
+  std::vector<Place> places;
+  if (args.layers) {
+    add_layers(places, args, layers > 0 ? layers : args.layers->count);
+    return places;
+  }
+  std::vector<Destination> destinations = tool::destinations(args);
+  if (destinations.empty()) destinations.push_back({args.output, args.report, args.states, args.paths, {}});
+  // A scene is no mesh, and several outputs that begin to replace the input are an oversight.
+  const bool may_be_input = destinations.size() == 1 && !scene::is_scene(args.input);
+  for (const Destination& to : destinations) {
+    places.push_back({"OUTPUT", to.mesh, may_be_input});
+    add(places, "--report", to.report);
+    add(places, "--states", to.states);
+    add(places, "--paths", to.paths);
+  }
+  add(places, "--save-vdb", args.vdb);
+  return places;
+}
+
+}  // namespace
+
+void require_apart(std::span<const Place> read, std::span<const Place> written) {
+  std::multimap<std::string, const Place*> readers;
+  for (const Place& place : read) readers.emplace(identity_of(place.path, STDIN_FILENO), &place);
+  std::map<std::string, const Place*> writers;
+  for (const Place& place : written) {
+    const std::string identity = identity_of(place.path, STDOUT_FILENO);
+    if (identity.empty()) continue;
+    const auto [other, is_first] = writers.emplace(identity, &place);
+    if (!is_first) refuse(place, *other->second);
+    const auto [first, last] = readers.equal_range(identity);
+    for (auto reader = first; reader != last; ++reader)
+      if (!place.may_be_input || reader->second->option != "INPUT") refuse(place, *reader->second);
+  }
+}
+
+void require_apart(const Arguments& args, std::size_t layers, const std::string& mesh_of_scene) {
+  if (!args.fit.empty() && identity_of(args.fit, STDIN_FILENO) == identity_of(args.input, STDIN_FILENO))
+    throw UsageError("--fit: expected a file other than the input, got " + shown(args.fit));
+  std::vector<Place> read = read_by(args);
+  add(read, "the scene's file", mesh_of_scene);
+  require_apart(read, written_by(args, layers));
+}
+
+std::vector<Place> surroundings_of(const Arguments& args) {
+  std::vector<Place> places;
+  for (const std::string& path : args.obstacles) add(places, "--obstacle", path);
+  for (const io::Selector& part : args.only)
+    if (part.by == io::Selector::By::File) add(places, "--only", part.name);
+  for (const DistanceRequest& request : args.distances) add_source_of(places, args.distance_option, request);
+  return places;
+}
+
+}  // namespace vdb_offset::tool
