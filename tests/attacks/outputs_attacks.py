@@ -85,6 +85,7 @@ CLASHES = {
     'check: obstacle': ('check box.obj box.obj --obstacle wall.obj --report wall.obj', '--report: .*--obstacle'),
     'check: faces': ('check box.obj box.obj --only faces=faces.txt --report faces.txt', '--report: .*--only'),
     'check: numbers': ('check box.obj box.obj --distance-from numbers.txt --report numbers.txt', '--report: .*--distance-from'),
+    'check: stream by another name': ('check box.obj box.obj --json --report /dev/stdout', '--report: .*--json'),
     'check: stream': ('check box.obj box.obj --json --report -', '--report: .*--json'),
 }
 
@@ -126,9 +127,11 @@ def no_clash(place, line):
 @attack
 def report_and_summary_are_not_mixed(place):
     place.box()
-    run = place.run('box.obj', 'o.obj', '-d', '0.1', '--report', '-')
-    place.ended_well(run, 0)
-    place.check(run.out.startswith(b'{') and run.out.endswith(b'}\n'), 'expected nothing but a report', run)
-    run = place.run('check', 'box.obj', 'o.obj', '--report', '-')
-    place.ended_well(run, 0)
-    place.check(run.out.startswith(b'{') and run.out.endswith(b'}\n'), 'expected nothing but a report', run)
+    for name in ('-', '/dev/stdout'):
+        for line in (['box.obj', 'o.obj', '-d', '0.1'], ['check', 'box.obj', 'o.obj']):
+            run = place.run(*line, '--report', name)
+            place.ended_well(run, 0)
+            place.check(run.out.startswith(b'{') and run.out.endswith(b'}\n'), 'expected nothing but a report', run)
+        run = place.run('box.obj', name, '--format', 'obj', '-d', '0.1')
+        place.ended_well(run, 0)
+        place.check(b'reached' not in run.out and b'reached' in run.err, 'expected nothing but a mesh', run)

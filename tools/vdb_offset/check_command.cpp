@@ -124,8 +124,9 @@ void require_report_apart(const CheckArguments& args) {
   read.push_back({"SOURCE", args.source});
   read.push_back({"OFFSET", args.offset});
   require_apart(read, std::vector<Place>{{"--report", args.report}});
-  if (args.json && args.report == "-")
-    throw UsageError("--report: expected a file of its own, got -, which is that of --json (standard output)");
+  if (args.json && is_standard_output(args.report))
+    throw UsageError("--report: expected a file of its own, got " + args.report +
+                     ", which is that of --json (standard output)");
 }
 
 void require_usable(const CheckArguments& args) {
@@ -267,7 +268,7 @@ int run_check(int argc, const char* const* argv) {
   const CheckResult result = curves ? measure_curves(args) : measure_meshes(args, axes);
   const std::string json = check_json(result, args.source, args.offset);
   if (!args.report.empty()) write_file(args.report, json);
-  const Printout out(args.report == "-");
+  const Printout out(is_standard_output(args.report));
   if (args.json) fmt::print(out, "{}", json);
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;

@@ -145,6 +145,10 @@ void require_apart(const Arguments& args, std::size_t layers, const std::string&
   require_apart(read, written_by(args, layers));
 }
 
+bool is_standard_output(const std::string& path) {
+  return !path.empty() && identity_of(path, STDOUT_FILENO) == identity_of("-", STDOUT_FILENO);
+}
+
 std::vector<Place> surroundings_of(const Arguments& args) {
   std::vector<Place> places;
   for (const std::string& path : args.obstacles) add(places, "--obstacle", path);

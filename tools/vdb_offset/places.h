@@ -22,6 +22,9 @@ void require_apart(std::span<const Place> read, std::span<const Place> written);
 /// input has been read, before anything is written. `layers`: how many surfaces are written, if that is known.
 void require_apart(const Arguments& args, std::size_t layers = 0, const std::string& mesh_of_scene = {});
 
+/// Whether a path is standard output, as `-` and /dev/stdout are.
+bool is_standard_output(const std::string& path);
+
 /// The files that options name which `check` has as well.
 std::vector<Place> surroundings_of(const Arguments& args);
 

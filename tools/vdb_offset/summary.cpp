@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "messages.h"
+#include "places.h"
 #include "vdb_offset/curve_line.h"
 #include "vdb_offset/report.h"
 
@@ -13,7 +14,9 @@ namespace vdb_offset::tool {
 namespace {
 
 /// Whether standard output holds a file.
-bool output_is_taken(const Arguments& args) { return args.output == "-" || args.report == "-"; }
+bool output_is_taken(const Arguments& args) {
+  return is_standard_output(args.output) || is_standard_output(args.report);
+}
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
