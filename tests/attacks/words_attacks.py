@@ -141,6 +141,20 @@ def no_distance(place):
 
 
 @attack
+def nothing_given(place):
+    """An empty variable of a script is not the same as no option."""
+    place.box()
+    for line, option in ((['', 'o.obj', *DISTANCE], 'INPUT'), (['box.obj', '', *DISTANCE], 'OUTPUT'),
+                         (['box.obj', 'o.obj', *DISTANCE, '--report', ''], '--report'),
+                         (['box.obj', 'o.obj', '-d', ''], '--distance'), (['check', 'box.obj', ''], 'OFFSET'),
+                         (['box.obj', 'o.obj', *DISTANCE, '--max-memory', ''], '--max-memory'),
+                         (['check', 'box.obj', 'box.obj', '-d', ''], '--distance')):
+        place.refused(place.run(*line), 1, f"{option}: expected a value, got ''")
+    for number in ('0', '18'):
+        place.refused(place.run('box.obj', 'o.obj', *DISTANCE, '--precision', number), 1, '--precision: expected 1 to 17')
+
+
+@attack
 def numbers(place):
     place.box()
     for option, text in (('--threads', '010'), ('--threads', '+1'), ('--voxel-size', '+5e-1'), ('--weld', '+1e-9'),

@@ -92,7 +92,8 @@ struct Raw {
   std::optional<std::string> inside;
   std::string normals = "recompute";
   std::optional<std::string> voxel_size, voxels_per_distance;
-  std::string threads = "0", precision = "0";
+  std::optional<std::string> precision;
+  std::string threads = "0";
 };
 
 void declare(CLI::App& app, Arguments& args, Raw& raw) {
@@ -317,7 +318,7 @@ void check_file_options(const Raw& raw, Arguments& args) {
   require(raw.normals == "recompute" || raw.normals == "keep",
           fmt::format("--normals: expected 'recompute' or 'keep', got '{}'", raw.normals));
   args.write.normals = raw.normals == "keep" ? io::Normals::Keep : io::Normals::Recompute;
-  args.write.digits = parse_count("--precision", raw.precision, 0, 17);
+  if (raw.precision) args.write.digits = parse_count("--precision", *raw.precision, 1, 17);
 }
 
 DistanceRequest parse_request(const std::string& option, const std::string& text, const Arguments& args) {
@@ -661,6 +662,12 @@ std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
   return arguments;
 }
 
+void require_values(const CLI::App& app) {
+  for (const CLI::Option* const option : app.get_options())
+    for (const std::string& value : option->results())
+      require(!value.empty(), option->get_name() + ": expected a value, got ''");
+}
+
 void print_as_asked(const CLI::App& app, const CLI::Success& asked) {
   std::ostringstream text;
   app.exit(asked, text, text);
@@ -682,6 +689,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (--help lists the options)", error.what()));
   }
+  require_values(app);
   check(raw, args);
   args.weld_text = raw.weld;
   args.orient_text = raw.orient;

@@ -129,6 +129,9 @@ SymmetryPlane parse_plane(const std::string& text);
 /// `--` is a file's name, whatever it starts with.
 std::vector<std::string> reversed_arguments(int argc, const char* const* argv);
 
+/// \throw UsageError if an option or a file's name was given, but is empty, as where a script has nothing to say.
+void require_values(const CLI::App& app);
+
 /// Prints the help or the version.
 void print_as_asked(const CLI::App& app, const CLI::Success& asked);
 

@@ -41,7 +41,8 @@ struct CheckArguments {
   std::string source, offset, distance, distance_from, distance_xy, distance_z, border = "slide", clearance;
   std::string weld = "auto", orient = "keep", report;
   std::vector<std::string> only, obstacles;
-  std::string threads_text = "0", digits_text = "0";
+  std::string threads_text = "0";
+  std::optional<std::string> digits_text;
   int threads = 0, digits = 0;
   bool json = false, strict = false, close = false;
 };
@@ -112,7 +113,7 @@ Arguments as_of_offset(const CheckArguments& args) {
 
 void settle_counts(CheckArguments& args) {
   args.threads = parse_count("--threads", args.threads_text, 0, kMostThreads);
-  args.digits = parse_count("--precision", args.digits_text, 0, 17);
+  if (args.digits_text) args.digits = parse_count("--precision", *args.digits_text, 1, 17);
 }
 
 /// The report may not take the place of what is measured, nor be mixed with what is printed.
@@ -255,6 +256,7 @@ int run_check(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (check --help lists the options)", error.what()));
   }
+  require_values(app);
   settle_counts(args);
   require_usable(args);
   require_report_apart(args);
