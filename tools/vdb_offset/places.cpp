@@ -42,7 +42,8 @@ std::string identity_of(const std::string& path, int standard_stream) {
   if (!exists) {
     std::error_code unknown;
     const fs::path whole = fs::weakly_canonical(target_of(fs::absolute(path, unknown)), unknown);
-    return unknown ? path : whole.string();
+    if (unknown) return path;
+    return (whole.has_filename() ? whole : whole.parent_path()).string();  // a folder's may end in a slash
   }
   if (is_null_device(file)) return {};
   struct stat stream {};
