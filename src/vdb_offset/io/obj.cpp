@@ -58,12 +58,14 @@ struct Arrays {
 const char* line_end(const char* line, const char* end) {
   const char* at = line;
   for (;;) {
+    const char* const part = at;
     const auto* newline = static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
     if (!newline) return end;
     at = newline + 1;
     const char* last = newline != line && newline[-1] == '\r' ? newline - 1 : newline;
     if (last == line || last[-1] != '\\') return at;
-    if (std::memchr(line, '#', static_cast<std::size_t>(newline - line))) return at;  // a comment ends with its line
+    // A comment ends with its line. Only what has come since is looked at, however many lines are joined.
+    if (std::memchr(part, '#', static_cast<std::size_t>(newline - part))) return at;
     if (at == end) return end;
   }
 }
