@@ -830,14 +830,15 @@ TEST_CASE("command: distances by axis and fits, and what goes with them", "[comm
   check_failure(shell, "sphere.obj o.obj --fit none.obj --clearance 1", 2, "none.obj");
 }
 
-TEST_CASE("command: an iso-surface that is valid on no lattice is not written", "[command][iso]") {
+TEST_CASE("command: an iso-surface whose corners would be rounded by more than voxels are large is refused",
+          "[command][iso]") {
   const ShellCommand run;
   Polygons sphere = scene::icosphere(1, 3);
   for (Vec3d& p : sphere.positions) p[0] += 104;  // where two digits leave next to nothing of x
   io::write_mesh(run.file("far.obj"), sphere.view());
   const Run made = run("far.obj out.obj --mode iso -d 0.3 --voxel-size 0.8 --precision 2 --report out.json");
-  CHECK(made.code == 3);
-  CHECK_THAT(made.err, Catch::Contains("on each of 4 lattices"));
+  CHECK(made.code == 2);
+  CHECK_THAT(made.err, Catch::Contains("rounded by less than 0.25 of a voxel, 0.8, got 5.27"));
   CHECK(!run.has("out.obj"));
   CHECK(!run.has("out.json"));
 }

@@ -447,3 +447,36 @@ TEST_CASE("curve files: real curves at four distances", "[.curve_files]") {
   }
   CHECK(files >= 9);
 }
+
+TEST_CASE("curves: crossings of the source are counted up to a bound", "[curve]") {
+  // A zigzag whose teeth are out of order: each segment crosses a third of the others.
+  const auto zigzag = [](std::size_t count) {
+    Curves curves;
+    for (std::size_t i = 0; i < count; ++i) {
+      curves.positions.emplace_back(10.0 * static_cast<double>(i * 7919 % count) / static_cast<double>(count),
+                                    10.0 * static_cast<double>(i % 2), 0);
+      curves.corners.push_back(static_cast<std::uint32_t>(i));
+    }
+    curves.close_face();
+    return curves;
+  };
+  const LimitStatistics few = offset_of(zigzag(400), 0.05).statistics.limit;
+  CHECK(few.source_crossings > 10000);
+  CHECK(few.source_crossings < 1000000);
+  CHECK_FALSE(few.more_source_crossings);
+  const LimitStatistics many = offset_of(zigzag(3000), 0.05).statistics.limit;
+  CHECK(many.source_crossings == 1000000);
+  CHECK(many.more_source_crossings);
+}
+
+TEST_CASE("curves: a segment that is run through many times is one", "[curve]") {
+  Curves curves;
+  for (std::size_t i = 0; i < 20000; ++i) {
+    curves.positions.emplace_back(static_cast<double>(i % 2), 0, 0);
+    curves.corners.push_back(static_cast<std::uint32_t>(i));
+  }
+  curves.close_face();
+  const OffsetResult result = offset_of(curves, 0.1);
+  CHECK(result.statistics.limit.source_crossings == 0);
+  CHECK(result.statistics.limit.left.total() == 0);
+}

@@ -1,7 +1,9 @@
 #include "vdb_offset/surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "oracles.h"
@@ -48,6 +50,48 @@ TEST_CASE("triangulate: a polygon with a bridge to a hole leaves the hole open",
   REQUIRE(triangles.size() == 8);
   for (const auto& t : triangles) CHECK(area_of(p, {t}) >= 0);
   CHECK(area_of(p, triangles) == Approx(8));
+}
+
+TEST_CASE("triangulate: of a large polygon no corner gets more than a few triangles", "[surface]") {
+  // A star, and what is left of it without its tips, of which all fans would do.
+  for (const std::size_t step : {1, 2}) {
+    constexpr std::size_t kCorners = 4000;
+    std::vector<Vec3d> p;
+    std::vector<std::uint32_t> corners;
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      const double angle = 2 * M_PI * static_cast<double>(i) / kCorners, radius = i % 2 == 0 ? 0.5 : 1;
+      p.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+      if (i % step == 0) corners.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    triangulate(p, corners, triangles);
+    REQUIRE(triangles.size() == corners.size() - 2);
+    std::vector<std::size_t> around(p.size(), 0);
+    double least = 1;
+    for (const auto& t : triangles) {
+      least = std::min(least, area_of(p, {t}));
+      for (const auto v : t) ++around[v];
+    }
+    CHECK(least > 0);
+    // Twice the area of a triangle between neighbouring corners and the middle, so many times.
+    const double side = step == 1 ? 0.5 * std::sin(2 * M_PI / kCorners) : 0.25 * std::sin(4 * M_PI / kCorners);
+    CHECK(area_of(p, triangles) == Approx(static_cast<double>(corners.size()) * side / 2));
+    CHECK(*std::max_element(around.begin(), around.end()) <= 2 * std::bit_width(kCorners));
+  }
+}
+
+TEST_CASE("triangulate: a large polygon that crosses itself gets as many triangles", "[surface]") {
+  // Eleven times around.
+  std::vector<Vec3d> p;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const double angle = 22 * M_PI * i / 2000, radius = 1 + 0.1 * std::sin(angle / 11);
+    p.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    corners.push_back(i);
+  }
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangulate(p, corners, triangles);
+  CHECK(triangles.size() == 1998);
 }
 
 TEST_CASE("surface: facts of known shapes", "[surface]") {

@@ -84,12 +84,16 @@ CapturePlan plan_voxels(const Surface& surface, const CaptureOptions& options, b
   } else {
     plan = choose_voxels(surface, options, is_signed);
   }
+  // Corners of the new triangles are a part of a voxel apart: rounded by more, they fold and cross without end.
+  const double farthest = farthest_coordinate(surface.facts) + std::abs(options.distance);
+  require_fine_coordinates(options.precision.half_unit() * farthest, plan.voxel_size, "a voxel");
   if (fits_budget(plan, options, surface.facts)) return plan;
-  throw OutOfBudget(fmt::format(
-      "capture: expected a surface that fits into {:.0f} MiB and 524288 voxels across, got about {:.0f} MiB in {} leaf "
-      "nodes with voxel size {:.6g} (a larger voxel size needs less)",
-      options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
-      static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size));
+  throw OutOfBudget(
+      fmt::format("capture: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
+                  "about {:.0f} MiB in {} leaf "
+                  "nodes with voxel size {:.6g} (a larger voxel size needs less)",
+                  options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
+                  static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size));
 }
 
 }  // namespace vdb_offset

@@ -118,13 +118,14 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  std::optional<std::vector<TrianglePair>> source_crossings;
-  if (surroundings) source_crossings = surroundings->source_crossings();
+  std::optional<SelfCrossings> source_crossings;
+  if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
   FaultFinder finder(body, source, distances, options.precision, std::move(source_crossings));
   finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
   result.faults = finder.count();
-  result.source_crossings = finder.source_crossings().size() - (surroundings ? surroundings->crossing() : 0);
+  result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
   result.crossings_near_source = finder.crossings_near_source();
+  result.more_source_crossings = finder.source_crossings().has_more();
   judge_vertices(surface, finder, distances, options.precision, result);
   result.interior = measure_interior(body, places, distances);
 }

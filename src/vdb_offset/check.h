@@ -42,6 +42,7 @@ struct CheckResult {
   std::size_t torn = 0;        ///< Vertices that moved as one in the source and stand apart in the offset.
   FaultCounts faults;
   std::size_t source_crossings = 0, crossings_near_source = 0;
+  bool more_source_crossings = false;      ///< There are more of them than these, and what is near is not looked at.
   InteriorError interior;                  ///< Of all faces.
   std::optional<ObstacleFacts> obstacles;  ///< If there are any.
 

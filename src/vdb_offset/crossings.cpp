@@ -11,10 +11,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "vdb_offset/memory.h"
+#include "vdb_offset/parallel.h"
 
 namespace vdb_offset {
 namespace {
@@ -171,6 +175,10 @@ bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_
   return meet(Couple(surface, positions, s, positions, t));
 }
 
+// Where lists of crossings are refused.
+constexpr const char* kCrossings = "crossings";
+constexpr std::size_t kSmallList = std::size_t{1} << 20;  // bytes
+
 /// Lets find(first, last, found) look at runs of 0 .. count - 1 in parallel; sorts what they find.
 template <class Find>
 std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain, Find&& find) {
@@ -180,6 +188,10 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
     for (std::size_t i = range.begin(); i != range.end(); ++i) find(i, mine);
   });
   std::vector<TrianglePair> all;
+  std::size_t pairs = 0;
+  for (const auto& some : found) pairs += some.size();
+  if (pairs * sizeof(TrianglePair) > kSmallList) require_memory(pairs * sizeof(TrianglePair), kCrossings);
+  all.reserve(pairs);
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   tbb::parallel_sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -223,36 +235,88 @@ FloatBox CrossingFinder::box_of(const std::array<Vec3d, 3>& corners) const {
   return box;
 }
 
-/// Block by block, each with those that follow it. Few of a block's triangles come near the box around another.
-std::vector<TrianglePair> CrossingFinder::all() const {
+/// Calls visit(s, t), which says whether that is enough, for the pairs that meet of a block's triangles and those that
+/// follow. Few of a block's triangles come near the box around another.
+template <class Takes, class Visit>
+void CrossingFinder::for_each_pair_of(std::size_t block, Takes&& takes, Visit&& visit) const {
   const auto& blocks = tree_.levels().front();
   constexpr std::uint32_t kWidth = BoxTree::kWidth;
-  const auto compare = [&](std::size_t block, std::size_t other, unsigned near, std::vector<TrianglePair>& found) {
+  const auto compare = [&](std::size_t other, unsigned near) {
     for (; near != 0; near &= near - 1) {
       const int i = std::countr_zero(near);
+      const auto s = static_cast<std::uint32_t>(block) * kWidth + static_cast<std::uint32_t>(i);
       unsigned meets = BoxTree::overlaps(blocks[other], BoxTree::box(blocks[block], i));
       if (block == other) meets &= ~0u << (i + 1);
-      if (meets == 0) continue;
-      const auto s = static_cast<std::uint32_t>(block) * kWidth + static_cast<std::uint32_t>(i);
+      if (meets == 0 || !takes(s)) continue;
       const Plane plane(corners(s, positions_));
       for (; meets != 0; meets &= meets - 1) {
         const auto t = static_cast<std::uint32_t>(other) * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
-        if (!on_one_side(plane, surface_, positions_, s, t) && meet(surface_, positions_, s, t))
-          found.emplace_back(s, t);
+        if (!on_one_side(plane, surface_, positions_, s, t) && takes(t) && meet(surface_, positions_, s, t) &&
+            visit(s, t))
+          return true;
       }
     }
+    return false;
   };
   constexpr unsigned kAll = (1u << kWidth) - 1;
-  return find_in_parallel(blocks.size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
-    if (tree_.levels().size() == 1) return compare(block, block, kAll, found);
-    tree_.for_each_overlap(
-        BoxTree::around(blocks[block]),
-        [&](std::size_t other) {
-          if (other < block) return;
-          const FloatBox box = BoxTree::box(tree_.levels()[1][other / kWidth], static_cast<int>(other % kWidth));
-          compare(block, other, other == block ? kAll : BoxTree::overlaps(blocks[block], box), found);
-        },
-        1);
+  if (tree_.levels().size() == 1) {
+    compare(block, kAll);
+    return;
+  }
+  tree_.any_overlap(
+      BoxTree::around(blocks[block]),
+      [&](std::size_t other) {
+        if (other < block) return false;
+        const FloatBox box = BoxTree::box(tree_.levels()[1][other / kWidth], static_cast<int>(other % kWidth));
+        return compare(other, other == block ? kAll : BoxTree::overlaps(blocks[block], box));
+      },
+      1);
+}
+
+std::vector<TrianglePair> CrossingFinder::all(const std::function<bool(std::uint32_t)>& matters) const {
+  return find_in_parallel(tree_.levels().front().size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
+    for_each_pair_of(
+        block, [&](std::uint32_t t) { return !matters || matters(t); },
+        [&](std::uint32_t s, std::uint32_t t) {
+          append_within_limit(found, {s, t}, kCrossings);
+          return false;
+        });
+  });
+}
+
+SelfCrossings CrossingFinder::listed() const {
+  std::atomic<std::size_t> count = 0;
+  SelfCrossings crossings;
+  crossings.pairs =
+      find_in_parallel(tree_.levels().front().size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
+        if (count.load(std::memory_order_relaxed) > kMostListedPairs) return;
+        const std::size_t before = found.size();
+        for_each_pair_of(
+            block, [](std::uint32_t) { return true; },
+            [&](std::uint32_t s, std::uint32_t t) {
+              found.emplace_back(s, t);
+              return found.size() - before > kMostListedPairs;
+            });
+        count += found.size() - before;
+      });
+  crossings.more = crossings.pairs.size() > kMostListedPairs;
+  if (!crossings.more) return crossings;
+  crossings.pairs = {};
+  crossings.crossed.assign(surface_.triangles.size(), 0);
+  for_each_index(
+      surface_.triangles.size(),
+      [&](std::size_t t) { crossings.crossed[t] = meets_any(static_cast<std::uint32_t>(t)); }, 64);
+  return crossings;
+}
+
+bool CrossingFinder::meets_any(std::uint32_t t) const {
+  const std::array<Vec3d, 3> here = corners(t, positions_);
+  const Plane plane(here);
+  return tree_.any_overlap(box_of(here), [&](std::size_t child) {
+    const auto other = static_cast<std::uint32_t>(child);
+    if (other == t || on_one_side(plane, surface_, positions_, t, other)) return false;
+    const TrianglePair pair = std::minmax(t, other);
+    return meet(surface_, positions_, pair.first, pair.second);
   });
 }
 
@@ -312,7 +376,7 @@ std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(st
                if (other < t && is_updated_[other]) return false;
                if (on_one_side(plane, surface_, positions_, t, other) || !may_take(other)) return false;
                const TrianglePair pair = std::minmax(t, other);
-               if (meet(surface_, positions_, pair.first, pair.second)) found.push_back(pair);
+               if (meet(surface_, positions_, pair.first, pair.second)) append_within_limit(found, pair, kCrossings);
                return false;
              });
   });

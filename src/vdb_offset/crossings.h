@@ -15,6 +15,21 @@ namespace vdb_offset {
 /// Two triangles, the smaller index first.
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
+/// Where a surface crosses itself: all pairs, or, if there are more than kMostListedCrossings, who is in any.
+struct SelfCrossings {
+  std::vector<TrianglePair> pairs;    ///< Sorted; empty if there are more.
+  bool more = false;                  ///< There are more than are listed.
+  std::vector<std::uint8_t> crossed;  ///< Then, of each triangle: whether it meets another.
+
+  /// No more than are counted.
+  std::size_t count() const;
+};
+
+/// Most pairs that are listed of where a source crosses itself: found in two seconds, and as much work for who asks.
+inline constexpr std::size_t kMostListedPairs = 1000000;
+
+inline std::size_t SelfCrossings::count() const { return more ? kMostListedPairs : pairs.size(); }
+
 /// Finds the pairs of a surface's triangles that meet elsewhere than in the corners and edges they share: decided with
 /// exact predicates (CGAL's kernel), without a tolerance. Neighbours across an edge meet if they are folded flat onto
 /// each other. Triangles without area meet nothing. Memory: 29 bytes a triangle.
@@ -29,7 +44,11 @@ class CrossingFinder {
   bool is_updated(std::uint32_t triangle) const { return is_updated_[triangle]; }
 
   /// All pairs, sorted; the same for any number of threads.
-  std::vector<TrianglePair> all() const;
+  std::vector<TrianglePair> all() const { return all({}); }
+  /// The same of triangles that matter.
+  std::vector<TrianglePair> all(const std::function<bool(std::uint32_t)>& matters) const;
+  /// All pairs, or who is in any.
+  SelfCrossings listed() const;
   /// The pairs that a triangle of the last update is part of, or two, both of which matter (all do by default); sorted.
   std::vector<TrianglePair> of_updated(const std::function<bool(std::uint32_t)>& matters = {}) const;
   /// Of each triangle of the last update one such pair that counts, if there are any; sorted.
@@ -52,6 +71,9 @@ class CrossingFinder {
 
  private:
   void build();
+  template <class Takes, class Visit>
+  void for_each_pair_of(std::size_t block, Takes&& takes, Visit&& visit) const;
+  bool meets_any(std::uint32_t triangle) const;
   std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> places) const;
   FloatBox box_of(const std::array<Vec3d, 3>& corners) const;
   std::vector<std::uint32_t> updated_runs() const;

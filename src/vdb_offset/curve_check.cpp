@@ -53,6 +53,7 @@ class CurveChecker {
     faults.move(all, places_);
     result_.faults = faults.count();
     result_.source_crossings = faults.source_crossings();
+    result_.more_source_crossings = faults.more_in_source();
     result_.crossings_near_source = faults.crossings_near_source();
     judge_points(faults);
     measure_middles();

@@ -40,30 +40,55 @@ CurveFaults::CurveFaults(const PlaneCurves& curves)
       finder_(curves.line().segments, place_) {
   crossing_.of.resize(fault_.size());
   slid_.of.resize(fault_.size());
-  source_crossings_ = finder_.all();
-  mark_source_crossings();
+  auto found = finder_.all(kMostListedCrossings);
+  more_in_source_ = !found;
+  if (found) source_crossings_ = std::move(*found);
+  if (more_in_source_) mark_near();
+  if (source_crossings_.empty()) return;
+  crossed_.assign(fault_.size(), 0);
+  for (const auto& [s, t] : source_crossings_) crossed_[s] = crossed_[t] = 1;
 }
 
-void CurveFaults::mark_source_crossings() {
-  const auto ring = [&](std::uint32_t segment) {
-    Indices some{segment};
-    for (int i = 0; i < kSlides; ++i) {
-      Indices points;
-      for (const auto s : some)
-        points.insert(points.end(), curves_.line().segments[s].begin(), curves_.line().segments[s].end());
-      sort_unique(points);
-      some = segments_around(points);
-    }
-    return some;
-  };
-  for (const auto& [s, t] : source_crossings_) {
-    const Indices of_s = ring(s), of_t = ring(t);
-    for (const auto a : of_s)
-      for (const auto b : of_t)
-        if (a != b) near_.push_back(std::minmax(a, b));
+/// The segments that are no more than so many from one.
+Indices CurveFaults::ring(std::uint32_t segment) const {
+  Indices some{segment};
+  for (int i = 0; i < kSlides; ++i) {
+    Indices points;
+    for (const auto s : some)
+      points.insert(points.end(), curves_.line().segments[s].begin(), curves_.line().segments[s].end());
+    sort_unique(points);
+    some = segments_around(points);
   }
-  std::sort(near_.begin(), near_.end());
-  near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+  return some;
+}
+
+/// Where there are too many crossings to ask each pair, segments near any are told from the others, as triangles are:
+/// ring by ring, all at once.
+void CurveFaults::mark_near() {
+  near_ = finder_.crossed();
+  std::vector<std::uint8_t> points(place_.size());
+  for (int i = 0; i < kSlides; ++i) {
+    std::fill(points.begin(), points.end(), std::uint8_t{0});
+    for (std::size_t s = 0; s < near_.size(); ++s)
+      if (near_[s])
+        for (const auto p : curves_.line().segments[s]) points[p] = 1;
+    for (std::size_t s = 0; s < near_.size(); ++s)
+      for (const auto p : curves_.line().segments[s]) near_[s] = near_[s] || points[p];
+  }
+}
+
+/// Whether a crossing of the source is no more than two segments from either.
+bool CurveFaults::is_near(const SegmentPair& pair) const {
+  if (crossed_.empty()) return false;
+  Indices of_first = ring(pair.first), of_second = ring(pair.second);
+  const auto is_not_crossed = [&](std::uint32_t s) { return !crossed_[s]; };
+  std::erase_if(of_first, is_not_crossed);
+  if (of_first.empty()) return false;
+  std::erase_if(of_second, is_not_crossed);
+  return std::any_of(of_first.begin(), of_first.end(), [&](std::uint32_t s) {
+    return std::any_of(of_second.begin(), of_second.end(),
+                       [&](std::uint32_t t) { return s != t && !is_new(std::minmax(s, t)); });
+  });
 }
 
 Indices CurveFaults::segments_around(const Indices& points) const {
@@ -106,6 +131,7 @@ CurveFaults::Fault CurveFaults::judge(std::uint32_t segment) const {
 }
 
 bool CurveFaults::is_new(const SegmentPair& pair) const {
+  if (more_in_source_) return !near_[pair.first] && !near_[pair.second];
   return !std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair);
 }
 
@@ -137,8 +163,10 @@ void CurveFaults::move(const Indices& points, std::span<const Vec2d> place) {
     crossing_.remove_all_of(s);
     slid_.remove_all_of(s);
   }
-  for (const SegmentPair& pair : finder_.of(segments))
-    if (is_new(pair)) (std::binary_search(near_.begin(), near_.end(), pair) ? slid_ : crossing_).add(pair);
+  Indices judged = segments;
+  if (more_in_source_) std::erase_if(judged, [&](std::uint32_t s) { return near_[s] != 0; });
+  for (const SegmentPair& pair : finder_.of(judged, [&](const SegmentPair& each) { return is_new(each); }))
+    (is_near(pair) ? slid_ : crossing_).add(pair);
 }
 
 FaultCounts CurveFaults::count() const {

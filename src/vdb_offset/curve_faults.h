@@ -54,7 +54,9 @@ class CurveFaults {
   double distance_of(std::uint32_t point) const { return distance_[point]; }
   /// Of closed curves alone.
   bool on_wrong_side(std::uint32_t point) const { return wrong_side_[point]; }
-  std::size_t source_crossings() const { return source_crossings_.size(); }
+  std::size_t source_crossings() const { return more_in_source_ ? kMostListedCrossings : source_crossings_.size(); }
+  /// There are more of them than are counted. Then nothing is asked of segments that are no more than two from one.
+  bool more_in_source() const { return more_in_source_; }
   /// New pairs that have only slid along from one of those.
   std::size_t crossings_near_source() const { return slid_.count; }
   /// The segments around a point: at most two, but where curves branch.
@@ -75,7 +77,9 @@ class CurveFaults {
   void measure(std::uint32_t point);
   Fault judge(std::uint32_t segment) const;
   bool is_new(const SegmentPair& pair) const;
-  void mark_source_crossings();
+  Indices ring(std::uint32_t segment) const;
+  bool is_near(const SegmentPair& pair) const;
+  void mark_near();
 
   const PlaneCurves& curves_;
   std::vector<Vec2d> place_, away_;  // of each point: where it stands, and the way there from the closest one
@@ -85,8 +89,10 @@ class CurveFaults {
   SegmentCrossings finder_;
   std::size_t wrong_segments_ = 0, misplaced_ = 0;
   Pairs crossing_, slid_;
-  std::vector<SegmentPair> source_crossings_;
-  std::vector<SegmentPair> near_;  // pairs of segments that are no more than two from a crossing of the source
+  std::vector<SegmentPair> source_crossings_;  // empty if there are too many
+  std::vector<std::uint8_t> crossed_;          // of each segment, whether it is in one of them; empty if there are none
+  std::vector<std::uint8_t> near_;             // of each segment, if there are too many: whether one is near
+  bool more_in_source_ = false;
 };
 
 }  // namespace vdb_offset

@@ -40,6 +40,7 @@ class CurveLimiter {
     place(points_);
     statistics_.before = faults_.count();
     statistics_.source_crossings = faults_.source_crossings();
+    statistics_.more_source_crossings = faults_.more_in_source();
     spread();
     pull();
     let_out();

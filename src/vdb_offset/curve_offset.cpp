@@ -40,7 +40,7 @@ class CurvePipeline {
       farthest = {std::max(farthest.inside, d.inward()), std::max(farthest.outside, d.outward())};
     shared_.facts = facts_of(curves_, plane_);
     const bool goes = farthest.inside > 0 || farthest.outside > 0;
-    if (goes) stand_up(farthest);
+    if (goes) stand_up(farthest, wanted.size());
     return goes;
   }
   const OffsetStatistics& statistics() const { return shared_; }
@@ -94,8 +94,12 @@ class CurvePipeline {
   }
 
  private:
+  std::size_t bytes_beside(std::size_t results) const {
+    return plane_.points.size() * (layers_ * kLayerPointBytes + (options_.keep_paths ? results * kPathBytes : 0));
+  }
+
   /// Puts the curves into a ribbon as high as the voxel size asks for.
-  void stand_up(const Reach& farthest) {
+  void stand_up(const Reach& farthest, std::size_t results) {
     const StageTimer timer(shared_.seconds, Stage::Rasterise);
     const MeshFacts& facts = shared_.facts;
     const VoxelSize chosen = choose_voxel_size(facts.median_edge, facts.diagonal,
@@ -105,8 +109,8 @@ class CurvePipeline {
     ribbon_.facts.boundary_left = 2 * plane_.chains.ends;
     GridOptions grid;
     grid.voxel_size = chosen.size;
-    shared_.plan = plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads,
-                             {layers_ * plane_.points.size() * kLayerPointBytes, true});
+    shared_.plan =
+        plan_grid(ribbon_, farthest, grid, options_.max_memory, shared_.threads, {bytes_beside(results), true});
     shared_.plan.reason = chosen.reason;
   }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vdb_offset/segment_crossings.h"
+
 namespace vdb_offset {
 namespace {
 
@@ -31,17 +33,17 @@ unsigned nearer_boxes(const BoxTree::Siblings& box, float x, float y, float limi
 
 }  // namespace
 
-CurveQuery::CurveQuery(const Polyline& line) : line_(line) {
-  tree_.build((line.segments.size() + kLeafSize - 1) / kLeafSize, [&](std::size_t leaf) { return box_of(leaf); });
+CurveQuery::CurveQuery(const Polyline& line) : line_(line), distinct_(distinct_segments(line.segments)) {
+  tree_.build((distinct_.size() + kLeafSize - 1) / kLeafSize, [&](std::size_t leaf) { return box_of(leaf); });
 }
 
 /// Rounded outwards, a query point's rounding to float included.
 FloatBox CurveQuery::box_of(std::size_t leaf) const {
   FloatBox box;
   box.lower[2] = box.upper[2] = 0;
-  const std::size_t end = std::min(line_.segments.size(), (leaf + 1) * kLeafSize);
+  const std::size_t end = std::min(distinct_.size(), (leaf + 1) * kLeafSize);
   for (std::size_t s = leaf * kLeafSize; s < end; ++s)
-    for (const auto v : line_.segments[s])
+    for (const auto v : line_.segments[distinct_[s]])
       for (std::size_t k = 0; k < 2; ++k) {
         const auto x = static_cast<float>(line_.vertices[v][static_cast<int>(k)]);
         const float rounding = std::abs(x) * 0x1p-21f + std::numeric_limits<float>::denorm_min();
@@ -88,13 +90,12 @@ TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {
     }
     for (; depth > first; --depth) {
       if (!(stack[depth - 1].squared < best.squared_distance)) continue;
-      const std::size_t begin = stack[depth - 1].node * kLeafSize,
-                        end = std::min(line_.segments.size(), begin + kLeafSize);
+      const std::size_t begin = stack[depth - 1].node * kLeafSize, end = std::min(distinct_.size(), begin + kLeafSize);
       for (std::size_t s = begin; s < end; ++s) {
-        const TrianglePoint other = line_.closest_on(static_cast<std::uint32_t>(s), x);
+        const TrianglePoint other = line_.closest_on(distinct_[s], x);
         if (!(other.squared_distance < best.squared_distance)) continue;
         best = other;
-        segment = static_cast<std::uint32_t>(s);
+        segment = distinct_[s];
       }
     }
   }

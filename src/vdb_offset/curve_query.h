@@ -40,6 +40,7 @@ class CurveQuery {
   FloatBox box_of(std::size_t leaf) const;
 
   const Polyline& line_;
+  std::vector<std::uint32_t> distinct_;  // those that the tree holds: what is there several times, once
   BoxTree tree_;
 };
 

@@ -167,10 +167,12 @@ class EarClipper {
 
   std::vector<std::array<std::uint32_t, 3>> run() {
     std::uint32_t at = 0;
+    const bool large = left_ > kLargePolygon;
     while (left_ > 3) {
       at = next_ear(at);
       cut(at);
       at = next_[at];
+      if (large) at = next_[at];
     }
     triangles_.push_back({previous_[at], at, next_[at]});
     return std::move(triangles_);

@@ -34,7 +34,7 @@ std::vector<Vec3d> rewrite(const Body& body, std::span<const Vec3d> source, cons
 }  // namespace
 
 FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                         Precision precision, std::optional<std::vector<TrianglePair>> source_crossings)
+                         Precision precision, std::optional<SelfCrossings> source_crossings)
     : body_(body),
       surface_(body.surface),
       source_(source),
@@ -51,7 +51,7 @@ FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const 
   if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? staying_ : body.other_skin, places(), distances);
   if (!source_crossings) {
     finder_.emplace(surface_, in_file());
-    source_crossings = finder_->all();
+    source_crossings = finder_->listed();
   }
   source_crossings_.emplace(surface_, std::move(*source_crossings));
 }
@@ -79,8 +79,8 @@ Indices FaultFinder::triangles_around(const Indices& vertices) {
 /// Whether a pair that meets is not to. What has not moved is as it was, even if a coarser format makes it meet.
 bool FaultFinder::is_fault(const TrianglePair& pair) const {
   return !goes_along(pair.first, pair.second) && !goes_along(pair.second, pair.first) &&
-         !std::binary_search(source_crossings().begin(), source_crossings().end(), pair) && !still_touches(pair) &&
-         (stands_.has_moved_corner(pair.first) || stands_.has_moved_corner(pair.second));
+         !std::binary_search(source_crossings().pairs().begin(), source_crossings().pairs().end(), pair) &&
+         !still_touches(pair) && (stands_.has_moved_corner(pair.first) || stands_.has_moved_corner(pair.second));
 }
 
 /// Whether a face that met an obstacle from the start does no more than touch one.
@@ -120,8 +120,8 @@ void FaultFinder::look_for_crossings(const Indices& moved, const Indices& touche
                                       [&](const TrianglePair& each) { return is_fault(each); }))
       crossings_.push_back(pair);
   } else if (first) {
-    for (const TrianglePair& pair : finder_->all())
-      if (is_fault(pair) && matters(pair.first) && matters(pair.second)) crossings_.push_back(pair);
+    for (const TrianglePair& pair : finder_->all([&](std::uint32_t t) { return matters(t); }))
+      if (is_fault(pair)) crossings_.push_back(pair);
   } else {
     add_crossings_of_updated();
   }
@@ -352,6 +352,7 @@ FaultCounts FaultFinder::count() const {
 }
 
 std::size_t FaultFinder::crossings_near_source() {
+  if (source_crossings_->has_more()) return 0;
   Indices near;
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
     if (!matters(t)) near.push_back(t);

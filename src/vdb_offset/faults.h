@@ -47,7 +47,7 @@ class FaultFinder {
   /// Keeps references to all but the last.
   /// `source_crossings`, if they are known of the same source already, need not be looked for again.
   FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
-              std::optional<std::vector<TrianglePair>> source_crossings = {});
+              std::optional<SelfCrossings> source_crossings = {});
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them. Where they stand at the ends of paths, what is known of those need not be found again.
@@ -101,8 +101,9 @@ class FaultFinder {
   bool on_right_side(std::uint32_t vertex) const { return stands_.on_right_side(vertex); }
   /// World coordinates, as they will be written.
   std::span<const Vec3d> places() const { return stands_.places(); }
-  const std::vector<TrianglePair>& source_crossings() const { return source_crossings_->pairs(); }
-  /// New pairs within two rings of one of those, which has to slide: as things stand. Looks for them.
+  const NearCrossings& source_crossings() const { return *source_crossings_; }
+  /// New pairs within two rings of one of those, which has to slide: as things stand. Looks for them, unless there are
+  /// more crossings of the source than are listed.
   std::size_t crossings_near_source();
 
  private:

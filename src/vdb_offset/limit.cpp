@@ -85,7 +85,8 @@ class Limiter {
         stakes_(body, distances),
         faults_(faults),
         followed_(followed) {
-    statistics_.source_crossings = faults_.source_crossings().size();
+    statistics_.source_crossings = faults_.source_crossings().count();
+    statistics_.more_source_crossings = faults_.source_crossings().has_more();
     statistics_.before = faults_.count();
   }
 

@@ -1,11 +1,15 @@
 #include "vdb_offset/memory.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <string>
+
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {
@@ -16,6 +20,8 @@ std::size_t number_in(const char* path, std::size_t missing) {
   std::size_t value = 0;
   return file >> value ? value : missing;
 }
+
+std::atomic<std::size_t> most = 0;  // bytes; the whole process has one memory
 
 }  // namespace
 
@@ -38,6 +44,26 @@ std::size_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::size_t held_memory() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t mapped = 0, resident = 0;
+  return file >> mapped >> resident ? resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+void set_memory_limit(std::size_t bytes) { most = bytes; }
+
+std::size_t memory_limit() { return most; }
+
+void require_memory(std::size_t bytes, const std::string& place) {
+  const std::size_t limit = most;
+  if (limit == 0) return;
+  const std::size_t held = held_memory();
+  if (bytes <= limit && held <= limit - bytes) return;
+  const auto mib = [](std::size_t size) { return static_cast<double>(size) / 1048576.0; };
+  throw OutOfBudget(fmt::format("{}: expected to fit into {:.0f} MiB (--max-memory), got {:.0f} MiB beside {:.0f} MiB",
+                                place, mib(limit), mib(bytes), mib(held)));
 }
 
 }  // namespace vdb_offset

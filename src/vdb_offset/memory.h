@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 namespace vdb_offset {
 
@@ -9,5 +11,44 @@ std::size_t available_memory();
 
 /// Most bytes that this process has held at once since it started (its resident set).
 std::size_t peak_memory();
+
+/// Bytes that this process holds now (the same).
+std::size_t held_memory();
+
+/// Most bytes that this process is to hold, 0 for no limit, as it is at first. It counts for what is not planned as a
+/// whole: files as they are decompressed and read, scenes as they are built, lists that may grow to anything.
+void set_memory_limit(std::size_t bytes);
+std::size_t memory_limit();
+
+/// To be called before so many more bytes are taken. \throw OutOfBudget if they would pass the limit; `place` begins
+/// the message.
+void require_memory(std::size_t bytes, const std::string& place);
+
+/// Appends to a list of which nobody knows how long it gets. \throw OutOfBudget before it passes the limit
+template <class T>
+void append_within_limit(std::vector<T>& list, const T& item, const char* place) {
+  constexpr std::size_t kSmall = std::size_t{1} << 20;  // bytes that are not worth a question
+  if (list.size() == list.capacity() && list.size() * sizeof(T) >= kSmall)
+    require_memory(2 * list.size() * sizeof(T), place);
+  list.push_back(item);
+}
+
+/// Watches over lists that grow item by item, as a file is read.
+class MemoryWatch {
+ public:
+  /// An item takes so many bytes, in all lists together. Keeps a reference.
+  MemoryWatch(const std::string& place, std::size_t bytes) : place_(place), bytes_(bytes) {}
+  /// Before each item. \throw OutOfBudget
+  void add() {
+    // Lists grow by doubling.
+    if (++count_ < next_) return;
+    next_ *= 2;
+    require_memory(next_ * bytes_, place_);
+  }
+
+ private:
+  const std::string& place_;
+  std::size_t bytes_, count_ = 0, next_ = std::size_t{1} << 15;
+};
 
 }  // namespace vdb_offset

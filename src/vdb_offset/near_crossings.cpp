@@ -10,16 +10,18 @@ constexpr int kNearRings = 2;
 
 }  // namespace
 
-NearCrossings::NearCrossings(const Surface& surface, std::vector<TrianglePair> pairs)
-    : surface_(surface), pairs_(std::move(pairs)), near_begin_(surface.vertices.size() + 1, 0) {
-  if (pairs_.empty()) return;
-  pair_up();
+NearCrossings::NearCrossings(const Surface& surface, SelfCrossings crossings)
+    : surface_(surface), crossings_(std::move(crossings)), near_begin_(surface.vertices.size() + 1, 0) {
+  if (count() == 0) return;
+  if (!has_more()) pair_up();
+  for (std::uint32_t t = 0; t < crossings_.crossed.size(); ++t)
+    if (crossings_.crossed[t]) crossing_.push_back(t);
   look_around();
 }
 
 void NearCrossings::pair_up() {
-  std::vector<TrianglePair> both_ways = pairs_;
-  for (const auto& [s, t] : pairs_) both_ways.emplace_back(t, s);
+  std::vector<TrianglePair> both_ways = pairs();
+  for (const auto& [s, t] : pairs()) both_ways.emplace_back(t, s);
   std::sort(both_ways.begin(), both_ways.end());
   for (std::size_t i = 0; i < both_ways.size(); ++i) {
     if (i > 0 && both_ways[i].first == both_ways[i - 1].first) continue;
@@ -70,6 +72,7 @@ bool NearCrossings::sheets_cross(std::uint32_t s, std::uint32_t t) const {
                        [&](std::uint32_t v) { return std::binary_search(near(v).begin(), near(v).end(), crossing); });
   };
   if (!is_near(t)) return false;
+  if (has_more()) return is_near(s);
   for (const auto v : surface_.triangles[s])
     for (const auto crossing : near(v))
       for (std::uint32_t i = crossed_begin_[crossing]; i < crossed_begin_[crossing + 1]; ++i)

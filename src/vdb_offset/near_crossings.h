@@ -11,10 +11,14 @@ namespace vdb_offset {
 /// Where a surface crosses itself, and what is near: as the surface moves, its crossings slide, but not far.
 class NearCrossings {
  public:
-  /// The pairs of a surface's triangles that meet, sorted. Keeps a reference to the surface.
-  NearCrossings(const Surface& surface, std::vector<TrianglePair> pairs);
+  /// Keeps a reference to the surface.
+  NearCrossings(const Surface& surface, SelfCrossings crossings);
 
-  const std::vector<TrianglePair>& pairs() const { return pairs_; }
+  /// Sorted; empty if there are more than are listed.
+  const std::vector<TrianglePair>& pairs() const { return crossings_.pairs; }
+  bool has_more() const { return crossings_.more; }
+  /// No more than are listed.
+  std::size_t count() const { return crossings_.count(); }
 
   /// Within two rings of a face that crosses another.
   bool is_near(std::uint32_t triangle) const { return !triangle_near_.empty() && triangle_near_[triangle]; }
@@ -23,6 +27,7 @@ class NearCrossings {
   /// Whether the sheets that two triangles are part of go through each other beside both: two faces cross of which one
   /// is within two rings of the first, and the other within two rings of the second. What moves off one sheet then has
   /// to go through the other.
+  /// Where there are more pairs than are listed, it is enough that both are near one.
   bool sheets_cross(std::uint32_t s, std::uint32_t t) const;
 
  private:
@@ -35,7 +40,7 @@ class NearCrossings {
   std::vector<std::uint32_t> vertices_beside(std::uint32_t triangle) const;
 
   const Surface& surface_;
-  std::vector<TrianglePair> pairs_;
+  SelfCrossings crossings_;
   std::vector<std::uint32_t> crossing_;                 // triangles that cross others, rising
   std::vector<std::uint32_t> crossed_begin_, crossed_;  // of each of them: those that it crosses, by their places
   std::vector<std::uint32_t> near_begin_, near_;        // of each vertex: which of them are within two rings of it

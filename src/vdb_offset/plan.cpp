@@ -33,7 +33,7 @@ constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes 
 // Of another result: its places, paths and states, and what nearer ones begin with; what it takes to make it valid.
 constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 95;
 // The process itself: code, libraries, allocator.
-constexpr double kProcessBytes = 48 << 20;
+constexpr double kProcessBytes = 57 << 20;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles; only for the estimate that is shown.
 constexpr double kLeafSeconds = 8e-5, kTriangleSeconds = 2e-6, kVertexSeconds = 1.8e-5;
 
@@ -186,7 +186,8 @@ void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest,
   const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory, context);
   const auto mib = [](std::size_t bytes) { return static_cast<double>(bytes) / 1048576.0; };
   throw OutOfBudget(fmt::format(
-      "plan: expected a grid that fits into {:.0f} MiB and {:.0f} voxels across, got about {:.0f} MiB in {} leaf nodes "
+      "plan: expected a grid that fits into {:.0f} MiB (--max-memory) and {:.0f} voxels across, got about {:.0f} MiB "
+      "in {} leaf nodes "
       "with voxel size {:.6g} ({})",
       max_memory ? mib(max_memory) : 0x1p42, kMaxVoxelsAcross, mib(plan.bytes), plan.leaf_nodes, plan.voxel_size,
       fitting > 0 ? fmt::format("voxel size {:.6g} would fit", fitting) : "the mesh itself does not fit"));
@@ -209,7 +210,7 @@ VoxelSize choose(double median_edge, double diagonal, double d) {
 void require_plannable(double diagonal, double distance, const GridOptions& options) {
   if (!std::isfinite(distance) || distance == 0)
     throw InvalidInput(fmt::format("plan: expected a finite distance other than 0, got {}", distance));
-  if (!(diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point");
+  if (!(diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point, or next to it");
   // phi is stored in single precision.
   for (const double length :
        {diagonal, distance, options.voxel_size.value_or(diagonal), distance / options.voxels_per_distance.value_or(1)})
@@ -240,9 +241,24 @@ VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance
   return choose(median_edge, diagonal, distance);
 }
 
+double farthest_coordinate(const MeshFacts& facts) {
+  double farthest = 0;
+  for (int k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(facts.lower[k]), std::abs(facts.upper[k])});
+  return farthest;
+}
+
+void require_fine_coordinates(double rounding, double length, const char* of_what) {
+  if (rounding <= kMostRounding * length) return;
+  throw InvalidInput(
+      fmt::format("plan: expected coordinates that are rounded by less than {:g} of {}, {:.6g}, got {:.3g} (move the "
+                  "model to the origin, or use more digits)",
+                  kMostRounding, of_what, length, rounding));
+}
+
 GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
                    int threads, const PlanContext& context) {
   const MeshFacts& facts = surface.facts;
+  require_fine_coordinates(0x1p-53 * farthest_coordinate(facts), longer(farthest), "the distance");
   VoxelSize choice = choose_voxel_size(facts.median_edge, facts.diagonal, longer(farthest), options);
   if (!options.voxel_size && !options.voxels_per_distance) {
     const double fitting = coarsen_until_it_fits(surface, farthest, choice.size, max_memory, context);

@@ -48,6 +48,13 @@ GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& o
 /// \throw InvalidInput for a diagonal, a distance (world units, > 0) or a grid that no field can be made for.
 void require_plannable(double diagonal, double distance, const GridOptions& options);
 
+/// As a share of the distance, or of a voxel of a new surface: by no more may coordinates be rounded.
+inline constexpr double kMostRounding = 0.25;
+/// \throw InvalidInput, with both figures, if coordinates are rounded by more than that share of a length.
+void require_fine_coordinates(double rounding, double length, const char* of_what);
+/// The largest absolute value of any coordinate.
+double farthest_coordinate(const MeshFacts& facts);
+
 /// A voxel size, world units, and why.
 struct VoxelSize {
   double size;
@@ -64,6 +71,9 @@ std::size_t layers_bytes(PolygonView mesh, std::size_t layers);
 
 /// So many results are made valid at the same time; each takes memory.
 inline constexpr std::size_t kResultsTogether = 4;
+
+/// What a vertex's path takes that is kept, handed out and written; measured: 1,300 with the file's text.
+inline constexpr std::size_t kPathBytes = 1300;
 
 /// Bytes of results beside the first.
 std::size_t results_bytes(PolygonView mesh, std::size_t results);

@@ -45,6 +45,11 @@ struct Precision {
     return (*this)(place[0]) == stored[0] && (*this)(place[1]) == stored[1] && (*this)(place[2]) == stored[2];
   }
 
+  /// Most that a number may change by as it is kept, relative to itself.
+  double half_unit() const {
+    return kind == Kind::Double ? 0x1p-53 : kind == Kind::Single ? 0x1p-24 : 5 * std::pow(10.0, -digits);
+  }
+
   /// Most that a number may change by, relative to itself, arithmetic on the way included.
   double epsilon() const {
     return kind == Kind::Double ? 0x1p-51 : kind == Kind::Single ? 0x1p-23 : 0x1p-51 + 5 * std::pow(10.0, -digits);

@@ -61,7 +61,8 @@ std::vector<Point2> project(std::span<const Vec3d> positions, std::span<const st
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                  std::vector<Triangle>& triangles) {
   const auto is_fan = [&](const Vec3d& area) {
-    return !is_flat(positions, polygon, area) || fan_turns_one_way(positions, polygon, area);
+    return !is_flat(positions, polygon, area) ||
+           (polygon.size() <= kLargePolygon && fan_turns_one_way(positions, polygon, area));
   };
   if (polygon.size() <= 4 || is_fan(area_vector(positions, polygon))) {
     for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});

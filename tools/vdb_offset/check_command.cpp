@@ -179,8 +179,11 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
   fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
              result.faults.collapsed,
              result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
-  fmt::print(out, "crossings   {} new pairs of {}; {} in the source, {} beside those\n", result.faults.crossings,
-             curves ? "segments" : "triangles", result.source_crossings, result.crossings_near_source);
+  fmt::print(out, "crossings   {} new pairs of {}; {}{} in the source, {}\n", result.faults.crossings,
+             curves ? "segments" : "triangles", result.more_source_crossings ? "more than " : "",
+             result.source_crossings,
+             result.more_source_crossings ? "what is beside those is not looked at"
+                                          : fmt::format("{} beside those", result.crossings_near_source));
   if (result.facts.seams.vertices > 0)
     fmt::print(out,
                "seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",

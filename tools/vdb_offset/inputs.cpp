@@ -10,6 +10,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/vertex_numbers.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -176,6 +177,7 @@ void tell_remarks(const io::MeshFile& file) {
 }
 
 Source read_source(const Arguments& args) {
+  set_memory_limit(args.options.max_memory);
   Source source;
   if (args.curves) {
     source.curves = io::read_curves(args.input);

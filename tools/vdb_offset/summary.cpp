@@ -197,8 +197,11 @@ void print_doubts(std::FILE* out, const Arguments& args, const Source& source, c
   print_borders(out, statistics.borders);
   const LimitStatistics& limit = statistics.limit;
   if (limit.source_crossings > 0)
-    fmt::print(out, "the input crosses itself: {} pairs of {} meet, left as they are; {} more beside them\n",
-               limit.source_crossings, source.curves ? "segments" : "triangles", limit.crossings_near_source);
+    fmt::print(out, "the input crosses itself: {}{} pairs of {} meet, left as they are; {}\n",
+               limit.more_source_crossings ? "more than " : "", limit.source_crossings,
+               source.curves ? "segments" : "triangles",
+               limit.more_source_crossings ? "what is beside them is not looked at"
+                                           : fmt::format("{} more beside them", limit.crossings_near_source));
 }
 
 /// What is between a result and its obstacles, and was at first.

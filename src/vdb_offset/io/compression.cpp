@@ -4,6 +4,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <new>
@@ -25,10 +26,16 @@ class Output {
  public:
   explicit Output(const std::string& path) : path_(path), most_(available_memory() / 2) {}
 
+  /// Grows by half, each time only if that fits beside what is there.
   void append(const char* data, std::size_t size) {
     if (size > most_ - bytes_.size())
       throw InvalidInput(
           fmt::format("{}: expected at most {} MiB when decompressed, half of what is free", path_, most_ >> 20));
+    if (const std::size_t needed = bytes_.size() + size; needed > bytes_.capacity()) {
+      const std::size_t more = std::max(needed, std::min(bytes_.capacity() + bytes_.capacity() / 2, most_));
+      require_memory(more, path_);
+      bytes_.reserve(more);
+    }
     bytes_.append(data, size);
   }
   std::string take() { return std::move(bytes_); }

@@ -14,7 +14,7 @@ Compression compression_of(std::string_view path);
 std::string_view without_compression(std::string_view path);
 
 /// All members (gzip) or frames (zstd) of `bytes`, decompressed. \throw InvalidInput (`path`, byte, what was expected)
-/// if they are damaged, end early, or would not fit into memory.
+/// if they are damaged, end early, or would not fit into memory, OutOfBudget if they would pass its limit.
 std::string decompress(Compression compression, const std::string& path, std::string_view bytes);
 
 /// One member or frame of its own: several behind each other are a file as well.

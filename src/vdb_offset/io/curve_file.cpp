@@ -15,6 +15,7 @@
 #include "vdb_offset/io/patch.h"
 #include "vdb_offset/io/pieces.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -93,6 +94,7 @@ class TextParser {
   void add_point(std::size_t begin, int words) {
     Scanner scanner(file_.path, file_.text(), begin, false, kComment);
     auto& positions = file_.polygons.positions;
+    held_.add();
     if (positions.empty()) curves_.planar = words == 2;
     Vec3d p(0.0);
     NumberTriple& at = at_.emplace_back();
@@ -135,6 +137,7 @@ class TextParser {
   CurveFile& curves_;
   MeshFile& file_;
   std::vector<NumberTriple> at_;
+  MemoryWatch held_{file_.path, sizeof(Vec3d) + sizeof(NumberTriple) + sizeof(std::uint32_t)};
   bool titled_ = false, closed_ = false;
 };
 

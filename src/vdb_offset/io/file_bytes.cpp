@@ -11,6 +11,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/compression.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -34,6 +35,11 @@ std::string read_to_end(const std::string& path, int fd) {
   constexpr std::size_t kReadAtOnce = 1 << 20;
   for (;;) {
     const std::size_t before = bytes.size();
+    if (before + kReadAtOnce > bytes.capacity()) {
+      const std::size_t more = before + before / 2 + kReadAtOnce;
+      require_memory(more, path);
+      bytes.reserve(more);
+    }
     bytes.resize(before + kReadAtOnce);
     const ssize_t got = ::read(fd, bytes.data() + before, kReadAtOnce);
     if (got < 0 && errno != EINTR) cannot(path, "read");

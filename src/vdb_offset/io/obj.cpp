@@ -10,6 +10,7 @@
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/text.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -321,6 +322,10 @@ Arrays allocate(MeshFile& file, const Counts& all) {
   const Scanner end(file.path, file.text(), file.text().size());
   if (all.vertices > kMostVertices || all.normals > kMostVertices || all.corners > kMostVertices)
     end.fail("fewer than 2^32 vertices and face corners");
+  const std::size_t corner = sizeof(std::uint32_t) * (all.normals > 0 ? 2 : 1);
+  require_memory(all.vertices * (sizeof(Vec3d) + sizeof(NumberTriple)) + all.normals * sizeof(NumberTriple) +
+                     all.corners * corner + all.faces * sizeof(std::uint32_t),
+                 file.path);
   Arrays arrays{file.polygons, file.corner_normal, {}, {}};
   arrays.polygons.positions.resize(all.vertices);
   arrays.polygons.corners.resize(all.corners);

@@ -6,6 +6,7 @@
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/off_binary.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -137,8 +138,11 @@ void parse_off(MeshFile& file) {
   if (a_line_each) scanner.integer_anywhere("a number of edges");
   else if (!scanner.at_line_end()) scanner.integer("a number of edges");
   std::vector<NumberTriple> position_at, normal_at;
+  MemoryWatch vertices_held(file.path, sizeof(Vec3d) + sizeof(NumberTriple) * (normals ? 2 : 1));
+  MemoryWatch corners_held(file.path, sizeof(std::uint32_t));
   for (std::size_t v = 0; v < vertices; ++v) {
     if (scanner.at_text_end()) scanner.fail(fmt::format("vertex {} of {}", v + 1, vertices));
+    vertices_held.add();
     file.polygons.positions.push_back(scanner.triple("a coordinate", position_at.emplace_back()));
     if (normals) scanner.skip_triple("three numbers of a normal", normal_at.emplace_back());
     scanner.next_line();
@@ -151,6 +155,7 @@ void parse_off(MeshFile& file) {
       const std::int64_t v = scanner.integer("a vertex index");
       if (v < 0 || static_cast<std::size_t>(v) >= vertices)
         scanner.fail(fmt::format("a vertex index below {}", vertices), scanner.last_token());
+      corners_held.add();
       file.polygons.corners.push_back(static_cast<std::uint32_t>(v));
     }
     file.polygons.close_face();

@@ -9,6 +9,7 @@
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/ply_header.h"
 #include "vdb_offset/io/text.h"
+#include "vdb_offset/memory.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
@@ -103,6 +104,7 @@ class PlyParser {
     const Places places(count, begin, size, offset[0]);
     const Type type{'f', file_.position_bytes};
     std::atomic<bool> finite = true;
+    require_memory(count * sizeof(Vec3d), file_.path);
     file_.polygons.positions.resize(count);
     for_each_index(count, [&](std::size_t v) {
       const NumberTriple place = places[v];
@@ -123,6 +125,7 @@ class PlyParser {
     const LineRecords lines(file_.text(), body_.position(), element.count);
     if (!lines.complete() || element.count > file_.text().size() / kLeastVertexLine) return false;
     std::vector<NumberTriple> at[2];
+    require_memory(element.count * (sizeof(Vec3d) + sizeof(NumberTriple) * (layout.normals ? 2 : 1)), file_.path);
     at[0].resize(element.count);
     if (layout.normals) at[1].resize(element.count);
     file_.polygons.positions.resize(element.count);
@@ -147,6 +150,7 @@ class PlyParser {
   void read_vertices_one_by_one(const Element& element, const VertexLayout& layout) {
     file_.polygons.positions.clear();
     std::vector<NumberTriple> position_at, normal_at;
+    MemoryWatch held(file_.path, sizeof(Vec3d) + sizeof(NumberTriple) * (layout.normals ? 2 : 1));
     for (std::size_t v = 0; v < element.count; ++v) {
       Vec3d position(0.0);
       NumberTriple at[2] = {};
@@ -165,6 +169,7 @@ class PlyParser {
         if (!std::isfinite(value)) body_.fail("a finite coordinate", fmt::format("{}", value), at[0].at[c]);
         position[static_cast<int>(c)] = value;
       }
+      held.add();
       file_.polygons.positions.push_back(position);
       position_at.push_back(at[0]);
       if (layout.normals) normal_at.push_back(at[1]);
@@ -243,6 +248,7 @@ class PlyParser {
     const std::uint64_t begin = body_.position(), end = file_.text().size(), item = list->type.bytes;
     if (element.count > (end - begin) / around) return false;
     auto& face_begin = file_.polygons.face_begin;
+    require_memory(element.count * sizeof(std::uint32_t), file_.path);
     face_begin.resize(element.count + 1);
     std::uint64_t corners = 0;
     const auto record = [&](std::size_t f, std::uint64_t corner) { return begin + f * around + corner * item; };
@@ -255,6 +261,7 @@ class PlyParser {
       if (corners > kMostVertices || record(f + 1, corners) > end) return false;
       face_begin[f + 1] = static_cast<std::uint32_t>(corners);
     }
+    require_memory(corners * sizeof(std::uint32_t), file_.path);
     file_.polygons.corners.resize(corners);
     std::atomic<bool> plain = true;
     for_each_index(element.count, [&](std::size_t f) {
@@ -299,6 +306,7 @@ class PlyParser {
       face_begin[f] = static_cast<std::uint32_t>(all);
     }
     if (!plain || all > file_.text().size()) return false;
+    require_memory(all * sizeof(std::uint32_t), file_.path);
     corners.resize(all);
     plain = lines.for_each([&](std::size_t f, FastCursor& cursor) {
       std::uint32_t count = 0;

@@ -8,6 +8,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/formats.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/memory.h"
 #include "vdb_offset/parallel.h"
 
 namespace vdb_offset::io {
@@ -40,6 +41,7 @@ class AsciiStlParser {
     scanner_.next_line();
   }
   void facet() {
+    held_.add();
     expect("normal");
     normal();
     scanner_.next_line();
@@ -73,6 +75,7 @@ class AsciiStlParser {
   MeshFile& file_;
   Scanner scanner_;
   std::vector<NumberTriple> position_at_, normal_at_;
+  MemoryWatch held_{file_.path, 3 * (sizeof(Vec3d) + sizeof(NumberTriple)) + sizeof(NumberTriple) + 4 * 4};
 };
 
 std::uint32_t promised_facets(const MeshFile& file) {
@@ -94,6 +97,7 @@ void parse_binary(MeshFile& file) {
   file.normal_at = Places(facets, kHeaderBytes, kFacetBytes, {0, 4, 8});
   file.position_at = Places(3 * facets, kHeaderBytes + 12, kFacetBytes, {0, 4, 8}, 3, 12);
   Polygons& polygons = file.polygons;
+  require_memory(facets * (3 * sizeof(Vec3d) + 4 * sizeof(std::uint32_t)), file.path);
   polygons.positions.resize(3 * facets);
   polygons.corners.resize(3 * facets);
   polygons.face_begin.resize(facets + 1);

@@ -316,7 +316,15 @@ Distance parse_distance_or_expression(const std::string& text) {
 Distances distances_of(const Distance& distance, PolygonView mesh,
                        const std::function<std::vector<Vec3d>()>& normals_of,
                        const std::function<std::vector<Vec2d>()>& texture_of) {
-  if (!distance.expression) return distance.in_world_units(distance.percent ? used_diagonal(mesh) : 0);
+  if (!distance.expression) {
+    const double diagonal = distance.percent ? used_diagonal(mesh) : 0, length = distance.in_world_units(diagonal);
+    if (length == 0 && distance.value != 0 && diagonal > 0)
+      throw InvalidInput(
+          fmt::format("distance: expected a share of the diagonal that is a number, got {:g} % of {:.3g} "
+                      "(scale the model)",
+                      distance.value, diagonal));
+    return length;
+  }
   const DistanceExpression& expression = *distance.expression;
   std::vector<Vec3d> normals;
   std::vector<Vec2d> texture;

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::scene {
 namespace {
@@ -25,6 +26,12 @@ void require_count(const char* what, int value, int least) {
 void require_length(const char* what, double value) {
   if (!(value > 0) || !std::isfinite(value))
     throw InvalidInput(fmt::format("shape: expected {} > 0, got {}", what, value));
+}
+
+/// \throw OutOfBudget if so many more faces do not fit, with as many points and, of each, its number by its place.
+void require_room(std::size_t faces) {
+  constexpr std::size_t kFaceBytes = 5 * 4, kPointBytes = sizeof(Vec3d) + 80;
+  require_memory(faces * (kFaceBytes + kPointBytes), "shape");
 }
 
 /// Collects faces over points; points at one position become one vertex.
@@ -50,6 +57,7 @@ class Builder {
   /// The quads of a map from the unit square, counter-clockwise in (u, v).
   template <class Map>
   void grid(int nu, int nv, Map&& at) {
+    require_room(static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv));
     for (int i = 0; i < nu; ++i)
       for (int j = 0; j < nv; ++j) face({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
   }
@@ -125,6 +133,7 @@ Polygons icosphere(double radius, int subdivisions) {
   require_length("a radius", radius);
   if (subdivisions < 0 || subdivisions > 10)
     throw InvalidInput(fmt::format("shape: expected subdivisions from 0 to 10, got {}", subdivisions));
+  require_room(std::size_t{20} << 2 * subdivisions);
   const double g = std::numbers::phi;
   Polygons mesh;
   for (const auto& p : {Vec3d{-1, g, 0},

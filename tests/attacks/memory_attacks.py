@@ -1,0 +1,81 @@
+"""Files that hold more than they look like, and runs that would: refused before they pass --max-memory."""
+import gzip
+
+from attack import BOX, attack, attack_each
+
+MIB = 1 << 20
+# What a run may hold beyond its limit or its estimate: the share that the project allows itself.
+SLACK = 1.15
+
+
+def held_to(place, run, limit):
+    """Sanitizers hold many times as much."""
+    if not place.sanitized:
+        place.check(run.peak <= SLACK * limit, f'expected at most {limit >> 20} MiB, with {SLACK}', run)
+
+
+def refused_within(place, limit, *arguments):
+    run = place.run(*arguments, '--max-memory', f'{limit // MIB}M')
+    place.refused(run, 3, '--max-memory')
+    held_to(place, run, limit)
+
+
+def bomb(place, name, line, count):
+    """A cube behind `count` lines, compressed piece by piece: members of their own are a file as well."""
+    piece = gzip.compress(line.encode() * 100000, 6)
+    return place.file(name, gzip.compress(BOX.encode()) + piece * (count // 100000))
+
+
+BOMBS = {
+    'comments': ('bomb.obj.gz', '# nothing to be seen here\n', 12000000),
+    'faces': ('bomb.obj.gz', 'f 1 2 3\n', 8000000),
+    'vertices': ('bomb.obj.gz', 'v 0 0 0\n', 8000000),
+}
+
+
+@attack_each(BOMBS)
+def decompressed(place, case):
+    bomb(place, *case)
+    refused_within(place, 200 * MIB, case[0], 'out.obj', '-d', '0.1')
+    place.check(place.names() == [case[0]], 'expected no other file')
+
+
+@attack
+def many_faces(place):
+    """Small as text, large as lists."""
+    place.file('faces.obj', BOX + 'f 1 2 3\n' * 2500000)
+    refused_within(place, 60 * MIB, 'faces.obj', 'out.obj', '-d', '0.1')
+
+
+@attack
+def off_from_a_pipe(place):
+    text = 'OFF\n2000000 1 0\n' + '0 0 0\n' * 2000000 + '3 0 1 2\n'
+    run = place.run('-', 'out.off', '--format', 'off', '-d', '0.1', '--max-memory', '100M', input=text.encode())
+    place.refused(run, 3, '--max-memory')
+    held_to(place, run, 100 * MIB)
+
+
+SCENES = {
+    'cube': '{"type": "cube", "side": 1, "divisions": 20000}',
+    'icosphere': '{"type": "icosphere", "radius": 1, "subdivisions": 10}',
+    'torus': '{"type": "torus", "major": 1, "minor": 0.3, "segments": 20000, "sides": 20000}',
+    'gear': '{"type": "gear", "teeth": 20000, "root_radius": 1, "tip_radius": 1.1, "bore_radius": 0.5, "thickness": 0.2,'
+            ' "stacks": 200}',
+}
+
+
+@attack_each(SCENES)
+def scene(place, shape):
+    place.file('scene.json', '{"shape": %s, "offset": {"distance": 0.1}}' % shape)
+    refused_within(place, 200 * MIB, 'scene.json', 'out.obj')
+    refused_within(place, 200 * MIB, 'scene.json', 'out.obj', '--dry-run')
+
+
+@attack
+def zigzag(place):
+    """8,000 points, and twelve million crossings of their segments: no list holds them."""
+    place.file('zigzag.txt', ''.join(f'{(i * 7919) % 8000 / 800:.9g} {i % 2 * 10}\n' for i in range(8000)))
+    run = place.run('zigzag.txt', 'out.txt', '-d', '0.05', '--max-memory', '200M')
+    place.ended_well(run, 0)
+    place.check(b'more than 1000000 pairs of segments meet' in run.err + run.out, 'expected to be told of them', run)
+    held_to(place, run, 200 * MIB)

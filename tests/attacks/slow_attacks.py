@@ -1,0 +1,93 @@
+"""Files that take a time out of all proportion to their size."""
+import math
+import random
+
+from attack import BOX, attack, attack_each
+
+
+def star(corners):
+    def place_of(i):
+        angle, radius = 2 * math.pi * i / corners, 1 - i % 2 / 2
+        return f'v {radius * math.cos(angle):.9g} {radius * math.sin(angle):.9g} 0\n'
+    return ''.join(map(place_of, range(corners))) + 'f ' + ' '.join(str(i + 1) for i in range(corners)) + '\n'
+
+
+def sphere(middle):
+    """24 by 48 faces, radius 1."""
+    lines = [f'v {middle!r} 0 {z}\n' for z in (-1, 1)]
+    for i in range(1, 24):
+        for j in range(48):
+            a, b = math.pi * i / 24, math.pi * j / 24
+            lines.append(f'v {middle + math.sin(a) * math.cos(b)!r} {math.sin(a) * math.sin(b)!r} {-math.cos(a)!r}\n')
+    for j in range(48):
+        k = (j + 1) % 48
+        lines.append(f'f 1 {3 + k} {3 + j}\nf 2 {3 + 22 * 48 + j} {3 + 22 * 48 + k}\n')
+        for i in range(22):
+            a = 3 + 48 * i
+            lines.append(f'f {a + j} {a + k} {a + 48 + k} {a + 48 + j}\n')
+    return ''.join(lines)
+
+
+@attack_each({'topology': (), 'iso': ('--mode', 'iso')})
+def polygon(place, more):
+    place.file('star.obj', star(20000 if not more else 10000))
+    place.ended_well(place.run('star.obj', 'out.obj', '-d', '1%', *more), 0)
+
+
+@attack
+def joined_lines(place):
+    place.file('joined.obj', BOX + 'l 1 ' + '\\\n' * 1000000 + '2\n')
+    place.ended_well(place.run('joined.obj', 'out.obj', '-d', '0.1'), 0)
+
+
+@attack
+def curves_from_one_point(place):
+    spokes = range(20000)
+    place.file('hub.obj', 'v 0 0 0\n' + ''.join(
+        f'v {math.cos(math.pi * i / 10000):.9g} {math.sin(math.pi * i / 10000):.9g} 0\n' for i in spokes) +
+        ''.join(f'l 1 {i + 2}\n' for i in spokes))
+    place.ended_well(place.run('hub.obj', 'out.obj', '-d', '1%'), 0)
+
+
+@attack
+def to_and_fro(place):
+    place.file('fro.txt', '0 0\n1 0\n' * 50000)
+    place.ended_well(place.run('fro.txt', 'out.txt', '-d', '0.1'), 0)
+
+
+@attack
+def triangles_that_all_meet(place):
+    """3,000 triangles around one point: four and a half million pairs, of which no more than a million are counted."""
+    numbers = random.Random(1)
+    lines = []
+    for _ in range(3000):
+        u, v = ([numbers.gauss(0, 1) for _ in range(3)] for _ in range(2))
+        for angle in (0, 2.1, 4.2):
+            lines.append('v ' + ' '.join(f'{a * math.cos(angle) + b * math.sin(angle):.9g}' for a, b in zip(u, v)) + '\n')
+    lines += [f'f {3 * i + 1} {3 * i + 2} {3 * i + 3}\n' for i in range(3000)]
+    place.file('soup.obj', ''.join(lines))
+    run = place.run('soup.obj', 'out.obj', '-d', '1%')
+    place.ended_well(run, 0)
+    place.check(b'more than 1000000 pairs of triangles meet' in run.err + run.out, 'expected to be told of them', run)
+
+
+@attack_each({'topology': (), 'iso': ('--mode', 'iso')})
+def far_away(place, more):
+    """A double has an eighth of a unit there."""
+    place.file('far.obj', sphere(1e15))
+    place.refused(place.run('far.obj', 'out.obj', '-d', '10%', *more), 2, 'rounded by .* got 0.111')
+    place.check(place.names() == ['far.obj'], 'expected no other file')
+
+
+@attack
+def few_digits(place):
+    place.file('sphere.obj', sphere(0))
+    run = place.run('sphere.obj', 'out.obj', '--mode', 'iso', '-d', '2%', '--precision', '1')
+    place.refused(run, 2, 'rounded by .* got 0.5')
+
+
+@attack_each({'percent': '1%', 'little': '0.000001%', 'length': '1e-321'})
+def tiny(place, distance):
+    place.file('tiny.obj', ''.join(line.replace('1', '1e-320') + '\n' if line.startswith('v') else line + '\n'
+                                   for line in BOX.splitlines()))
+    place.refused(place.run('tiny.obj', 'out.obj', '-d', distance), 2, 'expected')
