@@ -838,7 +838,7 @@ TEST_CASE("command: an iso-surface whose corners would be rounded by more than v
   io::write_mesh(run.file("far.obj"), sphere.view());
   const Run made = run("far.obj out.obj --mode iso -d 0.3 --voxel-size 0.8 --precision 2 --report out.json");
   CHECK(made.code == 2);
-  CHECK_THAT(made.err, Catch::Contains("rounded by less than 0.25 of a voxel, 0.8, got 5.27"));
+  CHECK_THAT(made.err, Catch::Contains("rounded by less than 2 voxels of 0.8, got 5.2"));
   CHECK(!run.has("out.obj"));
   CHECK(!run.has("out.json"));
 }

@@ -68,6 +68,18 @@ CapturePlan choose_voxels(const Surface& surface, const CaptureOptions& options,
   return estimate_capture(surface, options.distance, is_signed, most);
 }
 
+/// Corners of the new triangles are a part of a voxel apart. Rounded by three voxels (measured: by no less), they fold
+/// and cross wherever they are mended, without end.
+void require_fine_places(const MeshFacts& facts, const CaptureOptions& options, double h) {
+  constexpr double kMostVoxels = 2;
+  const double rounding = options.precision.half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
+  if (rounding <= kMostVoxels * h) return;
+  throw InvalidInput(
+      fmt::format("capture: expected coordinates that are rounded by less than {:g} voxels of {:.6g}, got {:.3g} (move "
+                  "the model to the origin, write more digits, or take larger voxels)",
+                  kMostVoxels, h, rounding));
+}
+
 }  // namespace
 
 CapturePlan plan_voxels(const Surface& surface, const CaptureOptions& options, bool is_signed) {
@@ -84,9 +96,7 @@ CapturePlan plan_voxels(const Surface& surface, const CaptureOptions& options, b
   } else {
     plan = choose_voxels(surface, options, is_signed);
   }
-  // Corners of the new triangles are a part of a voxel apart: rounded by more, they fold and cross without end.
-  const double farthest = farthest_coordinate(surface.facts) + std::abs(options.distance);
-  require_fine_coordinates(options.precision.half_unit() * farthest, plan.voxel_size, "a voxel");
+  require_fine_places(surface.facts, options, plan.voxel_size);
   if (fits_budget(plan, options, surface.facts)) return plan;
   throw OutOfBudget(
       fmt::format("capture: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
