@@ -76,8 +76,8 @@ FACES_OF = {
 HEIGHTS = {
     'as they are': ('0.01\n0.02\n',),
     'empty': ('', None, 'heights.txt: expected a height on each line, got none'),
-    **{f'height {x[:20]}': (f'0.01\n{x}\n', None, r'heights.txt: line 2: ') for x in ('nan', '1e999', '@nothing', 'ply:x',
-                                                                                      '\0', '(' * 10000)},
+    **{f'height {x[:20]}': (f'0.01\n{x}\n', None, r'heights.txt: line 2: ')
+       for x in ('nan', '1e999', '@nothing', 'ply:x', '\0', '(' * 10000)},
     'on both sides': ('0.01\n-0.02\n', None, 'expected'),
     'a file of itself': ('@heights.txt\n', None, r'heights.txt: line 1: '),
 }

@@ -75,8 +75,8 @@ TEXT = {
     'a face cut': (HEAD + VERTEX_ROWS + '3 0 2 1\n3 0', f'line {FIRST + 5}', 'a vertex index', END),
     **{f'coordinate {x}': (row(1, f'{x} 0 0'), f'line {FIRST + 1}', 'a coordinate|a finite coordinate', '')
        for x in ('nan', '1e39', '1' * 400)},
-    **{f'a face of {n}': (row(4, f'{n} 0 1 2'), f'line {FIRST + 4}', 'at least 3 corners|corners', '') for n in ('2', '-3',
-                                                                                                                 '3.0')},
+    **{f'a face of {n}': (row(4, f'{n} 0 1 2'), f'line {FIRST + 4}', 'at least 3 corners|corners', '')
+       for n in ('2', '-3', '3.0')},
     **{f'a face of {n}': (row(7, f'{n} 0 1 2'), f'line (?:{FIRST + 7}|{FIRST + 8})', 'corners|a vertex index', '')
        for n in (HUGE['2^32'], HUGE['2^63'])},
     **{f'index {x}': (row(4, f'3 0 1 {x}'), f'(line {FIRST + 4}|face 0)', 'vertex ind', '')
