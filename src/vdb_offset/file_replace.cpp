@@ -162,7 +162,8 @@ void replace_file(const std::string& path, const std::function<void(const std::s
 void write_file(const std::string& path, const std::function<void(const Sink&)>& produce) {
   if (path == "-") return produce([](std::string_view bytes) { write_all("standard output", STDOUT_FILENO, bytes); });
   replace_file(path, [&](const std::string& temporary) {
-    Descriptor file{::open(temporary.c_str(), O_WRONLY | O_TRUNC | O_NOFOLLOW | O_CLOEXEC)};
+    const int links = is_written_in_place(temporary) ? 0 : O_NOFOLLOW;  // /dev/stdout is one
+    Descriptor file{::open(temporary.c_str(), O_WRONLY | O_TRUNC | links | O_CLOEXEC)};
     if (file.fd < 0) throw WriteError(path + ": cannot be written: " + reason());
     produce([&](std::string_view bytes) { write_all(path, file.fd, bytes); });
     if (!file.close()) throw WriteError(path + ": cannot be written: " + reason());

@@ -118,12 +118,12 @@ class FoamMeasurer {
  private:
   template <class Add>
   static Sums sum_up(std::size_t count, Add&& add) {
-    constexpr std::size_t kBlock = 2048;
-    std::vector<Sums> blocks((count + kBlock - 1) / kBlock);
+    constexpr std::size_t kFoamBlock = 2048;
+    std::vector<Sums> blocks((count + kFoamBlock - 1) / kFoamBlock);
     for_each_index(
         blocks.size(),
         [&](std::size_t b) {
-          for (std::size_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i) add(i, blocks[b]);
+          for (std::size_t i = b * kFoamBlock; i < std::min(count, (b + 1) * kFoamBlock); ++i) add(i, blocks[b]);
         },
         1);
     Sums all;
