@@ -74,7 +74,7 @@ def scene(place, shape):
 @attack
 def zigzag(place):
     """Each segment crosses about half of the others; what is near whom was a list as well, 25 times as long."""
-    place.file('zigzag.txt', ''.join(f'{i * 7919 % 3000 / 300:.9g} {i % 2 * 10}\n' for i in range(3000)))
+    place.file('zigzag.txt', ''.join(f'{i * 1597 % 2584 / 258.4:.9g} {i % 2 * 10}\n' for i in range(2584)))
     run = place.run('zigzag.txt', 'out.txt', '-d', '0.05', '--max-memory', '200M')
     place.ended_well(run, 0)
     place.check(b'more than 1000000 pairs of segments meet' in run.err + run.out, 'expected to be told of them', run)
