@@ -35,7 +35,7 @@ namespace {
 
 constexpr std::string_view kPrefix = ".vdb_offset-";
 constexpr std::size_t kLongestEnding = 16;
-constexpr int kAttempts = 100;
+constexpr int kMostNames = 100;
 
 enum class Phase { Writing, PuttingInPlace, Ending };
 std::atomic<Phase> phase = Phase::Writing;
@@ -113,7 +113,7 @@ void Temporary::keep() {
 
 Temporary new_temporary_file(const std::filesystem::path& target, const std::string& path) {
   const std::string ending = target.extension().string();
-  for (int i = 0; i < kAttempts; ++i) {
+  for (int i = 0; i < kMostNames; ++i) {
     const std::string name = fmt::format("{}{}-{:016x}{}", prefix(), ::getpid(), random_number(),
                                          ending.size() <= kLongestEnding ? ending : "");
     Temporary made((target.parent_path() / name).string(), Temporary::Kind::File);
