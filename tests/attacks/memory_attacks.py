@@ -1,5 +1,6 @@
 """Files that hold more than they look like, and runs that would: refused before they pass --max-memory."""
 import gzip
+import struct
 
 from attack import BOX, attack, attack_each
 
@@ -26,11 +27,30 @@ def bomb(place, name, line, count):
     return place.file(name, gzip.compress(BOX.encode()) + piece * (count // 100000))
 
 
+def zstd_bomb(place, name, size):
+    """Comments of 128 KiB, each in a block of four bytes: one that repeats a byte."""
+    def block(kind, length, content, last=False):
+        return struct.pack('<I', last | kind << 1 | length << 3)[:3] + content
+    comment = block(0, 3, b'\n##') + block(1, 1 << 17, b'#')
+    frame = struct.pack('<IBB', 0xfd2fb528, 0, 0x58) + block(0, len(BOX), BOX.encode())  # a window of 2 MiB
+    return place.file(name, frame + comment * (size >> 17) + block(0, 1, b'\n', last=True))
+
+
 BOMBS = {
     'comments': ('bomb.obj.gz', '# nothing to be seen here\n', 12000000),
     'faces': ('bomb.obj.gz', 'f 1 2 3\n', 8000000),
     'vertices': ('bomb.obj.gz', 'v 0 0 0\n', 8000000),
 }
+
+
+@attack
+def decompressed_zstd(place):
+    """300 kB that hold 3 GB of comments."""
+    bomb = zstd_bomb(place, 'bomb.obj.zst', 3 << 30)
+    place.check(bomb.stat().st_size < 300000, f'{bomb.stat().st_size} bytes')
+    refused_within(place, 500 * MIB, bomb, 'out.obj', '-d', '0.1')
+    small = zstd_bomb(place, 'small.obj.zst', 1 << 20)
+    place.ended_well(place.run(small, 'out.obj', '-d', '0.1'), 0)
 
 
 @attack_each(BOMBS)

@@ -127,6 +127,21 @@ DEAF = {
 }
 
 
+@attack
+def a_writer_that_says_nothing(place):
+    """A pipe whose writer keeps it open in the middle of a mesh."""
+    os.mkfifo(place.folder / 'f.obj')
+    process = place.start('f.obj', 'o.obj', '-d', '0.1')
+    with open(place.folder / 'f.obj', 'wb') as writer:
+        writer.write(b'v 0 0 0\n')
+        writer.flush()
+        time.sleep(0.3)
+        process.terminate()
+        process.communicate(timeout=5)
+    place.check(process.returncode == -signal.SIGTERM, f'exit {process.returncode}')
+    place.check(place.names() == ['f.obj'], f'left {place.names()}')
+
+
 @attack_each(DEAF)
 def nothing_is_deaf(place, make):
     source, = make(place)
