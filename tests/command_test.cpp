@@ -480,7 +480,7 @@ TEST_CASE("command: 2 for input that cannot be read", "[command]") {
 
 TEST_CASE("command: 3 for work that is refused or falls short", "[command]") {
   const ShellCommand shell;
-  check_failure(shell, "sphere.obj out.obj --distance 0.1 --voxel-size 1e-4 --max-memory 100M", 3, "would fit");
+  check_failure(shell, "sphere.obj out.obj --distance 0.1 --voxel-size 1e-4 --max-memory 1G", 3, "would fit");
   const std::string plates = std::string(SCENE_DIR) + "/plates_closing.json";
   CHECK(shell("'" + plates + "' out.obj").code == 0);
   const Run strict = shell("'" + plates + "' out.obj --strict");

@@ -294,7 +294,7 @@ SelfCrossings CrossingFinder::listed() const {
         for_each_pair_of(
             block, [](std::uint32_t) { return true; },
             [&](std::uint32_t s, std::uint32_t t) {
-              found.emplace_back(s, t);
+              append_within_limit(found, TrianglePair(s, t), "crossings");
               return found.size() - before > kMostListedPairs;
             });
         count += found.size() - before;

@@ -25,10 +25,16 @@ struct Descriptor {
 
 std::string reason() { return std::strerror(errno); }
 
-/// The file that a path names: a link stays a link, and what it points to is replaced.
+/// The file that a path names: a link stays a link, and what it points to is replaced, or made.
 std::filesystem::path resolved(const std::string& path) {
+  constexpr int kMostLinks = 40;
   std::error_code unknown;
-  std::filesystem::path target = std::filesystem::weakly_canonical(path, unknown);
+  std::filesystem::path target = std::filesystem::absolute(path, unknown);
+  for (int i = 0; i < kMostLinks && !std::filesystem::exists(target, unknown) &&
+                  std::filesystem::is_symlink(std::filesystem::symlink_status(target, unknown));
+       ++i)
+    target = target.parent_path() / std::filesystem::read_symlink(target, unknown);
+  target = std::filesystem::weakly_canonical(target, unknown);
   if (unknown) target = path;
   if (std::filesystem::is_directory(target, unknown))
     throw WriteError(path + ": expected a file to write, got a folder");
@@ -108,6 +114,8 @@ void Replacements::commit(const std::function<void()>& when_in_place) {
 void Replacements::finish(File& file) const {
   const Descriptor written{::open(file.temporary.path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC)};
   struct stat before {};
+  // Where the process's mask leaves its owner no right to read, the file is only not waited for.
+  if (written.fd < 0 && errno != EACCES) throw WriteError(file.path + ": cannot be written: " + reason());
   file.was_there = ::stat(file.target.c_str(), &before) == 0;
   if (file.was_there && ::fchmod(written.fd, before.st_mode & 07777) != 0) {
     // Not every file system knows permissions.

@@ -56,11 +56,14 @@ void set_memory_limit(std::size_t bytes) { most = bytes; }
 
 std::size_t memory_limit() { return most; }
 
-void require_memory(std::size_t bytes, const std::string& place) {
+bool fits_memory(std::size_t bytes) {
   const std::size_t limit = most;
-  if (limit == 0) return;
-  const std::size_t held = held_memory();
-  if (bytes <= limit && held <= limit - bytes) return;
+  return limit == 0 || (bytes <= limit && held_memory() <= limit - bytes);
+}
+
+void require_memory(std::size_t bytes, const std::string& place) {
+  if (fits_memory(bytes)) return;
+  const std::size_t limit = most, held = held_memory();
   const auto mib = [](std::size_t size) { return static_cast<double>(size) / 1048576.0; };
   throw OutOfBudget(fmt::format("{}: expected to fit into {:.0f} MiB (--max-memory), got {:.0f} MiB beside {:.0f} MiB",
                                 place, mib(limit), mib(bytes), mib(held)));

@@ -20,6 +20,9 @@ std::size_t held_memory();
 void set_memory_limit(std::size_t bytes);
 std::size_t memory_limit();
 
+/// Whether so many more bytes keep within the limit.
+bool fits_memory(std::size_t bytes);
+
 /// To be called before so many more bytes are taken. \throw OutOfBudget if they would pass the limit; `place` begins
 /// the message.
 void require_memory(std::size_t bytes, const std::string& place);

@@ -51,11 +51,13 @@ struct OffsetOptions {
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
   WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
-  int threads = 0;             ///< 0: as many as the machine has.
-  std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
-  bool keep_field = false;     ///< Hand the distance field out with the result.
-  bool keep_paths = false;     ///< The same for the vertices' paths; not for layers.
-  ProgressCallback progress;   ///< See progress.h; may cancel.
+  int threads = 0;  ///< 0: as many as the machine has.
+  /// Bytes for the whole run, by the plan; 0: no limit. What is read, and lists that may grow to anything, keep to that
+  /// of the process (set_memory_limit in memory.h).
+  std::size_t max_memory = 0;
+  bool keep_field = false;    ///< Hand the distance field out with the result.
+  bool keep_paths = false;    ///< The same for the vertices' paths; not for layers.
+  ProgressCallback progress;  ///< See progress.h; may cancel.
 };
 
 /// Figures of a run, beside its result.

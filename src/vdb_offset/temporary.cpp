@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -41,14 +42,16 @@ enum class Phase { Writing, PuttingInPlace, Ending };
 std::atomic<Phase> phase = Phase::Writing;
 std::mutex putting_in_place;
 
-/// Process numbers mean something on one machine, and in one of its containers.
+/// Process numbers mean something on one machine since it was started, and in one of its containers.
 std::uint64_t machine() {
   char host[256] = {};
   ::gethostname(host, sizeof host - 1);
+  std::string started;
+  std::ifstream("/proc/sys/kernel/random/boot_id") >> started;
   struct stat processes {};
   ::stat("/proc/self/ns/pid", &processes);
   std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-  for (const char c : fmt::format("{}/{}", host, processes.st_ino))
+  for (const char c : fmt::format("{}/{}/{}", host, started, processes.st_ino))
     hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
   return hash;
 }

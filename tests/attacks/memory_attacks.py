@@ -53,6 +53,40 @@ def decompressed_zstd(place):
     place.ended_well(place.run(small, 'out.obj', '-d', '0.1'), 0)
 
 
+# Options, the file's name, what it begins with, what is repeated in it how often, how it ends; the code, and the message.
+ENDLESS = {
+    'heights of one line': (['--layers', '3', '--heights', 'l.txt'], 'l.txt', b'', b'0', 60 << 20, b'', 2,
+                            'l.txt: line 1: expected a height'),
+    'heights that never end': (['--layers', '3', '--heights', '/dev/zero'], None, b'', b'', 0, b'', 3, '--max-memory'),
+    'a list of faces': (['-d', '0.1', '--only', 'faces=f.txt'], 'f.txt', b'', b'0 ', 20 << 20, b'', 0, ''),
+    'a scene': (['-d', '0.1'], 's.json', b'{"shape": [', b'1,', 10 << 20, b'1]}', 3, '--max-memory'),
+    'a path of SVG': (['-d', '0.1'], 'p.svg', b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0', b' 1 1', 2 << 20,
+                      b'"/></svg>', 3, '--max-memory'),
+}
+
+
+@attack_each(ENDLESS)
+def endless(place, case):
+    """What is read beside a mesh, or in its place, keeps to the limit whatever it holds."""
+    arguments, name, head, item, count, tail, code, says = case
+    size = 0
+    if name:
+        with open(place.folder / name, 'wb') as file:  # by parts: what this process holds counts for those it starts
+            file.write(head)
+            for _ in range(count >> 10):
+                file.write(item * 1024)
+            size = file.write(tail) + file.tell()
+    source = name if name and name[0] in 'sp' else place.box().name
+    limit = 160 * MIB
+    run = place.run(source, 'out.svg' if source == 'p.svg' else 'out.obj', *arguments, '-q', '--max-memory', f'{limit // MIB}M')
+    if code:
+        place.refused(run, code, says)
+    else:
+        place.ended_well(run, code)
+    # The list itself is mapped: pages of the file, which the system may drop.
+    held_to(place, run, limit + size)
+
+
 @attack_each(BOMBS)
 def decompressed(place, case):
     bomb(place, *case)
@@ -95,7 +129,8 @@ def scene(place, shape):
 def zigzag(place):
     """Each segment crosses about half of the others; what is near whom was a list as well, 25 times as long."""
     place.file('zigzag.txt', ''.join(f'{i * 1597 % 2584 / 258.4:.9g} {i % 2 * 10}\n' for i in range(2584)))
-    run = place.run('zigzag.txt', 'out.txt', '-d', '0.05', '--max-memory', '200M')
+    limit = () if place.sanitized else ('--max-memory', '200M')
+    run = place.run('zigzag.txt', 'out.txt', '-d', '0.05', *limit)
     place.ended_well(run, 0)
     place.check(b'more than 1000000 pairs of segments meet' in run.err + run.out, 'expected to be told of them', run)
     held_to(place, run, 200 * MIB)

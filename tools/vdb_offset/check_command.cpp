@@ -263,8 +263,7 @@ int run_check(int argc, const char* const* argv) {
   settle_counts(args);
   require_usable(args);
   require_report_apart(args);
-  const std::string inputs = args.source + " or " + args.offset;
-  tell_of_lost_input(inputs);
+  tell_of_lost_input(args.source);
   const auto axes = parse_axes(args.distance_xy, args.distance_z);
   if (axes && !args.distance.empty()) throw UsageError("--distance: expected it without --distance-xy");
   if (axes && !args.obstacles.empty()) throw UsageError("--obstacle: expected it without --distance-xy");

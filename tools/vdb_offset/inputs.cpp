@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "messages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/io/vertex_numbers.h"
 #include "vdb_offset/memory.h"
 
@@ -120,19 +120,27 @@ std::vector<Distances> geometric_heights(const Source& source, const Arguments& 
   return heights;
 }
 
+constexpr std::size_t kLongestHeight = 4096;
+
 /// One height a line; empty lines and what is behind a # do not count. Other files are looked for beside this one.
 std::vector<Distances> read_heights(const Source& source, Arguments& args) {
   const std::string& path = args.layers->heights;
-  std::ifstream file(path);
-  if (!file) throw ReadError(path + ": cannot be read");
-  if (std::filesystem::is_directory(path)) throw ReadError(path + ": expected a file, got a folder");
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) throw ReadError(path + ": expected a file, got a folder");
+  const io::FileBytes bytes = io::FileBytes::open(path);
+  std::string_view rest = bytes.view();
   std::vector<Distances> heights;
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    line.erase(std::min(line.find('#'), line.size()));
-    const std::size_t first = line.find_first_not_of(" \t\r");
+  for (std::size_t number = 1; !rest.empty(); ++number) {
+    const std::string_view whole = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(whole.size() + 1, rest.size()));
+    std::string_view text = whole.substr(0, whole.find('#'));
+    const std::size_t first = text.find_first_not_of(" \t\r");
     if (first == std::string::npos) continue;
-    line = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+    text = text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+    if (text.size() > kLongestHeight)
+      throw InvalidInput(fmt::format("{}: line {}: expected a height of at most {} characters, got {}", path, number,
+                                     kLongestHeight, text.size()));
+    const std::string line(text);
     try {
       DistanceRequest request = parse_request(line);
       if (line.starts_with('@')) {

@@ -29,7 +29,8 @@ std::size_t character_at(std::string_view text) {
   if (first < 0xc2 || first >= 0xf5 || text.size() < length) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if (!is_tail(text[i])) return 0;
-  return length;
+  const bool is_control = first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0;
+  return is_control ? 0 : length;
 }
 
 std::string with_escapes(std::string_view text) {

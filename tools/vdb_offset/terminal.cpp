@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 
+#include "messages.h"
 #include "vdb_offset/temporary.h"
 
 namespace vdb_offset::tool {
@@ -24,9 +24,8 @@ void end_by(int signal) {
 
 // All that a signal handler may touch: how the message goes on before and behind the name of the input, and that.
 constexpr char kBeforeName[] = "vdb_offset: ",
-               kBehindName[] = ": expected a file that stays as it is, got one that was cut short\n";
-constexpr std::size_t kMostOfName = 400;
-const char* lost_input = "";
+               kBehindName[] = ", or another input: expected a file that stays as it is, got one that was cut short\n";
+std::string lost_input;
 
 void write_error(const char* text, std::size_t size) {
   const ssize_t ignored = ::write(STDERR_FILENO, text, size);
@@ -35,7 +34,7 @@ void write_error(const char* text, std::size_t size) {
 
 void end_for_lost_input(int) {
   write_error(kBeforeName, sizeof kBeforeName - 1);
-  write_error(lost_input, std::min(std::strlen(lost_input), kMostOfName));
+  write_error(lost_input.data(), lost_input.size());
   write_error(kBehindName, sizeof kBehindName - 1);
   remove_temporaries();
   _exit(2);
@@ -54,13 +53,17 @@ void ProgressBar::show(Stage stage, double share) {
       fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);
   if (line == shown_) return;
   shown_ = std::move(line);
-  fmt::print(stderr, "\r{}", shown_);
-  std::fflush(stderr);
+  print("\r" + shown_);
 }
 
 void ProgressBar::clear() {
-  if (!shown_.empty()) fmt::print(stderr, "\r{:{}}\r", "", shown_.size());
+  if (!shown_.empty()) print(fmt::format("\r{:{}}\r", "", shown_.size()));
   shown_.clear();
+}
+
+/// A terminal that has gone is no reason to end.
+void ProgressBar::print(const std::string& text) {
+  active_ = std::fwrite(text.data(), 1, text.size(), stderr) == text.size() && std::fflush(stderr) == 0;
 }
 
 void catch_interrupts() {
@@ -80,7 +83,7 @@ void ignore_interrupts() {
 }
 
 void tell_of_lost_input(const std::string& path) {
-  lost_input = path.c_str();
+  lost_input = readable(path);
   std::signal(SIGBUS, end_for_lost_input);
 }
 

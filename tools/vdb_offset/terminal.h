@@ -18,6 +18,8 @@ class ProgressBar {
   void clear();
 
  private:
+  void print(const std::string& text);
+
   bool active_;
   std::string shown_;
 };
@@ -28,7 +30,7 @@ void catch_interrupts();
 /// For when the outputs are complete: what comes now changes nothing.
 void ignore_interrupts();
 /// Input files are mapped: one that is cut short while it is read ends the process by SIGBUS. From here on it ends with
-/// a message about `path`, which has to stay as it is, no temporary file and exit code 2.
+/// a message about `path`, no temporary file and exit code 2.
 void tell_of_lost_input(const std::string& path);
 
 }  // namespace vdb_offset::tool

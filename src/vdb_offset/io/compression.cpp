@@ -32,7 +32,8 @@ class Output {
       throw InvalidInput(
           fmt::format("{}: expected at most {} MiB when decompressed, half of what is free", path_, most_ >> 20));
     if (const std::size_t needed = bytes_.size() + size; needed > bytes_.capacity()) {
-      const std::size_t more = std::max(needed, std::min(bytes_.capacity() + bytes_.capacity() / 2, most_));
+      std::size_t more = std::max(needed, std::min(bytes_.capacity() + bytes_.capacity() / 2, most_));
+      if (!fits_memory(more)) more = needed;
       require_memory(more, path_);
       bytes_.reserve(more);
     }

@@ -81,17 +81,21 @@ void require_known(const MeshFile& mesh, const Labels& labels, const Selector& s
 void mark_from_file(const std::string& path, std::vector<std::uint8_t>& marks) {
   FileBytes bytes = FileBytes::open(path);
   Scanner scanner(path, bytes.view(), byte_order_mark(bytes.view()), false, '#');
-  std::vector<std::int64_t> numbers;
+  // Both readings are kept until the end tells which it is: the list may be of any length.
+  std::vector<std::uint8_t> as_marks, as_indices(marks.size(), 0);
+  as_marks.reserve(marks.size());
+  bool may_be_marks = true;
   while (!scanner.at_text_end()) {
-    numbers.push_back(scanner.integer_anywhere("the index of a face, or a mark of 0 or 1"));
-    if (numbers.back() < 0 || numbers.back() >= static_cast<std::int64_t>(marks.size()))
+    const std::int64_t number = scanner.integer_anywhere("the index of a face, or a mark of 0 or 1");
+    if (number < 0 || number >= static_cast<std::int64_t>(marks.size()))
       scanner.fail(fmt::format("the index of a face, from 0 to {}", marks.size() - 1), scanner.last_token());
+    may_be_marks = may_be_marks && number <= 1 && as_marks.size() < marks.size();
+    if (may_be_marks) as_marks.push_back(static_cast<std::uint8_t>(number));
+    as_indices[static_cast<std::size_t>(number)] = 1;
   }
-  const bool mask = numbers.size() == marks.size() &&
-                    std::all_of(numbers.begin(), numbers.end(), [](std::int64_t n) { return n <= 1; });
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (!mask) marks[static_cast<std::size_t>(numbers[i])] = 1;
-    else if (numbers[i] == 1) marks[i] = 1;
+  const bool is_mask = may_be_marks && as_marks.size() == marks.size();
+  std::transform(marks.begin(), marks.end(), is_mask ? as_marks.begin() : as_indices.begin(), marks.begin(),
+                 [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "vdb_offset/io/numbers.h"
 #include "vdb_offset/io/scanner.h"
 #include "vdb_offset/io/text.h"
+#include "vdb_offset/memory.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -293,6 +294,7 @@ class SvgReader {
       fail_at(here(), "coordinates that are numbers", "larger ones");
     curves.corners.push_back(static_cast<std::uint32_t>(curves.positions.size()));
     curves.positions.push_back(position);
+    held_.add();
     lines_.own.push_back(p);
   }
 
@@ -374,6 +376,7 @@ class SvgReader {
   std::vector<Element> open_;
   Matrix to_drawing_ = kIdentity;
   SvgLines lines_;
+  MemoryWatch held_{path_, sizeof(Vec3d) + sizeof(Vec2d) + sizeof(std::uint32_t)};
 };
 
 void append_point(std::string& text, const Vec2d& p, const Precision& precision = {}) {

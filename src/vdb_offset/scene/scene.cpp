@@ -15,6 +15,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/io/scanner.h"
+#include "vdb_offset/memory.h"
 #include "vdb_offset/scene/shapes.h"
 
 namespace vdb_offset::scene {
@@ -277,8 +278,10 @@ json::parser_callback_t require_keys_once(const std::string& path) {
 }
 
 json parse_file(const std::string& path) {
-  constexpr std::size_t kLongestError = 200;  // the parser repeats what it has read
+  constexpr std::size_t kLongestError = 200;                               // the parser repeats what it has read
+  constexpr std::size_t kMostPerByte = 32, kSmall = std::size_t{1} << 20;  // an array of digits, say
   const io::FileBytes bytes = io::FileBytes::open(path);
+  if (bytes.view().size() > kSmall) require_memory(kMostPerByte * bytes.view().size(), path);
   try {
     return json::parse(bytes.view(), require_keys_once(path));
   } catch (const json::exception& error) {
