@@ -5,6 +5,11 @@ import random
 from attack import BOX, attack, attack_each
 
 
+def part(place, size):
+    """Sanitized, what takes seconds takes a minute."""
+    return size // 5 if place.sanitized else size
+
+
 def star(corners):
     def place_of(i):
         angle, radius = 2 * math.pi * i / corners, 1 - i % 2 / 2
@@ -30,7 +35,7 @@ def sphere(middle):
 
 @attack_each({'topology': (), 'iso': ('--mode', 'iso')})
 def polygon(place, more):
-    place.file('star.obj', star(20000 if not more else 10000))
+    place.file('star.obj', star(part(place, 20000 if not more else 10000)))
     place.ended_well(place.run('star.obj', 'out.obj', '-d', '1%', *more), 0)
 
 
@@ -42,9 +47,10 @@ def joined_lines(place):
 
 @attack
 def curves_from_one_point(place):
-    spokes = range(5000)
+    count = part(place, 5000)
+    spokes = range(count)
     place.file('hub.obj', 'v 0 0 0\n' + ''.join(
-        f'v {math.cos(math.pi * i / 2500):.9g} {math.sin(math.pi * i / 2500):.9g} 0\n' for i in spokes) +
+        f'v {math.cos(2 * math.pi * i / count):.9g} {math.sin(2 * math.pi * i / count):.9g} 0\n' for i in spokes) +
         ''.join(f'l 1 {i + 2}\n' for i in spokes))
     place.ended_well(place.run('hub.obj', 'out.obj', '-d', '1%'), 0)
 
@@ -60,15 +66,17 @@ def triangles_that_all_meet(place):
     """Triangles around one point: more than a million pairs, which is as many as are counted."""
     numbers = random.Random(1)
     lines = []
-    for _ in range(1500):
+    count = part(place, 1500)
+    for _ in range(count):
         u, v = ([numbers.gauss(0, 1) for _ in range(3)] for _ in range(2))
         for angle in (0, 2.1, 4.2):
             lines.append('v ' + ' '.join(f'{a * math.cos(angle) + b * math.sin(angle):.9g}' for a, b in zip(u, v)) + '\n')
-    lines += [f'f {3 * i + 1} {3 * i + 2} {3 * i + 3}\n' for i in range(1500)]
+    lines += [f'f {3 * i + 1} {3 * i + 2} {3 * i + 3}\n' for i in range(count)]
     place.file('soup.obj', ''.join(lines))
     run = place.run('soup.obj', 'out.obj', '-d', '1%')
     place.ended_well(run, 0)
-    place.check(b'more than 1000000 pairs of triangles meet' in run.err + run.out, 'expected to be told of them', run)
+    place.check(place.sanitized or b'more than 1000000 pairs of triangles meet' in run.err + run.out,
+                'expected to be told of them', run)
 
 
 @attack_each({'topology': (), 'iso': ('--mode', 'iso')})
