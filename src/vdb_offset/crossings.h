@@ -15,7 +15,7 @@ namespace vdb_offset {
 /// Two triangles, the smaller index first.
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Where a surface crosses itself: all pairs, or, if there are more than kMostListedCrossings, who is in any.
+/// Where a surface crosses itself: all pairs, or, if there are more than kMostListedPairs, which triangles are in one.
 struct SelfCrossings {
   std::vector<TrianglePair> pairs;    ///< Sorted; empty if there are more.
   bool more = false;                  ///< There are more than are listed.
@@ -25,7 +25,8 @@ struct SelfCrossings {
   std::size_t count() const;
 };
 
-/// Most pairs that are listed of where a source crosses itself: found in two seconds, and as much work for who asks.
+/// Most pairs that are listed of where a source crosses itself: found in two seconds, and gone through in about as
+/// many.
 inline constexpr std::size_t kMostListedPairs = 1000000;
 
 inline std::size_t SelfCrossings::count() const { return more ? kMostListedPairs : pairs.size(); }
@@ -47,7 +48,7 @@ class CrossingFinder {
   std::vector<TrianglePair> all() const { return all({}); }
   /// The same of triangles that matter.
   std::vector<TrianglePair> all(const std::function<bool(std::uint32_t)>& matters) const;
-  /// All pairs, or who is in any.
+  /// All pairs, or which triangles are in one.
   SelfCrossings listed() const;
   /// The pairs that a triangle of the last update is part of, or two, both of which matter (all do by default); sorted.
   std::vector<TrianglePair> of_updated(const std::function<bool(std::uint32_t)>& matters = {}) const;

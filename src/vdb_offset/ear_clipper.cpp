@@ -8,7 +8,7 @@
 namespace vdb_offset {
 namespace {
 
-constexpr std::uint32_t kNobody = ~std::uint32_t{0};
+constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};
 
 bool same(Point2 p, Point2 q) { return p.x == q.x && p.y == q.y; }
 
@@ -56,18 +56,18 @@ class CornerTree {
     }
   }
 
-  /// A corner that is left, in the ear and for which is_it() holds; kNobody if there is none.
+  /// A corner that is left, in the ear and for which is_it() holds; kNoCorner if there is none.
   template <class IsIt>
   std::uint32_t find(const Ear& ear, IsIt&& is_it, std::size_t at = 0) const {
     const Node& node = nodes_[at];
-    if (node.left == 0 || node.box.misses(ear)) return kNobody;
+    if (node.left == 0 || node.box.misses(ear)) return kNoCorner;
     if (at < first_leaf_) {
       const std::uint32_t found = find(ear, is_it, 2 * at + 1);
-      return found != kNobody ? found : find(ear, is_it, 2 * at + 2);
+      return found != kNoCorner ? found : find(ear, is_it, 2 * at + 2);
     }
     for (std::size_t i = node.begin; i < node.end; ++i)
       if (ear.holds(corners_[order_[i]]) && is_it(order_[i])) return order_[i];
-    return kNobody;
+    return kNoCorner;
   }
 
  private:
@@ -126,10 +126,10 @@ class NumberSet {
       i /= 64;
     }
   }
-  /// The least member that is not below `from`; kNobody if there is none.
+  /// The least member that is not below `from`; kNoCorner if there is none.
   std::uint32_t next(std::uint32_t from) const {
     for (std::size_t l = 0; l < levels_.size(); ++l) {
-      if (from / 64 >= levels_[l].size()) return kNobody;
+      if (from / 64 >= levels_[l].size()) return kNoCorner;
       const std::uint64_t rest = levels_[l][from / 64] & ~std::uint64_t{0} << from % 64;
       if (rest != 0) {
         std::uint32_t i = from / 64 * 64 + static_cast<std::uint32_t>(std::countr_zero(rest));
@@ -138,7 +138,7 @@ class NumberSet {
       }
       from = from / 64 + 1;
     }
-    return kNobody;
+    return kNoCorner;
   }
 
  private:
@@ -154,8 +154,8 @@ class EarClipper {
         next_(left_),
         previous_(left_),
         is_gone_(left_, 0),
-        waits_for_(left_, kNobody),
-        first_waiting_(left_, kNobody),
+        waits_for_(left_, kNoCorner),
+        first_waiting_(left_, kNoCorner),
         tree_(corners_),
         unknown_(left_) {
     for (std::uint32_t k = 0; k < left_; ++k) {
@@ -183,24 +183,24 @@ class EarClipper {
   std::uint32_t next_ear(std::uint32_t from) {
     for (std::uint32_t k = from;;) {
       k = unknown_.next(k);
-      if (k == kNobody) k = unknown_.next(0);
-      if (k == kNobody) return from;
+      if (k == kNoCorner) k = unknown_.next(0);
+      if (k == kNoCorner) return from;
       if (is_ear(k)) return k;
       unknown_.remove(k);
     }
   }
 
-  /// Notes who is in its way, if anybody is.
+  /// Notes which corner is in its way, if one is.
   bool is_ear(std::uint32_t k) {
     const Ear ear{corners_[previous_[k]], corners_[k], corners_[next_[k]]};
-    waits_for_[k] = kNobody;
+    waits_for_[k] = kNoCorner;
     if (cross(ear.a, ear.b, ear.c) <= 0) return false;
     // Corners that stand on a corner of the ear are hole bridges, which visit a position twice.
     const std::uint32_t in_the_way = tree_.find(ear, [&](std::uint32_t m) {
       const Point2 p = corners_[m];
       return !is_gone_[m] && !same(p, ear.a) && !same(p, ear.b) && !same(p, ear.c);
     });
-    if (in_the_way == kNobody) return true;
+    if (in_the_way == kNoCorner) return true;
     waits_for_[k] = in_the_way;
     waiting_.push_back({k, first_waiting_[in_the_way]});
     first_waiting_[in_the_way] = static_cast<std::uint32_t>(waiting_.size() - 1);
@@ -216,7 +216,7 @@ class EarClipper {
     is_gone_[k] = 1;
     tree_.remove(k);
     unknown_.remove(k);
-    for (std::uint32_t i = first_waiting_[k]; i != kNobody; i = waiting_[i].next)
+    for (std::uint32_t i = first_waiting_[k]; i != kNoCorner; i = waiting_[i].next)
       if (const auto corner = waiting_[i].corner; waits_for_[corner] == k && !is_gone_[corner]) unknown_.add(corner);
     unknown_.add(before);
     unknown_.add(after);
@@ -234,7 +234,7 @@ class EarClipper {
   std::vector<std::uint32_t> waits_for_, first_waiting_;
   std::vector<Waiting> waiting_;
   CornerTree tree_;
-  NumberSet unknown_;  // who may be an ear
+  NumberSet unknown_;  // corners that may be ears
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 

@@ -25,27 +25,20 @@ struct Descriptor {
 
 std::string reason() { return std::strerror(errno); }
 
-/// The file that a path names: a link stays a link, and what it points to is replaced, or made.
-std::filesystem::path resolved(const std::string& path) {
-  constexpr int kMostLinks = 40;
-  std::error_code unknown;
-  std::filesystem::path target = std::filesystem::absolute(path, unknown);
-  for (int i = 0; i < kMostLinks && !std::filesystem::exists(target, unknown) &&
-                  std::filesystem::is_symlink(std::filesystem::symlink_status(target, unknown));
-       ++i)
-    target = target.parent_path() / std::filesystem::read_symlink(target, unknown);
-  target = std::filesystem::weakly_canonical(target, unknown);
-  if (unknown) target = path;
-  if (std::filesystem::is_directory(target, unknown))
-    throw WriteError(path + ": expected a file to write, got a folder");
-  return target;
-}
-
 /// A device or a pipe cannot be replaced by a rename.
 bool is_written_in_place(const std::filesystem::path& target) {
   std::error_code ignored;
   const auto status = std::filesystem::status(target, ignored);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+/// \throw WriteError for a folder
+std::filesystem::path file_to_write(const std::string& path) {
+  std::filesystem::path target = replaced_path(path);
+  std::error_code unknown;
+  if (std::filesystem::is_directory(target, unknown))
+    throw WriteError(path + ": expected a file to write, got a folder");
+  return target;
 }
 
 void write_all(const std::string& path, int file, std::string_view bytes) {
@@ -58,6 +51,20 @@ void write_all(const std::string& path, int file, std::string_view bytes) {
 }
 
 }  // namespace
+
+std::filesystem::path replaced_path(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  std::error_code failed;
+  std::filesystem::path target = std::filesystem::absolute(path, failed);
+  const auto leads_nowhere = [&] {
+    return !std::filesystem::exists(target, failed) &&
+           std::filesystem::is_symlink(std::filesystem::symlink_status(target, failed));
+  };
+  for (int i = 0; i < kMostLinks && leads_nowhere(); ++i)
+    target = target.parent_path() / std::filesystem::read_symlink(target, failed);
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(target, failed);
+  return failed ? std::filesystem::path(path) : whole;
+}
 
 Replacements::Replacements(Sync sync) : outer_(innermost), sync_(sync) { innermost = this; }
 
@@ -149,7 +156,7 @@ void Replacements::put_back(File& file) {
 
 void require_writable(const std::string& path) {
   if (path == "-") return;
-  const std::filesystem::path target = resolved(path);
+  const std::filesystem::path target = file_to_write(path);
   struct stat is {};
   const bool missing = ::stat(target.c_str(), &is) != 0;
   if (missing && errno != ENOENT) throw WriteError(path + ": cannot be written: " + reason());
@@ -160,7 +167,7 @@ void require_writable(const std::string& path) {
 }
 
 void replace_file(const std::string& path, const std::function<void(const std::string&)>& write) {
-  const std::filesystem::path target = resolved(path);
+  const std::filesystem::path target = file_to_write(path);
   if (is_written_in_place(target)) return write(target.string());
   Replacements files;
   write(files.add_file(target, path));

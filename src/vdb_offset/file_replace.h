@@ -55,6 +55,10 @@ class Replacements {
   std::vector<Temporary> folders_;
 };
 
+/// The file that is made or replaced for a path, absolute: a link stays a link, and what it leads to is replaced,
+/// whether or not that is there yet.
+std::filesystem::path replaced_path(const std::string& path);
+
 /// Lets `write` make a file under a temporary name beside `path`, then puts it in the place of `path`. Whatever
 /// happens, `path` is either what it was or complete, and no temporary file stays. `write` gets the temporary name. A
 /// device or a pipe is written to as it is. \throw WriteError, and whatever `write` throws.

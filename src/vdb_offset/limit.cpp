@@ -674,8 +674,8 @@ class Limiter {
     look(vertices);
   }
 
-  /// Takes those around a pulled vertex back as well, as far as its dip is too steep; not who is at its distance, and
-  /// who stays pulled altogether need not be followed.
+  /// Takes those around a pulled vertex back as well, as far as its dip is too steep. A vertex at its distance stays
+  /// there, and one that is pulled back altogether need not be followed.
   void ease() {
     Indices eased, open = pulled_;
     const std::vector<double> before = share_;

@@ -19,7 +19,7 @@ using SegmentPair = std::pair<std::uint32_t, std::uint32_t>;
 /// Of segments that lead from one point to the same other one, either way, the first: where each of them is. Sorted.
 std::vector<std::uint32_t> distinct_segments(std::span<const Segment> segments);
 
-/// Most pairs that anybody keeps a list of: 8 MB, found in about a second.
+/// Most pairs that are kept in a list: 8 MB, found in about a second.
 inline constexpr std::size_t kMostListedCrossings = 1000000;
 
 /// Finds the pairs of segments of plane curves that meet elsewhere than in the points they share: decided with exact

@@ -10,6 +10,7 @@
 
 #include "messages.h"
 #include "outputs.h"
+#include "vdb_offset/file_replace.h"
 #include "vdb_offset/io/volume_file.h"
 
 namespace vdb_offset::tool {
@@ -22,27 +23,13 @@ std::string number_of(const struct stat& file) { return fmt::format("{}:{}", fil
 /// Takes whatever is written there, from anyone.
 bool is_null_device(const struct stat& file) { return S_ISCHR(file.st_mode) && file.st_rdev == makedev(1, 3); }
 
-/// Where a link leads whose target does not exist yet; any other path as it is.
-fs::path target_of(fs::path path) {
-  constexpr int kMostLinks = 40;
-  std::error_code failed;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, failed)); ++i) {
-    const fs::path target = fs::read_symlink(path, failed);
-    if (failed) break;
-    path = path.parent_path() / target;
-  }
-  return path;
-}
-
 /// What two paths have in common if they are one file. Empty for what cannot clash.
 std::string identity_of(const std::string& path, int standard_stream) {
   struct stat file {};
   const bool exists = path == "-" ? ::fstat(standard_stream, &file) == 0 : ::stat(path.c_str(), &file) == 0;
   if (path == "-" && (!exists || !S_ISREG(file.st_mode))) return fmt::format("-{}", standard_stream);
   if (!exists) {
-    std::error_code unknown;
-    const fs::path whole = fs::weakly_canonical(target_of(fs::absolute(path, unknown)), unknown);
-    if (unknown) return path;
+    const fs::path whole = replaced_path(path);
     return (whole.has_filename() ? whole : whole.parent_path()).string();  // a folder's may end in a slash
   }
   if (is_null_device(file)) return {};
