@@ -1,4 +1,4 @@
-#include "vdb_offset/capture.h"
+#include "vdb_offset/iso/iso_surface.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,13 +9,13 @@
 
 #include "folder.h"
 #include "oracles.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/captured_file.h"
-#include "vdb_offset/iso_grid.h"
-#include "vdb_offset/mend.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/iso/iso_file.h"
+#include "vdb_offset/iso/iso_grid.h"
+#include "vdb_offset/iso/mend.h"
+#include "vdb_offset/iso/source_lookup.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/transport.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 

@@ -1,9 +1,9 @@
-#include "vdb_offset/check.h"
+#include "vdb_offset/pipeline/check.h"
 
 #include <catch2/catch.hpp>
 
 #include "oracles.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/base/error.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

@@ -3,10 +3,10 @@
 #include <random>
 
 #include "oracles.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/clearance.h"
-#include "vdb_offset/offset.h"
+#include "vdb_offset/pipeline/check.h"
+#include "vdb_offset/pipeline/offset.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/validity/clearance.h"
 
 using namespace vdb_offset;
 

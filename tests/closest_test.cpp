@@ -1,4 +1,4 @@
-#include "vdb_offset/closest.h"
+#include "vdb_offset/query/closest_query.h"
 
 #include <tbb/task_arena.h>
 
@@ -6,8 +6,8 @@
 #include <random>
 
 #include "oracles.h"
+#include "vdb_offset/query/vertex_fan.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/vertex_fan.h"
 
 using namespace vdb_offset;
 

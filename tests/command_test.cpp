@@ -11,8 +11,8 @@
 #include <sstream>
 #include <thread>
 
-#include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/curve/curve_file.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "folder.h"
-#include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/triangle_places.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh/triangle_positions.h"
 
 using namespace vdb_offset;
 

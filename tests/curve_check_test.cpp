@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "curve_oracles.h"
-#include "vdb_offset/curve_cells.h"
-#include "vdb_offset/curve_check.h"
-#include "vdb_offset/curve_line.h"
-#include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/curve/curve_line.h"
+#include "vdb_offset/curve_offset/curve_cells.h"
+#include "vdb_offset/curve_offset/curve_check.h"
+#include "vdb_offset/curve_offset/curve_offset.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

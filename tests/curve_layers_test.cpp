@@ -11,13 +11,13 @@
 
 #include "curve_oracles.h"
 #include "folder.h"
-#include "vdb_offset/cell_quality.h"
-#include "vdb_offset/curve_cells.h"
-#include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/curve_offset/curve_cells.h"
+#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/io/curve/curve_file.h"
+#include "vdb_offset/io/volume/volume_file.h"
+#include "vdb_offset/layers/layer_report.h"
+#include "vdb_offset/volume/cell_quality.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/ribbon.h"
+#include "vdb_offset/curve/ribbon.h"
 
 /// Curves to try, and what holds of them by brute force.
 namespace vdb_offset::test {

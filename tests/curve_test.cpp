@@ -8,9 +8,9 @@
 #include "bytes.h"
 #include "curve_oracles.h"
 #include "folder.h"
-#include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/io/curve/curve_file.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

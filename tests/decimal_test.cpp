@@ -1,4 +1,4 @@
-#include "vdb_offset/decimal.h"
+#include "vdb_offset/base/decimal.h"
 
 #include <catch2/catch.hpp>
 

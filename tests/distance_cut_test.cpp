@@ -1,4 +1,4 @@
-#include "vdb_offset/distance_cut.h"
+#include "vdb_offset/query/cut_at_distance.h"
 
 #include <catch2/catch.hpp>
 #include <random>

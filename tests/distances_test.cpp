@@ -12,13 +12,13 @@
 #include "bytes.h"
 #include "folder.h"
 #include "oracles.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/expression.h"
-#include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/compression.h"
-#include "vdb_offset/io/vertex_numbers.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/base/compression.h"
+#include "vdb_offset/io/mesh/attributes.h"
+#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "vdb_offset/mesh/distance_expression.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/surface.h"
+#include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;
 

@@ -5,11 +5,11 @@
 #include <filesystem>
 
 #include "oracles.h"
-#include "vdb_offset/directions.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/rasterise.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/field/direction_field.h"
+#include "vdb_offset/field/rasterise.h"
+#include "vdb_offset/field/sweep.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/sweep.h"
 
 using namespace vdb_offset;
 

@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "oracles.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/clearance.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/fit.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/pipeline/check.h"
+#include "vdb_offset/pipeline/fit.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/validity/clearance.h"
 
 using namespace vdb_offset;
 

@@ -1,10 +1,10 @@
-#include "vdb_offset/foam_cells.h"
+#include "vdb_offset/volume/foam_quality.h"
 
 #include <array>
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/io/volume/volume_file.h"
 #include "volume_meshes.h"
 
 using namespace vdb_offset;

@@ -7,9 +7,9 @@
 
 #include "bytes.h"
 #include "folder.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

@@ -5,16 +5,16 @@
 
 #include "folder.h"
 #include "oracles.h"
-#include "vdb_offset/capture.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/flats.h"
-#include "vdb_offset/holes.h"
-#include "vdb_offset/hollow.h"
-#include "vdb_offset/io/captured_file.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/iso/iso_file.h"
+#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/iso/merge_flats.h"
+#include "vdb_offset/iso/solid_boundary.h"
+#include "vdb_offset/iso/specks.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/solid.h"
-#include "vdb_offset/specks.h"
+#include "vdb_offset/shell/hollow.h"
+#include "vdb_offset/surface/holes.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 

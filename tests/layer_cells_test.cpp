@@ -1,4 +1,4 @@
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/layers/cells/make_cells.h"
 
 #include <tbb/global_control.h>
 
@@ -10,13 +10,13 @@
 #include <random>
 
 #include "oracles.h"
-#include "vdb_offset/cell_faces.h"
-#include "vdb_offset/cell_quality.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/wall_names.h"
-#include "vdb_offset/prism_columns.h"
-#include "vdb_offset/report.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/volume/wall_names_of_file.h"
+#include "vdb_offset/report/report.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/volume/cell_faces.h"
+#include "vdb_offset/volume/cell_quality.h"
+#include "vdb_offset/volume/prism_quality_columns.h"
 
 using namespace vdb_offset;
 

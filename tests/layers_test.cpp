@@ -1,4 +1,4 @@
-#include "vdb_offset/layers.h"
+#include "vdb_offset/layers/layers.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,13 +7,13 @@
 
 #include "oracles.h"
 #include "random_scenes.h"
-#include "vdb_offset/cell_quality.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layer_block.h"
-#include "vdb_offset/layer_cells.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/layers/cells/make_cells.h"
+#include "vdb_offset/layers/cells/structured_block.h"
+#include "vdb_offset/layers/layer_report.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/validity/triangle_crossings.h"
+#include "vdb_offset/volume/cell_quality.h"
 
 using namespace vdb_offset;
 

@@ -1,4 +1,4 @@
-#include "vdb_offset/limit.h"
+#include "vdb_offset/limit/limit.h"
 
 #include <openvdb/math/Quat.h>
 #include <tbb/task_arena.h>
@@ -9,10 +9,10 @@
 
 #include "oracles.h"
 #include "random_scenes.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/faults.h"
+#include "vdb_offset/pipeline/check.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/validity/fault_finder.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 

@@ -4,12 +4,12 @@
 #include <numbers>
 
 #include "oracles.h"
-#include "vdb_offset/capture.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layers.h"
-#include "vdb_offset/metric.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/layers/layers.h"
+#include "vdb_offset/mesh/metric.h"
+#include "vdb_offset/pipeline/check.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

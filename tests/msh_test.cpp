@@ -3,12 +3,12 @@
 #include <map>
 #include <set>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/msh_entities.h"
-#include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/io/wall_names.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/volume/msh_entities.h"
+#include "vdb_offset/io/volume/volume_file.h"
+#include "vdb_offset/io/volume/wall_names_of_file.h"
+#include "vdb_offset/layers/cells/make_cells.h"
 #include "vdb_offset/scene/shapes.h"
 #include "volume_meshes.h"
 

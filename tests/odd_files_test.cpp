@@ -5,15 +5,15 @@
 
 #include "bytes.h"
 #include "folder.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/nearest_names.h"
-#include "vdb_offset/io/selection.h"
-#include "vdb_offset/io/shell_file.h"
-#include "vdb_offset/io/vertex_numbers.h"
-#include "vdb_offset/surface.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/base/nearest_names.h"
+#include "vdb_offset/io/curve/curve_file.h"
+#include "vdb_offset/io/mesh/attributes.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh/selection.h"
+#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "vdb_offset/io/shell/shell_file.h"
+#include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;
 using io::Format;

@@ -1,4 +1,4 @@
-#include "vdb_offset/offset.h"
+#include "vdb_offset/pipeline/offset.h"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "oracles.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/report.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/report/report.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

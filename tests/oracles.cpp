@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "vdb_offset/cell_quality.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/volume/cell_quality.h"
 
 namespace vdb_offset::test {
 namespace {

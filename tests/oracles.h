@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/layer_quality.h"
-#include "vdb_offset/offset.h"
+#include "vdb_offset/layers/cells/measure_cells.h"
+#include "vdb_offset/pipeline/offset.h"
 
 namespace vdb_offset::test {
 

@@ -1,11 +1,11 @@
-#include "vdb_offset/orientation.h"
+#include "vdb_offset/surface/orientation.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "oracles.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/offset.h"
+#include "vdb_offset/pipeline/check.h"
+#include "vdb_offset/pipeline/offset.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

@@ -1,12 +1,12 @@
-#include "vdb_offset/plan.h"
+#include "vdb_offset/field/grid_plan.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/rasterise.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/field/rasterise.h"
+#include "vdb_offset/field/sweep.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/sweep.h"
 
 using namespace vdb_offset;
 

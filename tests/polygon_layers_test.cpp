@@ -4,13 +4,13 @@
 #include <random>
 #include <set>
 
-#include "vdb_offset/cell_quality.h"
-#include "vdb_offset/foam_cells.h"
-#include "vdb_offset/layer_block.h"
-#include "vdb_offset/layer_cells.h"
-#include "vdb_offset/layer_report.h"
-#include "vdb_offset/polygon_prism.h"
+#include "vdb_offset/layers/cells/make_cells.h"
+#include "vdb_offset/layers/cells/structured_block.h"
+#include "vdb_offset/layers/layer_report.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/volume/cell_quality.h"
+#include "vdb_offset/volume/foam_quality.h"
+#include "vdb_offset/volume/polygon_prism.h"
 #include "volume_meshes.h"
 
 using namespace vdb_offset;

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "oracles.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/precedent.h"
+#include "vdb_offset/limit/warm_start.h"
+#include "vdb_offset/pipeline/check.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vdb_offset/polygons.h"
+#include "vdb_offset/mesh/polygons.h"
 
 namespace vdb_offset::test {
 

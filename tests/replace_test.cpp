@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "folder.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/temporary.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/base/temporary.h"
 
 namespace fs = std::filesystem;
 using namespace vdb_offset;

@@ -1,12 +1,12 @@
-#include "vdb_offset/ridge_way.h"
+#include "vdb_offset/paths/ridge_path.h"
 
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "oracles.h"
-#include "vdb_offset/curve_offset.h"
-#include "vdb_offset/offset.h"
+#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/pipeline/offset.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

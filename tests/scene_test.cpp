@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "oracles.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/fit.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/pipeline/fit.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

@@ -1,16 +1,16 @@
-#include "vdb_offset/seams.h"
+#include "vdb_offset/surface/seams.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "vdb_offset/capture.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/offset.h"
-#include "vdb_offset/report.h"
+#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/pipeline/check.h"
+#include "vdb_offset/pipeline/offset.h"
+#include "vdb_offset/report/report.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/shell.h"
+#include "vdb_offset/shell/shell.h"
 
 using namespace vdb_offset;
 

@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "folder.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/io/shell/shell_file.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/sheet_sides.h"
-#include "vdb_offset/shell.h"
+#include "vdb_offset/sheets/sheet_sides.h"
+#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 

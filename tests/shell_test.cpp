@@ -1,4 +1,4 @@
-#include "vdb_offset/shell.h"
+#include "vdb_offset/shell/shell.h"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include "folder.h"
 #include "oracles.h"
 #include "random_scenes.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/shell_file.h"
-#include "vdb_offset/rim_crossings.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/shell/shell_file.h"
 #include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/validity/rim_crossings.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 

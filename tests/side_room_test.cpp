@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "curve_oracles.h"
-#include "vdb_offset/curve_offset.h"
-#include "vdb_offset/layers.h"
+#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/layers/layers.h"
 #include "vdb_offset/scene/shapes.h"
 
 using namespace vdb_offset;

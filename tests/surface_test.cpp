@@ -1,4 +1,4 @@
-#include "vdb_offset/surface.h"
+#include "vdb_offset/surface/surface.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "oracles.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/mesh.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/mesh/openmesh.h"
+#include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/triangulate.h"
 
 using namespace vdb_offset;
 

@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "oracles.h"
-#include "vdb_offset/crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layer_report.h"
-#include "vdb_offset/layers.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/layers/layer_report.h"
+#include "vdb_offset/layers/layers.h"
 #include "vdb_offset/scene/shapes.h"
-#include "vdb_offset/shell.h"
+#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 

@@ -1,4 +1,4 @@
-#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/io/volume/volume_file.h"
 
 #include <cgnslib.h>
 #include <sys/resource.h>
@@ -26,8 +26,8 @@
 #include <set>
 
 #include "folder.h"
-#include "vdb_offset/cell_quality.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/volume/cell_quality.h"
 #include "volume_meshes.h"
 
 using namespace vdb_offset;

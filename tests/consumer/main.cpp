@@ -1,4 +1,4 @@
-#include <vdb_offset/offset.h>
+#include <vdb_offset/pipeline/offset.h>
 
 int main() {
   vdb_offset::Polygons tetrahedron;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_offset/offset.h"
+#include "vdb_offset/pipeline/offset.h"
 #include "vdb_offset/scene/shapes.h"
 
 namespace vdb_offset {

@@ -15,16 +15,16 @@
 #include <random>
 #include <span>
 
-#include "vdb_offset/closest.h"
-#include "vdb_offset/directions.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/memory.h"
-#include "vdb_offset/offset.h"
-#include "vdb_offset/rasterise.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/base/memory.h"
+#include "vdb_offset/field/direction_field.h"
+#include "vdb_offset/field/rasterise.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/mesh/triangulate.h"
+#include "vdb_offset/pipeline/offset.h"
+#include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/scene/scene.h"
-#include "vdb_offset/triangulate.h"
 
 namespace vdb_offset::bench {
 namespace {

@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/io/captured_file.h"
-#include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/selection.h"
-#include "vdb_offset/offset.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/io/iso/iso_file.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh/selection.h"
+#include "vdb_offset/pipeline/offset.h"
 #include "vdb_offset/scene/scene.h"
 
 namespace CLI {

@@ -14,14 +14,14 @@
 #include "messages.h"
 #include "places.h"
 #include "terminal.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/curve_check.h"
-#include "vdb_offset/curve_line.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/triangle_places.h"
-#include "vdb_offset/report.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/curve/curve_line.h"
+#include "vdb_offset/curve_offset/curve_check.h"
+#include "vdb_offset/io/curve/curve_file.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh/triangle_positions.h"
+#include "vdb_offset/pipeline/check.h"
+#include "vdb_offset/report/report.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "messages.h"
-#include "vdb_offset/temporary.h"
+#include "vdb_offset/base/temporary.h"
 
 namespace vdb_offset::tool {
 namespace {

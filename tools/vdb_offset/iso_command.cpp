@@ -6,10 +6,10 @@
 
 #include "places.h"
 #include "summary.h"
-#include "vdb_offset/capture.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/io/captured_file.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/io/iso/iso_file.h"
+#include "vdb_offset/iso/iso_surface.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "messages.h"
 #include "outputs.h"
-#include "vdb_offset/file_replace.h"
-#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/io/volume/volume_file.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "messages.h"
 #include "places.h"
-#include "vdb_offset/curve_line.h"
-#include "vdb_offset/report.h"
+#include "vdb_offset/curve/curve_line.h"
+#include "vdb_offset/report/report.h"
 
 namespace vdb_offset::tool {
 namespace {

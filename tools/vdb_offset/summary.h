@@ -6,7 +6,7 @@
 #include "args.h"
 #include "inputs.h"
 #include "outputs.h"
-#include "vdb_offset/hollow.h"
+#include "vdb_offset/shell/hollow.h"
 
 namespace vdb_offset::tool {
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "messages.h"
-#include "vdb_offset/temporary.h"
+#include "vdb_offset/base/temporary.h"
 
 namespace vdb_offset::tool {
 namespace {

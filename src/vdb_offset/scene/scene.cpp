@@ -11,11 +11,11 @@
 #include <set>
 #include <string_view>
 
-#include "vdb_offset/decimal.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/file_bytes.h"
-#include "vdb_offset/io/scanner.h"
-#include "vdb_offset/memory.h"
+#include "vdb_offset/base/decimal.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/memory.h"
+#include "vdb_offset/io/base/file_bytes.h"
+#include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/scene/shapes.h"
 
 namespace vdb_offset::scene {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/expression.h"
-#include "vdb_offset/offset.h"
-#include "vdb_offset/shell.h"
+#include "vdb_offset/mesh/distance_expression.h"
+#include "vdb_offset/pipeline/offset.h"
+#include "vdb_offset/shell/shell.h"
 
 namespace vdb_offset::scene {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/memory.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/memory.h"
 
 namespace vdb_offset::scene {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "vdb_offset/polygons.h"
+#include "vdb_offset/mesh/polygons.h"
 
 namespace vdb_offset::scene {
 

@@ -1,0 +1,126 @@
+#include "vdb_offset/curve/curve_query.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "vdb_offset/curve/segment_crossings.h"
+
+namespace vdb_offset {
+namespace {
+
+// Squared distances to boxes of floats, in floats, are right to far less than this share.
+constexpr float kBoxRounding = 1 - 0x1p-20f;
+
+/// Which of eight boxes lie nearer to (x, y) than `limit`, squared, as bits; and how far each of them is, at least.
+unsigned nearer_boxes(const BoxTree::Siblings& box, float x, float y, float limit, float* squared) {
+  unsigned near = 0;
+  for (int i = 0; i < BoxTree::kWidth; i += kLanes) {
+    Lanes sum{};
+    for (int k = 0; k < 2; ++k) {
+      const Lanes below = load_lanes(box.lower[k] + i) - (k == 0 ? x : y),
+                  above = (k == 0 ? x : y) - load_lanes(box.upper[k] + i);
+      const Lanes out = below > above ? below : above, off = out > 0 ? out : Lanes{};
+      sum += off * off;
+    }
+    sum *= kBoxRounding;
+    store_lanes(squared + i, sum);
+    near |= lane_bits(sum < limit + Lanes{}) << i;
+  }
+  return near;
+}
+
+/// Whether the whole line through a and b is clearly farther off: boxes around long tilted segments hold much else, and
+/// to find the closest point takes several times as long.
+bool is_farther(const Vec3d& a, const Vec3d& b, const Vec3d& x, double squared_distance) {
+  constexpr double kRounding = 1e-14, kShare = 1 + 1e-12;
+  const double dx = b[0] - a[0], dy = b[1] - a[1], left = dx * (x[1] - a[1]), right = dy * (x[0] - a[0]);
+  const double off = std::abs(left - right) - kRounding * (std::abs(left) + std::abs(right));
+  return off > 0 && off * off > kShare * squared_distance * (dx * dx + dy * dy);
+}
+
+}  // namespace
+
+CurveQuery::CurveQuery(const Polyline& line) : line_(line), distinct_(distinct_segments(line.segments)) {
+  tree_.build((distinct_.size() + kLeafSize - 1) / kLeafSize, [&](std::size_t leaf) { return box_of(leaf); });
+}
+
+/// Rounded outwards, a query point's rounding to float included.
+FloatBox CurveQuery::box_of(std::size_t leaf) const {
+  FloatBox box;
+  box.lower[2] = box.upper[2] = 0;
+  const std::size_t end = std::min(distinct_.size(), (leaf + 1) * kLeafSize);
+  for (std::size_t s = leaf * kLeafSize; s < end; ++s)
+    for (const auto v : line_.segments[distinct_[s]])
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto x = static_cast<float>(line_.vertices[v][static_cast<int>(k)]);
+        const float rounding = std::abs(x) * 0x1p-21f + std::numeric_limits<float>::denorm_min();
+        box.lower[k] = std::min(box.lower[k], x - rounding);
+        box.upper[k] = std::max(box.upper[k], x + rounding);
+      }
+  return box;
+}
+
+Closest CurveQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
+  const TrianglePoint best = near(x, hint);
+  return {std::sqrt(best.squared_distance), hint, best.feature, false, best.point};
+}
+
+TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {
+  struct Node {
+    std::uint32_t level, node;
+    float squared;
+  };
+  TrianglePoint best = line_.closest_on(segment, x);
+  std::array<Node, BoxTree::kWidth * 12> stack;
+  std::size_t depth = 0;
+  const auto& levels = tree_.levels();
+  stack[depth++] = {static_cast<std::uint32_t>(levels.size() - 1), 0, 0};
+  const auto fx = static_cast<float>(x[0]), fy = static_cast<float>(x[1]);
+  while (depth > 0) {
+    const Node at = stack[--depth];
+    if (!(at.squared < best.squared_distance)) continue;
+    float squared[BoxTree::kWidth];
+    const auto limit = static_cast<float>(best.squared_distance * (1 + 1e-6));
+    unsigned near = nearer_boxes(levels[at.level][at.node], fx, fy, limit, squared);
+    // Far ones first onto the stack, so that the nearest comes off it next.
+    const std::size_t first = depth;
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
+      const Node child{at.level, at.node * BoxTree::kWidth + i, squared[i]};
+      std::size_t slot = depth++;
+      for (; slot > first && stack[slot - 1].squared < child.squared; --slot) stack[slot] = stack[slot - 1];
+      stack[slot] = child;
+    }
+    if (at.level > 0) {
+      for (std::size_t i = first; i < depth; ++i) --stack[i].level;
+      continue;
+    }
+    for (; depth > first; --depth) {
+      if (!(stack[depth - 1].squared < best.squared_distance)) continue;
+      const std::size_t begin = stack[depth - 1].node * kLeafSize, end = std::min(distinct_.size(), begin + kLeafSize);
+      for (std::size_t s = begin; s < end; ++s) {
+        const auto [a, b] = line_.segments[distinct_[s]];
+        if (is_farther(line_.vertices[a], line_.vertices[b], x, best.squared_distance)) continue;
+        const TrianglePoint other = line_.closest_on(distinct_[s], x);
+        if (!(other.squared_distance < best.squared_distance)) continue;
+        best = other;
+        segment = distinct_[s];
+      }
+    }
+  }
+  return best;
+}
+
+void CurveQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
+                                 std::span<Closest> answers) const {
+  for (std::size_t i = 0; i < points.size(); ++i) answers[i] = (*this)(points[i], hints[i]);
+}
+
+void CurveQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t>,
+                                   std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
+  answer_together(points, hints, answers);
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "vdb_offset/base/box_tree.h"
+#include "vdb_offset/curve/polyline.h"
+#include "vdb_offset/query/closest_query.h"
+
+namespace vdb_offset {
+
+/// Exact distance to plane curves: what ClosestQuery is to a surface, with segments for triangles. z does not count.
+///
+/// Segments lie along their curves, four in a row to a box of an implicit tree. A query cannot miss: the hint only
+/// bounds the search. Memory: about 10 bytes a segment. Safe from any number of threads.
+class CurveQuery {
+ public:
+  /// Keeps a reference. \pre the curves have a segment
+  explicit CurveQuery(const Polyline& line);
+
+  /// The closest point to x; which of several as close depends only on x, the hint and the curves.
+  Closest operator()(const Vec3d& x, std::uint32_t hint) const;
+
+  /// The same as TrianglePoint, from a segment that becomes the closest: it costs no more than to look along the curve.
+  TrianglePoint near(const Vec3d& x, std::uint32_t& segment) const;
+
+  /// The same for several points. \pre as many hints and answers as points
+  void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
+                       std::span<Closest> answers) const;
+
+  /// The same for points on ways up from the curves: see ClosestQuery.
+  void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                         std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
+
+  const Polyline& surface() const { return line_; }
+
+ private:
+  static constexpr std::size_t kLeafSize = 4;  // segments in a lowest box
+
+  FloatBox box_of(std::size_t leaf) const;
+
+  const Polyline& line_;
+  std::vector<std::uint32_t> distinct_;  // those that the tree holds: what is there several times, once
+  BoxTree tree_;
+};
+
+}  // namespace vdb_offset

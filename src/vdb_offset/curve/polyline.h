@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/curve/ribbon.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Plane curves as the stages see them: what a Surface is to a mesh, with segments for triangles and the same names, so
+/// that what is written for one serves the other. Vertices stand in the frame of the ribbon that the field is made
+/// from, half way up it.
+struct Polyline {
+  Vec3d origin{0.0};
+  std::vector<Vec3d> vertices;          ///< Of the curves' points, those that segments use.
+  std::vector<Segment> segments;        ///< Between vertices, in the order of the chains.
+  std::vector<Vec3d> triangle_normals;  ///< Of each segment: unit length, to its right, outward.
+  std::vector<Vec3d> vertex_normals;    ///< Sum of those of the segments there.
+  std::vector<Vec3d> conormals;         ///< Along the curve at its ends, zero elsewhere; empty if nothing ends.
+  std::vector<std::uint32_t> incident, incident_begin;  ///< Segments around vertices.
+  std::vector<std::uint32_t> component;                 ///< Chain of each vertex; one of them where several meet.
+  struct Facts {
+    std::size_t components = 0, ends = 0, branchings = 0;
+    bool closed() const { return ends == 0 && branchings == 0; }
+    bool oriented() const { return branchings == 0; }
+  } facts;
+
+  std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
+    return std::span(incident).subspan(incident_begin[vertex], incident_begin[vertex + 1] - incident_begin[vertex]);
+  }
+  Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
+    return conormals.empty() ? v : v - conormals[vertex] * conormals[vertex].dot(v);
+  }
+  /// See Surface::is_held.
+  bool is_held(std::uint32_t) const { return false; }
+  TrianglePoint closest_on(std::uint32_t segment, const Vec3d& x) const;
+  /// See Surface::across.
+  Vec3d across(std::uint32_t segment, Feature feature, const Vec3d& away, const Vec3d& way) const;
+  /// See Surface::pseudonormal.
+  Vec3d pseudonormal(std::uint32_t segment, Feature feature) const;
+};
+
+/// \param vertices of the joined curves' points that segments use, in the ribbon's frame
+Polyline make_polyline(std::vector<Vec3d> vertices, std::vector<Segment> segments, const CurveChains& chains);
+
+}  // namespace vdb_offset

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <openvdb/math/Vec2.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/mesh/polygons.h"
+
+namespace vdb_offset {
+
+using openvdb::math::Vec2d;
+
+/// Curves in the layout of a polygon mesh: "face" f lists the points that curve f runs through, at least one. It is
+/// closed if it ends where it begins. Curves that meet end to end at one place go on as one.
+using CurvesView = PolygonView;
+using Curves = Polygons;
+
+/// The plane that curves lie in, with axes of its own. Those of a plane z = constant are x and y; a plane across
+/// another axis has the other two, so that coordinates are the input's to the last bit; any other has unit vectors.
+struct PlaneFrame {
+  Vec3d origin{0.0}, u{1, 0, 0}, v{0, 1, 0};
+  Vec2d to_plane(const Vec3d& p) const { return {u.dot(p - origin), v.dot(p - origin)}; }
+  Vec3d to_space(const Vec2d& way) const { return u * way[0] + v * way[1]; }
+};
+
+/// \throw InvalidInput if points that curves use do not lie in one plane, to 1e-9 of their extent, by the point that is
+/// farthest off; or if one is not finite or an index is out of range.
+PlaneFrame plane_of(CurvesView curves);
+
+/// A segment of a curve between two points, by their numbers: its right side, as one looks along it, is outward.
+using Segment = std::array<std::uint32_t, 2>;
+
+/// What curves are made of, once they are joined.
+struct CurveChains {
+  std::vector<Segment> segments;  ///< In the order of the chains. Between the first points that stand at their places;
+                                  ///< none without a length.
+  std::vector<std::uint32_t> place;  ///< Of each point the first that stands where it does; kNone if no curve uses it.
+  std::size_t chains = 0, closed = 0;  ///< Curves from end to end; those among them that are closed.
+  std::size_t ends = 0;                ///< Points where one segment ends, and no other begins.
+  std::size_t branchings = 0;          ///< Points where more than two segments meet.
+};
+
+/// Joins curves end to end, however they are cut into pieces and whichever way those run, and settles which side is
+/// outward: of closed curves the outer side, out of those that an even number of others surround and into holes; of
+/// others the right, as one goes along them (along most of the pieces that they are made of), which is the outer side
+/// of a closed curve that runs counterclockwise.
+CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points);
+
+/// Unit normals of the points, outward, in the plane: halfway between those of the segments that meet there. Zero for
+/// points on no curve, and where segments turn back on each other. \throw InvalidInput as plane_of()
+std::vector<Vec3d> curve_normals(CurvesView curves);
+
+/// The ribbon that stands on segments, from z = 0 up to `height`: what is at a height in between is as far from it as
+/// from the curve in its plane, exactly. Point p becomes the vertices 2 p, below, and 2 p + 1.
+Polygons make_ribbon(std::span<const Segment> segments, std::span<const Vec2d> points, double height);
+
+}  // namespace vdb_offset

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/base/box_tree.h"
+#include "vdb_offset/curve/ribbon.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Two segments, the smaller index first.
+using SegmentPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Of segments that lead from one point to the same other one, either way, the first: where each of them is. Sorted.
+std::vector<std::uint32_t> distinct_segments(std::span<const Segment> segments);
+
+/// Most pairs that are kept in a list: 8 MB, found in about a second.
+inline constexpr std::size_t kMostListedCrossings = 1000000;
+
+/// Finds the pairs of segments of plane curves that meet elsewhere than in the points they share: decided with exact
+/// predicates (CGAL's kernel), without a tolerance. Neighbours meet if one is folded back onto the other. Segments
+/// without length meet nothing; of those that are there several times, the first counts. Memory: 32 bytes a segment.
+class SegmentCrossings {
+ public:
+  /// `places` of the points may lie anywhere. Keeps references to both.
+  SegmentCrossings(std::span<const Segment> segments, std::span<const Vec2d> places);
+
+  /// To be told of segments whose points have moved; sorted, no two the same.
+  void update(std::span<const std::uint32_t> segments);
+
+  /// All pairs, sorted; the same for any number of threads. None if there are more than `most`.
+  std::optional<std::vector<SegmentPair>> all(std::size_t most) const;
+  /// Of each segment whether it meets any.
+  std::vector<std::uint8_t> crossed() const;
+  /// The pairs that count of those that one of these segments is part of, sorted.
+  std::vector<SegmentPair> of(std::span<const std::uint32_t> segments,
+                              const std::function<bool(const SegmentPair&)>& counts) const;
+
+ private:
+  FloatBox box_of(std::size_t segment) const;
+  bool is_repeated(std::uint32_t segment) const { return leaf_of_[segment] == kNone; }
+  bool meet(std::uint32_t s, std::uint32_t t) const;
+
+  std::span<const Segment> segments_;
+  std::span<const Vec2d> places_;
+  std::vector<std::uint32_t> distinct_;  // what the tree's leaves are
+  std::vector<std::uint32_t> leaf_of_;   // of each segment; kNone of one that is there already
+  BoxTree tree_;
+};
+
+}  // namespace vdb_offset

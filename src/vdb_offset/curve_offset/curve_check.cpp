@@ -1,0 +1,147 @@
+#include "vdb_offset/curve_offset/curve_check.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/curve/curve_line.h"
+#include "vdb_offset/curve_offset/curve_faults.h"
+
+namespace vdb_offset {
+namespace {
+
+// How far off the curves' plane an offset may be, by their extent, as plane_of() has it.
+constexpr double kFlatCurve = 1e-6;
+
+void require_usable(CurvesView source, std::span<const Vec3d> positions) {
+  if (positions.size() != source.positions.size())
+    throw InvalidInput("check: expected as many points as the source's " + std::to_string(source.positions.size()) +
+                       ", found " + std::to_string(positions.size()));
+  for (std::size_t p = 0; p < positions.size(); ++p)
+    if (!positions[p].isFinite())
+      throw InvalidInput("check: point " + std::to_string(p) + ": expected finite coordinates");
+}
+
+class CurveChecker {
+ public:
+  CurveChecker(CurvesView source, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result)
+      : plane_(chains_in_plane(source)),
+        drawn_(draw_line(plane_, Vec3d(0.0), 0)),
+        query_(drawn_.line),
+        options_(options),
+        result_(result) {
+    result.facts = facts_of(source, plane_);
+    place(positions);
+  }
+
+  void run() {
+    result_.distance = options_.distance ? options_.distance->farthest() : find_distance();
+    result_.distances = Distances(result_.distance);
+    for (std::size_t p = 0; p < drawn_.vertex.size(); ++p)
+      if (drawn_.vertex[p] != kNone) result_.states[p] = VertexState::Reached;
+    if (result_.distance == 0) return;
+    const Distances distances(result_.distance);
+    const PlaneCurves curves{query_, drawn_.source, distances, {}};
+    CurveFaults faults(curves);
+    Indices all(places_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    faults.move(all, places_);
+    result_.faults = faults.count();
+    result_.source_crossings = faults.source_crossings();
+    result_.more_source_crossings = faults.more_in_source();
+    result_.crossings_near_source = faults.crossings_near_source();
+    judge_points(faults);
+    measure_middles();
+  }
+
+ private:
+  /// Where the line's vertices are in the offset, in the plane.
+  void place(std::span<const Vec3d> positions) {
+    places_.assign(drawn_.source.size(), Vec2d(0.0));
+    std::vector<std::uint32_t> first(places_.size(), kNone);
+    const Vec3d normal = plane_.frame.u.cross(plane_.frame.v).unit();
+    for (std::uint32_t p = 0; p < positions.size(); ++p) {
+      const std::uint32_t v = drawn_.vertex[p];
+      if (v == kNone) continue;
+      const double off = std::abs(normal.dot(positions[p] - plane_.frame.origin));
+      if (off > kFlatCurve * (result_.facts.diagonal + (positions[p] - plane_.frame.origin).length()))
+        throw InvalidInput("check: expected points in the plane of the source, found point " + std::to_string(p) +
+                           " (from 0) " + std::to_string(off) + " off it");
+      if (first[v] == kNone) {
+        first[v] = p;
+        places_[v] = plane_.frame.to_plane(positions[p]);
+      } else {
+        result_.torn += positions[p] != positions[first[v]];
+      }
+    }
+  }
+
+  Closest closest_to(const Vec2d& place, std::uint32_t vertex) const {
+    return query_(Vec3d(place[0], place[1], 0), drawn_.line.triangles_around(vertex).front());
+  }
+
+  /// The median, with the sign of the side that most points lie on.
+  double find_distance() const {
+    std::vector<double> distance;
+    std::ptrdiff_t outside = 0;
+    for (std::uint32_t v = 0; v < places_.size(); ++v) {
+      const Closest closest = closest_to(places_[v], v);
+      const Vec3d away = Vec3d(places_[v][0], places_[v][1], 0) - closest.point;
+      distance.push_back(closest.distance);
+      outside += drawn_.line.pseudonormal(closest.triangle, closest.feature).dot(away) < 0 ? -1 : 1;
+    }
+    const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+    std::nth_element(distance.begin(), middle, distance.end());
+    return outside < 0 ? -*middle : *middle;
+  }
+
+  void judge_points(const CurveFaults& faults) {
+    const double target = std::abs(result_.distance), epsilon = options_.precision.epsilon();
+    for (std::size_t p = 0; p < drawn_.vertex.size(); ++p) {
+      const std::uint32_t v = drawn_.vertex[p];
+      if (v == kNone) continue;
+      const double distance = faults.distance_of(v), error = distance - target,
+                   tolerance = kReachedTolerance * target + epsilon * places_[v].length();
+      result_.achieved[p] = distance;
+      if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
+      result_.beyond += error > tolerance;
+      result_.wrong_side += faults.on_wrong_side(v);
+    }
+  }
+
+  void measure_middles() {
+    const double target = std::abs(result_.distance);
+    std::vector<double> errors(drawn_.line.segments.size());
+    for_each_index(errors.size(), [&](std::size_t s) {
+      const auto [a, b] = drawn_.line.segments[s];
+      errors[s] = std::abs(closest_to((places_[a] + places_[b]) * 0.5, a).distance - target) / target;
+    });
+    result_.interior = sum_up_errors(std::move(errors));
+  }
+
+  PlaneChains plane_;
+  DrawnLine drawn_;
+  CurveQuery query_;
+  const CheckOptions& options_;
+  CheckResult& result_;
+  std::vector<Vec2d> places_;  // of the line's vertices
+};
+
+}  // namespace
+
+CheckResult check_curves(CurvesView source, std::span<const Vec3d> positions, const CheckOptions& options) {
+  require_usable(source, positions);
+  CheckResult result;
+  result.states.assign(positions.size(), VertexState::Unused);
+  result.achieved.assign(positions.size(), 0.0);
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  arena.execute([&] { CurveChecker(source, positions, options, result).run(); });
+  return result;
+}
+
+}  // namespace vdb_offset

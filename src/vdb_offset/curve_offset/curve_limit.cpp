@@ -1,0 +1,261 @@
+#include "vdb_offset/curve_offset/curve_limit.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/curve_offset/restore_order.h"
+
+namespace vdb_offset {
+namespace {
+
+// Points that are spread along with a run of bad ones, to either side, by the length of that.
+constexpr std::size_t kWidest = 16;
+// Pulled back by this in each round; after so many it goes all the way.
+constexpr double kPull = 0.85;
+constexpr int kMostPulls = 40;
+// Each halves what is left of a point's way out again.
+constexpr int kLettings = 10;
+
+class CurveLimiter {
+ public:
+  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback, Spacing spacing)
+      : curves_(curves),
+        paths_(paths),
+        spacing_(spacing),
+        faults_(curves),
+        way_(curves.source.size(), Vec2d(0.0)),
+        share_(curves.source.size(), 1.0),
+        progress_(callback, Stage::Limit, 4 * curves.source.size()) {
+    points_.resize(curves.source.size());
+    std::iota(points_.begin(), points_.end(), 0u);
+    for (const auto p : points_) way_[p] = {paths.displacement[p][0], paths.displacement[p][1]};
+  }
+
+  LimitStatistics run() {
+    statistics_.untanglings += put_in_order(curves_, paths_, way_, spacing_) > 0;
+    place(points_);
+    statistics_.before = faults_.count();
+    statistics_.source_crossings = faults_.source_crossings();
+    statistics_.more_source_crossings = faults_.more_in_source();
+    spread();
+    pull();
+    let_out();
+    hand_back();
+    statistics_.left = faults_.count();
+    statistics_.crossings_near_source = faults_.crossings_near_source();
+    return statistics_;
+  }
+
+ private:
+  void place(const Indices& points) {
+    std::vector<Vec2d> places;
+    places.reserve(points.size());
+    for (const auto p : points) {
+      const Vec3d way = rounded_way(p);
+      places.push_back(curves_.source[p] + Vec2d(way[0], way[1]));
+    }
+    faults_.move(points, places);
+  }
+
+  /// What a point will be handed back with, so that this is what is looked at: where two curves share a part of the
+  /// front, their segments meet or not by the last bit.
+  Vec3d rounded_way(std::uint32_t p) const {
+    const double target = std::abs(curves_.distances[p]);
+    const Vec2d way = way_[p] * share_[p];
+    return target == 0 ? Vec3d(0.0) : round_way(Vec3d(way[0], way[1], 0), target);
+  }
+
+  /// The next point along the curve, or the one before; kNone at an end, and where curves branch.
+  std::uint32_t step(std::uint32_t point, bool forward) const {
+    const auto around = faults_.around(point);
+    if (around.size() > 2) return kNone;
+    for (const auto s : around)
+      if (curves_.line().segments[s][!forward] == point) return curves_.line().segments[s][forward];
+    return kNone;
+  }
+
+  bool is_short(std::uint32_t point) const {
+    const double target = std::abs(curves_.distances[point]);
+    return faults_.distance_of(point) < target * (1 - kReachedTolerance);
+  }
+
+  /// Points that are wrong or short, in runs along the curves, with `bridge` others in between at most.
+  std::vector<std::vector<std::uint32_t>> bad_runs(int bridge) const {
+    std::vector<std::uint8_t> bad(points_.size(), 0), taken(points_.size(), 0);
+    for (const auto p : faults_.wrong_points()) bad[p] = 1;
+    for (const auto p : points_) bad[p] = bad[p] || is_short(p);
+    std::vector<std::vector<std::uint32_t>> runs;
+    for (const auto p : points_) {
+      if (!bad[p] || taken[p]) continue;
+      const std::uint32_t first = end_of_run(p, false, bridge, bad, p);
+      const std::uint32_t last = end_of_run(first, true, bridge, bad, step(first, false));
+      std::vector<std::uint32_t>& run = runs.emplace_back();
+      for (std::uint32_t at = first;; at = step(at, true)) {
+        run.push_back(at);
+        taken[at] = 1;
+        if (at == last) break;
+      }
+    }
+    return runs;
+  }
+  /// The last bad point that can be come to, not going as far as `stop`.
+  std::uint32_t end_of_run(std::uint32_t from, bool forward, int bridge, const std::vector<std::uint8_t>& bad,
+                           std::uint32_t stop) const {
+    std::uint32_t last = from;
+    int good = 0;
+    for (std::uint32_t at = step(from, forward); at != kNone && at != stop && at != from && good <= bridge;
+         at = step(at, forward)) {
+      good = bad[at] ? 0 : good + 1;
+      if (bad[at]) last = at;
+    }
+    return last;
+  }
+
+  /// A run with so many more points to either side, or as many as there are.
+  std::vector<std::uint32_t> widened(const std::vector<std::uint32_t>& run, std::size_t more) const {
+    std::vector<std::uint32_t> before, points;
+    for (std::uint32_t at = step(run.front(), false); at != kNone && at != run.back() && before.size() < more;
+         at = step(at, false))
+      before.push_back(at);
+    points.assign(before.rbegin(), before.rend());
+    points.insert(points.end(), run.begin(), run.end());
+    const std::uint32_t stop = points.front();
+    for (std::uint32_t at = step(run.back(), true);
+         at != kNone && at != stop && points.size() < before.size() + run.size() + more; at = step(at, true))
+      points.push_back(at);
+    return points;
+  }
+
+  void spread() {
+    for (const int bridge : {0, 2, 8}) {
+      if (!faults_.any() && bridge > 0) return;
+      for (const auto& run : bad_runs(bridge)) {
+        progress_.advance(run.size());
+        // The one before may have taken it along.
+        if (std::none_of(run.begin(), run.end(), [&](auto p) { return is_short(p) || faults_.any_around({p}); }))
+          continue;
+        for (std::size_t more = 1;; more *= 2) {
+          const std::vector<std::uint32_t> points = widened(run, more);
+          ++statistics_.untanglings;
+          if (spread(points) || points.size() < run.size() + more) break;
+          if (more > kWidest * run.size()) break;
+        }
+      }
+    }
+  }
+
+  /// Puts the points between the first and the last on the front, as far from each other as they are on the source;
+  /// takes that back if anything is wrong then, and tells.
+  bool spread(const std::vector<std::uint32_t>& window) {
+    if (window.size() < 3) return false;
+    std::vector<double> along{0.0};
+    for (std::size_t i = 1; i < window.size(); ++i)
+      along.push_back(along.back() + (curves_.source[window[i]] - curves_.source[window[i - 1]]).length());
+    const Vec2d from = faults_.place(window.front()), to = faults_.place(window.back());
+    const std::size_t count = window.size() - 2;
+    std::vector<std::pair<std::uint32_t, Vec2d>> moves(count);
+    std::atomic<bool> all = true;
+    for_each_index(
+        count,
+        [&](std::size_t i) {
+          if (!all) return;
+          const std::uint32_t p = window[i + 1];
+          const auto place = place_on_front(curves_, from + (to - from) * (along[i + 1] / along.back()), p);
+          if (!place) all = false;
+          else moves[i] = {p, *place - curves_.source[p]};
+        },
+        64);
+    if (!all) return false;
+    std::sort(moves.begin(), moves.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    Indices moved;
+    for (auto& [p, way] : moves) {
+      moved.push_back(p);
+      std::swap(way_[p], way);
+    }
+    place(moved);
+    if (!faults_.any_around(moved)) return true;
+    for (const auto& [p, way] : moves) way_[p] = way;
+    place(moved);
+    return false;
+  }
+
+  void pull() {
+    for (; faults_.any() && statistics_.rounds < kMostPulls; ++statistics_.rounds) {
+      progress_.advance(0);
+      const bool all_the_way = statistics_.rounds + 1 == kMostPulls;
+      const Indices wrong = faults_.wrong_points();
+      for (const auto p : wrong) share_[p] *= all_the_way ? 0 : kPull;
+      place(wrong);
+    }
+    // What is still wrong is so between pulled points and others: those follow.
+    while (faults_.any()) {
+      Indices wrong = faults_.wrong_points();
+      std::erase_if(wrong, [&](std::uint32_t p) { return share_[p] == 0; });
+      if (wrong.empty()) return;
+      for (const auto p : wrong) share_[p] = 0;
+      place(wrong);
+    }
+  }
+
+  /// One point after the other goes as far as it can between what it keeps and what it was asked for.
+  void let_out() {
+    if (faults_.any()) return;
+    std::vector<double> most(share_.size(), 1.0);
+    for (int i = 0; i < kLettings; ++i) {
+      bool any = false;
+      progress_.advance(0);
+      for (const auto p : points_) {
+        if (!(share_[p] < most[p])) continue;
+        const double before = share_[p];
+        share_[p] = i == 0 ? most[p] : (before + most[p]) / 2;
+        place({p});
+        any = true;
+        if (!faults_.any_around({p})) continue;
+        most[p] = share_[p];
+        share_[p] = before;
+        place({p});
+      }
+      if (!any) return;
+      ++statistics_.rounds;
+    }
+  }
+
+  void hand_back() {
+    double lost = 0;
+    for (const auto p : points_) {
+      const double target = std::abs(curves_.distances[p]), before = paths_.achieved[p];
+      const bool pulled = share_[p] < 1;
+      paths_.displacement[p] = rounded_way(p);
+      paths_.achieved[p] = faults_.distance_of(p);
+      if (target == 0) continue;
+      if (std::abs(paths_.achieved[p] - target) <= kReachedTolerance * target) paths_.state[p] = VertexState::Reached;
+      else if (pulled || paths_.state[p] == VertexState::Reached) paths_.state[p] = VertexState::Limited;
+      statistics_.limited_vertices += paths_.state[p] == VertexState::Limited;
+      lost += std::max(0.0, before - paths_.achieved[p]) / target;
+    }
+    statistics_.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(points_.size(), 1));
+  }
+
+  const PlaneCurves& curves_;
+  Paths& paths_;
+  Spacing spacing_;
+  CurveFaults faults_;
+  Indices points_;
+  std::vector<Vec2d> way_;     // of each point, from its source
+  std::vector<double> share_;  // of that, which is gone
+  LimitStatistics statistics_;
+  Progress progress_;
+};
+
+}  // namespace
+
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress,
+                             Spacing spacing) {
+  return CurveLimiter(curves, paths, progress, spacing).run();
+}
+
+}  // namespace vdb_offset

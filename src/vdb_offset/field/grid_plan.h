@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// How fine the grid is. At most one of the two may be set; with neither the size is chosen (see plan_grid).
+struct GridOptions {
+  std::optional<double> voxel_size;           ///< World units, > 0.
+  std::optional<double> voxels_per_distance;  ///< > 0; the voxel size is |distance| / this.
+};
+
+/// What a run will need, known before it starts.
+struct GridPlan {
+  double voxel_size = 0;                              ///< World units.
+  std::string reason;                                 ///< Why this size, in words.
+  double band = 0;                                    ///< Width on each side that is rasterised exactly.
+  Reach reach{};                                      ///< Width on each side that the field covers.
+  std::size_t leaf_nodes = 0, voxels = 0, bytes = 0;  ///< Estimates; bytes is the peak of the whole run.
+  double seconds = 0;                                 ///< Rough estimate for `threads` threads.
+};
+
+/// What a plan depends on beside the surface and its field.
+struct PlanContext {
+  std::size_t bytes_beside = 0;  ///< That the run needs for other things.
+  bool slab = false;             ///< The surface is a ribbon, and its field one leaf node thick (see ribbon.h).
+};
+
+/// Chooses the voxel size and estimates the cost.
+///
+/// The grid serves directions only, distances are exact without it, so its voxel size is a smoothing length: the
+/// distance itself (the farthest, where they differ), no finer than half the median edge or diagonal / 1024, no coarser
+/// than diagonal / 64 or distance / 16, whichever is larger, and coarser still where `max_memory` (bytes; 0 for no
+/// limit) asks for it. A size that the caller gives is taken as it is. `farthest` is how far vertices go on each side,
+/// world units; not 0 on both.
+/// \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
+GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
+                   int threads, const PlanContext& context = {});
+/// The same for one distance, negative inward.
+GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
+                   int threads);
+
+/// \throw InvalidInput for a diagonal, a distance (world units, > 0) or a grid that no field can be made for.
+void require_plannable(double diagonal, double distance, const GridOptions& options);
+
+/// As a share of the distance, or of a voxel of a new surface: by no more may coordinates be rounded.
+inline constexpr double kMostRounding = 0.25;
+/// \throw InvalidInput, with both figures, if coordinates are rounded by more than that share of a length.
+void require_fine_coordinates(double rounding, double length, const char* of_what);
+/// The largest absolute value of any coordinate.
+double farthest_coordinate(const MeshFacts& facts);
+
+/// A voxel size, world units, and why.
+struct VoxelSize {
+  double size;
+  std::string reason;
+};
+/// The same choice, memory aside, for what has this median edge and this diagonal. \throw InvalidInput as plan_grid()
+VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options);
+
+/// Bytes that a surface takes with all that is made from it.
+std::size_t surface_bytes(const Surface& surface);
+
+/// Bytes of so many layers of cells on a mesh.
+std::size_t layers_bytes(PolygonView mesh, std::size_t layers);
+
+/// So many results are made valid at the same time; each takes memory.
+inline constexpr std::size_t kResultsTogether = 4;
+
+/// What a vertex's path takes that is kept, handed out and written; measured: 1,300 with the file's text.
+inline constexpr std::size_t kPathBytes = 1300;
+
+/// Bytes of results beside the first.
+std::size_t results_bytes(PolygonView mesh, std::size_t results);
+
+}  // namespace vdb_offset

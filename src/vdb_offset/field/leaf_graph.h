@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vdb_offset/field/distance_field.h"
+
+namespace vdb_offset {
+
+/// Face f of a leaf node looks along axis f / 2, downwards for even f and upwards for odd f.
+inline constexpr int kFaces = 6;
+inline constexpr int opposite(int face) { return face ^ 1; }
+
+/// A leaf node of both field grids, its raw buffers (voxel (i, j, k) at i << 6 | j << 3 | k) and its neighbours.
+struct GraphLeaf {
+  openvdb::Coord origin;
+  PhiLeaf* phi = nullptr;
+  ClosestLeaf* closest = nullptr;
+  std::array<std::int32_t, kFaces> neighbour = {-1, -1, -1, -1, -1, -1};  ///< Index in the graph, or -1.
+
+  /// 0 or 1; leaf nodes that share a face differ.
+  int colour() const { return (origin[0] + origin[1] + origin[2]) / kLeafWidth & 1; }
+};
+
+/// Finds leaf nodes by their origin. Open addressing: a sweep asks six times for each leaf node that it makes.
+class LeafIndex {
+ public:
+  void reserve(std::size_t count);
+  /// The leaf node that stands there already, or else `leaf`, which does now.
+  std::int32_t find_or_insert(const openvdb::Coord& origin, std::int32_t leaf);
+  /// -1 if there is none.
+  std::int32_t find(const openvdb::Coord& origin) const;
+
+ private:
+  struct Slot {
+    openvdb::Coord origin;
+    std::int32_t leaf = -1;
+  };
+  std::size_t slot_of(const openvdb::Coord& origin) const;
+
+  std::vector<Slot> slots_ = std::vector<Slot>(16);  // a power of two, at most half of them taken
+  std::size_t taken_ = 0;
+};
+
+/// The leaf nodes of a field as an array, each knowing those across its faces, so that a stencil never has to
+/// walk the tree.
+class LeafGraph {
+ public:
+  explicit LeafGraph(FieldGrids& grids);
+
+  std::size_t size() const { return leaves_.size(); }
+  /// Faces that a field spreads across: those of a slab look along x and y, the first four.
+  int open_faces() const { return grids_.slab ? 4 : kFaces; }
+  const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
+
+  /// The neighbour across a face; if there is none, it is noted down, for make_new_leaves() to make. Not thread-safe.
+  std::int32_t touch_neighbour(std::int32_t leaf, int face);
+
+  /// Makes the leaf nodes that have been noted down, in parallel: without active voxels, and with buffers yet to be
+  /// allocated (LeafNode::allocate).
+  void make_new_leaves();
+
+  /// Hands those leaf nodes that make_new_leaves() made and that have active voxels to the grids' trees, and frees the
+  /// others: the graph is of no more use then.
+  void attach_new_leaves();
+
+ private:
+  void link(std::size_t leaf, std::size_t first_new);
+
+  FieldGrids& grids_;
+  std::vector<GraphLeaf> leaves_;
+  std::size_t grid_leaves_;  // the first so many are the grids' own
+  LeafIndex index_;
+  std::vector<std::unique_ptr<PhiLeaf>> new_phi_;
+  std::vector<std::unique_ptr<ClosestLeaf>> new_closest_;
+};
+
+/// A leaf node's voxels with one more on every side, filled from the leaf nodes across its faces. Voxels beyond an
+/// edge or a corner of the leaf node are not filled: stencils here look along the axes only.
+inline constexpr int kPaddedWidth = kLeafWidth + 2;
+inline constexpr int kPaddedVoxels = kPaddedWidth * kPaddedWidth * kPaddedWidth;
+inline constexpr std::array<int, 3> kPaddedStride = {kPaddedWidth * kPaddedWidth, kPaddedWidth, 1};
+inline constexpr std::array<int, 3> kLeafStride = {64, 8, 1};
+inline constexpr int padded_index(int i, int j, int k) {
+  return (i + 1) * kPaddedStride[0] + (j + 1) * kPaddedStride[1] + (k + 1);
+}
+inline constexpr int padded_index(int n) { return padded_index(n >> 6, n >> 3 & 7, n & 7); }
+
+namespace detail {
+template <int kFace, class Visit>
+void for_each_halo_voxel(Visit&& visit) {
+  constexpr int axis = kFace / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  constexpr int padded = kFace % 2 ? kLeafWidth + 1 : 0, there = kFace % 2 ? 0 : kLeafWidth - 1;
+  for (int a = 0; a < kLeafWidth; ++a)
+    for (int b = 0; b < kLeafWidth; ++b)
+      visit(padded * kPaddedStride[axis] + (a + 1) * kPaddedStride[u] + (b + 1) * kPaddedStride[v],
+            there * kLeafStride[axis] + a * kLeafStride[u] + b * kLeafStride[v]);
+}
+}  // namespace detail
+
+/// Calls visit(padded index, voxel number) for the 64 voxels of the neighbour across `face`: its voxels that touch
+/// the leaf node, and where they stand in the padded block. Strides are constants, for the compiler's sake.
+template <class Visit>
+void for_each_halo_voxel(int face, Visit&& visit) {
+  switch (face) {
+    case 0:
+      return detail::for_each_halo_voxel<0>(visit);
+    case 1:
+      return detail::for_each_halo_voxel<1>(visit);
+    case 2:
+      return detail::for_each_halo_voxel<2>(visit);
+    case 3:
+      return detail::for_each_halo_voxel<3>(visit);
+    case 4:
+      return detail::for_each_halo_voxel<4>(visit);
+    default:
+      return detail::for_each_halo_voxel<5>(visit);
+  }
+}
+
+/// Padded index of the voxel of the leaf node that touches halo voxel `padded` across `face`.
+inline constexpr int across(int face, int padded) {
+  return padded + (face % 2 ? -1 : 1) * kPaddedStride[static_cast<std::size_t>(face / 2)];
+}
+
+}  // namespace vdb_offset

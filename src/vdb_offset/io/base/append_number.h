@@ -1,0 +1,37 @@
+#pragma once
+
+#include <charconv>
+#include <cstring>
+#include <iterator>
+#include <string>
+
+#include "vdb_offset/base/precision.h"
+
+namespace vdb_offset::io {
+
+/// The fewest digits that read back to the same number, of its kind; or the digits asked for.
+inline void append_number(std::string& text, double value, const Precision& precision = {}) {
+  char digits[40];
+  char* const first = std::begin(digits);
+  char* const last = std::end(digits);
+  const auto result = precision.kind == Precision::Kind::Double ? std::to_chars(first, last, value)
+                      : precision.kind == Precision::Kind::Single
+                          ? std::to_chars(first, last, static_cast<float>(value))
+                          : std::to_chars(first, last, value, std::chars_format::general, precision.digits);
+  text.append(first, result.ptr);
+}
+
+inline void append_integer(std::string& text, std::uint64_t value) {
+  char digits[24];
+  text.append(digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr);
+}
+
+/// As this machine holds it: little-endian.
+template <class T>
+void append_binary(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+}  // namespace vdb_offset::io

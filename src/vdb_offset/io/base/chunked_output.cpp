@@ -1,0 +1,86 @@
+#include "vdb_offset/io/base/chunked_output.h"
+
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/io/base/compression.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+
+namespace vdb_offset::io {
+namespace {
+
+// Items of a section in a piece of a file.
+constexpr std::size_t kPerPiece = 1 << 15;
+
+/// Pieces under way stand in slots of their own: what a pipeline that is broken off holds itself is lost. They leave in
+/// order, so that who comes as many later finds the slot free.
+void produce(const Pieces& pieces, Compression compression, const Sink& sink) {
+  const auto under_way = static_cast<std::size_t>(2 * tbb::info::default_concurrency());
+  std::vector<std::string> made(under_way);
+  std::size_t next = 0;
+  const auto number =
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& at) {
+        if (next == pieces.count) at.stop();
+        return next++;
+      });
+  const auto make = tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, [&](std::size_t i) {
+    made[i % under_way] = compress(compression, pieces.make(i));
+    return i;
+  });
+  const auto write = tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order,
+                                                         [&](std::size_t i) { sink(made[i % under_way]); });
+  tbb::parallel_pipeline(under_way, number & make & write);
+}
+
+}  // namespace
+
+Pieces in_sections(const std::string& header, std::vector<Section> sections) {
+  std::erase_if(sections, [](const Section& section) { return section.items == 0; });
+  const auto pieces_of = [](const Section& section) { return (section.items + kPerPiece - 1) / kPerPiece; };
+  std::size_t count = 1;
+  for (const Section& section : sections) count += pieces_of(section);
+  return {count, [=](std::size_t piece) {
+            if (piece == 0) return header;
+            std::size_t of_section = piece - 1;
+            auto section = sections.begin();
+            for (; of_section >= pieces_of(*section); ++section) of_section -= pieces_of(*section);
+            std::string bytes;
+            const std::size_t first = of_section * kPerPiece;
+            for (std::size_t i = first; i < std::min(first + kPerPiece, section->items); ++i) section->append(bytes, i);
+            return bytes;
+          }};
+}
+
+Pieces in_a_row(std::vector<Pieces> files) {
+  std::size_t count = 0;
+  for (const Pieces& file : files) count += file.count;
+  return {count, [files = std::move(files)](std::size_t piece) {
+            auto file = files.begin();
+            for (; piece >= file->count; ++file) piece -= file->count;
+            return file->make(piece);
+          }};
+}
+
+void write_pieces(const std::string& path, const Pieces& pieces) {
+  write_file(path, [&](const Sink& sink) { produce(pieces, compression_of(path), sink); });
+}
+
+void write_pieces_of(const MeshFile& source, const std::string& path, const Pieces& pieces) {
+  Replacements files;
+  write_pieces(path, pieces);
+  source.bytes.require_unchanged(source.path);
+  files.commit();
+}
+
+std::string join(const Pieces& pieces) {
+  std::string bytes;
+  produce(pieces, Compression::None, [&](std::string_view piece) { bytes += piece; });
+  return bytes;
+}
+
+}  // namespace vdb_offset::io

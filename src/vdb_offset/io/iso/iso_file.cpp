@@ -1,0 +1,64 @@
+#include "vdb_offset/io/iso/iso_file.h"
+
+#include <fmt/format.h>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/io/base/chunked_output.h"
+#include "vdb_offset/io/mesh/convert.h"
+#include "vdb_offset/io/mesh/read/mesh_readers.h"
+
+namespace vdb_offset::io {
+
+Transported read_transported(const MeshFile& source, const TransportRequest& request, Format target) {
+  Transported transported{read_attributes(source), read_materials(source)};
+  auto& [attributes, materials] = transported;
+  const auto settle = [&](bool wanted, auto& what, bool is_there, bool has_place, const char* in_words) {
+    if (wanted && request.is_required && !is_there)
+      throw InvalidOption(
+          fmt::format("{}: expected {}, which are to be transported, found none", source.path, in_words));
+    if (wanted && request.is_required && !has_place)
+      throw InvalidOption(
+          fmt::format("transport: expected a format that has a place for {}, got .{}", in_words, name(target)));
+    if (!wanted) what = {};
+  };
+  const bool triangles_only = target == Format::Stl;
+  settle(request.texture, attributes.texture, !attributes.texture.empty(), !triangles_only, "texture coordinates");
+  settle(request.colours, attributes.colours, !attributes.colours.empty(), !triangles_only, "colours of vertices");
+  settle(request.materials, materials, !materials.of_face.empty(), target == Format::Obj, "materials");
+  if (!request.colours) attributes.has_alpha = false;
+  attributes.normals = {};
+  return transported;
+}
+
+Precision precision_of_captured(const std::string& path, const WriteOptions& options) {
+  const Format format = require_format(path, options.format);
+  if (format == Format::Stl) return {Precision::Kind::Single};
+  if (format != Format::Ply && options.digits > 0) return {Precision::Kind::Digits, options.digits};
+  return {};
+}
+
+WriteResult write_captured(const std::string& path, const MeshFile& source, const Transported& transported,
+                           const CaptureResult& captured, const WriteOptions& options) {
+  WriteResult result;
+  const Pieces pieces = convert(source, require_format(path, options.format), captured, transported,
+                                precision_of_captured(path, options), result);
+  write_pieces_of(source, path, pieces);
+  return result;
+}
+
+void write_captured(const std::string& path, const CaptureResult& captured, const WriteOptions& options) {
+  write_pieces(path, convert(require_format(path, options.format), captured, precision_of_captured(path, options)));
+}
+
+WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
+                         const CaptureResult& captured, const WriteOptions& options) {
+  const Format format = require_format(path, options.format);
+  const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
+  WriteResult result;
+  const Pieces pieces = is_skin ? convert(*source, format, hollow, captured, result) : convert(format, hollow, result);
+  if (source) write_pieces_of(*source, path, pieces);
+  else write_pieces(path, pieces);
+  return result;
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+
+namespace vdb_offset::io {
+
+/// What is left of a line, without blanks at its end.
+inline std::string rest_of_line(Scanner& scanner) {
+  std::string rest;
+  while (!scanner.at_line_end()) {
+    if (!rest.empty()) rest += ' ';
+    rest += scanner.token();
+  }
+  return rest;
+}
+
+inline std::vector<std::string> words_of_line(Scanner& scanner) {
+  std::vector<std::string> words;
+  while (!scanner.at_line_end()) words.emplace_back(scanner.token());
+  return words;
+}
+
+/// Tells a listener the names that faces are under, in the order of the file: set_groups(names), set_object(name) and
+/// set_material(name) hold for the faces after them, for each of which add_face() is called. Only OBJ and ASCII STL
+/// (whose solids are groups) have names; for other files nothing is called.
+template <class Listener>
+void visit_labels(const MeshFile& mesh, Listener& listener) {
+  if (mesh.format == Format::Obj) {
+    Scanner scanner(mesh.path, mesh.text(), byte_order_mark(mesh.text()), true, '#');
+    for (; !scanner.at_end(); scanner.next_line()) {
+      const std::string_view keyword = scanner.token();
+      if (keyword == "f") listener.add_face();
+      else if (keyword == "g") listener.set_groups(words_of_line(scanner));
+      else if (keyword == "o") listener.set_object(rest_of_line(scanner));
+      else if (keyword == "usemtl") listener.set_material(rest_of_line(scanner));
+    }
+  } else if (mesh.format == Format::Stl && mesh.encoding == Encoding::Ascii) {
+    Scanner scanner(mesh.path, mesh.text());
+    for (; !scanner.at_text_end(); scanner.next_line()) {
+      const std::string_view keyword = scanner.token();
+      if (is_word(keyword, "solid")) listener.set_groups({rest_of_line(scanner)});
+      else if (is_word(keyword, "facet")) listener.add_face();
+    }
+  }
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,151 @@
+#include "vdb_offset/io/mesh/new_normals.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "vdb_offset/base/parallel.h"
+
+namespace vdb_offset::io {
+namespace {
+
+// Vertices that share a normal disagree if theirs are farther apart than this: about two degrees.
+constexpr double kLeastCosine = 0.9994;
+
+/// A face corner.
+struct Corner {
+  std::uint32_t face, index;  // index within all corners
+};
+
+/// The corners that name each normal: those of normal n are corners[begin[n] .. begin[n + 1]), in the file's order.
+struct Users {
+  std::vector<std::uint32_t> begin;
+  std::vector<Corner> corners;
+
+  std::span<const Corner> of(std::size_t normal) const {
+    return std::span(corners).subspan(begin[normal], begin[normal + 1] - begin[normal]);
+  }
+};
+
+std::uint32_t normal_of(const MeshFile& source, std::size_t corner) {
+  if (source.format != Format::Obj) return source.polygons.corners[corner];  // one a vertex
+  return source.corner_normal.empty() ? kNoNormal : source.corner_normal[corner];
+}
+
+/// Calls visit(face, corner, normal) for the corners that name one, in the file's order.
+template <class Visit>
+void for_each_user(const MeshFile& source, std::span<const std::uint32_t> faces, Visit&& visit) {
+  const PolygonView mesh = source.polygons.view();
+  const std::size_t count = faces.empty() ? mesh.face_count() : faces.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t f = faces.empty() ? static_cast<std::uint32_t>(i) : faces[i];
+    for (std::uint32_t c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
+      if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) visit(f, c, n);
+  }
+}
+
+Users find_users(const MeshFile& source, std::span<const std::uint32_t> faces) {
+  Users users;
+  users.begin.assign(source.normal_at.size() + 2, 0);
+  for_each_user(source, faces, [&](auto, auto, std::uint32_t n) { ++users.begin[n + 2]; });
+  std::partial_sum(users.begin.begin(), users.begin.end(), users.begin.begin());
+  users.corners.resize(users.begin.back());
+  for_each_user(source, faces, [&](std::uint32_t f, std::uint32_t c, std::uint32_t n) {
+    users.corners[users.begin[n + 1]++] = {f, c};
+  });
+  users.begin.pop_back();
+  return users;
+}
+
+/// The face's normal at a corner times the corner's angle.
+Vec3d weighted_normal(PolygonView mesh, std::span<const Vec3d> positions, const Corner& corner) {
+  const auto face = mesh.face(corner.face);
+  const std::size_t k = corner.index - mesh.face_begin[corner.face], size = face.size();
+  const Vec3d& tip = positions[face[k]];
+  const Vec3d next = positions[face[(k + 1) % size]] - tip, previous = positions[face[(k + size - 1) % size]] - tip,
+              across = next.cross(previous);
+  const double sine = across.length();
+  return sine > 0 ? across * (std::atan2(sine, next.dot(previous)) / sine) : Vec3d(0.0);
+}
+
+bool any_moved(std::span<const std::uint32_t> face, const std::vector<std::uint8_t>& moved) {
+  return std::any_of(face.begin(), face.end(), [&](auto v) { return moved[v] != 0; });
+}
+
+Vec3d unit_or_zero(const Vec3d& v) {
+  const double length = v.length();
+  return length > 0 ? v / length : Vec3d(0.0);
+}
+
+/// Whether vertices that share a normal ask for different ones now.
+bool disagree(PolygonView mesh, std::span<const Vec3d> positions, std::span<const Corner> users, const Vec3d& mean) {
+  const auto vertex = [&](const Corner& corner) { return mesh.corners[corner.index]; };
+  const auto same = [&](const Corner& a) { return vertex(a) == vertex(users.front()); };
+  if (std::all_of(users.begin(), users.end(), same)) return false;
+  std::vector<Corner> by_vertex(users.begin(), users.end());
+  std::stable_sort(by_vertex.begin(), by_vertex.end(),
+                   [&](const Corner& a, const Corner& b) { return vertex(a) < vertex(b); });
+  for (std::size_t i = 0; i < by_vertex.size();) {
+    const std::uint32_t v = vertex(by_vertex[i]);
+    Vec3d sum(0.0);
+    for (; i < by_vertex.size() && vertex(by_vertex[i]) == v; ++i)
+      sum += weighted_normal(mesh, positions, by_vertex[i]);
+    if (sum.dot(mean) < kLeastCosine * sum.length()) return true;
+  }
+  return false;
+}
+
+/// STL: one a facet.
+NewNormals facet_normals(PolygonView mesh, std::span<const Vec3d> positions, const std::vector<std::uint8_t>& moved) {
+  NewNormals normals;
+  normals.value.assign(mesh.face_count(), Vec3d(0.0));
+  for_each_index(mesh.face_count(), [&](std::size_t f) {
+    const auto face = mesh.face(f);
+    const Vec3d &a = positions[face[0]], &b = positions[face[1]], &c = positions[face[2]];
+    if (any_moved(face, moved)) normals.value[f] = unit_or_zero((b - a).cross(c - a));
+  });
+  return normals;
+}
+
+NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<const std::uint32_t> faces,
+                            const std::vector<std::uint8_t>& moved) {
+  const std::span<const Vec3d> positions = mesh.positions;
+  if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
+  const Users users = find_users(source, faces);
+  NewNormals normals;
+  normals.value.assign(source.normal_at.size(), Vec3d(0.0));
+  std::atomic<std::size_t> disagreeing = 0;
+  for_each_index(normals.value.size(), [&](std::size_t n) {
+    Vec3d sum(0.0);
+    bool affected = false;
+    for (const Corner& corner : users.of(n)) {
+      sum += weighted_normal(mesh, positions, corner);
+      affected = affected || any_moved(mesh.face(corner.face), moved);
+    }
+    if (!affected) return;
+    normals.value[n] = unit_or_zero(sum);
+    if (source.format == Format::Obj && disagree(mesh, positions, users.of(n), normals.value[n])) ++disagreeing;
+  });
+  normals.disagreeing = disagreeing;
+  return normals;
+}
+
+}  // namespace
+
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
+                       const PlacedFaces& placed) {
+  if (source.normal_at.empty()) return {};
+  std::vector<Vec3d> stored(positions.size());
+  std::vector<std::uint8_t> moved(positions.size());
+  for_each_index(positions.size(), [&](std::size_t v) {
+    const Vec3d& before = source.polygons.positions[placed.origin.empty() ? v : placed.origin[v]];
+    moved[v] = has_moved(before, positions[v], precision);
+    stored[v] = moved[v] ? precision(positions[v]) : before;
+  });
+  const std::span<const std::uint32_t> corners =
+      placed.corners.empty() ? std::span(source.polygons.corners) : placed.corners;
+  return normals_of_moved(source, {stored, corners, source.polygons.face_begin}, placed.faces, moved);
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "vdb_offset/io/base/chunked_output.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/shell/shell_writers.h"
+
+/// Binary OFF files, as Geomview has them: the line "[ST][C][N]OFF BINARY", then numbers of four bytes, big-endian:
+/// numbers of vertices, faces and edges; for each vertex its coordinates, normal, colour and texture coordinates; for
+/// each face its number of corners, these, and a number of colour components, and these.
+namespace vdb_offset::io::off {
+
+/// Where a vertex's numbers stand among those of its record; 0 for what there is none of.
+struct Layout {
+  std::size_t normal = 0, colour = 0, texture = 0;
+  std::size_t width = 3;
+};
+Layout layout_of(const MeshFile& file);
+
+/// First byte behind the line of a binary file; none for a text.
+std::optional<std::size_t> binary_begin(const MeshFile& file);
+
+double number_at(const MeshFile& file, std::uint64_t at);
+std::int64_t integer_at(const MeshFile& file, std::uint64_t at);
+
+/// Where each face stands, and behind the last one.
+std::vector<std::uint64_t> face_places(const MeshFile& file);
+
+Pieces shell_to_binary(const SharedShell& content);
+
+}  // namespace vdb_offset::io::off

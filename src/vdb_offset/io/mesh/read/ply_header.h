@@ -1,0 +1,117 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+
+/// What a PLY file says of itself, and the numbers behind it.
+namespace vdb_offset::io::ply {
+
+struct Type {
+  char kind;  // 'i' signed, 'u' unsigned, 'f' floating
+  std::uint8_t bytes;
+};
+
+struct Property {
+  std::string name;
+  Type type;
+  std::optional<Type> count;  // of a list
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  Encoding encoding = Encoding::Ascii;
+  std::vector<Element> elements;
+  std::size_t end = 0;   // first byte of the body
+  char line_end = '\n';  // of the header's lines: a carriage return if no line feed follows the first one
+};
+
+/// The first element of that name, or none.
+const Element* find(const Header& header, std::string_view element);
+
+/// The property is the list of a face's corners, or of those of strips of triangles.
+bool is_corner_list(const Property& property);
+
+/// The element 'face', if its rows have corners.
+const Element* find_faces(const Header& header);
+/// Strips of triangles in the place of faces: each three corners in a row are a triangle, every other one turned round,
+/// and -1 ends a strip. None if there are faces.
+const Element* find_strips(const Header& header);
+
+/// \throw InvalidInput
+Header read_header(const MeshFile& file);
+
+template <class T>
+double load(const char* raw) {
+  T value;
+  std::memcpy(&value, raw, sizeof value);
+  return static_cast<double>(value);
+}
+
+/// Of eight bytes, too, which integers of a PLY file never have.
+inline double binary_number(const char* at, Type type, Encoding encoding) {
+  static_assert(std::endian::native == std::endian::little, "numbers of the other order are turned round");
+  char raw[8];
+  if (encoding == Encoding::BigEndian) std::reverse_copy(at, at + type.bytes, raw);
+  else std::memcpy(raw, at, type.bytes);
+  if (type.kind == 'f') return type.bytes == 4 ? load<float>(raw) : load<double>(raw);
+  if (type.kind == 'u')
+    return type.bytes == 1   ? load<std::uint8_t>(raw)
+           : type.bytes == 2 ? load<std::uint16_t>(raw)
+           : type.bytes == 4 ? load<std::uint32_t>(raw)
+                             : load<std::uint64_t>(raw);
+  return type.bytes == 1   ? load<std::int8_t>(raw)
+         : type.bytes == 2 ? load<std::int16_t>(raw)
+         : type.bytes == 4 ? load<std::int32_t>(raw)
+                           : load<std::int64_t>(raw);
+}
+
+/// Digits that a text has beyond its declared type are not there for anyone who reads it.
+inline double as_declared(Type type, double value) {
+  return type.bytes == 4 ? static_cast<double>(static_cast<float>(value)) : value;
+}
+
+/// Takes numbers of either kind off the body, one after the other. Refers to `file`.
+class Body {
+ public:
+  Body(const MeshFile& file, const Header& header)
+      : file_(file), text_(file.path, file.text(), header.end), at_(header.end), encoding_(header.encoding) {}
+
+  /// `at` receives the number's first byte. Numbers above 2^53 do not occur in what is used.
+  double take(Type type, const char* what, std::uint64_t& at);
+  /// The length of a list, from 0 on.
+  std::size_t take_length(const Property& list);
+  /// First byte of a number whose value does not matter: a normal, which may be a NaN.
+  std::uint64_t place(Type type, const char* what);
+  void skip(Type type, std::size_t count, const char* what);
+  void skip(const Property& property);
+  /// From the start of the body to that of an element's first row.
+  void skip_to(const Element& element, const Header& header);
+
+  std::size_t position() const { return encoding_ == Encoding::Ascii ? text_.position() : at_; }
+  void go_to(std::size_t at);
+  [[noreturn]] void fail(const std::string& expected, const std::string& found, std::uint64_t at) const;
+
+ private:
+  double take_binary(Type type, const char* what);
+  [[noreturn]] void truncated(const char* what) const;
+
+  const MeshFile& file_;
+  Scanner text_;
+  std::size_t at_;
+  Encoding encoding_;
+};
+
+}  // namespace vdb_offset::io::ply

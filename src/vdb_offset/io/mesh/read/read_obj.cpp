@@ -1,0 +1,373 @@
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <tuple>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/memory.h"
+#include "vdb_offset/io/base/line_records.h"
+#include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/read/mesh_readers.h"
+
+namespace vdb_offset::io {
+namespace {
+
+/// What a file holds besides positions and faces, as bits; the order is that of the names.
+enum Extra : unsigned {
+  kVertexData = 1,
+  kNormals = 2,
+  kTexture = 4,
+  kMaterials = 8,
+  kGroups = 16,
+  kSmooth = 32,
+  kOther = 64
+};
+constexpr const char* kExtraNames[] = {
+    "vertex weights or colours", "normals",          "texture coordinates", "materials",
+    "groups and object names",   "smoothing groups", "other lines"};
+/// What corners of faces name, as further bits.
+enum Named : unsigned { kNamesTexture = 128, kNamesNormals = 256 };
+
+// Bytes of "v 0 0 0".
+constexpr std::ptrdiff_t kLeastVertexLine = 7;
+
+/// How much of everything a run of lines holds, or there is before it.
+struct Counts {
+  std::size_t vertices = 0, normals = 0, faces = 0, corners = 0;
+
+  Counts& operator+=(const Counts& other) {
+    vertices += other.vertices;
+    normals += other.normals;
+    faces += other.faces;
+    corners += other.corners;
+    return *this;
+  }
+  bool operator==(const Counts&) const = default;
+};
+
+/// Where the parts of a mesh are put, each run of lines into its own part of the arrays.
+struct Arrays {
+  Polygons& polygons;
+  std::vector<std::uint32_t>& corner_normal;
+  std::vector<NumberTriple> position_at, normal_at;
+};
+
+/// The end of a line: behind its line end, or behind that of the last line that backslashes join to it.
+const char* line_end(const char* line, const char* end) {
+  const char* at = line;
+  for (;;) {
+    const char* const part = at;
+    const auto* newline = static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
+    if (!newline) return end;
+    at = newline + 1;
+    const char* last = newline != line && newline[-1] == '\r' ? newline - 1 : newline;
+    if (last == line || last[-1] != '\\') return at;
+    // A comment ends with its line. Only what has come since is looked at, however many lines are joined.
+    if (std::memchr(part, '#', static_cast<std::size_t>(newline - part))) return at;
+    if (at == end) return end;
+  }
+}
+
+enum class Line { Vertex, Normal, Face, Blank, Other };
+
+bool is_keyword(FastCursor& cursor, char first, char second = 0) {
+  FastCursor ahead = cursor;
+  if (!ahead.take(first) || (second && !ahead.take(second)) || !ahead.at_word_end()) return false;
+  cursor = ahead;
+  return true;
+}
+
+Line line_of(std::string_view keyword) {
+  return keyword == "v" ? Line::Vertex : keyword == "vn" ? Line::Normal : keyword == "f" ? Line::Face : Line::Other;
+}
+
+/// A scanner at the start of a line.
+Scanner scanner_at(const MeshFile& file, const char* line) {
+  return {file.path, file.text(), static_cast<std::size_t>(line - file.text().data()), true, '#'};
+}
+
+/// What a line is. The cursor goes behind the keyword, or, where a backslash stands in front of it, stays there.
+Line classify(const MeshFile& file, const char* line, FastCursor& cursor) {
+  cursor.skip_blanks();
+  if (is_keyword(cursor, 'v')) return Line::Vertex;
+  if (is_keyword(cursor, 'f')) return Line::Face;
+  if (is_keyword(cursor, 'v', 'n')) return Line::Normal;
+  if (cursor.at_line_end()) return Line::Blank;
+  FastCursor ahead = cursor;
+  if (ahead.take('#')) return Line::Blank;
+  return ahead.take('\\') ? line_of(scanner_at(file, line).token()) : Line::Other;
+}
+
+/// The corners of a face's line, behind its keyword.
+std::size_t count_corners(const MeshFile& file, const char* line, FastCursor cursor, const char* end) {
+  std::size_t corners = 0;
+  while (cursor.skip_word()) ++corners;
+  if (cursor.at_line_end() && cursor.position() + 1 >= end) return corners;
+  Scanner scanner = scanner_at(file, line);  // a comment, or a line that goes on in the next
+  scanner.token();
+  for (corners = 0; !scanner.token().empty();) ++corners;
+  return corners;
+}
+
+/// Counts what a run of lines holds. Lines that are wrong are counted somehow: parsing tells.
+Counts count_run(const MeshFile& file, std::size_t begin, std::size_t end) {
+  Counts counts;
+  const char* const last = file.text().data() + end;
+  for (const char* line = file.text().data() + begin; line != last;) {
+    const char* const next = line_end(line, last);
+    FastCursor cursor(line, next);
+    const Line kind = classify(file, line, cursor);
+    // Lines too short for a vertex would make much of little: they are refused before there is an array.
+    if (kind == Line::Vertex && next - line < kLeastVertexLine) {
+      Scanner scanner = scanner_at(file, line);
+      scanner.token();
+      NumberTriple ignored;
+      scanner.triple("a coordinate", ignored);
+    }
+    counts.vertices += kind == Line::Vertex;
+    counts.normals += kind == Line::Normal;
+    if (kind == Line::Face) {
+      ++counts.faces;
+      counts.corners += count_corners(file, line, cursor, next);
+    }
+    line = next;
+  }
+  return counts;
+}
+
+/// Parses a run of lines into its part of the arrays.
+class RunParser {
+ public:
+  RunParser(const MeshFile& file, Arrays& arrays, const Counts& from, const Counts& to, const Counts& all)
+      : file_(file),
+        text_(file.text()),
+        scanner_(scanner_at(file, text_.data())),
+        arrays_(arrays),
+        next_(from),
+        to_(to),
+        all_(all) {}
+
+  /// What the lines hold besides positions and faces.
+  unsigned run(std::size_t begin, std::size_t end) {
+    const char* const last = text_.data() + end;
+    for (const char* line = text_.data() + begin; line != last;) {
+      const char* const next = line_end(line, last);
+      FastCursor cursor(line, next);
+      const Line kind = classify(file_, line, cursor);
+      if (kind == Line::Vertex) vertex(line, cursor);
+      else if (kind == Line::Face) face(line, cursor);
+      else if (kind == Line::Normal) normal(line, cursor);
+      else if (kind == Line::Other) other(line);
+      line = next;
+    }
+    if (!(next_ == to_)) changed();
+    return extras_;
+  }
+
+ private:
+  /// A file that says something else when it is read again; what was counted no longer holds.
+  [[noreturn]] void changed() const {
+    scanner_.fail_with("a file that stays as it is", "one that changes while it is read", 0);
+  }
+  std::size_t take(std::size_t Counts::*what) {
+    if (next_.*what == to_.*what) changed();
+    return (next_.*what)++;
+  }
+  std::uint64_t place(const char* at) const { return static_cast<std::uint64_t>(at - text_.data()); }
+  /// For what the fast way does not read: the line again, from behind its keyword.
+  void scan(const char* line) {
+    scanner_ = scanner_at(file_, line);
+    scanner_.token();
+  }
+
+  void vertex(const char* line, FastCursor cursor) {
+    const std::size_t v = take(&Counts::vertices);
+    Vec3d& p = arrays_.polygons.positions[v];
+    NumberTriple& at = arrays_.position_at[v];
+    bool plain = true;
+    for (int k = 0; k < 3 && plain; ++k) {
+      cursor.skip_blanks();
+      at.at[k] = place(cursor.position());
+      plain = cursor.number(p[k]);
+    }
+    if (plain && cursor.at_line_end()) return;
+    scan(line);
+    p = scanner_.triple("a coordinate", at);
+    if (!scanner_.at_line_end()) extras_ |= kVertexData;
+  }
+
+  void normal(const char* line, FastCursor cursor) {
+    NumberTriple& at = arrays_.normal_at[take(&Counts::normals)];
+    extras_ |= kNormals;
+    bool plain = true;
+    for (auto& byte : at.at) {
+      cursor.skip_blanks();
+      byte = place(cursor.position());
+      plain = plain && cursor.skip_word();
+    }
+    if (plain && cursor.at_line_end()) return;
+    scan(line);
+    scanner_.skip_triple("three numbers of a normal", at);
+  }
+
+  void face(const char* line, FastCursor cursor) {
+    const std::size_t f = take(&Counts::faces), first = next_.corners;
+    bool plain = true;
+    while (plain && !cursor.at_line_end()) plain = plain_corner(cursor);
+    if (!plain) {
+      next_.corners = first;
+      scan(line);
+      while (!scanner_.at_line_end()) corner(scanner_.token());
+    }
+    if (next_.corners - first < 3) {
+      scan(line);
+      scanner_.fail_with("at least 3 corners in a face", fmt::format("{}", next_.corners - first), place(line));
+    }
+    arrays_.polygons.face_begin[f + 1] = static_cast<std::uint32_t>(next_.corners);
+  }
+
+  bool plain_corner(FastCursor& cursor) {
+    std::uint32_t vertex = 0, texture = 0, normal = 0;
+    if (!cursor.digits(vertex) || vertex == 0 || vertex > all_.vertices) return false;
+    if (cursor.take('/')) {
+      const bool has_texture = !cursor.take('/');
+      if (has_texture && !cursor.digits(texture)) return false;
+      if (!has_texture || cursor.take('/')) {
+        if (!cursor.digits(normal) || normal == 0 || normal > all_.normals) return false;
+      }
+      if (has_texture) extras_ |= kNamesTexture;
+    }
+    if (!cursor.at_word_end()) return false;
+    add_corner(vertex - 1, normal == 0 ? kNoNormal : normal - 1);
+    return true;
+  }
+  void add_corner(std::uint32_t vertex, std::uint32_t normal) {
+    const std::size_t c = take(&Counts::corners);
+    arrays_.polygons.corners[c] = vertex;
+    if (!arrays_.corner_normal.empty()) arrays_.corner_normal[c] = normal;
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn; negative numbers count back from the last one read so far.
+  void corner(std::string_view token) {
+    const std::size_t at = scanner_.position() - token.size();
+    std::string_view part[3];
+    int parts = 0;
+    for (std::string_view rest = token; parts < 3; ++parts) {
+      const std::size_t slash = std::min(rest.find('/'), rest.size());
+      part[parts] = rest.substr(0, slash);
+      if (slash == rest.size()) break;
+      rest.remove_prefix(slash + 1);
+    }
+    if (parts == 3) scanner_.fail("a corner of the form v, v/vt, v//vn or v/vt/vn", at);
+    const std::uint32_t vertex = index(part[0], next_.vertices, all_.vertices, "vertex", at);
+    std::int64_t texture = 0;
+    if (!part[1].empty() && !parse_integer(part[1], texture)) scanner_.fail("a texture index", at);
+    if (!part[1].empty()) extras_ |= kNamesTexture;
+    add_corner(vertex, part[2].empty() ? kNoNormal : normal_index(part[2], at));
+  }
+  /// Some writers name normals that they do not write.
+  std::uint32_t normal_index(std::string_view text, std::size_t at) {
+    if (all_.normals > 0) return index(text, next_.normals, all_.normals, "normal", at);
+    std::int64_t ignored = 0;
+    if (!parse_integer(text, ignored)) scanner_.fail("a normal index", at);
+    extras_ |= kNamesNormals;
+    return kNoNormal;
+  }
+  std::uint32_t index(std::string_view text, std::size_t so_far, std::size_t all, const char* what, std::size_t at) {
+    std::int64_t value = 0;
+    if (!parse_integer(text, value)) scanner_.fail(fmt::format("a {} index", what), at);
+    if (value == 0) scanner_.fail(fmt::format("a {} index from 1 on or below 0", what), at);
+    if (value < 0) {
+      value += static_cast<std::int64_t>(so_far) + 1;
+      if (value < 1) scanner_.fail(fmt::format("a {} index within the {} read so far", what, so_far), at);
+    }
+    if (static_cast<std::uint64_t>(value) > all) scanner_.fail(fmt::format("a {} index up to {}", what, all), at);
+    return static_cast<std::uint32_t>(value - 1);
+  }
+
+  void other(const char* line) {
+    scanner_ = scanner_at(file_, line);
+    const std::string_view keyword = scanner_.token();
+    // A file of random bytes is recognised by its first line that is none.
+    if (keyword.size() > 32 || !std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; }))
+      scanner_.fail("a line of an OBJ file", scanner_.position() - keyword.size());
+    if (keyword == "vt") extras_ |= kTexture;
+    else if (keyword == "usemtl" || keyword == "mtllib") extras_ |= kMaterials;
+    else if (keyword == "g" || keyword == "o") extras_ |= kGroups;
+    else if (keyword == "s") extras_ |= kSmooth;
+    else if (!keyword.empty()) extras_ |= kOther;
+  }
+
+  const MeshFile& file_;
+  std::string_view text_;
+  Scanner scanner_;
+  Arrays& arrays_;
+  Counts next_, to_, all_;
+  unsigned extras_ = 0;
+};
+
+/// What stands before each run, and behind the last one.
+std::vector<Counts> count(const MeshFile& file, const std::vector<std::size_t>& cuts) {
+  std::vector<Counts> before(cuts.size());
+  tbb::parallel_for(std::size_t{1}, cuts.size(),
+                    [&](std::size_t run) { before[run] = count_run(file, cuts[run - 1], cuts[run]); });
+  for (std::size_t run = 1; run < cuts.size(); ++run) before[run] += before[run - 1];
+  return before;
+}
+
+Arrays allocate(MeshFile& file, const Counts& all) {
+  const Scanner end(file.path, file.text(), file.text().size());
+  if (all.vertices > kMostVertices || all.normals > kMostVertices || all.corners > kMostVertices)
+    end.fail("fewer than 2^32 vertices and face corners");
+  const std::size_t corner = sizeof(std::uint32_t) * (all.normals > 0 ? 2 : 1);
+  require_memory(all.vertices * (sizeof(Vec3d) + sizeof(NumberTriple)) + all.normals * sizeof(NumberTriple) +
+                     all.corners * corner + all.faces * sizeof(std::uint32_t),
+                 file.path);
+  Arrays arrays{file.polygons, file.corner_normal, {}, {}};
+  arrays.polygons.positions.resize(all.vertices);
+  arrays.polygons.corners.resize(all.corners);
+  arrays.polygons.face_begin.resize(all.faces + 1);
+  arrays.position_at.resize(all.vertices);
+  arrays.normal_at.resize(all.normals);
+  if (all.normals > 0) arrays.corner_normal.resize(all.corners);
+  return arrays;
+}
+
+}  // namespace
+
+/// Reads `v`, `vn` and `f` lines; all others stay what they are, bytes that are copied. The lines are counted first, so
+/// that runs of them can be parsed in parallel, straight to where they belong.
+void parse_obj(MeshFile& file) {
+  use_line_feeds(file);
+  const std::vector<std::size_t> cuts = cut_at_lines(file.text(), byte_order_mark(file.text()));
+  const std::vector<Counts> before = count(file, cuts);
+  const Counts& all = before.back();
+  Arrays arrays = allocate(file, all);
+  std::vector<std::exception_ptr> failed(cuts.size());
+  std::vector<unsigned> extras(cuts.size(), 0);
+  tbb::parallel_for(std::size_t{1}, cuts.size(), [&](std::size_t run) {
+    try {
+      extras[run] = RunParser(file, arrays, before[run - 1], before[run], all).run(cuts[run - 1], cuts[run]);
+    } catch (...) {
+      failed[run] = std::current_exception();
+    }
+  });
+  for (const auto& exception : failed)
+    if (exception) std::rethrow_exception(exception);
+  if (all.faces == 0) Scanner(file.path, file.text()).fail("at least one face ('f' line)", file.text().size());
+  file.position_at = Places(std::move(arrays.position_at));
+  file.normal_at = Places(std::move(arrays.normal_at));
+  unsigned held = 0;
+  for (const unsigned extra : extras) held |= extra;
+  for (std::size_t i = 0; i < std::size(kExtraNames); ++i)
+    if (held >> i & 1) file.extras.emplace_back(kExtraNames[i]);
+  for (const auto& [named, there, remark] :
+       {std::tuple{kNamesNormals, kNormals, "faces name normals (as in f 1//1), but there is no 'vn' line"},
+        {kNamesTexture, kTexture, "faces name texture coordinates (as in f 1/1), but there is no 'vt' line"}})
+    if ((held & named) && !(held & there)) file.remarks.emplace_back(remark);
+}
+
+}  // namespace vdb_offset::io

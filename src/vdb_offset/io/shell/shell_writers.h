@@ -1,0 +1,98 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "vdb_offset/io/base/chunked_output.h"
+#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh/new_normals.h"
+#include "vdb_offset/shell/shell.h"
+
+namespace vdb_offset::io {
+
+/// What a format without names or properties of faces loses.
+inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
+
+/// One skin of a shell, as a file of its source's format has it. Refers to what it is made of.
+///
+/// Its vertices are numbered as the source's; behind those come the splits of both skins.
+class Skin {
+ public:
+  Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision, Normals normals);
+
+  /// What is added to the number of a vertex of the source.
+  std::uint32_t first_vertex() const { return first_vertex_; }
+  bool is_reversed() const { return first_vertex_ > 0; }
+  /// No vertex has moved.
+  bool is_source() const;
+  /// The vertex of the source that one is, or is a split of.
+  std::size_t source_of(std::size_t v) const { return v < vertices() ? v : shell_.splits[v - vertices()].vertex; }
+  /// The source's normals as they are now, not turned round.
+  const NewNormals& new_normals() const { return normals_; }
+
+  /// As written.
+  Vec3d position(std::size_t v) const;
+  /// None for a vertex, or a normal, whose numbers stay as they are, but for an inner normal's sign.
+  std::optional<Vec3d> new_position(std::size_t v) const;
+  std::optional<Vec3d> new_normal(std::size_t n) const;
+
+  /// The three numbers of a text, each behind a blank.
+  void append_position(std::string& text, std::size_t v) const;
+  void append_normal(std::string& text, std::size_t n) const;
+  /// One of them; `word` is what the source has.
+  void append_coordinate(std::string& text, std::size_t v, int k, std::string_view word) const;
+  void append_normal_component(std::string& text, std::size_t n, int k, std::string_view word) const;
+
+ private:
+  std::string_view word_at(std::uint64_t byte) const;
+  std::size_t vertices() const { return positions_.size(); }
+  /// Among the shell's.
+  std::size_t number(std::size_t v) const { return v < vertices() ? first_vertex_ + v : vertices() + v; }
+
+  const MeshFile& source_;
+  const Shell& shell_;
+  std::span<const Vec3d> positions_;
+  std::uint32_t first_vertex_;
+  Precision precision_;
+  NewNormals normals_;
+  std::vector<Vec3d> vertex_normals_;  // of the shell's, where splits need some of their own
+};
+
+/// The normals of a file's corners, as a skin of its shell has them; not turned round.
+NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision);
+
+/// Those of a shell's vertices, outward: the means of the faces of both skins by angle, without the rim. Zero where
+/// there is none.
+std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Precision& precision);
+
+/// A shell that is to be a file of its source's format. Refers to what it is made of.
+struct ShellContent {
+  const MeshFile& source;
+  const Shell& shell;
+  Precision precision;
+  Normals normals;
+  Skin outer{source, shell, ShellPart::Outer, precision, normals};
+  Skin inner{source, shell, ShellPart::Inner, precision, normals};
+
+  const Skin& skin(ShellPart part) const { return part == ShellPart::Inner ? inner : outer; }
+  /// A vertex of the shell: a skin, and its number there.
+  struct SkinVertex {
+    const Skin& skin;
+    std::size_t number;
+  };
+  SkinVertex vertex(std::uint32_t v) const {
+    const Skin& of = skin(shell.skin_of(v));
+    const std::size_t count = shell.source_vertices();
+    return {of, v < 2 * count ? v - of.first_vertex() : v - count};
+  }
+};
+using SharedShell = std::shared_ptr<const ShellContent>;
+
+// One writer a format. They add to `lost` what they do not keep. \throw InvalidInput if the source's file is not what
+// it was.
+Pieces shell_to_obj(const SharedShell& content, std::vector<std::string>& lost);
+Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost);
+Pieces shell_to_ply(const SharedShell& content, std::vector<std::string>& lost);
+Pieces shell_to_stl(const SharedShell& content, std::vector<std::string>& lost);
+
+}  // namespace vdb_offset::io

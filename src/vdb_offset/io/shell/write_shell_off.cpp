@@ -1,0 +1,139 @@
+#include <algorithm>
+
+#include "vdb_offset/io/base/append_number.h"
+#include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/read/off_binary.h"
+#include "vdb_offset/io/shell/shell_writers.h"
+
+/// The source's text up to its faces, with the outer skin's positions and other counts; all other vertices; the
+/// source's faces; all other faces.
+namespace vdb_offset::io {
+namespace {
+
+class OffShellWriter {
+ public:
+  explicit OffShellWriter(const SharedShell& content)
+      : content_(content), source_(content->source), shell_(content->shell) {
+    find_counts();
+    find_faces();
+  }
+
+  /// All before the faces, but for the inner skin.
+  std::string start() const {
+    std::string text(source_.text().substr(0, counts_begin_));
+    append_integer(text, shell_.polygons.positions.size());
+    append_integer(text += ' ', shell_.polygons.face_count());
+    text += " 0";
+    text += source_.text().substr(counts_end_, first_of_vertex(0) - counts_end_);
+    return text;
+  }
+  /// The rest of a vertex's lines, comments behind it among them.
+  void append_outer_vertex(std::string& text, std::size_t v) const {
+    append_numbers(text, content_->outer, v);
+    const std::size_t end = v + 1 < shell_.source_vertices() ? first_of_vertex(v + 1) : face_row_.front();
+    append_whole(text, source_.text().substr(end_of_numbers(v), end - end_of_numbers(v)));
+  }
+  /// One of the inner skin, or behind that.
+  void append_other_vertex(std::string& text, std::size_t i) const {
+    const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
+    append_numbers(text, skin, v);
+    append_words(text, Scanner(source_.path, source_.text(), end_of_numbers(skin.source_of(v)), false, '#'));
+  }
+  void append_outer_face(std::string& text, std::size_t f) const {
+    const std::uint32_t row = shell_.source_face(f);
+    if (!std::ranges::equal(shell_.polygons.view().face(f), source_.polygons.view().face(row)))
+      append_new_face(text, f);
+    else append_whole(text, source_.text().substr(face_row_[row], face_row_[row + 1] - face_row_[row]));
+  }
+  /// A face of the inner skin or the rim.
+  void append_other_face(std::string& text, std::size_t i) const { append_new_face(text, shell_.skin_faces() + i); }
+
+ private:
+  void append_new_face(std::string& text, std::size_t f) const {
+    const std::size_t source_face = shell_.source_face(f);
+    const auto face = shell_.polygons.view().face(f);
+    append_integer(text, face.size());
+    for (const auto v : face) append_integer(text += ' ', v);
+    Scanner words(source_.path, source_.text(), face_row_[source_face], false, '#');
+    for (std::size_t k = 0; k <= source_.polygons.view().face(source_face).size(); ++k) words.token_anywhere("a face");
+    append_words(text, words);
+  }
+
+  std::size_t first_of_vertex(std::size_t v) const { return source_.position_at[v].at[0]; }
+  std::size_t end_of_numbers(std::size_t v) const {
+    const Places& last = source_.normal_at.empty() ? source_.position_at : source_.normal_at;
+    Scanner scanner(source_.path, source_.text(), last[v].at[2], false, '#');
+    scanner.token();
+    return scanner.position();
+  }
+
+  /// The two numbers behind the keyword, and that of edges, if there is one.
+  void find_counts() {
+    Scanner scanner(source_.path, source_.text(), byte_order_mark(source_.text()), false, '#');
+    scanner.token_anywhere("the keyword OFF");
+    scanner.token_anywhere("a number of vertices");
+    counts_begin_ = scanner.last_token();
+    const bool a_line_each = scanner.at_line_end();
+    scanner.token_anywhere("a number of faces");
+    counts_end_ = scanner.position();
+    if (!a_line_each && scanner.at_line_end()) return;
+    scanner.token_anywhere("a number of edges");
+    counts_end_ = scanner.position();
+  }
+
+  /// Where each face's line starts; what stands behind the last one is its own.
+  void find_faces() {
+    Scanner scanner(source_.path, source_.text(), end_of_numbers(shell_.source_vertices() - 1), false, '#');
+    const std::size_t faces = source_.polygons.face_count();
+    face_row_.reserve(faces + 1);
+    for (std::size_t f = 0; f < faces; ++f) {
+      scanner.next_line();
+      if (scanner.at_text_end()) scanner.fail("a face");
+      face_row_.push_back(scanner.position());
+    }
+    face_row_.push_back(source_.text().size());
+  }
+
+  static void append_numbers(std::string& text, const Skin& skin, std::size_t v, bool has_normals) {
+    std::string numbers;
+    skin.append_position(numbers, v);
+    if (has_normals) skin.append_normal(numbers, v);
+    text.append(numbers, 1);
+  }
+  void append_numbers(std::string& text, const Skin& skin, std::size_t v) const {
+    append_numbers(text, skin, v, !source_.normal_at.empty());
+  }
+  static void append_whole(std::string& text, std::string_view lines) {
+    text += lines;
+    if (!text.ends_with('\n')) text += '\n';
+  }
+  static void append_words(std::string& text, Scanner words) {
+    while (!words.at_line_end()) (text += ' ') += words.token();
+    text += '\n';
+  }
+
+  SharedShell content_;
+  const MeshFile& source_;
+  const Shell& shell_;
+  std::size_t counts_begin_ = 0, counts_end_ = 0;
+  std::vector<std::uint64_t> face_row_;
+};
+
+}  // namespace
+
+Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost) {
+  lost.emplace_back(kShellParts);
+  if (content->source.encoding != Encoding::Ascii) return off::shell_to_binary(content);
+  const auto writer = std::make_shared<const OffShellWriter>(content);
+  const Shell& shell = content->shell;
+  return in_sections(
+      writer->start(),
+      {{shell.source_vertices(), [=](std::string& text, std::size_t v) { writer->append_outer_vertex(text, v); }},
+       {shell.source_vertices() + shell.splits.size(),
+        [=](std::string& text, std::size_t i) { writer->append_other_vertex(text, i); }},
+       {shell.skin_faces(), [=](std::string& text, std::size_t f) { writer->append_outer_face(text, f); }},
+       {shell.polygons.face_count() - shell.skin_faces(),
+        [=](std::string& text, std::size_t i) { writer->append_other_face(text, i); }}});
+}
+
+}  // namespace vdb_offset::io

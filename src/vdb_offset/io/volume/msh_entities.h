@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/volume/volume_mesh.h"
+
+namespace vdb_offset::io {
+
+/// A mesh's points by the entity of the lowest dimension that they lie on, as Gmsh asks for: the volume, its patches,
+/// the curves on which patches meet, and the corners at which curves end or meet. A closed curve has a corner, too, its
+/// point of the lowest number; so has a point at which patches touch that share no edge there.
+struct MshEntities {
+  /// From corner to corner. All of its edges are between the same patches.
+  struct Curve {
+    std::vector<std::uint32_t> points;
+    std::uint32_t group;  ///< Which patches these are.
+    std::size_t edge_count() const { return points.size() - 1; }
+  };
+  /// A curve on a patch's edge, and whether the patch's faces there run as it does.
+  struct Side {
+    std::uint32_t curve;
+    bool forwards;
+  };
+
+  std::vector<std::uint32_t> corners;
+  std::vector<Curve> curves;
+  std::vector<std::vector<std::uint32_t>> groups;    ///< Patches that meet on curves, in rising order.
+  std::vector<std::vector<Side>> around;             ///< Of each patch.
+  std::vector<std::vector<std::uint32_t>> on_patch;  ///< Points of each patch that lie on no curve and at no corner.
+  std::vector<std::uint32_t> inside;                 ///< Points of no patch.
+};
+
+MshEntities find_entities(const VolumeMesh& mesh);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/volume/foam_quality.h"
+#include "vdb_offset/volume/volume_mesh.h"
+
+namespace vdb_offset::io {
+
+// One writer a format, each of a mesh whose arrays fit each other. \throw WriteError, InvalidInput (volume_file.h)
+// VTK's gives cells the order that their corners have there.
+void write_vtu(const std::string& path, VolumeMesh& mesh);
+void write_msh(const std::string& path, const VolumeMesh& mesh);
+void write_cgns(const std::string& path, const VolumeMesh& mesh);
+void write_su2(const std::string& path, const VolumeMesh& mesh);
+FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh);
+
+bool has_polyhedra(const VolumeMesh& mesh);
+
+/// \throw InvalidInput for polyhedra, and for faces of patches with more than four corners. `ending` is for messages.
+void require_standard_cells(const std::string& path, const VolumeMesh& mesh, const char* ending);
+
+/// Words of at most `longest` bytes, no two alike: the later ones end in _2, _3 ...
+std::vector<std::string> distinct_words(std::span<const std::string> words, std::size_t longest);
+
+/// The patches' names as every format can hold them: ASCII letters, digits and _ - + . alone, a letter or _ first, at
+/// most `longest` bytes, and no two alike.
+std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest = 255);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vtkSmartPointer.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/volume/volume_mesh.h"
+
+class vtkDataSet;
+class vtkDataSetAttributes;
+class vtkPoints;
+class vtkXMLWriter;
+
+namespace vdb_offset::io {
+
+/// The same memory as VTK's array, which must not be longer-lived, and never writes to it.
+template <class Array, class Number>
+vtkSmartPointer<Array> vtk_view(std::span<const Number> numbers) {
+  using Value = typename Array::ValueType;
+  static_assert(sizeof(Number) == sizeof(Value));
+  auto array = vtkSmartPointer<Array>::New();
+  auto* const memory = const_cast<Number*>(numbers.data());  // NOLINT: VTK knows no arrays of constants.
+  array->SetArray(reinterpret_cast<Value*>(memory), static_cast<vtkIdType>(numbers.size()), 1);
+  return array;
+}
+
+vtkSmartPointer<vtkPoints> vtk_points(std::span<const Vec3d> points);
+void add_fields(vtkDataSetAttributes& attributes, const std::vector<VolumeField>& fields);
+
+/// Writes `data` to `path` through replace_file(): raw appended, compressed. VTK prints nothing. \throw WriteError
+void write_vtk(vtkXMLWriter& writer, vtkDataSet& data, const std::string& path);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,109 @@
+#include "vdb_offset/iso/iso_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_offset/base/error.h"
+
+namespace vdb_offset {
+namespace {
+
+// Beside voxel corners of a leaf node, OpenVDB's grids of signs and point numbers, and the new mesh with all that is
+// made to check it.
+constexpr double kTrianglesPerLeaf = 110;
+constexpr double kCaptureProcessBytes = 64 << 20;
+
+double longest_of(const MeshFacts& facts, double distance) { return facts.diagonal + 2 * std::abs(distance); }
+
+/// Cubes whose centre is so near to the surface that it may pass through them make a slab of this many voxels.
+constexpr double kSlabVoxels = 14.2;
+
+CapturePlan estimate_capture(const Surface& surface, double distance, bool is_signed, double h) {
+  const MeshFacts& facts = surface.facts;
+  const double d = std::abs(distance), sides = is_signed ? 1 : 2;
+  // What is curved outwards has more area farther out, and whatever it is, at least that of a ball.
+  const double spread = distance > 0 || sides == 2 ? 1 + 2 * d / facts.diagonal : 1;
+  const double area = sides * facts.area * spread * spread + 4 * M_PI * d * d * static_cast<double>(facts.components);
+  const double leaf = kLeafWidth * h, across = longest_of(facts, d) + 2 * leaf;
+  const double leaves = std::min(area * kSlabVoxels * h / (leaf * leaf * leaf) + 8, std::pow(across / leaf, 3));
+  const double bytes = kCaptureProcessBytes + static_cast<double>(surface_bytes(surface)) + leaves * kCaptureLeafBytes;
+  constexpr double kMost = 0x1p62;  // only to be refused; the casts must not overflow
+  CapturePlan plan;
+  plan.voxel_size = h;
+  plan.leaf_nodes = static_cast<std::size_t>(std::min(leaves, kMost));
+  plan.triangles = static_cast<std::size_t>(std::min(leaves * kTrianglesPerLeaf, kMost));
+  plan.bytes = static_cast<std::size_t>(std::min(bytes, kMost));
+  return plan;
+}
+
+bool fits_budget(const CapturePlan& plan, const CaptureOptions& options, const MeshFacts& facts) {
+  // volumeToMesh tells places in single precision, to a small part of a voxel.
+  constexpr double kMostVoxelsAcross = 0x1p19;
+  return (options.max_memory == 0 || plan.bytes <= options.max_memory) &&
+         longest_of(facts, options.distance) / plan.voxel_size < kMostVoxelsAcross;
+}
+
+/// Fine enough that a chord of the rounding around an edge, of radius d, is off by less than 1 % of d in its middle,
+/// and for the details that the mesh has.
+CapturePlan choose_voxels(const Surface& surface, const CaptureOptions& options, bool is_signed) {
+  constexpr double kPerDistance = 4, kCoarsest = 128, kFinest = 512;
+  const MeshFacts& facts = surface.facts;
+  const double d = std::abs(options.distance), coarsest = facts.diagonal / kCoarsest, finest = facts.diagonal / kFinest;
+  const double wanted = std::min(d / kPerDistance, facts.median_edge);
+  double h = std::clamp(wanted, finest, coarsest);
+  std::string reason = wanted < finest                        ? "diagonal / 512, as the distance or edges are smaller"
+                       : wanted > coarsest                    ? "diagonal / 128, the coarsest useful size"
+                       : facts.median_edge < d / kPerDistance ? "the median edge"
+                                                              : "distance / 4";
+  constexpr double kCoarser = 1.25;
+  const double most = longest_of(facts, d);
+  for (; h < most; h *= kCoarser) {
+    CapturePlan plan = estimate_capture(surface, options.distance, is_signed, h);
+    plan.reason = reason;
+    if (fits_budget(plan, options, facts)) return plan;
+    reason = "the finest that the memory allows";
+  }
+  return estimate_capture(surface, options.distance, is_signed, most);
+}
+
+/// Corners of the new triangles are a part of a voxel apart. Rounded by three voxels (measured: by no less), they fold
+/// and cross wherever they are mended, without end.
+void require_fine_places(const MeshFacts& facts, const CaptureOptions& options, double h) {
+  constexpr double kMostVoxels = 2;
+  const double rounding = options.precision.half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
+  if (rounding <= kMostVoxels * h) return;
+  throw InvalidInput(
+      fmt::format("capture: expected coordinates that are rounded by less than {:g} voxels of {:.6g}, got {:.3g} (move "
+                  "the model to the origin, write more digits, or take larger voxels)",
+                  kMostVoxels, h, rounding));
+}
+
+}  // namespace
+
+CapturePlan plan_voxels(const Surface& surface, const CaptureOptions& options, bool is_signed) {
+  const GridOptions& grid = options.grid;
+  require_plannable(surface.facts.diagonal, std::abs(options.distance), grid);
+  CapturePlan plan;
+  if (grid.voxel_size) {
+    plan = estimate_capture(surface, options.distance, is_signed, *grid.voxel_size);
+    plan.reason = "as given";
+  } else if (grid.voxels_per_distance) {
+    plan =
+        estimate_capture(surface, options.distance, is_signed, std::abs(options.distance) / *grid.voxels_per_distance);
+    plan.reason = fmt::format("distance / {:.6g}, as given", *grid.voxels_per_distance);
+  } else {
+    plan = choose_voxels(surface, options, is_signed);
+  }
+  require_fine_places(surface.facts, options, plan.voxel_size);
+  if (fits_budget(plan, options, surface.facts)) return plan;
+  throw OutOfBudget(
+      fmt::format("capture: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
+                  "about {:.0f} MiB in {} leaf "
+                  "nodes with voxel size {:.6g} (a larger voxel size needs less)",
+                  options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
+                  static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size));
+}
+
+}  // namespace vdb_offset

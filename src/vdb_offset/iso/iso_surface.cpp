@@ -1,0 +1,306 @@
+#include "vdb_offset/iso/iso_surface.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/iso/iso_grid.h"
+#include "vdb_offset/iso/iso_level.h"
+#include "vdb_offset/iso/iso_mesh.h"
+#include "vdb_offset/iso/iso_plan.h"
+#include "vdb_offset/iso/merge_flats.h"
+#include "vdb_offset/iso/specks.h"
+#include "vdb_offset/pipeline/run_statistics.h"
+
+namespace vdb_offset {
+namespace {
+
+/// Where lattices have their corner, in voxels. Flat parts of models like to lie at round places, and so do their
+/// offsets at round distances; these are irrational, as are their sums and differences. On the second one and on, what
+/// could not be mended on the one before is tried anew.
+constexpr std::size_t kLattices = 4;
+Lattice lattice_of(std::size_t attempt, double voxel_size) {
+  const double turns = static_cast<double>(attempt) + 1;
+  const auto part = [&](double x) { return x * turns - std::floor(x * turns); };
+  return {voxel_size,
+          Vec3d(part(0.41421356237309515), part(0.7320508075688772), part(0.23606797749978969)) * -voxel_size};
+}
+
+class Capture {
+ public:
+  Capture(PolygonView mesh, const CaptureOptions& options, int threads) : mesh_(mesh), options_(options) {
+    result_.statistics.threads = threads;
+    result_.statistics.distance = options.distance;
+  }
+
+  CaptureResult run() {
+    prepare();
+    CaptureStatistics& statistics = result_.statistics;
+    Surface written;
+    do {
+      statistics.dropped_specks = statistics.merged_vertices = 0;  // those of another lattice are gone with it
+      Surface mesh = extract(lattice_of(statistics.attempts, h_));
+      mend_on_surface(mesh);
+      if (!options_.adaptivity && statistics.mending.left.total() == 0) merge_where_flat(mesh);
+      hand_over(mesh);
+      written = check_topology();
+    } while (++statistics.attempts < kLattices && !statistics.valid());
+    measure_vertices();
+    measure_faces(written);
+    return std::move(result_);
+  }
+
+ private:
+  const Surface& source() const { return result_.source->surface; }
+  const Inside& inside() const { return result_.source->inside; }
+
+  void prepare();
+  Surface extract(const Lattice& lattice);
+  void mend_on_surface(Surface& mesh);
+  void merge_where_flat(Surface& mesh);
+  std::optional<Vec3d> onto(const Vec3d& wish);
+  Vec3d as_written(const Vec3d& local) const { return options_.precision(source().origin + local); }
+  void hand_over(const Surface& mesh);
+  Surface check_topology();
+  void tell_topology(const Surface& in_file);
+  void measure_vertices();
+  void measure_faces(const Surface& written);
+
+  PolygonView mesh_;
+  const CaptureOptions& options_;
+  double h_ = 0;
+  std::optional<LevelSet> level_;
+  std::uint32_t hint_ = 0;  // while mending, tries follow each other in one place
+  CaptureResult result_;
+};
+
+/// What there is to say of a mesh that is not plainly closed.
+std::optional<Solidity> look_at_solids(const Surface& surface, const CaptureOptions& options,
+                                       CaptureStatistics& statistics) {
+  const MeshFacts& facts = statistics.source = surface.facts;
+  SolidFacts& solid = statistics.solid;
+  solid.parts = facts.components;
+  std::optional<Solidity> solidity;
+  statistics.is_signed = facts.closed() && facts.oriented();
+  if (!statistics.is_signed && options.use_winding) {
+    solidity = find_solid_parts(surface);
+    solid.parts = solidity->is_solid.size();
+    solid.open_parts = solid.parts - solidity->solid_parts();
+    solid.holes = solidity->hole_count();
+    solid.hole_share = solidity->area > 0 ? solidity->hole_area() / solidity->area : 0;
+    statistics.is_signed = solid.open_parts < solid.parts;
+  } else if (!statistics.is_signed) {
+    solid.open_parts = solid.parts;
+  }
+  return solidity;
+}
+
+double level_of(const Inside& inside, double distance) {
+  return !inside.has_inside() ? std::abs(distance) : inside.is_turned() ? -distance : distance;
+}
+
+std::vector<Hole> too_wide(const std::optional<Solidity>& solidity, double distance) {
+  std::vector<Hole> wide;
+  if (solidity)
+    for (const Hole& hole : solidity->holes)
+      if (!hole.is_wall && hole.radius >= std::abs(distance)) wide.push_back(hole);
+  return wide;
+}
+
+void require_usable(const CaptureOptions& options) {
+  if (!std::isfinite(options.distance) || options.distance == 0)
+    throw InvalidInput(fmt::format("capture: expected a finite distance other than 0, got {}", options.distance));
+  if (options.adaptivity && !(*options.adaptivity >= 0 && *options.adaptivity <= 1))
+    throw InvalidInput(fmt::format("capture: expected an adaptivity from 0 to 1, got {}", *options.adaptivity));
+}
+
+void Capture::prepare() {
+  const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
+  CaptureStatistics& statistics = result_.statistics;
+  Surface surface = build_surface(mesh_, options_.weld, options_.orient);
+  const std::optional<Solidity> solidity = look_at_solids(surface, options_, statistics);
+  statistics.plan = plan_voxels(surface, options_, statistics.is_signed);
+  h_ = statistics.plan.voxel_size;
+  place(surface, h_);
+  result_.source =
+      std::make_shared<const CaptureSource>(std::move(surface), solidity, options_.distance, options_.orient);
+  if (const auto& boundary = result_.source->boundary) {
+    statistics.solid.buried = boundary->buried;
+    statistics.solid.cut = boundary->cut;
+  }
+  level_.emplace(result_.source->query, inside(), level_of(inside(), options_.distance), h_);
+}
+
+Surface Capture::extract(const Lattice& lattice) {
+  std::size_t most_leaves = std::numeric_limits<std::size_t>::max();
+  if (options_.max_memory > 0) most_leaves = options_.max_memory / static_cast<std::size_t>(kCaptureLeafBytes);
+  IsoGrid grid;
+  {
+    const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
+    grid = rasterise_iso(result_.source->query, inside(), level_->level(), lattice, most_leaves, options_.progress);
+  }
+  const StageTimer timer(result_.statistics.seconds, Stage::Capture);
+  result_.statistics.leaf_nodes = grid.leaf_nodes;
+  Polygons mesh = mesh_iso_surface(grid, lattice, *level_, options_.adaptivity.value_or(0), inside().is_turned(),
+                                   options_.progress);
+  if (mesh.face_count() == 0)
+    throw InvalidInput(
+        fmt::format("capture: expected a surface at distance {:.6g}, found none (nothing inside is that "
+                    "far from the surface, or only what is thinner than a voxel of {:.6g})",
+                    options_.distance, h_));
+  for_each_index(mesh.positions.size(), [&](std::size_t v) { mesh.positions[v] = as_written(mesh.positions[v]); });
+  Surface surface = build_surface(mesh.view(), {.enabled = false});
+  if (options_.keep_specks || surface.facts.components == 1) return surface;
+  result_.statistics.dropped_specks = drop_specks(mesh, h_ * h_ * h_);
+  return result_.statistics.dropped_specks == 0 ? surface : build_surface(mesh.view(), {.enabled = false});
+}
+
+void Capture::mend_on_surface(Surface& mesh) {
+  const StageTimer timer(result_.statistics.seconds, Stage::Limit);
+  Progress progress(options_.progress, Stage::Limit, 1);
+  result_.statistics.mending = mend(mesh, [&](const Vec3d& wish) {
+    progress.advance(0);
+    return onto(wish);
+  });
+}
+
+/// Nothing crosses before, and nothing does after: flat parts stay what they are, but for rounding.
+void Capture::merge_where_flat(Surface& mesh) {
+  constexpr double kShareOfDistance = 1e-7;
+  const StageTimer timer(result_.statistics.seconds, Stage::Capture);
+  double farthest = 0;
+  for (const Vec3d& p : mesh.vertices) farthest = std::max({farthest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  const double tolerance = kShareOfDistance * level_->distance() + options_.precision.epsilon() * farthest;
+  result_.statistics.merged_vertices = merge_flats_soundly(mesh, tolerance);
+}
+
+std::optional<Vec3d> Capture::onto(const Vec3d& wish) {
+  const Vec3d local = wish - source().origin;
+  const auto place = level_->follow(local, hint_, [&](const Vec3d& x) { return (x - local).length() <= h_; });
+  return place ? std::optional(as_written(*place)) : std::nullopt;
+}
+
+void Capture::hand_over(const Surface& mesh) {
+  Polygons& polygons = result_.polygons = {};
+  polygons.positions = mesh.vertices;
+  polygons.corners.reserve(3 * mesh.triangles.size());
+  polygons.face_begin.reserve(mesh.triangles.size() + 1);
+  for (const auto& [a, b, c] : mesh.triangles) polygons.add_face({a, b, c});
+}
+
+/// Vertices whose faces, from one to the next over edges, are not all that there are.
+std::size_t count_pinched(const Surface& mesh) {
+  std::size_t pinched = 0;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const auto around = mesh.triangles_around(v);
+    if (around.empty()) continue;
+    const auto& first = mesh.triangles[around[0]];
+    const std::uint32_t start =
+        3 * around[0] + static_cast<std::uint32_t>(std::find(first.begin(), first.end(), v) - first.begin());
+    std::size_t fan = 0;
+    std::uint32_t edge = start;  // leads away from the vertex
+    do {
+      const std::uint32_t before = edge / 3 * 3 + (edge + 2) % 3;  // leads back to it, in the same triangle
+      edge = mesh.next_around_edge[before];
+      ++fan;
+    } while (edge != start && mesh.from(edge) == v && fan <= around.size());
+    pinched += fan != around.size();
+  }
+  return pinched;
+}
+
+/// As whoever reads the file will find it.
+Surface Capture::check_topology() {
+  const StageTimer timer(result_.statistics.seconds, Stage::Capture);
+  Surface mesh = build_surface(result_.polygons.view(), {});
+  if (options_.precision.scale == Vec3d(1.0)) {
+    tell_topology(mesh);
+    return mesh;
+  }
+  // Rounding on the way to the file's own coordinates may decide otherwise.
+  Polygons file = result_.polygons;
+  for (Vec3d& p : file.positions) p = options_.precision.in_file(p);
+  const Surface in_file = build_surface(file.view(), {});
+  tell_topology(in_file);
+  result_.statistics.mending.left = find_faults(in_file);
+  return mesh;
+}
+
+void Capture::tell_topology(const Surface& in_file) {
+  CaptureStatistics& statistics = result_.statistics;
+  statistics.vertices = in_file.vertices.size();
+  statistics.triangles = result_.polygons.face_count();
+  statistics.components = in_file.facts.components;
+  statistics.border_edges = in_file.facts.boundary_edges;
+  statistics.non_manifold_edges = in_file.facts.non_manifold_edges;
+  statistics.turned_edges = in_file.facts.orientation_conflicts;
+  statistics.pinched_vertices = count_pinched(in_file);
+}
+
+void Capture::measure_faces(const Surface& written) {
+  constexpr std::size_t kInteriorSamples = 10000;
+  const std::vector<std::uint32_t> none(written.vertices.size(), kNone);  // of its vertices is one of the source's
+  const Body body{result_.source->query, written, none, {}, {}};
+  const StageTimer timer(result_.statistics.seconds, Stage::Measure);
+  result_.statistics.interior =
+      measure_interior(body, written.vertices, Distances(level_->distance()), kInteriorSamples);
+}
+
+/// Distances, and all else that closest points tell.
+void Capture::measure_vertices() {
+  const StageTimer timer(result_.statistics.seconds, Stage::Capture);
+  const std::size_t count = result_.polygons.positions.size();
+  std::vector<Vec3d> local(count);
+  for_each_index(count, [&](std::size_t v) { local[v] = result_.polygons.positions[v] - source().origin; });
+  const std::vector<Closest> closest = closest_points(result_.source->query, local);
+  result_.normals.resize(count);
+  result_.closest.resize(count);
+  // Away from the source, or towards it, is where phi grows, and where the source's faces point.
+  const double sense = (level_->level() < 0) != inside().is_turned() ? -1 : 1;
+  CaptureStatistics& statistics = result_.statistics;
+  double squares = 0;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto& [distance, triangle, feature, tied, point] = closest[v];
+    const double error = std::abs(distance - level_->distance()) / level_->distance();
+    statistics.worst_error = std::max(statistics.worst_error, error);
+    squares += error * error;
+    result_.closest[v] = result_.source->given(triangle);
+    result_.normals[v] = distance > 0 ? (local[v] - point) * (sense / distance) : Vec3d(0.0);
+  }
+  statistics.rms_error = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
+}
+
+}  // namespace
+
+CaptureSource::CaptureSource(Surface placed, const std::optional<Solidity>& solidity, double distance, Orient orient)
+    : surface(std::move(placed)),
+      inside(solidity ? Inside(surface, *solidity, orient) : Inside(surface, orient)),
+      boundary(find_boundary(surface, inside, too_wide(solidity, distance), level_of(inside, distance) < 0)),
+      query(boundary ? boundary->surface : surface) {}
+
+CaptureResult capture(PolygonView mesh, const CaptureOptions& options) {
+  require_usable(options);
+  const int threads = thread_count(options.threads);
+  CaptureResult result;
+  tbb::task_arena arena(threads);
+  arena.execute([&] { result = Capture(mesh, options, threads).run(); });
+  return result;
+}
+
+CaptureStatistics plan_capture(PolygonView mesh, const CaptureOptions& options) {
+  require_usable(options);
+  CaptureStatistics statistics;
+  statistics.threads = thread_count(options.threads);
+  const Surface surface = build_surface(mesh, options.weld, options.orient);
+  look_at_solids(surface, options, statistics);
+  statistics.plan = plan_voxels(surface, options, statistics.is_signed);
+  return statistics;
+}
+
+}  // namespace vdb_offset

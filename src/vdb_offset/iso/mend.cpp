@@ -1,0 +1,317 @@
+#include "vdb_offset/iso/mend.h"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+#include "vdb_offset/validity/triangle_crossings.h"
+
+namespace vdb_offset {
+namespace {
+
+using TriangleList = std::vector<std::uint32_t>;
+
+// Splits alone make more faults; after so many rounds that leave no fewer than there have been, they lead nowhere.
+constexpr int kFruitlessRounds = 3;
+
+void make_set(TriangleList& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+bool stands_as_needle(const Surface& mesh, std::uint32_t t) {
+  const auto& [i, j, k] = mesh.triangles[t];
+  const Vec3d ab = mesh.vertices[j] - mesh.vertices[i], ac = mesh.vertices[k] - mesh.vertices[i], bc = ac - ab;
+  return is_needle(ab.cross(ac).lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}));
+}
+
+/// One round: the topology that it starts with, the faults that are left, and what is done about them.
+class MendingRound {
+ public:
+  MendingRound(Surface& mesh, const Onto& onto, MendStatistics& statistics)
+      : mesh_(mesh), places_(mesh.vertices), onto_(onto), statistics_(statistics), finder_(mesh, mesh.vertices) {
+    crossings_ = finder_.all();
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
+      if (stands_as_needle(t)) needles_.push_back(t);
+  }
+
+  MeshFaults faults() const { return {crossings_.size(), needles_.size()}; }
+
+  /// Tries each fault in turn, for as long as that leaves fewer.
+  void move_and_flip() {
+    for (std::size_t before = 0; before != faults().total() && faults().total() > 0;) {
+      before = faults().total();
+      const TriangleList wrong = wrong_triangles();
+      for (const auto t : wrong) {
+        if (!is_wrong(t)) continue;
+        for (const auto v : std::array(mesh_.triangles[t]))
+          if (is_wrong(t)) try_to_move(v);
+        for (std::size_t k = 0; k < 3 && is_wrong(t); ++k) try_to_flip(t, k);
+      }
+    }
+  }
+
+  /// Triangles with a fault: sorted.
+  TriangleList wrong_triangles() const {
+    TriangleList wrong = needles_;
+    for (const auto& [s, t] : crossings_) wrong.insert(wrong.end(), {s, t});
+    make_set(wrong);
+    return wrong;
+  }
+
+ private:
+  std::span<const std::uint32_t> around(std::uint32_t vertex) const {
+    const auto changed = changed_.find(vertex);
+    return changed == changed_.end() ? mesh_.triangles_around(vertex) : std::span<const std::uint32_t>(changed->second);
+  }
+
+  bool stands_as_needle(std::uint32_t t) const { return vdb_offset::stands_as_needle(mesh_, t); }
+
+  bool is_wrong(std::uint32_t t) const {
+    return std::binary_search(needles_.begin(), needles_.end(), t) ||
+           std::any_of(crossings_.begin(), crossings_.end(),
+                       [&](const TrianglePair& pair) { return pair.first == t || pair.second == t; });
+  }
+
+  /// Faults that triangles, sorted, take part in as they stand now.
+  MeshFaults look_at(const TriangleList& changed) {
+    finder_.update(changed);
+    found_ = finder_.of_updated();
+    const auto needles =
+        std::count_if(changed.begin(), changed.end(), [&](std::uint32_t t) { return stands_as_needle(t); });
+    return {found_.size(), static_cast<std::size_t>(needles)};
+  }
+
+  /// The same, as they were when faults were last taken down.
+  std::size_t known_faults(const TriangleList& of) const {
+    const auto is_one = [&](std::uint32_t t) { return std::binary_search(of.begin(), of.end(), t); };
+    return static_cast<std::size_t>(std::count_if(needles_.begin(), needles_.end(), is_one) +
+                                    std::count_if(crossings_.begin(), crossings_.end(), [&](const TrianglePair& pair) {
+                                      return is_one(pair.first) || is_one(pair.second);
+                                    }));
+  }
+
+  /// Takes down the faults of triangles that were just looked at.
+  void settle(const TriangleList& changed) {
+    const auto is_one = [&](std::uint32_t t) { return std::binary_search(changed.begin(), changed.end(), t); };
+    std::erase_if(crossings_, [&](const TrianglePair& pair) { return is_one(pair.first) || is_one(pair.second); });
+    std::erase_if(needles_, is_one);
+    crossings_.insert(crossings_.end(), found_.begin(), found_.end());
+    std::sort(crossings_.begin(), crossings_.end());
+    for (const auto t : changed)
+      if (stands_as_needle(t)) needles_.push_back(t);
+    make_set(needles_);
+  }
+
+  TriangleList star_of(std::uint32_t vertex) const {
+    const auto triangles = around(vertex);
+    TriangleList star(triangles.begin(), triangles.end());
+    make_set(star);
+    return star;
+  }
+
+  /// Where a vertex may better stand: towards the middle of its neighbours, and towards each of them.
+  std::vector<Vec3d> wishes_of(std::uint32_t vertex, const TriangleList& star) const {
+    std::vector<std::uint32_t> ring;
+    for (const auto t : star)
+      for (const auto w : mesh_.triangles[t])
+        if (w != vertex) ring.push_back(w);
+    make_set(ring);
+    const Vec3d& here = places_[vertex];
+    Vec3d middle(0.0);
+    for (const auto w : ring) middle += places_[w] / static_cast<double>(ring.size());
+    std::vector<Vec3d> wishes;
+    for (const double share : {0.5, 1.0}) wishes.push_back(here + (middle - here) * share);
+    for (const double share : {0.25, 0.5})
+      for (const auto w : ring) wishes.push_back(here + (places_[w] - here) * share);
+    return wishes;
+  }
+
+  void try_to_move(std::uint32_t vertex) {
+    const TriangleList star = star_of(vertex);
+    const Vec3d before = places_[vertex];
+    std::size_t fewest = known_faults(star);
+    std::optional<Vec3d> best;
+    for (const Vec3d& wish : wishes_of(vertex, star)) {
+      if (fewest == 0) break;
+      const auto place = onto_(wish);
+      if (!place) continue;
+      places_[vertex] = *place;
+      if (const std::size_t faults = look_at(star).total(); faults < fewest) {
+        fewest = faults;
+        best = place;
+      }
+    }
+    places_[vertex] = best.value_or(before);
+    look_at(star);
+    if (!best) return;
+    settle(star);
+    ++statistics_.moved_vertices;
+  }
+
+  /// The triangle across edge k of another, kNone if there is not just one, and its corner opposite to the edge.
+  std::pair<std::uint32_t, std::uint32_t> across(std::uint32_t t, std::size_t k) const {
+    const std::uint32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3];
+    std::pair<std::uint32_t, std::uint32_t> found{kNone, kNone};
+    for (const auto other : around(a)) {
+      const auto& corners = mesh_.triangles[other];
+      if (other == t || std::find(corners.begin(), corners.end(), b) == corners.end()) continue;
+      if (found.first != kNone) return {kNone, kNone};
+      for (const auto w : corners)
+        if (w != a && w != b) found = {other, w};
+    }
+    return found;
+  }
+
+  bool is_edge(std::uint32_t v, std::uint32_t w) const {
+    const auto triangles = around(v);
+    return std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+      return std::find(mesh_.triangles[t].begin(), mesh_.triangles[t].end(), w) != mesh_.triangles[t].end();
+    });
+  }
+
+  void try_to_flip(std::uint32_t t, std::size_t k) {
+    const auto [other, d] = across(t, k);
+    const std::uint32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3],
+                        c = mesh_.triangles[t][(k + 2) % 3];
+    if (other == kNone || c == d || is_edge(c, d)) return;
+    const std::array before{mesh_.triangles[t], mesh_.triangles[other]};
+    const TriangleList both = {std::min(t, other), std::max(t, other)};
+    const std::size_t known = known_faults(both);
+    mesh_.triangles[t] = {a, d, c};
+    mesh_.triangles[other] = {d, b, c};
+    if (look_at(both).total() >= known) {
+      mesh_.triangles[t] = before[0];
+      mesh_.triangles[other] = before[1];
+      look_at(both);
+      return;
+    }
+    settle(both);
+    ++statistics_.flipped_edges;
+    for (const auto& [vertex, gone, come] :
+         {std::array{a, other, kNone}, {b, t, kNone}, {c, kNone, other}, {d, kNone, t}})
+      change_star(vertex, gone, come);
+  }
+
+  void change_star(std::uint32_t vertex, std::uint32_t gone, std::uint32_t come) {
+    const auto old = around(vertex);
+    TriangleList star(old.begin(), old.end());
+    std::erase(star, gone);
+    if (come != kNone) star.push_back(come);
+    changed_[vertex] = std::move(star);
+  }
+
+  Surface& mesh_;
+  std::vector<Vec3d>& places_;
+  const Onto& onto_;
+  MendStatistics& statistics_;
+  CrossingFinder finder_;
+  std::vector<TrianglePair> crossings_, found_;
+  TriangleList needles_;
+  std::unordered_map<std::uint32_t, TriangleList> changed_;  // stars of vertices whose edges were flipped
+};
+
+/// Triangles on both sides of an edge.
+TriangleList triangles_at(const Surface& mesh, std::uint32_t a, std::uint32_t b) {
+  TriangleList found;
+  for (const auto t : mesh.triangles_around(a))
+    if (const auto& corners = mesh.triangles[t]; std::find(corners.begin(), corners.end(), b) != corners.end())
+      found.push_back(t);
+  return found;
+}
+
+/// From the corner that it returns to the next one.
+std::size_t longest_edge(const Surface& mesh, std::uint32_t t) {
+  const auto& corners = mesh.triangles[t];
+  std::array<double, 3> squared;
+  for (std::size_t k = 0; k < 3; ++k)
+    squared[k] = (mesh.vertices[corners[k]] - mesh.vertices[corners[(k + 1) % 3]]).lengthSqr();
+  return static_cast<std::size_t>(std::max_element(squared.begin(), squared.end()) - squared.begin());
+}
+
+/// Splits the longest edge of each of these triangles in the middle, unless a triangle beside it is split already.
+/// Stars are to be listed anew. Returns how many there were.
+std::size_t split_longest_edges(Surface& mesh, const TriangleList& wrong, const Onto& onto) {
+  TriangleList taken;
+  std::size_t splits = 0;
+  for (const auto t : wrong) {
+    // Its corners may be new by now, which no star is listed for.
+    if (std::find(taken.begin(), taken.end(), t) != taken.end()) continue;
+    const std::size_t k = longest_edge(mesh, t);
+    const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+    const TriangleList sides = triangles_at(mesh, a, b);
+    // One side alone: the other one is split, and listed no more.
+    if (sides.size() != 2) continue;
+    if (std::find_first_of(taken.begin(), taken.end(), sides.begin(), sides.end()) != taken.end()) continue;
+    const auto place = onto((mesh.vertices[a] + mesh.vertices[b]) / 2.0);
+    if (!place) continue;
+    const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(*place);
+    for (const auto s : sides) {
+      auto half = mesh.triangles[s];
+      std::replace(mesh.triangles[s].begin(), mesh.triangles[s].end(), b, middle);
+      std::replace(half.begin(), half.end(), a, middle);
+      mesh.triangles.push_back(half);
+    }
+    taken.insert(taken.end(), sides.begin(), sides.end());
+    ++splits;
+  }
+  return splits;
+}
+
+}  // namespace
+
+MeshFaults find_faults(const Surface& mesh) {
+  MeshFaults faults;
+  faults.crossings = CrossingFinder(mesh, mesh.vertices).all().size();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) faults.needles += stands_as_needle(mesh, t);
+  return faults;
+}
+
+std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std::uint32_t> some) {
+  CrossingFinder finder(mesh, mesh.vertices);
+  finder.update(some);
+  TriangleList faulty;
+  for (const auto& [s, t] : finder.of_updated()) faulty.insert(faulty.end(), {s, t});
+  for (const auto t : some)
+    if (stands_as_needle(mesh, t)) faulty.push_back(t);
+  make_set(faulty);
+  return faulty;
+}
+
+MendStatistics mend(Surface& mesh, const Onto& onto) {
+  MendStatistics statistics, kept;
+  std::vector<Vec3d> places;  // of the mesh that had the fewest faults
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (int fruitless = 0; fruitless < kFruitlessRounds;) {
+    TriangleList wrong;
+    {
+      MendingRound round(mesh, onto, statistics);
+      const bool first = statistics.rounds++ == 0;
+      if (first) statistics.before = round.faults();
+      round.move_and_flip();
+      wrong = round.wrong_triangles();
+      if (first || round.faults().total() < statistics.left.total()) {
+        statistics.left = round.faults();
+        kept = statistics;
+        places = mesh.vertices;
+        triangles = mesh.triangles;
+        fruitless = 0;
+      } else {
+        ++fruitless;
+      }
+    }
+    if (wrong.empty()) break;
+    list_incident_triangles(mesh);  // edges were flipped
+    const std::size_t splits = split_longest_edges(mesh, wrong, onto);
+    if (splits == 0) break;
+    statistics.split_edges += splits;
+    list_incident_triangles(mesh);
+  }
+  mesh.vertices = std::move(places);
+  mesh.triangles = std::move(triangles);
+  list_incident_triangles(mesh);
+  return kept;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,260 @@
+#include "vdb_offset/layers/surface_stacker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/layers/fan_field.h"
+#include "vdb_offset/layers/stacker.h"
+
+namespace vdb_offset {
+namespace {
+
+// Vertices that a thread takes at a time: fewer, if there are not many.
+constexpr std::size_t kVertexBlock = 64, kSmallBlock = 16, kFewVertices = 8192;
+// Where more triangles than this may be the closest ones, a tree finds them sooner.
+constexpr std::size_t kMostNear = 2000;
+// How much larger than around a straight rail, along which the distance grows evenly, the ball is that holds all that
+// may be the closest to its layers.
+constexpr double kBallRoom = 1.02;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Where nothing nearer can lie farther from a vertex than this share of its distance, it is looked for there alone.
+constexpr double kFanShare = 0.5;
+class SurfaceStacker final : public Stacker {
+ public:
+  SurfaceStacker(const Body& body, const BorderSlides* slides, const CellColumns& columns,
+                 std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults, Paths& paths)
+      : Stacker(source, body.front.surface().origin, heights, paths),
+        body_(body),
+        front_(body.front.surface()),
+        slides_(slides),
+        columns_(columns),
+        faults_(faults) {}
+
+ private:
+  bool moves(std::uint32_t v) const override { return body_.on_front(v) && heights_.back()[v] != 0; }
+  bool is_bound(std::uint32_t v) const override { return body_.is_bound(v); }
+
+  bool sees_all_faces(std::uint32_t v, const Vec3d& way) const override {
+    const double length = way.length();
+    for (const auto t : body_.surface.triangles_around(v)) {
+      const auto& [a, b, c] = body_.surface.triangles[t];
+      if (!body_.is_front(t)) continue;
+      const Vec3d n = (source_[b] - source_[a]).cross(source_[c] - source_[a]);
+      if (n.lengthSqr() > 0 && !(side_ * n.dot(way) > kLeastSlope * n.length() * length)) return false;
+    }
+    return true;
+  }
+
+  Vec3d direction_of(std::uint32_t v) const override { return start_direction(front_, on_front(v)); }
+
+  std::size_t column_count() const override { return columns_.size(); }
+  std::span<const std::uint32_t> base(std::size_t column) const override { return columns_.base(column); }
+  std::span<const std::uint32_t> columns_around(std::uint32_t v) const override { return columns_.around(v); }
+  bool is_valid(std::size_t column) const override { return columns_.is_valid(column, stack_.stacks, side_); }
+  std::array<bool, 2> are_valid(std::size_t column, std::size_t other) const override {
+    return columns_.are_valid(column, other, stack_.stacks, side_);
+  }
+
+  void look(const Indices& vertices) override {
+    faults_.look(
+        vertices, [&](std::uint32_t v) { return outermost(v); }, &paths_);
+  }
+  /// What is wrong where paths end is known.
+  void look_first(const Indices& all) override {
+    Indices back = all;
+    std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || is_at_end(v); });
+    look(back);
+  }
+  Indices faulty_vertices() const override { return faults_.wrong_vertices(); }
+  double distance_of(std::uint32_t v) const override { return faults_.distance_of(v); }
+
+  void put(const Indices& vertices) override {
+    const std::size_t size = vertices.size() < kFewVertices ? kSmallBlock : kVertexBlock;
+    for_each_index((vertices.size() + size - 1) / size,
+                   [&](std::size_t block) {
+                     const std::size_t first = block * size;
+                     put_block(std::span(vertices).subspan(first, std::min(size, vertices.size() - first)));
+                   },
+                   1);
+  }
+
+  /// Vertices whose layers are put down below the tops of their rails, and the balls that all lies in that these may
+  /// be closest to.
+  struct Puts {
+    std::vector<std::uint32_t> vertices;
+    std::vector<double> tops;
+    std::vector<ClosestQuery::Ball> balls;
+    void add(std::uint32_t v, double top, const ClosestQuery::Ball& ball) {
+      vertices.push_back(v);
+      tops.push_back(top);
+      balls.push_back(ball);
+    }
+  };
+
+  void put_block(std::span<const std::uint32_t> vertices) {
+    VertexFan fan;
+    Puts by_fan, by_ball;
+    std::vector<double> distances;
+    for (const auto v : vertices) {
+      std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
+      if (!(stack_.share[v] > 0) || (slides_ && body_.is_bound(v) && put_along_border(v))) continue;
+      const double top = top_of(v), radius = put_on_fan(v, top, fan, distances);
+      if (radius < kInfinity) by_fan.add(v, top, {source_[v] - front_.origin, radius});
+      else by_ball.add(v, top, ball_of_rail(v, top));
+    }
+    body_.front.collect_together(by_fan.balls, [&](std::size_t i, NearTriangles& near) {
+      const std::uint32_t v = by_fan.vertices[i];
+      const auto of_layers = std::span(distances).subspan(i * heights_.size(), heights_.size());
+      if (!is_on_fan(v, of_layers, near)) by_ball.add(v, by_fan.tops[i], ball_of_rail(v, by_fan.tops[i]));
+    });
+    body_.front.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
+      const std::uint32_t v = by_ball.vertices[i];
+      if (!put_among_few(v, by_ball.tops[i], by_ball.balls[i], fan, near)) put_with_care(v);
+    });
+  }
+
+  /// What may be the closest triangle to one of a vertex's layers is no farther from that than its height, and heights
+  /// fall towards the vertex as the way there does: all lies in the ball whose diameter goes from the vertex through
+  /// the top of the rail to as far beyond as the outermost height.
+  ClosestQuery::Ball ball_of_rail(std::uint32_t v, double top) const {
+    const Vec3d way = rail_of(v)(top), foot = source_[v] - front_.origin;
+    const double length = way.length(), radius = (length + std::min(length, stack_.share[v] * asked(v))) / 2;
+    if (!(length > 0)) return {foot, 0};
+    return {foot + way * (radius / length), radius * kBallRoom};
+  }
+
+  /// False if a vertex gets to one of its heights not by sliding there.
+  bool put_along_border(std::uint32_t v) {
+    if (!slides_->lead(v)) return false;
+    const auto stack = stack_.stacks.of(v);
+    for (std::size_t k = heights_.size(); k-- > 0;) {
+      const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
+      const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
+      const Vec3d way =
+          at_end ? paths_.displacement[v] : round_way((*slides_)(v, height) - body_.surface.vertices[v], target);
+      stack[k + 1] = source_[v] + way;
+      stack_.first_achieved[v] = body_.front(stack[k + 1] - front_.origin, body_.hint(v)).distance;
+      if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
+    }
+    return true;
+  }
+
+  std::uint32_t on_front(std::uint32_t v) const { return body_.front_vertex.empty() ? v : body_.front_vertex[v]; }
+
+  /// Puts layers where the triangles around the vertex have their distances. What is nearer to some of them lies within
+  /// the radius around the vertex that this returns, as the ball around the end of its path holds nothing. It is
+  /// infinite where that tells little, or where the layers' closest triangles are clearly others.
+  double put_on_fan(std::uint32_t v, double top, VertexFan& fan, std::vector<double>& distances) {
+    fan.begin(front_, on_front(v));
+    const double free = paths_.achieved[v] - 2 * faults_.rounding(v);
+    if (!fan.whole() || !(free > 0)) return kInfinity;
+    const auto stack = stack_.stacks.of(v);
+    SpaceBesideBall beside(source_[v], source_[v] + paths_.displacement[v], free);
+    const std::size_t before = distances.size();
+    distances.resize(before + heights_.size());
+    const bool there = put_down(v, top, FanField(fan), [&](std::size_t k, double phi) {
+      distances[before + k] = phi;
+      if (!is_at_height(v, k, phi)) return false;
+      // How far a path's end is, is known.
+      const bool at_end = k + 1 == heights_.size() && is_at_end(v);
+      return at_end || beside.add(stack[k + 1], phi, kFanShare * free);
+    });
+    if (there) return beside.radius();
+    distances.resize(before);
+    return kInfinity;
+  }
+  /// Whether none of the triangles near a vertex are nearer to its layers than those around it.
+  bool is_on_fan(std::uint32_t v, std::span<const double> distances, NearTriangles& near) const {
+    near.remove_if([&](std::uint32_t t) {
+      const auto& corners = front_.triangles[t];
+      return std::find(corners.begin(), corners.end(), on_front(v)) != corners.end();
+    });
+    bool holds = true;
+    for (std::size_t k = distances.size(); near.size() > 0 && holds && k-- > 0;) {
+      const Vec3d x = stack_.stacks.of(v)[k + 1] - front_.origin;
+      const double nearer = distances[k] * (1 - kSameDistance);
+      near.visit_nearer(x, nearer, [&](std::size_t i) {
+        const Phi other = phi_of(front_.closest_on(near.triangle(i), x), x);
+        near.hold_back(i, x, other.away, other.value);
+        holds = holds && !(other.value < nearer);
+        return nearer;
+      });
+    }
+    return holds;
+  }
+
+  /// The triangles near a rail are few, and collected once for all layers. False if one of the layers turns out to be
+  /// where others may be nearer, or is not at its height.
+  bool put_among_few(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
+    const auto stack = stack_.stacks.of(v);
+    if (near.size() > kMostNear) return false;
+    fan.begin(front_, on_front(v));
+    near.remove_if([&](std::uint32_t t) { return fan.has(t); });
+    const Vec3d centre = ball.centre + front_.origin;
+    return put_down(v, top, FewField(front_, fan, near), [&](std::size_t k, double phi) {
+      return is_at_height(v, k, phi) && (stack[k + 1] - centre).length() + phi <= ball.radius;
+    });
+  }
+
+  bool is_at_height(std::uint32_t v, std::size_t k, double distance) const {
+    const double height = stack_.share[v] * std::abs(heights_[k][v]);
+    return std::abs(distance - height) <= kReachedTolerance * height;
+  }
+
+  void put_with_care(std::uint32_t v) {
+    put_down(v, 1, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
+  }
+
+  const Body& body_;
+  const Surface& front_;
+  const BorderSlides* slides_;
+  const CellColumns& columns_;
+  FaultFinder& faults_;
+};
+
+}  // namespace
+
+LayerStack stack_layers(const Body& body, const BorderSlides* slides, const CellColumns& columns,
+                        std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
+                        Paths& paths, const ProgressCallback& callback) {
+  constexpr std::size_t kExpectedRounds = 32;
+  Progress progress(callback, Stage::Layers, kExpectedRounds);
+  return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
+}
+
+void round_layers(std::span<const Vec3d> source, const Precision& precision,
+                  const std::function<bool(std::uint32_t)>& is_written,
+                  const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
+                  LayerStack& stack, Paths& paths) {
+  if (precision.kind == Precision::Kind::Double && precision.scale == Vec3d(1.0)) return;
+  for_each_index(source.size(), [&](std::size_t i) {
+    const auto v = static_cast<std::uint32_t>(i);
+    // Layers that are not there stay on the wall.
+    if (!is_written(v) || stack.stacks.is_flat(v)) return;
+    const auto places = stack.stacks.of(v);
+    for (Vec3d& place : places.subspan(1)) place = precision(source[v], place);
+    paths.displacement[v] = places.back() - source[v];
+    if (const auto first = distance_at(v, places[1])) stack.first_achieved[v] = *first;
+    if (const auto last = distance_at(v, places.back())) paths.achieved[v] = *last;
+  });
+}
+
+void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,
+                     LimitStatistics& statistics) {
+  double lost = 0;
+  std::size_t moving = 0;
+  statistics.limited_vertices = 0;
+  for (std::size_t v = 0; v < paths.state.size(); ++v) {
+    const double target = std::abs(asked[v]);
+    if (target == 0 || paths.state[v] == VertexState::Unused) continue;
+    ++moving;
+    statistics.limited_vertices += paths.state[v] == VertexState::Limited;
+    lost += std::max(0.0, distances_before[v] - paths.achieved[v]) / target;
+  }
+  statistics.thickness_lost = lost / static_cast<double>(std::max<std::size_t>(1, moving));
+}
+
+}  // namespace vdb_offset

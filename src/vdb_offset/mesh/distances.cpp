@@ -1,0 +1,50 @@
+#include "vdb_offset/mesh/distances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+
+namespace vdb_offset {
+
+Distances::Distances(double uniform) : uniform_(uniform) {
+  if (!std::isfinite(uniform)) throw InvalidInput("distance: expected a finite number");
+  extend(uniform);
+}
+
+Distances::Distances(std::vector<double> each) : each_(std::move(each)) {
+  for (std::size_t v = 0; v < each_.size(); ++v) {
+    if (!std::isfinite(each_[v]))
+      throw InvalidInput("distance: expected a finite number for each vertex, got none for vertex " +
+                         std::to_string(v) + " (counted from 0)");
+    extend(each_[v]);
+  }
+}
+
+void Distances::extend(double distance) {
+  outward_ = std::max(outward_, distance);
+  inward_ = std::max(inward_, -distance);
+}
+
+void require_heights(std::span<const Distances> heights, std::size_t vertices) {
+  if (heights.empty()) throw InvalidInput("layers: expected a height, got none");
+  for (const Distances& each : heights) {
+    if (each.outward() > 0 && each.inward() > 0)
+      throw InvalidInput("layers: expected heights to one side, got some above 0 and some below");
+  }
+  if (heights.back().scale() == 0) throw InvalidInput("layers: expected a height other than 0");
+  const bool uniform = std::all_of(heights.begin(), heights.end(), [](const Distances& d) { return d.uniform(); });
+  const bool inward = heights.back().inward() > 0;
+  for (std::size_t k = 0; k < heights.size(); ++k)
+    for (std::size_t v = 0; v < (uniform ? 1 : vertices); ++v) {
+      const double below = k > 0 ? heights[k - 1][v] : 0, here = heights[k][v];
+      if (inward ? here < below : here > below) continue;
+      if (here == 0 && heights.back()[v] == 0) continue;  // this vertex stays
+      throw InvalidInput("layers: expected heights that rise from the wall on, got " + std::to_string(here) +
+                         " behind " + std::to_string(below) +
+                         (uniform ? "" : " at vertex " + std::to_string(v) + " (counted from 0)"));
+    }
+}
+
+}  // namespace vdb_offset

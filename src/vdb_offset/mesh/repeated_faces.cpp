@@ -1,0 +1,86 @@
+#include "vdb_offset/mesh/repeated_faces.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+
+#include "vdb_offset/base/bucket_sort.h"
+#include "vdb_offset/base/hash_mix.h"
+#include "vdb_offset/base/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+using Corners = std::span<const std::uint32_t>;
+
+/// The same for any order of the corners.
+std::uint32_t hash(Corners face) {
+  std::uint64_t sum = face.size();
+  for (const auto v : face) sum += mix(v + 1);
+  return static_cast<std::uint32_t>(mix(sum));
+}
+
+bool same_cycle(Corners a, Corners b) {
+  const std::size_t n = a.size();
+  if (b.size() != n) return false;
+  for (std::size_t start = 0; start < n; ++start) {
+    if (b[start] != a[0]) continue;
+    bool forwards = true, backwards = true;
+    for (std::size_t k = 1; k < n && (forwards || backwards); ++k) {
+      forwards = forwards && b[(start + k) % n] == a[k];
+      backwards = backwards && b[(start + n - k) % n] == a[k];
+    }
+    if (forwards || backwards) return true;
+  }
+  return false;
+}
+
+/// By the hash, and faces with the same in their order.
+struct HashedFace {
+  std::uint32_t hash, face;
+  bool operator<(const HashedFace& o) const { return std::tie(hash, face) < std::tie(o.hash, o.face); }
+};
+
+std::uint32_t greatest(Corners corners) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, corners.size()), std::uint32_t{0},
+      [&](const auto& range, std::uint32_t most) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) most = std::max(most, corners[i]);
+        return most;
+      },
+      [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> find_repeated_faces(std::span<const std::uint32_t> corners,
+                                              std::span<const std::uint32_t> begin) {
+  const std::size_t count = begin.size() - 1;
+  const auto face = [&](std::size_t f) { return corners.subspan(begin[f], begin[f + 1] - begin[f]); };
+  // Those that repeat each other have one smallest corner.
+  const auto smallest = [&](std::size_t f) { return *std::min_element(face(f).begin(), face(f).end()); };
+  const auto has_corners = [&](std::size_t f) { return begin[f + 1] > begin[f]; };
+  Buckets buckets(corners.empty() ? 0 : greatest(corners) + std::size_t{1});
+  for_each_index(count, [&](std::size_t f) {
+    if (has_corners(f)) buckets.count(smallest(f));
+  });
+  std::vector<HashedFace> faces(buckets.close());
+  for_each_index(count, [&](std::size_t f) {
+    if (has_corners(f)) faces[buckets.next(smallest(f))] = {hash(face(f)), static_cast<std::uint32_t>(f)};
+  });
+  const std::vector<std::uint32_t> bucket_begin = buckets.take();
+  std::vector<std::uint8_t> repeated(count, 0);
+  for_each_index(bucket_begin.size() - 1, [&](std::size_t v) {
+    const auto around = std::span(faces).subspan(bucket_begin[v], bucket_begin[v + 1] - bucket_begin[v]);
+    std::sort(around.begin(), around.end());
+    for (std::size_t i = 1; i < around.size(); ++i)
+      for (std::size_t j = i; j-- > 0 && around[j].hash == around[i].hash && repeated[around[i].face] == 0;)
+        repeated[around[i].face] = same_cycle(face(around[j].face), face(around[i].face));
+  });
+  return repeated;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,75 @@
+#include "vdb_offset/mesh/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vdb_offset/mesh/ear_clipper.h"
+
+namespace vdb_offset {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Twice the area vector, relative to the first corner so that far-away polygons lose no digits.
+Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon) {
+  Vec3d sum(0.0);
+  const Vec3d base = positions[polygon[0]];
+  for (std::size_t k = 2; k < polygon.size(); ++k)
+    sum += (positions[polygon[k - 1]] - base).cross(positions[polygon[k]] - base);
+  return sum;
+}
+
+bool fan_turns_one_way(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon, const Vec3d& area) {
+  const Vec3d base = positions[polygon[0]];
+  for (std::size_t k = 2; k < polygon.size(); ++k)
+    if ((positions[polygon[k - 1]] - base).cross(positions[polygon[k]] - base).dot(area) < 0) return false;
+  return true;
+}
+
+/// True if no corner is farther from the plane of the area vector than a thousandth of the polygon's size.
+bool is_flat(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon, const Vec3d& area) {
+  double lowest = 0, highest = 0;
+  for (const auto v : polygon) {
+    const double height = (positions[v] - positions[polygon[0]]).dot(area);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  constexpr double kFlat = 1e-3;
+  return highest - lowest <= kFlat * area.length() * std::sqrt(area.length());
+}
+
+/// The corners seen along the area vector's largest component, counter-clockwise.
+std::vector<Point2> project(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
+                            const Vec3d& area) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(area[k]) > std::abs(area[axis])) axis = k;
+  int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (area[axis] < 0) std::swap(u, v);
+  std::vector<Point2> flat;
+  flat.reserve(polygon.size());
+  for (const auto i : polygon) {
+    const Vec3d p = positions[i] - positions[polygon[0]];
+    flat.push_back({p[u], p[v]});
+  }
+  return flat;
+}
+
+}  // namespace
+
+void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
+                 std::vector<Triangle>& triangles) {
+  const auto is_fan = [&](const Vec3d& area) {
+    return !is_flat(positions, polygon, area) ||
+           (polygon.size() <= kLargePolygon && fan_turns_one_way(positions, polygon, area));
+  };
+  if (polygon.size() <= 4 || is_fan(area_vector(positions, polygon))) {
+    for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
+    return;
+  }
+  for (const auto& [a, b, c] : clip_ears(project(positions, polygon, area_vector(positions, polygon))))
+    triangles.push_back({polygon[a], polygon[b], polygon[c]});
+}
+
+}  // namespace vdb_offset

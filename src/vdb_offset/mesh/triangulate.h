@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/mesh/polygons.h"
+
+namespace vdb_offset {
+
+/// Splits one polygon into `size - 2` triangles over its own corners, appended to `triangles` as vertex indices
+/// in the polygon's own direction: the fan around its first corner, which is what most programs take a polygon for
+/// that is not flat, and a quad in any case. A flat polygon of five corners or more that its fan does not cover once
+/// or that has more than a thousand, is split by clipping ears, so that the triangles cover it and nothing else. A
+/// polygon that crosses itself gets triangles too; they then overlap. Cost: O(corners) for a fan, about corners *
+/// log(corners) for ears (see ear_clipper.h).
+void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
+                 std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+}  // namespace vdb_offset

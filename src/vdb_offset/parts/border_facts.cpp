@@ -1,0 +1,30 @@
+#include "vdb_offset/parts/border_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vdb_offset {
+
+BorderFacts border_facts(const Surface& surface, std::span<const Vec3d> way, std::span<const std::uint8_t> excepted) {
+  constexpr double kStrayed = 1;  // degrees
+  BorderFacts facts;
+  for (const auto& [normal, offset] : surface.planes)
+    facts.planes.push_back({normal, offset + normal.dot(surface.origin)});
+  for (std::uint32_t v = 0; v < surface.conormals.size(); ++v) {
+    facts.beyond += is_beyond_wall(surface, v, surface.vertices[v] + way[v], 0);
+    if (surface.is_held(v)) {
+      ++facts.held_vertices;
+      continue;
+    }
+    const double over = std::abs(surface.conormals[v].dot(way[v])), length = way[v].length();
+    if (surface.conormals[v].lengthSqr() == 0 || length == 0 || (!excepted.empty() && excepted[v])) continue;
+    const double angle = std::asin(std::min(1.0, over / length)) * 180 / std::numbers::pi;
+    ++facts.across_vertices;
+    facts.strayed_vertices += angle > kStrayed;
+    facts.worst_angle = std::max(facts.worst_angle, angle);
+  }
+  return facts;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,207 @@
+#include "vdb_offset/parts/border_slide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "vdb_offset/base/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+// Normals that differ by less are of one plane; a surface that turns away by more is extended (sine of the angle).
+constexpr double kOnePlane = 0.5, kTurnsAway = -0.5;
+// A path that is longer than this many distances gains too little on the way.
+constexpr double kLongestSlide = 4;
+// Steps on a bent surface, in distances.
+constexpr double kSlideStep = 0.125;
+constexpr double kSlideTolerance = 1e-9;
+
+/// How a border vertex sets out: a unit vector, and whether it leads over the faces that stay.
+struct Track {
+  Vec3d direction;
+  bool on_surface;
+};
+
+class BorderVertex {
+ public:
+  BorderVertex(const Workpiece& work, const ClosestQuery& front, const ClosestQuery& rest, std::uint32_t vertex,
+               double distance)
+      : whole_(*work.whole),
+        off_front_(work.off_front),
+        front_(front),
+        rest_(rest),
+        vertex_(vertex),
+        on_front_(work.front_vertex[vertex]),
+        hint_(front.surface().triangles_around(on_front_).front()),
+        origin_(whole_.vertices[vertex]),
+        target_(std::abs(distance)),
+        side_(distance < 0 ? -1 : 1),
+        part_normal_(front.surface().vertex_normals[on_front_] * side_) {}
+
+  /// Where it comes to a stop: at its distance, if it gets there.
+  Vec3d slide() {
+    const std::optional<Track> track = find_track();
+    if (!track) return origin_;
+    Vec3d here = origin_, direction = track->direction;
+    double phi = 0, gone = 0;
+    while (gone < kLongestSlide * target_) {
+      // The distance rises by no more than the step.
+      const double step = track->on_surface ? std::max(std::min(target_ - phi, kSlideStep * target_), 1e-3 * target_)
+                                            : 1.5 * (target_ - phi) + 1e-3 * target_;
+      const Vec3d next = go(here, direction, step, track->on_surface);
+      const double next_phi = distance_of(next);
+      if (next_phi >= target_ * (1 - kSlideTolerance)) return cut(here, direction, step, track->on_surface);
+      if (!(next_phi > phi)) break;
+      direction = next - here;
+      if (!(direction.lengthSqr() > 0)) break;
+      direction.normalize();
+      gone += step;
+      here = next;
+      phi = next_phi;
+    }
+    return here;
+  }
+
+ private:
+  double distance_of(const Vec3d& x) const { return front_(x, hint_).distance; }
+
+  Vec3d go(const Vec3d& from, const Vec3d& direction, double step, bool on_surface) {
+    const Vec3d x = from + direction * step;
+    if (!on_surface) return x;
+    const Vec3d there = on_rest(x);
+    if (!front_.surface().is_held(on_front_)) return there;
+    constexpr int kMostTurns = 30;
+    Vec3d held = in_planes(there);
+    for (int i = 0; i < kMostTurns; ++i) {
+      const Vec3d next = in_planes(on_rest(held));
+      const bool settled = (next - held).length() <= kSlideTolerance * target_;
+      held = next;
+      if (settled) break;
+    }
+    return held;
+  }
+
+  Vec3d on_rest(const Vec3d& x) {
+    const Closest closest = rest_(x, rest_hint_);
+    rest_hint_ = closest.triangle;
+    return closest.point;
+  }
+
+  /// The closest place to this in the planes that hold the vertex, if any do.
+  Vec3d in_planes(const Vec3d& x) const { return origin_ + front_.surface().along_border(on_front_, x - origin_); }
+
+  /// Bisection on the length of the last step.
+  Vec3d cut(const Vec3d& here, const Vec3d& direction, double step, bool on_surface) {
+    double low = 0, high = step;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2, phi = distance_of(go(here, direction, middle, on_surface));
+      if (std::abs(phi - target_) <= kSlideTolerance * target_) return go(here, direction, middle, on_surface);
+      (phi < target_ ? low : high) = middle;
+    }
+    return go(here, direction, low, on_surface);
+  }
+
+  /// Away from the part, over the faces that stay around the vertex, at right angles to the border.
+  Vec3d away_from_part() const {
+    Vec3d sum(0.0);
+    for (const auto t : whole_.triangles_around(vertex_)) {
+      if (!off_front_[t]) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t edge = 3 * t + k, from = whole_.from(edge), to = whole_.to(edge);
+        if ((from != vertex_ && to != vertex_) || off_front_[whole_.next_around_edge[edge] / 3]) continue;
+        const Vec3d along = whole_.vertices[to] - whole_.vertices[from];
+        const Vec3d third = whole_.vertices[whole_.triangles[t][(k + 2) % 3]] - whole_.vertices[from];
+        const Vec3d across = third - along * (third.dot(along) / along.lengthSqr());
+        if (across.lengthSqr() > 0) sum += across.unit();
+      }
+    }
+    if (sum.lengthSqr() > 0) return sum;
+    for (const auto t : whole_.triangles_around(vertex_))  // the two only touch here
+      if (off_front_[t])
+        for (const auto v : whole_.triangles[t]) sum += whole_.vertices[v] - origin_;
+    return sum;
+  }
+
+  std::optional<Track> find_track() const {
+    Vec3d mean(0.0), first(0.0), crease(0.0);
+    for (const auto t : whole_.triangles_around(vertex_)) {
+      const Vec3d& n = whole_.triangle_normals[t];
+      if (!off_front_[t] || n.lengthSqr() == 0) continue;
+      mean += n;
+      if (first.lengthSqr() == 0) first = n;
+      const Vec3d across = first.cross(n);
+      if (across.lengthSqr() > crease.lengthSqr()) crease = across;
+    }
+    Vec3d away = away_from_part();
+    if (crease.length() > kOnePlane) {
+      crease.normalize();
+      for (const auto t : whole_.triangles_around(vertex_))
+        if (off_front_[t] && std::abs(whole_.triangle_normals[t].dot(crease)) > kOnePlane) return std::nullopt;
+      away = crease * (away.dot(crease) < 0 ? -1.0 : 1.0);
+    } else {
+      if (!(mean.lengthSqr() > 0)) return std::nullopt;
+      mean.normalize();
+      away -= mean * away.dot(mean);
+    }
+    if (front_.surface().is_held(on_front_)) away = front_.surface().along_border(on_front_, away);
+    if (!(away.lengthSqr() > 0) || !(part_normal_.lengthSqr() > 0)) return std::nullopt;
+    away.normalize();
+    const bool turns_away = away.dot(part_normal_.unit()) < kTurnsAway;
+    return Track{turns_away ? -away : away, !turns_away};
+  }
+
+  const Surface& whole_;
+  const std::vector<std::uint8_t>& off_front_;
+  const ClosestQuery& front_;
+  const ClosestQuery& rest_;
+  std::uint32_t vertex_, on_front_, hint_, rest_hint_ = 0;
+  Vec3d origin_;
+  double target_;
+  int side_;
+  Vec3d part_normal_;  // to the side asked for
+};
+
+}  // namespace
+
+BorderSlides::BorderSlides(const Workpiece& work, const ClosestQuery& front)
+    : work_(work), front_(front), rest_(*work.rest) {}
+
+Vec3d BorderSlides::operator()(std::uint32_t vertex, double distance) const {
+  return BorderVertex(work_, front_, rest_, vertex, distance).slide();
+}
+
+bool BorderSlides::lead(std::uint32_t vertex) const {
+  constexpr double kInPlane = 1e-6;  // of a normal's cosine
+  const Surface& front = front_.surface();
+  const std::uint32_t on_front = work_.front_vertex[vertex];
+  if (!front.is_held(on_front)) return true;
+  const auto around = work_.whole->triangles_around(vertex);
+  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Vec3d& n = work_.whole->triangle_normals[t];
+    return work_.off_front[t] && n.lengthSqr() > 0 && std::abs(n.dot(front.conormals[on_front])) < 1 - kInPlane;
+  });
+}
+
+void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
+                   Paths& paths) {
+  std::vector<std::uint32_t> border;
+  for (std::uint32_t v = 0; v < work.at_border.size(); ++v)
+    if (work.at_border[v] && distances[work.front_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
+  work.bound.assign(work.at_border.begin(), work.at_border.end());
+  const auto move = [&](std::size_t i) {
+    const std::uint32_t v = border[i], f = work.front_vertex[v];
+    const double target = std::abs(distances[f]);
+    paths.displacement[f] = round_way(slides(v, distances[f]) - work.whole->vertices[v], target);
+    const Vec3d place = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
+    const Closest closest = front(place - front.surface().origin, front.surface().triangles_around(f).front());
+    if (!paths.trace.empty()) paths.trace[f].clear();
+    paths.achieved[f] = closest.distance;
+    paths.closest[f] = closest.triangle;
+    paths.state[f] = std::abs(paths.achieved[f] - target) <= kReachedTolerance * target ? VertexState::Reached
+                                                                                        : VertexState::Collision;
+  };
+  for_each_index(border.size(), move, 16);
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/paths/propagate.h"
+
+namespace vdb_offset {
+
+/// Border vertices of a part on their ways along what stays of the mesh.
+///
+/// A vertex slides over the faces that stay around it, away from the part; where those turn away from the side that the
+/// part goes to by more than 30 degrees, as the sides of a box do from its lid, along their extension instead. Where
+/// they meet in one crease at the vertex it follows that, and where in more, it stays. On the faces it follows the
+/// surface's bends (steps along the tangent and back to the closest point); along an extension it goes straight.
+/// Vertices that planes hold (see border_planes.h) slide where the faces cut those; where the faces lie in such a plane
+/// as well, they go in it as the part alone asks for.
+class BorderSlides {
+ public:
+  /// Keeps references to both. \pre something of the mesh stays.
+  BorderSlides(const Workpiece& work, const ClosestQuery& front);
+
+  /// Where a vertex of the whole mesh, on the border, is at this distance from the part, negative inward; or as near to
+  /// that as it gets. In the front's frame.
+  Vec3d operator()(std::uint32_t vertex, double distance) const;
+  /// Whether a vertex on the border goes that way at all.
+  bool lead(std::uint32_t vertex) const;
+
+ private:
+  const Workpiece& work_;
+  const ClosestQuery& front_;
+  ClosestQuery rest_;
+};
+
+/// Gives the border vertices new paths, to their distances. They are bound to these from then on. Distances and paths
+/// are those of the front's vertices. The result does not depend on the number of threads.
+void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
+                   Paths& paths);
+
+}  // namespace vdb_offset

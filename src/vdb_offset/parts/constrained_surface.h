@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/mesh/metric.h"
+#include "vdb_offset/query/closest_query.h"
+
+namespace vdb_offset {
+
+/// How near a body's triangles stand to obstacles before anything moves. What is nearer than the clearance there may
+/// move as long as it comes no nearer.
+struct StartingGaps {
+  std::vector<double> bound;          ///< Of each triangle of the body: its gap, or the clearance if that is less.
+  std::vector<std::uint8_t> touches;  ///< Of each triangle of the body: 1 if it meets an obstacle.
+  double least = 0;                   ///< World units; 0 if any meets one.
+  std::size_t touching = 0;           ///< Pairs of the body's triangles and obstacles' that meet, and
+  std::size_t crossing = 0;           ///< those that go through each other.
+};
+
+/// Other geometry, that nothing which moves may come nearer to than this, in world units. Its triangles are the last of
+/// the body's surface.
+struct Obstacles {
+  const ClosestQuery& query;
+  double clearance;
+  const StartingGaps* start = nullptr;  ///< Without: everything stands clear of them.
+};
+
+/// Where distances are measured in the space of a metric: what vertices are in the file, which is what counts where
+/// triangles meet.
+struct FileFrame {
+  const InMetric& space;
+  std::span<const Vec3d> source;  ///< Of the body's vertices, as its source in that space.
+  std::span<const Vec3d> places;  ///< Where they stand, if that is known; else where they are put, rounded.
+
+  /// Of a vertex that is put to a place in that space.
+  Vec3d of(std::size_t vertex, const Vec3d& from, const Vec3d& to, const Precision& precision) const {
+    if (!places.empty()) return places[vertex];
+    const Vec3d& before = source[vertex];
+    return precision(before, to == from ? before : space.moved(before, from, to));
+  }
+};
+
+/// All that must stay valid, beside the front that distances are measured from.
+///
+/// The surface holds what moves and what is in its way: the whole mesh where only a part of it is offset, and obstacles
+/// behind it. It stands in the front's frame. Spans are empty where the surface is the front itself.
+struct Body {
+  const ClosestQuery& front;
+  const Surface& surface;
+  std::span<const std::uint32_t> front_vertex;  ///< Of each vertex; kNone where it is not on the front.
+  std::span<const std::uint8_t> off_front;      ///< Of each triangle: 1 if it is no part of the front.
+  std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave the path it went.
+  const Obstacles* obstacles = nullptr;         ///< Those to keep away from, if there are any.
+  bool off_source = false;                      ///< What has moved must not meet the source either, as in a shell.
+  /// Faces of the mesh, if what is off the front stays as a whole while layers rise from it: border vertices then go
+  /// along those faces instead of taking them along. 0: they are taken along.
+  std::size_t resting_faces = 0;
+  bool with_rim = false;  ///< A shell's rim joins its borders to those of its other skin; what meets it is wrong, too.
+  /// Of each vertex: where a shell's other skin stands, world coordinates, which what moves must not meet. Empty: that
+  /// is the source.
+  std::span<const Vec3d> other_skin;
+
+  const FileFrame* file = nullptr;  ///< If the body's space is not the file's.
+
+  bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
+  bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
+  /// Triangles of an obstacle never move.
+  bool is_obstacle(std::uint32_t triangle) const {
+    return obstacles && triangle >= surface.triangles.size() - obstacles->query.surface().triangles.size();
+  }
+  /// Nor do its vertices, which are behind all others, nor are they written.
+  bool is_of_obstacle(std::uint32_t vertex) const {
+    return obstacles && vertex >= surface.vertices.size() - obstacles->query.surface().vertices.size();
+  }
+  bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
+  bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
+  /// A triangle of the front to start a search from.
+  std::uint32_t hint_of_triangle(std::uint32_t triangle) const {
+    return front_vertex.empty() ? triangle : hint(surface.triangles[triangle][0]);
+  }
+  std::uint32_t hint(std::uint32_t vertex) const {
+    const std::uint32_t v = front_vertex.empty() ? vertex : front_vertex[vertex];
+    return v == kNone ? 0 : front.surface().triangles_around(v).front();
+  }
+};
+
+}  // namespace vdb_offset

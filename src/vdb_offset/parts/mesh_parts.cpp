@@ -1,0 +1,127 @@
+#include "vdb_offset/parts/mesh_parts.h"
+
+#include <algorithm>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/surface/weld.h"
+
+namespace vdb_offset {
+namespace {
+
+/// The faces whose mark is `kept`, over the mesh's own vertices.
+struct SomeFaces {
+  std::vector<std::uint32_t> corners, face_begin{0};
+
+  SomeFaces(PolygonView mesh, std::span<const std::uint8_t> marks, std::uint8_t kept) {
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      if (marks[f] != kept) continue;
+      const auto face = mesh.face(f);
+      corners.insert(corners.end(), face.begin(), face.end());
+      face_begin.push_back(static_cast<std::uint32_t>(corners.size()));
+    }
+  }
+  PolygonView of(PolygonView mesh) const { return {mesh.positions, corners, face_begin}; }
+  bool empty() const { return corners.empty(); }
+};
+
+/// Tells the whole's vertices and triangles where they are on the front, and which lie at its border.
+void relate(PolygonView mesh, std::span<const std::uint8_t> only, Workpiece& work) {
+  const Surface& whole = *work.whole;
+  work.front_vertex.assign(whole.vertices.size(), kNone);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    if (work.front.welded[v] != kNone) work.front_vertex[whole.welded[v]] = work.front.welded[v];
+  work.off_front.assign(whole.triangles.size(), 0);
+  work.at_border.assign(whole.vertices.size(), 0);
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
+    if (only.empty() || only[whole.face[t]]) continue;
+    work.off_front[t] = 1;
+    for (const auto v : whole.triangles[t]) work.at_border[v] = work.front_vertex[v] != kNone;
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3d> Workpiece::source(PolygonView mesh) const {
+  std::vector<Vec3d> positions;
+  positions.reserve(surface().vertices.size());
+  for (const auto v : surface().representative)
+    if (v != kNone) positions.push_back(mesh.positions[v]);
+  for (std::size_t i = 0; positions.size() < surface().vertices.size(); ++i)
+    positions.push_back(obstacle_mesh.positions[obstacles->representative[i]]);
+  return positions;
+}
+
+Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options) {
+  const bool parts = !options.only.empty();
+  if (parts && options.only.size() != mesh.face_count())
+    throw InvalidInput("part: expected a mark for each of " + std::to_string(mesh.face_count()) + " faces, got " +
+                       std::to_string(options.only.size()));
+  Workpiece work;
+  if (!parts) {
+    work.front = build_surface(mesh, options.weld, options.orient);
+  } else {
+    const SomeFaces chosen(mesh, options.only, 1), left(mesh, options.only, 0);
+    if (chosen.empty()) throw InvalidInput("part: expected at least one face, got none");
+    // All of the mesh says what is one; where a part ends there is no border.
+    const Welding welding = find_welding(mesh, options.weld);
+    const auto build = [&](PolygonView faces) {
+      return build_welded(faces, restricted(welding, faces), options.orient);
+    };
+    work.front = build(chosen.of(mesh));
+    work.whole = build_welded(mesh, welding, options.orient);
+    if (!left.empty()) work.rest = build(left.of(mesh));
+  }
+  if (options.obstacles.face_count() > 0) {
+    if (!work.whole) work.whole = work.front;
+    work.obstacle_mesh = options.obstacles;
+    work.obstacles = build_surface(options.obstacles, {});
+  }
+  if (work.whole) relate(mesh, options.only, work);
+  return work;
+}
+
+void place(Workpiece& work, double voxel_size, const SymmetryOptions& symmetry, double reach) {
+  place(work.front, voxel_size);
+  hold_in_planes(work.front, symmetry, reach);
+  for (std::optional<Surface>* other : {&work.whole, &work.rest, &work.obstacles})
+    if (*other) place_in_frame(**other, work.front.origin);
+  if (!work.obstacles) return;
+  append(*work.whole, *work.obstacles);
+  work.front_vertex.resize(work.whole->vertices.size(), kNone);
+  work.at_border.resize(work.whole->vertices.size(), 0);
+  work.off_front.resize(work.whole->triangles.size(), 1);
+}
+
+Distances distances_on_body(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing) {
+  const bool all_move = work.front_vertex.empty();
+  if (of_input.uniform() && all_move) return of_input;
+  const Surface& surface = work.surface();
+  const std::size_t count = surface.vertices.size();
+  std::vector<double> sum(count, 0.0);
+  std::vector<std::uint32_t> copies(count, 0), apart(count, 0);
+  for (std::size_t v = 0; v < surface.welded.size(); ++v) {
+    const auto w = surface.welded[v];
+    if (w == kNone) continue;
+    sum[w] += of_input[v];
+    ++copies[w];
+    apart[w] += of_input[v] != of_input[surface.representative[w]];
+  }
+  for (std::size_t w = 0; w < count; ++w) {
+    disagreeing += apart[w];
+    const bool stays = !all_move && (work.front_vertex[w] == kNone || (border == Border::Fixed && work.at_border[w]));
+    if (stays) sum[w] = 0;
+    else sum[w] = apart[w] ? sum[w] / copies[w] : of_input[surface.representative[w]];  // not rounded where all agree
+  }
+  return Distances(std::move(sum));
+}
+
+Distances distances_of_input(const Surface& surface, const Distances& distances) {
+  if (distances.uniform()) return distances;
+  std::vector<double> each(surface.welded.size(), 0.0);
+  for (std::size_t v = 0; v < each.size(); ++v)
+    if (surface.welded[v] != kNone) each[v] = distances[surface.welded[v]];
+  return Distances(std::move(each));
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/base/progress.h"
+#include "vdb_offset/curve/curve_query.h"
+#include "vdb_offset/field/direction_field.h"
+#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/parts/constrained_surface.h"
+
+namespace vdb_offset {
+
+/// What became of a vertex.
+enum class VertexState : std::uint8_t {
+  Reached,       ///< Its exact distance is the target's, to 1e-6 of it and the rounding of the coordinates.
+  Collision,     ///< Stopped short where the distance grows no further: at the medial axis, or closed in.
+  Limited,       ///< Held back to keep the result valid.
+  OutsideField,  ///< Left the voxels that the field covers before it arrived.
+  Unused,        ///< In no face; it stays where it is.
+};
+inline constexpr std::size_t kVertexStateCount = 5;
+const char* name(VertexState state);
+
+/// A vertex is at its distance if it is that near to it, relative to the distance.
+inline constexpr double kReachedTolerance = 1e-6;
+
+/// Where each surface vertex went.
+struct Paths {
+  std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 of the distance.
+  std::vector<double> achieved;     ///< Exact unsigned distance of the end point to the surface.
+  std::vector<VertexState> state;
+  std::vector<std::uint32_t> closest;  ///< The triangle of the front that is closest to the end point.
+  std::size_t straight = 0;            ///< Vertices of components that moved along their normals alone.
+  /// Ways from each vertex's start to the places that it came by, in order; the end, which `displacement` leads to, is
+  /// not among them. Empty unless traces are kept.
+  std::vector<std::vector<Vec3d>> trace;
+};
+
+/// Whether the places are kept that vertices come by: about ten of 24 bytes each.
+enum class Traces : bool { Drop, Keep };
+
+/// What becomes of a component that lies between planes at an angle, where its parts meet: Smooth, as all others, its
+/// vertices are spread along the ridge. Sharp: they follow it where the distance rises fastest, and merge there.
+enum class Ridges : bool { Smooth, Sharp };
+
+struct WayOptions {
+  Traces traces = Traces::Drop;
+  Ridges ridges = Ridges::Smooth;
+};
+
+/// The unit direction in which a vertex sets out, outward: its normal, weighted by angles; where faces turn away from
+/// that, one that more of them face. Zero for a vertex without any.
+Vec3d start_direction(const Surface& surface, std::uint32_t vertex);
+Vec3d start_direction(const Polyline& line, std::uint32_t vertex);
+/// Whether the faces around a vertex fold so that none of the directions tried for that is one that all of them face.
+/// What moves such a vertex, however little, takes a face to its own back, and so through the surface.
+bool is_folded(const Surface& surface, std::uint32_t vertex);
+
+/// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
+/// the result independent of where the mesh stands.
+Vec3d round_way(const Vec3d& way, double target);
+
+/// Notes down the ends of paths as places come by, before anything else moves the vertices, if traces are kept.
+void end_traces(Paths& paths);
+/// The places that a vertex came by, from `start` to the end of its way, along ways from there.
+std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end);
+
+/// Moves every surface vertex to its distance from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
+/// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls). `distances` are those of the surface's vertices;
+/// where there are several sets of them, one march serves all that a vertex has on one side, and each set has its own
+/// answer.
+///
+/// Where the straight paths along the normals of all vertices of a component are characteristics of the faces around
+/// them, they are the exact offset: one or two exact distances a vertex prove it, phi being 1-Lipschitz. With
+/// Ridges::Sharp, the vertices of another component that lies between planes at an angle follow the ridges of those
+/// (see ridge_path.h), unless there are obstacles or borders. The vertices of any other component all march by RK4
+/// along the smooth directions, since neighbours of which one goes straight and one follows the field lose their order.
+/// Steps are no longer than the exact distance, so that no path can cross the surface; the last is cut where the exact
+/// distance is d; where the distance falls and does not recover, the path ends at its largest. Where it comes as near
+/// to an obstacle as may be, it ends, too. The result does not depend on the number of threads.
+std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
+                             std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
+                             const ProgressCallback& progress = {}, const WayOptions& options = {});
+
+/// The same for the vertices of plane curves, in directions from the field of their ribbon (see ribbon.h).
+std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
+                             std::span<const Distances> distances, const ProgressCallback& progress = {},
+                             const WayOptions& options = {});
+
+}  // namespace vdb_offset

@@ -1,0 +1,382 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/paths/obstacle_guard.h"
+#include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/paths/ridge_path.h"
+#include "vdb_offset/paths/start_direction.h"
+#include "vdb_offset/paths/straight_path.h"
+#include "vdb_offset/query/cut_at_distance.h"
+
+/// How one vertex finds its way: of a Surface, by its ClosestQuery, and of a Polyline, by its CurveQuery, alike.
+namespace vdb_offset {
+
+/// A distance, above 0, that a vertex is to stop at, and the set of distances that asks for it.
+struct Stop {
+  double distance;
+  std::size_t set;
+};
+
+/// A vertex in haste asks what is near of the triangles around the last answer alone. That is right but where another
+/// part of the surface comes near, which shows in the exact distance where it ends up: having met such a part it is
+/// nearer to that than it believes.
+enum class Pace { Careful, Hasty };
+
+/// Where a vertex ended up on its way.
+struct Arrival {
+  Vec3d position;
+  std::uint32_t triangle;  ///< One that is close to it.
+  bool outside_field = false;
+};
+
+template <class Query>
+using ShapeOf = std::remove_cvref_t<decltype(std::declval<const Query&>().surface())>;
+
+/// One vertex on its way.
+template <class Query>
+class Traveller {
+ public:
+  /// `side` is 1 on the way outward, -1 inward.
+  Traveller(const Query& query, const DirectionField& field, DirectionSampler& sampler, int side, std::uint32_t vertex,
+            Pace pace, const Obstacles* obstacles = nullptr)
+      : query_(query),
+        sampler_(sampler),
+        surface_(query.surface()),
+        side_(side),
+        h_(field.voxel_size),
+        sided_(surface_.facts.closed() && surface_.facts.oriented()),
+        vertex_(vertex),
+        origin_(surface_.vertices[vertex]),
+        hint_(surface_.triangles_around(vertex).front()),
+        pace_(pace) {
+    const Start start = start_of(surface_, vertex);
+    normal_ = start.direction * side_;
+    slope_ = start.slope;
+    if (obstacles) guard_.emplace(*obstacles, origin_, side);
+  }
+
+  /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
+  /// decide it all along, or what is off them by no more than `roughness`.
+  std::optional<KnownEnd> go_along_ridges(double target, double roughness) {
+    target_ = target;
+    const double tolerance = std::clamp(roughness, kStopTolerance * target, kRoughest * target);
+    const auto first = leave_along_ridge(tolerance);
+    if (!first) return std::nullopt;
+    const RidgeWay way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
+        first->x, {first->phi, first->triangle, first->feature, false, first->x - first->away});
+    if (!way.found) return std::nullopt;
+    if (trace_) {
+      trace_->push_back(first->x - origin_);
+      for (std::size_t i = 0; i + 1 < way.count; ++i) trace_->push_back(way.corners[i] - origin_);
+    }
+    return KnownEnd{way.corners[way.count - 1], way.end.distance, way.end.triangle};
+  }
+
+  /// Where the smooth directions lead: tell(stop, arrival) for each of the stops, which are at rising distances.
+  template <class Tell>
+  void march(std::span<const Stop> stops, Tell&& tell) {
+    // What lies before the first step is on the way to it, unless that ends at an obstacle.
+    target_ = (guard_ ? stops.front() : stops.back()).distance;
+    const auto first = leave_surface(first_step());
+    target_ = stops.front().distance;
+    if (!first || (guard_ && guard_->stop(origin_, first->x) != first->x)) {
+      for (const Stop& stop : stops) tell(stop, Arrival{origin_, hint_});
+      return;
+    }
+    march_on(*first, stops, tell);
+  }
+
+  /// From now on the places come by are noted down, after these.
+  void keep_trace(std::vector<Vec3d> so_far) { trace_ = std::move(so_far); }
+  /// Ways to the places come by, up to the last that was told.
+  const std::vector<Vec3d>& trace() const { return *trace_; }
+
+  /// The same to one stop from a place on the way, if the distance still rises there, so that no ridge has been passed,
+  /// and there is nothing between that and the vertex; else tells of none. `triangle` is the closest to the place.
+  template <class Tell>
+  void march_from(const Vec3d& place, std::uint32_t triangle, const Stop& stop, Tell&& tell) {
+    target_ = stop.distance;
+    hint_ = triangle;
+    outside_ = false;
+    const Sample first = measure(place);
+    const double length = (place - origin_).length();
+    if (!(length > 0)) return;
+    const Vec3d way = (place - origin_) / length;
+    const double slope = least_cosine(surface_, vertex_, way * side_);
+    if (!(first.away.dot(way) > kStillRising * first.phi) || slope < kLeastStraightSlope ||
+        !is_way_free(way, slope, length - first.phi, first_step()))
+      return;
+    hint_ = triangle;
+    march_on(first, {&stop, 1}, tell);
+  }
+
+ private:
+  // Longest step, in voxels; and in distances, where the way is straight (cosine between its ends) on a finer grid.
+  static constexpr double kStepVoxels = 0.75, kStepShare = 0.125, kStraightCourse = 0.9995;
+  // A path may run this far, in distances, without getting anywhere before it counts as stopped.
+  static constexpr double kPatience = 0.5;
+  static constexpr int kMaxSteps = 400;
+  // Steps in haste, in distances from the surface: they may cross something, which the end shows.
+  static constexpr double kHastyShare = 3;
+  // Shortest step, in voxels or distances, unless the surface is nearer.
+  static constexpr double kLeastStep = 0.1;
+  // A path on which the distance grows by less than this share of a step gets nowhere.
+  static constexpr double kSlowest = 0.01;
+  // How much the distance must rise the way at a place to march on from, per length.
+  static constexpr double kStillRising = 0.5;
+  // How far from planes faces may be to count as such, in distances.
+  static constexpr double kRoughest = 1e-4;
+  // Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.
+  static constexpr int kRidgeSteps = 14;
+  // Below this length the interpolated gradient is the rest of opposite ones and says nothing.
+  static constexpr double kLeastGradient = 1e-3;
+
+  // Cosine-like agreement of gradient and vertex normal near the surface: from none of the former to all of it.
+  static constexpr double kLeaked = 0.0, kTrusted = 0.2;
+  // How near, in voxels, that agreement matters. Farther out the two may well differ, at a medial axis for one.
+  static constexpr double kLeakVoxels = 0.3;
+
+  /// The largest distance on a path, and the steps before and after it.
+  struct Peak {
+    Sample before, at, after;
+  };
+
+  template <class Tell>
+  void march_on(const Sample& first, std::span<const Stop> stops, Tell&& tell) {
+    const double last = stops.back().distance;
+    std::size_t passed = 0;
+    Sample before{origin_, 0, Vec3d(0.0), hint_, Feature::Face}, here = first;
+    Peak peak{before, here, here};
+    double since_peak = 0;
+    std::size_t noted_at_peak = trace_ ? trace_->size() : 0;
+    for (int i = 0;; ++i) {
+      for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
+        tell_of(arrived(here.phi) ? here : cut(before, here), stops[passed], tell);
+        if (++passed == stops.size()) return;
+      }
+      if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
+      if (trace_) trace_->push_back(here.x - origin_);
+      // Not far beyond the last stop, which the last step is cut at; not much less than a voxel, for a slow climb.
+      double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
+                              std::max(kStepVoxels * h_, kStepShare * last),
+                              std::max(last - here.phi, kLeastStep * std::min(h_, last))});
+      const Vec3d ahead = runge_kutta(here, step), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
+      const bool in_the_way = to != ahead;
+      for (auto stop = stop_before(to, here); stop; stop = stop_before(to, *stop)) {
+        tell_of(*stop, stops[passed], tell);
+        if (++passed == stops.size()) return;
+        target_ = stops[passed].distance;
+      }
+      const Sample next = measure(to);
+      since_peak += step;
+      if (peak.at.x == here.x) peak.after = next;
+      if (next.phi > peak.at.phi) {
+        if (next.phi - peak.at.phi > kSlowest * step) since_peak = 0;
+        peak = {here, next, next};
+        if (trace_) noted_at_peak = trace_->size();
+      }
+      before = here;
+      here = next;
+      if (in_the_way) return tell_blocked(before, here, stops.subspan(passed), tell);
+    }
+    const Sample end = climb(peak);
+    if (trace_) trace_->resize(noted_at_peak);
+    for (const Stop& stop : stops.subspan(passed)) tell_of(end, stop, tell);
+  }
+
+  /// The place on the way from one short of the target that is at it, if what is closest tells that there is one before
+  /// the end.
+  std::optional<Sample> stop_before(const Vec3d& end, Sample at) {
+    constexpr int kMostSteps = 4;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const Vec3d way = end - at.x;
+      const auto share = share_to_distance(surface_, at, way, target_);
+      if (!share || !(*share < 1)) return std::nullopt;
+      const Sample next = measure(at.x + way * *share);
+      if (arrived(next.phi)) return next;
+      if (next.phi > target_) return cut(at, next);
+      at = next;
+    }
+    return std::nullopt;
+  }
+
+  template <class Tell>
+  void tell_of(const Sample& end, const Stop& stop, Tell&& tell) const {
+    tell(stop, Arrival{end.x, end.triangle, outside_});
+  }
+
+  /// An obstacle ends the way at `end`; some stops may lie before that.
+  template <class Tell>
+  void tell_blocked(const Sample& before, const Sample& end, std::span<const Stop> stops, Tell&& tell) {
+    for (const Stop& stop : stops) {
+      target_ = stop.distance;
+      tell_of(end.phi > target_ ? cut(before, end) : end, stop, tell);
+    }
+  }
+
+  Sample measure(const Vec3d& x) {
+    if (pace_ == Pace::Careful) {
+      const Closest closest = query_(x, hint_);
+      hint_ = closest.triangle;
+      return sample_at(x, closest);
+    }
+    const TrianglePoint nearest = query_.near(x, hint_);
+    return sample_at(x, hint_, nearest);
+  }
+  double first_step() const { return 0.1 * std::min(target_, h_); }
+  bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
+
+  /// Covers the line from `from` along `way` back to `to` with balls that hold no surface, where phi is what the faces
+  /// around the vertex, `slope` of whose normals it has, give it. A line of length d that ends at phi = d needs none:
+  /// it lies in the ball around its end.
+  bool is_way_free(const Vec3d& way, double slope, double from, double to) {
+    while (from > to) {
+      const Closest closest = query_(origin_ + way * from, hint_);
+      const double phi = closest.distance;
+      hint_ = closest.triangle;
+      if (phi < kFreeShare * slope * from) return false;
+      from -= phi * (1 - 1e-12);
+    }
+    return true;
+  }
+
+  /// The first point off the surface, on the side asked for.
+  std::optional<Sample> leave_surface(double longest) {
+    for (double step = longest; step > 1e-7 * target_; step *= 0.25) {
+      const Sample sample = measure(origin_ + normal_ * step);
+      const bool free = sample.phi > kFreeShare * std::max(slope_, 0.02) * step;
+      const bool right = !sided_ || side_ * surface_.pseudonormal(sample.triangle, sample.feature).dot(sample.away) > 0;
+      if (free && right) return sample;
+    }
+    return std::nullopt;
+  }
+
+  /// The same where the distance rises fastest, if the faces around the vertex tell that.
+  std::optional<Sample> leave_along_ridge(double tolerance) {
+    constexpr double kStep = 1e-3, kShortStep = 1e-5, kClear = 30;
+    std::optional<detail::Ridge> ridge;
+    bool clear = true;
+    for (const auto t : surface_.triangles_around(vertex_)) {
+      const Vec3d away = surface_.triangle_normals[t] * side_;
+      if (away.lengthSqr() == 0) continue;
+      if (!ridge) ridge.emplace(away);
+      else clear = clear && ridge->is_risen_by(away);
+    }
+    if (ridge && clear) {
+      const double step = std::max(kStep * target_, kClear * tolerance / ridge->slope());
+      const Sample sample = measure(origin_ + ridge->way() * step);
+      if (std::abs(sample.phi - ridge->slope() * step) <= tolerance) return sample;
+    }
+    return leave_surface(std::max(kShortStep * target_, kClear * tolerance));
+  }
+
+  static double smooth_step(double x, double from, double to) {
+    const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return s * s * (3 - 2 * s);
+  }
+
+  /// Unit velocity at x, a point whose distance to the surface is about phi: the smooth gradient, or `fallback`
+  /// where there is none or where it vanishes. Just off the surface, a gradient that does not agree with the
+  /// vertex normal has leaked through a wall thinner than its stencil, and gives way to that normal.
+  Vec3d velocity(const Vec3d& x, double phi, const Vec3d& fallback) {
+    Vec3d gradient;
+    if (!sampler_(x, side_, phi, gradient)) {
+      outside_ = true;
+      return fallback;
+    }
+    gradient *= side_;
+    const double away = phi / (kLeakVoxels * h_);
+    if (away < 1) {
+      const double agreement = smooth_step(gradient.dot(normal_), kLeaked, kTrusted);
+      gradient += normal_ * ((1 - agreement) * (1 - std::max(away, 0.0)));
+    }
+    return gradient.lengthSqr() > kLeastGradient * kLeastGradient ? gradient.unit() : fallback;
+  }
+
+  /// Beyond a border phi is the distance to that, and its gradient leans out. What starts at a border stays in the
+  /// plane across it, so that the offset's border is the source's.
+  Vec3d course(const Vec3d& x, double phi, const Vec3d& fallback) {
+    const Vec3d v = velocity(x, phi, fallback);
+    if (surface_.conormals.empty()) return v;
+    const Vec3d along = surface_.along_border(vertex_, v);
+    return along.lengthSqr() > kLeastGradient * kLeastGradient ? along.unit() : normal_;
+  }
+
+  /// Shortens a step of more voxels than one that the way bends on.
+  Vec3d runge_kutta(const Sample& from, double& step) {
+    const Vec3d away = from.phi > 0 ? from.away / from.phi : normal_,
+                fallback = surface_.is_held(vertex_) ? surface_.along_border(vertex_, away) : away;
+    const Vec3d k1 = course(from.x, from.phi, fallback);
+    while (true) {
+      const auto bends = [&](const Vec3d& k) { return step > kStepVoxels * h_ && k1.dot(k) < kStraightCourse; };
+      const Vec3d k2 = course(from.x + k1 * (step / 2), from.phi + step / 2, k1);
+      if (!bends(k2)) {
+        const Vec3d k3 = course(from.x + k2 * (step / 2), from.phi + step / 2, k2),
+                    k4 = course(from.x + k3 * step, from.phi + step, k3);
+        const Vec3d v = (k1 + k2 * 2.0 + k3 * 2.0 + k4) / 6.0;
+        if (!bends(k4)) return from.x + (v.lengthSqr() > kLeastGradient * kLeastGradient ? v : fallback) * step;
+      }
+      step = std::max(step / 4, kStepVoxels * h_);
+    }
+  }
+
+  Sample cut(const Sample& near, const Sample& far) {
+    return cut_at_distance(
+        surface_, near, far, target_, [&](const Vec3d& x) { return measure(x); },
+        [&](const Sample& at) { return arrived(at.phi); });
+  }
+
+  /// The ridge between the steps around the largest distance seen, by golden section: near it the distance rises to
+  /// one side and falls to the other. Ends beyond the peak only if that is no nearer.
+  Sample climb(const Peak& peak) {
+    const auto on_path = [&](double t) {  // -1 .. 0 .. 1 from before through at to after
+      return t < 0 ? peak.at.x + (peak.before.x - peak.at.x) * -t : peak.at.x + (peak.after.x - peak.at.x) * t;
+    };
+    constexpr double kGolden = 0.6180339887498949;
+    double low = -1, high = 1, a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+    Sample at_a = measure(on_path(a)), at_b = measure(on_path(b)), best = peak.at;
+    for (int i = 0; i < kRidgeSteps; ++i) {
+      if (at_a.phi > at_b.phi) {
+        high = b;
+        b = a;
+        at_b = at_a;
+        a = high - kGolden * (high - low);
+        at_a = measure(on_path(a));
+      } else {
+        low = a;
+        a = b;
+        at_a = at_b;
+        b = low + kGolden * (high - low);
+        at_b = measure(on_path(b));
+      }
+      for (const Sample& sample : {at_a, at_b})
+        if (sample.phi > best.phi && sample.phi <= target_ * (1 + kStopTolerance)) best = sample;
+    }
+    return best;
+  }
+
+  const Query& query_;
+  DirectionSampler& sampler_;
+  const ShapeOf<Query>& surface_;
+  int side_;
+  double target_ = 0, h_;
+  bool sided_;
+  std::uint32_t vertex_;
+  Vec3d origin_, normal_;  // of the vertex; the normal points to the side asked for
+  double slope_;
+  std::uint32_t hint_;
+  Pace pace_;
+  bool outside_ = false;
+  std::optional<ObstacleGuard> guard_;  // if there are obstacles
+  std::optional<std::vector<Vec3d>> trace_;
+};
+
+}  // namespace vdb_offset

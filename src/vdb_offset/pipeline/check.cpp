@@ -1,0 +1,145 @@
+#include "vdb_offset/pipeline/check.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/query/closest_query.h"
+
+namespace vdb_offset {
+namespace {
+
+void require_usable(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
+  if (source.face_count() == 0) throw InvalidInput("check: expected a source with faces, found none");
+  if (positions.size() != source.positions.size())
+    throw InvalidInput("check: expected as many vertices as the source's " + std::to_string(source.positions.size()) +
+                       ", found " + std::to_string(positions.size()));
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(positions[v][k]))
+        throw InvalidInput("check: vertex " + std::to_string(v) + ": expected finite coordinates");
+  if (!options.metric.even() && options.obstacles.face_count() > 0)
+    throw InvalidInput("check: expected no obstacles where distances differ by axis");
+  if (options.distance && !options.distance->uniform() && options.distance->count() != positions.size())
+    throw InvalidInput("check: expected a distance for each of " + std::to_string(positions.size()) +
+                       " vertices, got " + std::to_string(options.distance->count()));
+}
+
+/// Where the body's vertices stand in the offset; what is no part of the mesh stays.
+std::vector<Vec3d> places_of(const Surface& surface, std::span<const Vec3d> source, std::span<const Vec3d> positions) {
+  std::vector<Vec3d> places(source.begin(), source.end());
+  for (std::size_t w = 0; w < places.size(); ++w)
+    if (surface.representative[w] != kNone) places[w] = positions[surface.representative[w]];
+  return places;
+}
+
+/// Vertices that stand elsewhere than the one that they are to move with. What has been welded with a tolerance keeps
+/// its own place where it stays.
+std::size_t count_torn(const Surface& surface, PolygonView source, std::span<const Vec3d> positions,
+                       const Precision& precision) {
+  std::size_t torn = 0;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (surface.welded[v] == kNone) continue;
+    const auto first = surface.representative[surface.welded[v]];
+    const auto stays = [&](std::uint32_t w) {
+      return positions[w] == source.positions[w] || precision.stays(source.positions[w], positions[w]);
+    };
+    torn += positions[v] != positions[first] && !(stays(static_cast<std::uint32_t>(v)) && stays(first));
+  }
+  return torn;
+}
+
+/// The median distance of the front's vertices, with the sign of the side that most of them lie on.
+double find_distance(const Body& body, std::span<const Vec3d> places) {
+  const Surface& front = body.front.surface();
+  std::vector<Vec3d> points;
+  for (std::uint32_t v = 0; v < places.size(); ++v)
+    if (body.on_front(v)) points.push_back(places[v] - front.origin);
+  const std::vector<Closest> closest = closest_points(body.front, points);
+  std::vector<double> distance;
+  distance.reserve(closest.size());
+  std::ptrdiff_t outside = 0;
+  for (std::size_t v = 0; v < closest.size(); ++v) {
+    const auto& [d, triangle, feature, tied, point] = closest[v];
+    distance.push_back(d);
+    outside += front.pseudonormal(triangle, feature).dot(points[v] - point) < 0 ? -1 : 1;
+  }
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return outside < 0 ? -*middle : *middle;
+}
+
+/// States and distances of the input's vertices.
+void judge_vertices(const Surface& surface, const FaultFinder& finder, const Distances& distances,
+                    const Precision& precision, CheckResult& result) {
+  const double epsilon = precision.epsilon();
+  for (std::size_t v = 0; v < result.states.size(); ++v) {
+    const std::uint32_t w = surface.welded[v];
+    if (w == kNone) continue;
+    const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
+                 tolerance = 1e-6 * target + epsilon * finder.places()[w].length();
+    result.achieved[v] = finder.distance_of(w);
+    result.states[v] = std::abs(error) <= tolerance ? VertexState::Reached : VertexState::Limited;
+    result.beyond += error > tolerance;
+    result.wrong_side += !finder.on_right_side(w);
+  }
+}
+
+void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
+  const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
+  Workpiece work = build_workpiece(space.view(), {options.only, options.obstacles, options.weld, options.orient});
+  result.facts = options.metric.even() ? work.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
+  place(work, work.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
+  const Surface& surface = work.surface();
+  const ClosestQuery query(work.front);
+  const std::vector<Vec3d> source = work.source(space.view()),
+                           places = places_of(surface, source, moved.view().positions), in_file = work.source(mesh),
+                           placed_in_file = places_of(surface, in_file, positions);
+  std::optional<Surroundings> surroundings;
+  if (work.obstacles) {
+    surroundings.emplace(work, source, options.clearance);
+    result.obstacles = surroundings->facts(places);
+  }
+  Body body = work.body(query, surroundings ? &surroundings->obstacles() : nullptr, false);
+  const FileFrame file{space, in_file, placed_in_file};
+  if (!options.metric.even()) body.file = &file;
+  result.torn = count_torn(surface, mesh, positions, options.precision);
+  result.distances = options.distance ? *options.distance : Distances(find_distance(body, places));
+  std::size_t disagreeing = 0;
+  const Distances distances = distances_on_body(work, options.border, result.distances, disagreeing);
+  result.distances = distances_of_input(surface, distances);
+  result.distance = result.distances.farthest();
+  if (result.distance == 0) {
+    for (std::size_t v = 0; v < result.states.size(); ++v)
+      if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
+    return;
+  }
+  std::optional<SelfCrossings> source_crossings;
+  if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
+  FaultFinder finder(body, source, distances, options.precision, std::move(source_crossings));
+  finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
+  result.faults = finder.count();
+  result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
+  result.crossings_near_source = finder.crossings_near_source();
+  result.more_source_crossings = finder.source_crossings().has_more();
+  judge_vertices(surface, finder, distances, options.precision, result);
+  result.interior = measure_interior(body, places, distances);
+}
+
+}  // namespace
+
+CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
+  require_usable(source, positions, options);
+  CheckResult result;
+  result.states.assign(positions.size(), VertexState::Unused);
+  result.achieved.assign(positions.size(), 0.0);
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  arena.execute([&] { measure(source, positions, options, result); });
+  return result;
+}
+
+}  // namespace vdb_offset

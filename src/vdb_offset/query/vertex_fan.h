@@ -1,0 +1,132 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/base/double_lanes.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// The triangles around a vertex as points near it see them, two at once. Slivers are not among them: their areas would
+/// lose digits.
+///
+/// With y the way from the vertex to a point, the squared distance to any place p of a triangle is |y|^2 less a gain of
+/// 2 p.y - p.p; the closest place is the one that gains most: y's foot where that is inside, or a place on an edge.
+class VertexFan {
+ public:
+  void begin(const Surface& surface, std::uint32_t vertex) {
+    corner_ = surface.vertices[vertex];
+    size_ = believed_ = 0;
+    for (const auto t : surface.triangles_around(vertex)) add(surface, t, vertex);
+    whole_ = size_ == surface.triangles_around(vertex).size();
+    // An odd one is its own neighbour.
+    if (size_ % 2 != 0) {
+      const std::size_t size = size_;
+      add(surface, couples_[size_ / 2].triangle[0], vertex);
+      size_ = size;
+    }
+  }
+
+  /// Whether no triangle around the vertex is a sliver.
+  bool whole() const { return whole_; }
+  bool has(std::uint32_t triangle) const {
+    return std::any_of(couples_.begin(), couples_.begin() + static_cast<std::ptrdiff_t>(couple_count()),
+                       [&](const Couple& of) { return of.triangle[0] == triangle || of.triangle[1] == triangle; });
+  }
+
+  /// The way to x from the closest place of all these triangles, of which the vertex is one even if there is no other.
+  Vec3d find_away_from(const Vec3d& x) {
+    const Vec3d y = x - corner_;
+    Place best;
+    for (std::size_t i = 0; i < couple_count(); ++i) {
+      const Place found = closest_of(couples_[i], y);
+      if (!(found.gain > best.gain)) continue;
+      best = found;
+      believed_ = i;
+    }
+    return size_ == 0 ? y : y - couples_[believed_].at(best);
+  }
+  /// The same if the closest one is where it was found last, and never a shorter way.
+  Vec3d away_from(const Vec3d& x) const {
+    const Vec3d y = x - corner_;
+    return size_ == 0 ? y : y - couples_[believed_].at(closest_of(couples_[believed_], y));
+  }
+
+ private:
+  /// A place in one of two triangles, by its shares of the edges at the vertex; and what it gains.
+  struct Place {
+    double gain = 0, along_b = 0, along_c = 0;
+    std::size_t lane = 0;
+  };
+  /// Two triangles, by their edges b and c from the vertex, the third one e, and products of these.
+  struct Couple {
+    Way<Pair> b, c;
+    Pair bb, cc, ee, bc, over_bb, over_cc, over_ee, over_area;
+    std::uint32_t triangle[2];
+
+    Vec3d at(const Place& place) const {
+      const std::size_t i = place.lane;
+      return {b.x[i] * place.along_b + c.x[i] * place.along_c, b.y[i] * place.along_b + c.y[i] * place.along_c,
+              b.z[i] * place.along_b + c.z[i] * place.along_c};
+    }
+  };
+
+  std::size_t couple_count() const { return (size_ + 1) / 2; }
+
+  void add(const Surface& surface, std::uint32_t triangle, std::uint32_t vertex) {
+    constexpr double kSliver = 1e-6;
+    const auto& t = surface.triangles[triangle];
+    const std::size_t k = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2, lane = size_ % 2;
+    const Vec3d b = surface.vertices[t[(k + 1) % 3]] - corner_, c = surface.vertices[t[(k + 2) % 3]] - corner_;
+    const double bb = b.dot(b), cc = c.dot(c), bc = b.dot(c), ee = (c - b).lengthSqr(), area = bb * cc - bc * bc;
+    const double longest = std::max({bb, cc, ee});
+    if (!(area > kSliver * longest * longest)) return;
+    if (size_ / 2 == couples_.size()) couples_.emplace_back();
+    Couple& couple = couples_[size_++ / 2];
+    couple.triangle[lane] = triangle;
+    couple.b.set(lane, b);
+    couple.c.set(lane, c);
+    couple.bb[lane] = bb;
+    couple.cc[lane] = cc;
+    couple.ee[lane] = ee;
+    couple.bc[lane] = bc;
+    couple.over_bb[lane] = 1 / bb;
+    couple.over_cc[lane] = 1 / cc;
+    couple.over_ee[lane] = 1 / ee;
+    couple.over_area[lane] = 1 / area;
+  }
+
+  static Place closest_of(const Couple& of, const Vec3d& y) {
+    constexpr Pair kZero{}, kOne{1, 1};
+    const Way<Pair> way = both(y, y);
+    const Pair by = of.b.dot(way), cy = of.c.dot(way);
+    // No place on the side that both edges turn away from gains anything.
+    if (!(std::max({by[0], by[1], cy[0], cy[1]}) > 0)) return {};
+    const Pair foot_b = (by * of.cc - cy * of.bc) * of.over_area, foot_c = (cy * of.bb - by * of.bc) * of.over_area;
+    const auto inside = (foot_b > kZero) & (foot_c > kZero) & (foot_b + foot_c < kOne);
+    const Pair on_b = clamped(by * of.over_bb), on_c = clamped(cy * of.over_cc);
+    const Pair gain_b = on_b * (by + by - on_b * of.bb), gain_c = on_c * (cy + cy - on_c * of.cc);
+    const auto from_b = gain_b > gain_c;
+    const Pair gain_bc = greater(gain_b, gain_c);
+    // On e from b's end, which gains 2 b.y - b.b itself.
+    const Pair ey = cy - by - of.bc + of.bb, on_e = clamped(ey * of.over_ee);
+    const Pair gain_e = by + by - of.bb + on_e * (ey + ey - on_e * of.ee);
+    const auto from_e = gain_e > gain_bc;
+    const Pair gain = inside ? foot_b * by + foot_c * cy : greater(gain_e, gain_bc);
+    const Pair along_b = inside ? foot_b : (from_e ? kOne - on_e : (from_b ? on_b : kZero));
+    const Pair along_c = inside ? foot_c : (from_e ? on_e : (from_b ? kZero : on_c));
+    const std::size_t lane = gain[1] > gain[0] ? 1 : 0;
+    return {gain[lane], along_b[lane], along_c[lane], lane};
+  }
+  static Pair clamped(const Pair& share) { return lesser(Pair{1, 1}, greater(Pair{}, share)); }
+
+  Vec3d corner_{0.0};
+  std::size_t size_ = 0, believed_ = 0;
+  bool whole_ = true;
+  std::vector<Couple> couples_;
+};
+
+}  // namespace vdb_offset

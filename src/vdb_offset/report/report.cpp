@@ -1,0 +1,411 @@
+#include "vdb_offset/report/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "vdb_offset/base/memory.h"
+
+namespace vdb_offset {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
+  const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+Json facts_json(const MeshFacts& facts) {
+  Json by_corners = Json::object();
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) {
+    by_corners[std::to_string(corners)] = count;
+    faces += count;
+  }
+  return {{"vertices", facts.vertices},
+          {"vertices_unused", facts.unused_vertices},
+          {"vertices_welded", facts.welded_vertices},
+          {"faces", faces},
+          {"faces_by_corners", by_corners},
+          {"components", facts.components},
+          {"closed_components", facts.closed_components},
+          {"inside_out_components", facts.inside_out_components},
+          {"boundary_edges", facts.boundary_edges},
+          {"non_manifold_edges", facts.non_manifold_edges},
+          {"repeated_faces", facts.repeated_faces},
+          {"folded_triangles", facts.folded_triangles},
+          {"boundary_edges_left", facts.boundary_left},
+          {"non_manifold_edges_left", facts.non_manifold_left},
+          {"degenerate_faces", facts.degenerate_faces},
+          {"orientation_conflicts", facts.orientation_conflicts},
+          {"turned_triangles", facts.turned_triangles},
+          {"unsettled_conflicts", facts.unsettled_conflicts},
+          {"closed", facts.closed()},
+          {"lower", {facts.lower[0], facts.lower[1], facts.lower[2]}},
+          {"upper", {facts.upper[0], facts.upper[1], facts.upper[2]}},
+          {"diagonal", facts.diagonal},
+          {"area", facts.area},
+          {"median_edge", facts.median_edge},
+          {"seams",
+           {{"welded_vertices", facts.seams.vertices},
+            {"widest", facts.seams.widest},
+            {"near_vertices", facts.seams.near_vertices},
+            {"widest_near", facts.seams.widest_near}}},
+          {"sliver_edges", facts.sliver_edges},
+          {"longest_sliver", facts.longest_sliver}};
+}
+
+/// Names of files and parts may hold bytes that are no UTF-8, which JSON has no place for.
+std::string as_text(const Json& report) { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+Json faults_json(const FaultCounts& counts) {
+  return {{"inverted_faces", counts.inverted},
+          {"collapsed_faces", counts.collapsed},
+          {"crowded_faces", counts.crowded},
+          {"crossings", counts.crossings}};
+}
+
+Json room_json(const SideRoom& room) {
+  return room.known ? Json{{"here", room.here}, {"other_side", room.there}} : Json();
+}
+
+Json borders_json(const BorderFacts& borders) {
+  Json planes = Json::array();
+  for (const auto& [normal, offset] : borders.planes)
+    planes.push_back({{"normal", {normal[0], normal[1], normal[2]}}, {"offset", offset}});
+  return {{"planes", planes},
+          {"held", borders.held_vertices},
+          {"beyond", borders.beyond},
+          {"across", borders.across_vertices},
+          {"strayed", borders.strayed_vertices},
+          {"worst_angle", borders.worst_angle}};
+}
+
+Json limit_json(const LimitStatistics& limit) {
+  return {{"before", faults_json(limit.before)},
+          {"left", faults_json(limit.left)},
+          {"source_crossings", limit.source_crossings},
+          {"more_source_crossings", limit.more_source_crossings},
+          {"crossings_near_source", limit.crossings_near_source},
+          {"followed", limit.followed_vertices},
+          {"untanglings", limit.untanglings},
+          {"rounds", limit.rounds},
+          {"vertices", limit.limited_vertices},
+          {"mean_thickness_lost", limit.thickness_lost}};
+}
+
+Json obstacles_json(const ObstacleFacts& obstacles) {
+  return {{"gap", obstacles.gap},
+          {"gap_at_start", obstacles.starting_gap},
+          {"triangles_too_near", obstacles.near},
+          {"touching_at_start", obstacles.touching},
+          {"crossing_at_start", obstacles.crossing}};
+}
+
+Json fit_json(const FitFacts& fit) {
+  return {{"clearance", fit.clearance},
+          {"gap", fit.gap},
+          {"gap_at_start", fit.starting_gap},
+          {"triangles_too_near", fit.near},
+          {"triangles_too_near_at_start", fit.near_at_start},
+          {"vertices_moved", fit.moved},
+          {"deepest", fit.deepest},
+          {"rounds", fit.rounds},
+          {"solid", fit.is_signed},
+          {"components_enclosed", fit.enclosed}};
+}
+
+Json achieved_json(const AchievedSummary& achieved) {
+  return {{"vertices", achieved.vertices},
+          {"asked", {{"least", achieved.asked_least}, {"mean", achieved.asked_mean}, {"most", achieved.asked_most}}},
+          {"share_reached", achieved.share_reached},
+          {"least", achieved.least},
+          {"quantile_01", achieved.quantile_01},
+          {"quantile_05", achieved.quantile_05},
+          {"median", achieved.median},
+          {"quantile_95", achieved.quantile_95},
+          {"mean", achieved.mean},
+          {"most", achieved.most},
+          {"worst_reached_error", achieved.worst_reached_error}};
+}
+
+Json interior_json(const InteriorError& error) {
+  return {{"samples", error.samples}, {"mean", error.mean}, {"quantile_99", error.quantile_99}, {"worst", error.worst}};
+}
+
+Json shell_json(const ShellFacts& shell) {
+  return {{"closed", shell.closed},
+          {"oriented", shell.oriented},
+          {"volume", shell.volume},
+          {"rim_quads", shell.rim_quads},
+          {"rim_triangles", shell.rim_triangles},
+          {"border_edges_left", shell.border_edges_left},
+          {"non_manifold_edges", shell.non_manifold_edges},
+          {"pinched_vertices", shell.pinched_vertices},
+          {"has_thickness", shell.has_thickness},
+          {"junction_vertices", shell.junction_vertices},
+          {"short_junctions", shell.short_junctions},
+          {"source_crossings", shell.source_crossings},
+          {"crossings_near_source", shell.crossings_near_source},
+          {"crossings", shell.crossings}};
+}
+
+Json spread_json(const Spread& spread) {
+  return {{"least", spread.least},
+          {"quantile_01", spread.quantile_01},
+          {"quantile_05", spread.quantile_05},
+          {"median", spread.median},
+          {"quantile_95", spread.quantile_95},
+          {"quantile_99", spread.quantile_99},
+          {"most", spread.most},
+          {"mean", spread.mean}};
+}
+
+Json figures_json(const LayerFigures& figures) {
+  Json faces = Json::object(), cells = Json::object();
+  for (std::size_t r = 0; r < kFaceRoleCount; ++r) faces[name(static_cast<FaceRole>(r))] = figures.faces_by_role[r];
+  for (std::size_t t = 0; t < kCellTypeCount; ++t) cells[name(static_cast<CellType>(t))] = figures.cells_by_type[t];
+  return {{"name", figures.name},
+          {"faces", faces},
+          {"cells", figures.cells},
+          {"cells_by_type", cells},
+          {"transition_cells", figures.transition_cells},
+          {"area", figures.area},
+          {"layers_reached", figures.layers_reached},
+          {"coverage", figures.coverage},
+          {"thickness_asked", spread_json(figures.asked)},
+          {"thickness_reached", spread_json(figures.reached)},
+          {"first_height",
+           {{"vertices", figures.full_vertices},
+            {"worst_error", figures.first_error},
+            {"error_quantile_99", figures.first_error_99}}},
+          {"scaled_jacobian", spread_json(figures.scaled_jacobian)},
+          {"inverted_cells", figures.inverted_cells},
+          {"aspect_ratio", spread_json(figures.aspect_ratio)},
+          {"wall_angle", spread_json(figures.wall_angle)}};
+}
+
+Json layers_json(const LayerReport& layers) {
+  Json report = figures_json(layers.all), patches = Json::array();
+  for (const LayerFigures& patch : layers.patches) patches.push_back(figures_json(patch));
+  report.erase("name");
+  report["count"] = layers.layers;
+  report["volume"] = layers.volume;
+  if (layers.plane) report["least_segment"] = layers.least_segment;
+  report["points"] = layers.points;
+  report["growing"] = {{"wrong_columns", layers.growing.wrong_columns},
+                       {"straightened", layers.growing.straightened},
+                       {"rounds", layers.growing.rounds},
+                       {"thinned_vertices", layers.growing.thinned_vertices},
+                       {"flat_vertices", layers.growing.flat_vertices}};
+  report["sides"] = {{"border", layers.border_sides},
+                     {"unpaired", layers.unpaired_sides},
+                     {"coincident", layers.coincident_sides},
+                     {"split_points", layers.split_points},
+                     {"turned_faces", layers.turned_faces}};
+  report["inverted_block_cells"] = layers.inverted_block_cells;
+  if (layers.foam)
+    report["openfoam"] = {{"wrong_faces", layers.foam->wrong_faces},
+                          {"non_orthogonality", layers.foam->non_orthogonality},
+                          {"mean_non_orthogonality", layers.foam->mean_non_orthogonality},
+                          {"non_orthogonal_faces", layers.foam->non_orthogonal_faces},
+                          {"skewness", layers.foam->skewness},
+                          {"skew_faces", layers.foam->skew_faces}};
+  report["patches"] = patches;
+  return report;
+}
+
+Json grids_json(const OffsetStatistics& statistics) {
+  return {{"active_voxels", statistics.active_voxels},
+          {"leaf_nodes", statistics.leaf_nodes},
+          {"bytes",
+           {{"phi", statistics.phi_bytes},
+            {"closest_primitive", statistics.closest_bytes},
+            {"gradient", statistics.gradient_bytes}}},
+          {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
+          {"estimated_bytes", statistics.plan.bytes}};
+}
+
+Json options_json(const RunFacts& run) {
+  Json options = Json::object();
+  for (const auto& [key, value] : run.options) options[key] = value;
+  return options;
+}
+
+Json surface_json(const CaptureStatistics& found) {
+  const MendStatistics& mending = found.mending;
+  const auto faults = [](const MeshFaults& counts) {
+    return Json{{"crossings", counts.crossings}, {"without_area", counts.needles}};
+  };
+  const SolidFacts& solid = found.solid;
+  return {{"signed", found.is_signed},
+          {"source",
+           {{"parts", solid.parts},
+            {"open_parts", solid.open_parts},
+            {"holes_filled", solid.holes},
+            {"hole_share", solid.hole_share},
+            {"buried_triangles", solid.buried},
+            {"cut_triangles", solid.cut}}},
+          {"vertices", found.vertices},
+          {"triangles", found.triangles},
+          {"components", found.components},
+          {"dropped_specks", found.dropped_specks},
+          {"merged_vertices", found.merged_vertices},
+          {"attempts", found.attempts},
+          {"valid", found.valid()},
+          {"closed", found.closed()},
+          {"manifold", found.manifold()},
+          {"border_edges", found.border_edges},
+          {"non_manifold_edges", found.non_manifold_edges},
+          {"pinched_vertices", found.pinched_vertices},
+          {"turned_edges", found.turned_edges},
+          {"crossings", mending.left.crossings},
+          {"without_area", mending.left.needles},
+          {"mended",
+           {{"before", faults(mending.before)},
+            {"rounds", mending.rounds},
+            {"moved_vertices", mending.moved_vertices},
+            {"flipped_edges", mending.flipped_edges},
+            {"split_edges", mending.split_edges}}},
+          {"distance_error", {{"worst", found.worst_error}, {"rms", found.rms_error}}},
+          {"face_interior_error", interior_json(found.interior)}};
+}
+
+/// `achieved` sums up what became of the vertices, of which `distance` was the farthest that was asked.
+std::string report_of(const OffsetStatistics& statistics, double distance, const AchievedSummary& achieved,
+                      const RunFacts& run) {
+  Json seconds = Json::object(), states = Json::object();
+  for (std::size_t s = 0; s < kStageCount; ++s) seconds[name(static_cast<Stage>(s))] = statistics.seconds[s];
+  seconds["total"] = run.total_seconds;
+  for (std::size_t s = 0; s < kVertexStateCount; ++s)
+    states[name(static_cast<VertexState>(s))] = statistics.vertices_by_state[s];
+  Json report = {{"version", version()},
+                 {"input", run.input},
+                 {"output", run.output},
+                 {"options", options_json(run)},
+                 {"distance", distance},
+                 {"distance_as_given", run.distance_text},
+                 {"voxel_size", statistics.plan.voxel_size},
+                 {"voxel_size_reason", statistics.plan.reason},
+                 {"threads", statistics.threads},
+                 {"mesh", facts_json(statistics.facts)},
+                 {"grid", grids_json(statistics)},
+                 {"seconds", seconds},
+                 {"peak_memory_bytes", peak_memory()},
+                 {"vertices_by_state", states},
+                 {"vertices_straight", statistics.straight_vertices},
+                 {"limit", limit_json(statistics.limit)},
+                 {"borders", borders_json(statistics.borders)},
+                 {"room", room_json(statistics.room)},
+                 {"achieved", achieved_json(achieved)},
+                 {"face_interior_error", interior_json(statistics.interior)}};
+  if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
+  if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
+  if (run.shell) report["shell"] = shell_json(*run.shell);
+  if (run.layers) report["layers"] = layers_json(*run.layers);
+  return as_text(report);
+}
+
+}  // namespace
+
+const char* version() { return VDB_OFFSET_VERSION; }
+
+AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> all_achieved,
+                          const Distances& distances) {
+  AchievedSummary summary;
+  std::vector<double> achieved;
+  achieved.reserve(states.size());
+  std::size_t reached = 0;
+  double asked = 0;
+  summary.asked_least = std::numeric_limits<double>::infinity();
+  summary.asked_most = -summary.asked_least;
+  for (std::size_t v = 0; v < states.size(); ++v) {
+    if (states[v] == VertexState::Unused) continue;
+    achieved.push_back(all_achieved[v]);
+    asked += distances[v];
+    summary.asked_least = std::min(summary.asked_least, distances[v]);
+    summary.asked_most = std::max(summary.asked_most, distances[v]);
+    if (states[v] != VertexState::Reached) continue;
+    ++reached;
+    const double target = std::abs(distances[v]);
+    if (target > 0)
+      summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(achieved.back() - target) / target);
+  }
+  summary.vertices = achieved.size();
+  if (achieved.empty()) return {};
+  summary.asked_mean = asked / static_cast<double>(achieved.size());
+  summary.share_reached = static_cast<double>(reached) / static_cast<double>(achieved.size());
+  double sum = 0;
+  for (const double x : achieved) sum += x;
+  summary.mean = sum / static_cast<double>(achieved.size());
+  const auto [least, most] = std::minmax_element(achieved.begin(), achieved.end());
+  summary.least = *least;
+  summary.most = *most;
+  summary.quantile_01 = quantile(achieved, 0.01);
+  summary.quantile_05 = quantile(achieved, 0.05);
+  summary.median = quantile(achieved, 0.5);
+  summary.quantile_95 = quantile(achieved, 0.95);
+  return summary;
+}
+
+std::string report_json(const OffsetResult& result, const RunFacts& run) {
+  return report_of(result.statistics, result.distances.farthest(), summarise(result), run);
+}
+
+std::string report_json(const LayersResult& result, const RunFacts& run) {
+  if (result.heights.empty()) return report_of(result.statistics, 0, {}, run);
+  const Distances& thickness = result.heights.back();
+  return report_of(result.statistics, thickness.farthest(), summarise(result.states, result.achieved, thickness), run);
+}
+
+std::string report_json(const CaptureStatistics& statistics, const RunFacts& run) {
+  Json seconds = Json::object();
+  for (const Stage stage : kCaptureStages) seconds[name(stage)] = statistics.seconds[static_cast<std::size_t>(stage)];
+  seconds["total"] = run.total_seconds;
+  Json report = {{"version", version()},
+                 {"input", run.input},
+                 {"output", run.output},
+                 {"options", options_json(run)},
+                 {"distance", statistics.distance},
+                 {"distance_as_given", run.distance_text},
+                 {"voxel_size", statistics.plan.voxel_size},
+                 {"voxel_size_reason", statistics.plan.reason},
+                 {"threads", statistics.threads},
+                 {"mesh", facts_json(statistics.source)},
+                 {"grid",
+                  {{"leaf_nodes", statistics.leaf_nodes},
+                   {"estimated_leaf_nodes", statistics.plan.leaf_nodes},
+                   {"estimated_bytes", statistics.plan.bytes}}},
+                 {"seconds", seconds},
+                 {"peak_memory_bytes", peak_memory()},
+                 {"surface", surface_json(statistics)}};
+  if (run.shell) report["shell"] = shell_json(*run.shell);
+  if (run.inner_surface) report["inner_surface"] = surface_json(*run.inner_surface);
+  return as_text(report);
+}
+
+std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {
+  Json report = {{"version", version()},
+                 {"source", source},
+                 {"offset", offset},
+                 {"valid", result.valid()},
+                 {"distance", result.distance},
+                 {"mesh", facts_json(result.facts)},
+                 {"faults", faults_json(result.faults)},
+                 {"source_crossings", result.source_crossings},
+                 {"more_source_crossings", result.more_source_crossings},
+                 {"crossings_near_source", result.crossings_near_source},
+                 {"vertices_beyond", result.beyond},
+                 {"vertices_on_wrong_side", result.wrong_side},
+                 {"vertices_torn", result.torn},
+                 {"achieved", achieved_json(summarise(result.states, result.achieved, result.distances))},
+                 {"face_interior_error", interior_json(result.interior)}};
+  if (result.obstacles) report["obstacles"] = obstacles_json(*result.obstacles);
+  return as_text(report);
+}
+
+}  // namespace vdb_offset

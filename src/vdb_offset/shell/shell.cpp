@@ -1,0 +1,246 @@
+#include "vdb_offset/shell/shell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/edge_sides.h"
+#include "vdb_offset/pipeline/run_statistics.h"
+#include "vdb_offset/shell/junction_shell.h"
+#include "vdb_offset/shell/shell_facts.h"
+
+namespace vdb_offset {
+namespace {
+
+/// The corners at which the mesh's border edges start, in ascending order.
+std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::uint32_t> place) {
+  std::vector<std::uint32_t> corners;
+  visit_edges(mesh, place, [&](auto, std::span<const EdgeSide> sides) {
+    if (sides.size() == 1) corners.push_back(sides[0].corner);
+  });
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+/// The faces of a mesh that a shell is made of.
+class Part {
+ public:
+  Part(PolygonView mesh, std::span<const std::uint8_t> only) : mesh_(mesh), all_(only.empty()) {
+    if (all_) return;
+    if (only.size() != mesh.face_count())
+      throw InvalidInput("shell: expected a mark for each of " + std::to_string(mesh.face_count()) + " faces, got " +
+                         std::to_string(only.size()));
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+      if (!only[f]) continue;
+      const auto face = mesh.face(f);
+      corners_.insert(corners_.end(), face.begin(), face.end());
+      face_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
+      faces_.push_back(f);
+    }
+  }
+
+  PolygonView view() const { return all_ ? mesh_ : PolygonView{mesh_.positions, corners_, face_begin_}; }
+  const std::vector<std::uint32_t>& faces() const { return faces_; }
+  /// Of the mesh, instead of the part.
+  Shell::RimOrigin in_mesh(Shell::RimOrigin edge) const {
+    if (all_) return edge;
+    edge.corner += mesh_.face_begin[faces_[edge.face]] - face_begin_[edge.face];
+    edge.face = faces_[edge.face];
+    return edge;
+  }
+
+ private:
+  PolygonView mesh_;
+  bool all_;
+  std::vector<std::uint32_t> corners_, face_begin_{0}, faces_;
+};
+
+/// Both skins, without a rim.
+Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner) {
+  const auto vertices = static_cast<std::uint32_t>(outer.size()), corners = mesh.face_begin.back();
+  Shell shell;
+  std::vector<Vec3d>& positions = shell.polygons.positions;
+  std::vector<std::uint32_t>&all_corners = shell.polygons.corners, &face_begin = shell.polygons.face_begin;
+  positions.reserve(2 * outer.size());
+  positions.assign(outer.begin(), outer.end());
+  positions.insert(positions.end(), inner.begin(), inner.end());
+  all_corners.assign(mesh.corners.begin(), mesh.corners.end());
+  all_corners.resize(2 * mesh.corners.size());
+  face_begin.assign(mesh.face_begin.begin(), mesh.face_begin.end());
+  face_begin.resize(2 * mesh.face_count() + 1);
+  for_each_index(mesh.face_count(), [&](std::size_t f) {
+    const auto face = mesh.face(f);
+    face_begin[mesh.face_count() + f + 1] = corners + mesh.face_begin[f + 1];
+    for (std::size_t k = 0; k < face.size(); ++k)
+      all_corners[corners + mesh.face_begin[f] + k] = vertices + face[(face.size() - k) % face.size()];
+  });
+  return shell;
+}
+
+/// Where the shell's vertices stand if those that are one in the mesh are at one place: with a tolerance, or at a seam,
+/// one that has not moved keeps its own.
+std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uint32_t> place_in_mesh) {
+  const std::size_t count = shell.source_vertices();
+  std::vector<Vec3d> positions = shell.polygons.positions;
+  for_each_index(2 * count, [&](std::size_t v) {
+    const std::uint32_t first = place_in_mesh[v % count];
+    if (first != kNone) positions[v] = shell.polygons.positions[v < count ? first : count + first];
+  });
+  return positions;
+}
+
+/// For each vertex of the shell one that stands for its place; kNone for one in no face. Vertices that are one in the
+/// mesh are one in each skin; whether others are, both skins' positions decide, so far as vertices are welded at all.
+std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::uint32_t> place_in_mesh,
+                                     bool by_position) {
+  const std::size_t count = shell.source_vertices();
+  const std::vector<Vec3d> positions = welded_positions(shell, place_in_mesh);
+  if (by_position) return weld_by_position({positions, shell.polygons.corners, shell.polygons.face_begin}, {});
+  std::vector<std::uint32_t> place(2 * count);
+  for_each_index(2 * count, [&](std::size_t v) {
+    place[v] = static_cast<std::uint32_t>(v >= count && positions[v] == positions[v - count] ? v - count : v);
+  });
+  return place;
+}
+
+/// Runs through each border edge against its face on the outer skin, and so with the face's own direction on the inner
+/// one, where faces are reversed.
+void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<const std::uint32_t> place,
+             Shell& shell) {
+  const auto inner = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const std::uint32_t corner : border) {
+    const auto face = std::upper_bound(mesh.face_begin.begin(), mesh.face_begin.end(), corner) - 1;
+    const Shell::RimOrigin edge{static_cast<std::uint32_t>(face - mesh.face_begin.begin()), corner};
+    const std::uint32_t from = mesh.corners[corner], to = mesh.corners[next_corner(mesh, edge)];
+    const std::uint32_t quad[4] = {to, from, from + inner, to + inner};
+    auto& corners = shell.polygons.corners;
+    const std::size_t first = corners.size();
+    for (const std::uint32_t v : quad)
+      if (corners.size() == first || place[v] != place[corners.back()]) corners.push_back(v);
+    while (corners.size() > first && place[corners.back()] == place[corners[first]]) corners.pop_back();
+    const std::size_t size = corners.size() - first;
+    if (size < 3) {
+      corners.resize(first);
+      continue;
+    }
+    shell.polygons.close_face();
+    shell.rim.push_back(edge);
+    ++(size == 4 ? shell.facts.rim_quads : shell.facts.rim_triangles);
+  }
+}
+
+}  // namespace
+
+Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
+                 const Precision& precision, std::span<const std::uint8_t> only) {
+  if (outer.size() != mesh.positions.size() || inner.size() != mesh.positions.size())
+    throw InvalidInput("shell: expected two skins of " + std::to_string(mesh.positions.size()) + " vertices, got " +
+                       std::to_string(outer.size()) + " and " + std::to_string(inner.size()));
+  const Part part(mesh, only);
+  const PolygonView faces = part.view();
+  const std::vector<std::uint32_t> place_in_mesh = weld_by_position(faces, weld);
+  if (2 * mesh.positions.size() >= kNone)
+    throw InvalidInput("shell: expected fewer than 2^31 vertices, got " + std::to_string(mesh.positions.size()));
+  Shell shell = both_skins(faces, outer, inner);
+  const std::vector<std::uint32_t> place = places_of(shell, place_in_mesh, weld.enabled);
+  add_rim(faces, find_border(faces, place_in_mesh), place, shell);
+  count_facts(faces, weld, precision, place, shell);
+  shell.faces = part.faces();
+  for (Shell::RimOrigin& edge : shell.rim) edge = part.in_mesh(edge);
+  return shell;
+}
+
+namespace {
+
+/// How the faces of a part were taken: turned round, or as lying over others; and which of its vertices stayed, as
+/// sheets meet there.
+struct TakenFaces {
+  std::vector<std::uint8_t> turned, repeats, junctions;
+
+  TakenFaces(PolygonView part, const OffsetOptions& options)
+      : turned(part.face_count(), 0), repeats(part.face_count(), 1), junctions(part.positions.size(), 0) {
+    const Surface surface = build_surface(part, options.weld, options.orient);
+    const std::vector<std::uint8_t> found =
+        options.off_source ? find_junctions(surface, part) : std::vector<std::uint8_t>();
+    for (std::size_t v = 0; v < junctions.size() && !found.empty(); ++v)
+      junctions[v] = surface.welded[v] != kNone && found[surface.welded[v]];
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+      repeats[surface.face[t]] = 0;
+      turned[surface.face[t]] |= static_cast<std::uint8_t>(surface.is_turned(t));
+    }
+  }
+};
+
+/// Whether there is anything that two skins with a vertex each cannot tell: sheets that meet, where vertices stay, or
+/// faces that were turned round.
+bool needs_sides(const OffsetResult& result, const TakenFaces& taken) {
+  const auto any = [](const std::vector<std::uint8_t>& marks) {
+    return std::find(marks.begin(), marks.end(), 1) != marks.end();
+  };
+  return any(taken.junctions) || (result.statistics.facts.turned_triangles > 0 && any(taken.turned));
+}
+bool may_need_sides(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options) {
+  if (result.statistics.facts.turned_triangles > 0) return true;
+  for (std::size_t v = 0; options.off_source && v < result.states.size(); ++v)
+    if (result.states[v] == VertexState::Limited && result.positions[v] == mesh.positions[v]) return true;
+  return false;
+}
+
+Shell junction_shell_of(const Part& part, const TakenFaces& taken, std::span<const Vec3d> outer,
+                        std::span<const Vec3d> inner_skin, const OffsetResult& result, const OffsetOptions& options,
+                        const OffsetResult* inner) {
+  const PolygonView faces = part.view();
+  const std::vector<std::uint32_t> place = weld_by_position(faces, options.weld);
+  const auto thickness = [&](std::uint32_t v) -> std::array<double, 2> {
+    const double d = result.distances[v];
+    if (inner) return {d, -inner->distances[v]};
+    return {std::max(d, 0.0), std::max(-d, 0.0)};
+  };
+  Shell shell = make_junction_shell({.sheets = {faces, place, taken.turned, taken.repeats, thickness},
+                                     .outer = outer,
+                                     .inner = inner_skin,
+                                     .junctions = taken.junctions,
+                                     .weld = options.weld,
+                                     .precision = options.precision,
+                                     .to_be_valid = options.collision == Collision::Limit});
+  count_facts(faces, options.weld, options.precision, weld_by_position(shell.polygons.view(), {}), shell);
+  shell.faces = part.faces();
+  for (Shell::RimOrigin& edge : shell.rim) edge = part.in_mesh(edge);
+  return shell;
+}
+
+}  // namespace
+
+Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options, const OffsetResult* inner) {
+  std::vector<Vec3d> out(mesh.positions.begin(), mesh.positions.end()), in = out;
+  for (std::size_t v = 0; v < out.size(); ++v) (result.distances[v] < 0 ? in : out)[v] = result.positions[v];
+  if (inner) in = inner->positions;
+  const auto plain = [&] { return make_shell(mesh, out, in, options.weld, options.precision, options.only); };
+  if (!may_need_sides(mesh, result, options)) return plain();
+  const Part part(mesh, options.only);
+  const TakenFaces taken(part.view(), options);
+  if (!needs_sides(result, taken)) return plain();
+  Shell shell = junction_shell_of(part, taken, out, in, result, options, inner);
+  if (shell.facts.closed && shell.facts.oriented) return shell;
+  // Of sheets too tangled for that, both skins go on through the junctions, where they are in the mesh.
+  Shell simple = plain();
+  simple.facts.junction_vertices = simple.facts.short_junctions = shell.facts.junction_vertices;
+  return simple;
+}
+
+void tell_states(const Shell& shell, OffsetResult& result) {
+  if (shell.kept.empty()) return;
+  for (std::size_t v = 0; v < shell.kept.size(); ++v) {
+    const double kept = shell.kept[v], asked = std::abs(result.distances[v]);
+    if (kept < 0 || asked == 0) continue;
+    if (kept < 1 && !shell.is_junction[v] && result.states[v] != VertexState::Reached) continue;
+    result.states[v] = kept < 1 ? VertexState::Limited : VertexState::Reached;
+    result.achieved[v] = kept * asked;
+  }
+  result.statistics.vertices_by_state = {};
+  count_states(result.states, result.statistics);
+}
+
+}  // namespace vdb_offset

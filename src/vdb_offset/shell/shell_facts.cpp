@@ -1,0 +1,108 @@
+#include "vdb_offset/shell/shell_facts.h"
+
+#include <algorithm>
+
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/edge_sides.h"
+#include "vdb_offset/mesh/triangulate.h"
+#include "vdb_offset/validity/source_crossings.h"
+#include "vdb_offset/validity/triangle_crossings.h"
+
+namespace vdb_offset {
+namespace {
+
+void count_edges(std::span<const std::uint32_t> place, Shell& shell) {
+  ShellFacts& facts = shell.facts;
+  facts.closed = facts.oriented = true;
+  visit_edges(shell.polygons.view(), place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
+    const auto forwards = std::count_if(sides.begin(), sides.end(), [&](const EdgeSide& side) {
+      return place[shell.polygons.corners[side.corner]] == smaller;
+    });
+    facts.border_edges_left += sides.size() == 1;
+    facts.non_manifold_edges += sides.size() > 2;
+    facts.closed = facts.closed && sides.size() % 2 == 0;
+    facts.oriented = facts.oriented && 2 * static_cast<std::size_t>(forwards) == sides.size();
+  });
+}
+
+/// By the divergence theorem, from a corner of the shell so that far-away solids keep their digits.
+double enclosed_volume(PolygonView mesh) {
+  const Vec3d origin = mesh.positions[mesh.corners[0]];
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double six_times = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    triangles.clear();
+    triangulate(mesh.positions, mesh.face(f), triangles);
+    for (const auto& [i, j, k] : triangles)
+      six_times += (mesh.positions[i] - origin).dot((mesh.positions[j] - origin).cross(mesh.positions[k] - origin));
+  }
+  return six_times / 6;
+}
+
+/// Vertices of the mesh at which the skins touch on some face, and whether there are others.
+void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shell) {
+  std::vector<std::uint8_t> pinched(mesh.positions.size(), 0);
+  const std::size_t faces = shell.skin_faces();
+  for (std::size_t f = 0; f < faces; ++f) {
+    const auto outer = shell.polygons.view().face(f), inner = shell.polygons.view().face(faces + f);
+    for (std::size_t k = 0; k < outer.size(); ++k)
+      if (written[outer[k]] == written[inner[(outer.size() - k) % outer.size()]]) pinched[mesh.face(f)[k]] = 1;
+      else shell.facts.has_thickness = true;
+  }
+  shell.facts.pinched_vertices = static_cast<std::size_t>(std::count(pinched.begin(), pinched.end(), 1));
+}
+
+/// Vertices at one place count as one there, though one that has not moved keeps its own coordinates.
+void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written,
+                     std::span<const std::uint32_t> place, const Precision& precision, Shell& shell) {
+  std::vector<Vec3d> joined(written.begin(), written.end());
+  for (std::size_t v = 0; v < joined.size(); ++v)
+    if (place[v] != kNone) joined[v] = written[place[v]];
+  const Surface surface = build_surface({joined, shell.polygons.corners, shell.polygons.face_begin}, {});
+  const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
+  if (pairs.empty()) return;
+  const std::vector<std::uint8_t> near = find_near_crossings(mesh, weld);
+  const auto has_moved = [&](std::uint32_t v) {
+    return !precision.stays(mesh.positions[shell.source_vertex(v)], written[v]);
+  };
+  const auto is_near = [&](std::uint32_t v) { return near[shell.source_vertex(v)] != 0; };
+  const auto any_corner = [&](const TrianglePair& pair, const auto& holds) {
+    for (const auto t : {pair.first, pair.second})
+      for (const auto v : surface.triangles[t])
+        if (holds(surface.representative[v])) return true;
+    return false;
+  };
+  for (const TrianglePair& pair : pairs)
+    ++(!any_corner(pair, has_moved) ? shell.facts.source_crossings
+       : any_corner(pair, is_near)  ? shell.facts.crossings_near_source
+                                    : shell.facts.crossings);
+}
+
+}  // namespace
+
+std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Precision& precision) {
+  std::vector<Vec3d> written = shell.polygons.positions;
+  for (std::uint32_t v = 0; v < written.size(); ++v)
+    written[v] = precision(mesh.positions[shell.source_vertex(v)], written[v]);
+  return written;
+}
+
+std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld) {
+  const Surface surface = build_surface(mesh, weld);
+  const NearCrossings crossings(surface, CrossingFinder(surface, surface.vertices).listed());
+  std::vector<std::uint8_t> near(mesh.positions.size(), 0);
+  for (std::size_t v = 0; v < near.size(); ++v)
+    near[v] = surface.welded[v] != kNone && crossings.is_vertex_near(surface.welded[v]);
+  return near;
+}
+
+void count_facts(PolygonView mesh, const WeldOptions& weld, const Precision& precision,
+                 std::span<const std::uint32_t> place, Shell& shell) {
+  const std::vector<Vec3d> written = written_positions(mesh, shell, precision);
+  count_edges(place, shell);
+  count_pinched(mesh, written, shell);
+  count_crossings(mesh, weld, written, place, precision, shell);
+  shell.facts.volume = enclosed_volume({written, shell.polygons.corners, shell.polygons.face_begin});
+}
+
+}  // namespace vdb_offset

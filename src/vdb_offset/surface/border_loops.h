@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Vertices of a border, one after the other: all around an opening, or from one vertex to another where more than two
+/// edges of borders meet.
+struct BorderLoop {
+  std::vector<std::uint32_t> vertices;  ///< The first one is not repeated at the end.
+  bool closed;
+};
+
+/// The borders of a surface, in the order of their first edges.
+std::vector<BorderLoop> border_loops(const Surface& surface);
+
+}  // namespace vdb_offset

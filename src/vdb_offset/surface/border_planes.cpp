@@ -1,0 +1,408 @@
+#include "vdb_offset/surface/border_planes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/index_set.h"
+#include "vdb_offset/paths/start_direction.h"
+#include "vdb_offset/surface/border_loops.h"
+
+namespace vdb_offset {
+namespace {
+
+// Planes through points of which a file has kept seven digits are off by a few of the last, by these shares of the
+// largest coordinate.
+constexpr double kSevenDigits = 1e-6;
+// Far from the origin that says little: then it is no more than this share of the diagonal.
+constexpr double kRoughest = 1e-5;
+// Least cosine between a way in a plane and the normals of faces that rise from it.
+constexpr double kWithinReach = 0.2;
+// So much of a piece has to be in reach, by its length.
+constexpr double kMostInReach = 0.9;
+// Edges of a piece of a border that can hardly lie in a plane by chance; at right angles to an axis, by design.
+constexpr std::size_t kManyEdges = 4, kFewEdges = 2;
+// A piece has to be so many times wider than that to tell of a plane, and not of a line.
+constexpr double kWideEnough = 8;
+// Where a piece ends, its border leaves the plane by this sine at least.
+constexpr double kLeaves = 0.02;
+// Planes are the same that differ by such an angle.
+constexpr double kSamePlane = 1e-4;
+// Normals of faces in one plane.
+constexpr double kSameNormal = 1e-12;
+
+Vec3d axis_of(int k) {
+  Vec3d axis(0.0);
+  axis[k] = 1;
+  return axis;
+}
+
+bool is_axis(const Vec3d& normal) {
+  return std::abs(normal[0]) == 1 || std::abs(normal[1]) == 1 || std::abs(normal[2]) == 1;
+}
+
+/// A vertex and a plane that is to hold it, by number.
+struct Hold {
+  std::uint32_t vertex, plane;
+  bool operator==(const Hold&) const = default;
+  bool operator<(const Hold& other) const {
+    return vertex != other.vertex ? vertex < other.vertex : plane < other.plane;
+  }
+};
+
+class PlaneFinder {
+ public:
+  PlaneFinder(Surface& surface, double reach) : surface_(surface), reach_(reach) {
+    double largest = 0;
+    for (int k = 0; k < 3; ++k)
+      largest = std::max({largest, std::abs(surface.facts.lower[k]), std::abs(surface.facts.upper[k])});
+    tolerance_ = std::min(kSevenDigits * largest, kRoughest * surface.facts.diagonal);
+  }
+
+  void name(const SymmetryPlane& in_world) {
+    const SymmetryPlane plane{in_world.normal, in_world.offset - in_world.normal.dot(surface_.origin)};
+    const std::size_t before = holds_.size();
+    const std::uint32_t number = number_of(plane, true);
+    for (std::uint32_t v = 0; v < surface_.vertices.size(); ++v)
+      if (is_on(plane, v)) holds_.push_back({v, number});
+    if (holds_.size() == before)
+      throw InvalidInput("symmetry: expected vertices on the plane " + text_of(in_world) + ", found none");
+    named_ = surface_.planes.size();
+  }
+
+  void find() {
+    for (const BorderLoop& loop : border_loops(surface_)) find_in(loop);
+  }
+
+  /// Has conormals tell which planes hold which vertices.
+  void settle() {
+    if (holds_.empty()) return;
+    std::sort(holds_.begin(), holds_.end());
+    if (surface_.conormals.empty()) surface_.conormals.assign(surface_.vertices.size(), Vec3d(0.0));
+    surface_.held.assign(surface_.vertices.size(), 0);
+    for (std::size_t first = 0, last = 0; first < holds_.size(); first = last) {
+      while (last < holds_.size() && holds_[last].vertex == holds_[first].vertex) ++last;
+      settle(std::span(holds_).subspan(first, last - first));
+    }
+    raise_walls();
+  }
+
+ private:
+  static std::string text_of(const SymmetryPlane& plane) {
+    std::string text;
+    for (int k = 0; k < 3; ++k) {
+      if (plane.normal[k] == 0) continue;
+      if (!text.empty()) text += " + ";
+      if (plane.normal[k] != 1) text += std::to_string(plane.normal[k]) + ' ';
+      text += "xyz"[k];
+    }
+    return text + " = " + std::to_string(plane.offset);
+  }
+
+  bool is_on(const SymmetryPlane& plane, std::uint32_t v) const {
+    return std::abs(plane.height(surface_.vertices[v])) <= tolerance_;
+  }
+
+  std::uint32_t number_of(const SymmetryPlane& plane, bool is_wall) {
+    const auto same = std::find_if(surface_.planes.begin(), surface_.planes.end(), [&](const SymmetryPlane& known) {
+      return known.normal == plane.normal && std::abs(known.offset - plane.offset) <= tolerance_;
+    });
+    const auto number = static_cast<std::uint32_t>(same - surface_.planes.begin());
+    if (same == surface_.planes.end()) {
+      surface_.planes.push_back(plane);
+      is_wall_.push_back(is_wall);
+    }
+    is_wall_[number] = is_wall_[number] || is_wall;
+    return number;
+  }
+
+  /// Whether a way at right angles to these leads off all faces around a vertex. What rounding leaves of a normal
+  /// across such a way is none.
+  bool leads_off(std::uint32_t v, std::span<const Vec3d> conormals, double least) const {
+    const Vec3d& normal = surface_.vertex_normals[v];
+    Vec3d along = normal;
+    for (const Vec3d& c : conormals) along -= c * c.dot(along);
+    return along.length() > least * normal.length() && least_cosine(surface_, v, along.unit()) >= least;
+  }
+
+  /// Whether a way in the plane leads off all faces around a vertex of it.
+  bool is_in_reach(std::uint32_t v, const Vec3d& normal) const { return leads_off(v, {&normal, 1}, kWithinReach); }
+
+  /// Whether one of the faces around a vertex lies in the plane: it has to leave that.
+  bool has_face_in(const SymmetryPlane& plane, std::uint32_t v) const {
+    const auto around = surface_.triangles_around(v);
+    return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+      const auto& corners = surface_.triangles[t];
+      return surface_.triangle_normals[t].lengthSqr() > 0 &&
+             std::all_of(corners.begin(), corners.end(), [&](std::uint32_t w) { return is_on(plane, w); });
+    });
+  }
+
+  /// What some vertices lie in.
+  enum class Shape { Line, Plane, Neither };
+  struct Fit {
+    Shape shape;
+    SymmetryPlane plane;
+  };
+
+  /// The plane of some vertices: at right angles to an axis if it may be.
+  Fit fit(std::span<const std::uint32_t> piece) const {
+    const auto at = [&](std::uint32_t v) -> const Vec3d& { return surface_.vertices[v]; };
+    const auto farthest = [&](auto&& distance) {
+      return *std::max_element(piece.begin(), piece.end(),
+                               [&](std::uint32_t a, std::uint32_t b) { return distance(at(a)) < distance(at(b)); });
+    };
+    const Vec3d a = at(piece.front()), b = at(farthest([&](const Vec3d&x) { return (x - a).lengthSqr(); }));
+    const double length = (b - a).length();
+    if (!(length > 0)) return {Shape::Line, {}};
+    const Vec3d along = (b - a) / length;
+    const auto beside = [&](const Vec3d& x) { return (x - a) - along * along.dot(x - a); };
+    const Vec3d aside = beside(at(farthest([&](const Vec3d& x) { return beside(x).lengthSqr(); })));
+    if (!(aside.length() > kWideEnough * tolerance_)) return {Shape::Line, {}};
+    Vec3d normal = along.cross(aside).unit();
+    for (int k = 0; k < 3; ++k)
+      if (spread(piece, axis_of(k)).second <= 2 * tolerance_) normal = axis_of(k);
+    const auto [middle, width] = spread(piece, normal);
+    return {width <= 4 * tolerance_ ? Shape::Plane : Shape::Neither, {normal, middle}};
+  }
+
+  /// The middle of the heights along a normal, and how much there is between them.
+  std::pair<double, double> spread(std::span<const std::uint32_t> piece, const Vec3d& normal) const {
+    double low = normal.dot(surface_.vertices[piece.front()]), high = low;
+    for (const auto v : piece) {
+      const double height = normal.dot(surface_.vertices[v]);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    return {(low + high) / 2, high - low};
+  }
+
+  double length_of(std::span<const std::uint32_t> piece) const {
+    double length = 0;
+    for (std::size_t i = 1; i < piece.size(); ++i)
+      length += (surface_.vertices[piece[i]] - surface_.vertices[piece[i - 1]]).length();
+    return length;
+  }
+
+  /// Holds the vertices of a piece that lies in a plane, if that is within reach.
+  bool hold_piece(std::span<const std::uint32_t> piece, const SymmetryPlane& plane, bool is_wall = true) {
+    std::vector<std::uint8_t> in_reach;
+    for (const auto v : piece) in_reach.push_back(is_in_reach(v, plane.normal));
+    double reached = 0;
+    for (std::size_t i = 1; i < piece.size(); ++i)
+      if (in_reach[i] && in_reach[i - 1]) reached += length_of(piece.subspan(i - 1, 2));
+    if (!(reached >= kMostInReach * length_of(piece))) return false;
+    const std::uint32_t number = number_of(plane, is_wall);
+    for (const auto v : piece)
+      if (!has_face_in(plane, v)) holds_.push_back({v, number});
+    return true;
+  }
+
+  void find_in(const BorderLoop& loop) {
+    std::vector<std::uint32_t> all = loop.vertices;
+    if (loop.closed) {
+      const Fit whole = fit(all);
+      std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(sharpest_corner(all)), all.end());
+      all.push_back(all.front());
+      if (whole.shape == Shape::Plane && (hold_piece(all, whole.plane) || hold_runs(all, whole.plane))) return;
+      if (whole.shape == Shape::Plane) return;
+    }
+    std::size_t first = 0;
+    while (first + 1 < all.size()) first = hold_from(all, first);
+  }
+
+  /// Where a closed border turns most.
+  std::size_t sharpest_corner(std::span<const std::uint32_t> all) const {
+    std::size_t sharpest = 0;
+    double least = 2;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Vec3d& at = surface_.vertices[all[i]];
+      const Vec3d in = at - surface_.vertices[all[(i + all.size() - 1) % all.size()]],
+                  out = surface_.vertices[all[(i + 1) % all.size()]] - at;
+      const double cosine = in.dot(out) / std::sqrt(in.lengthSqr() * out.lengthSqr());
+      if (!(cosine < least)) continue;
+      least = cosine;
+      sharpest = i;
+    }
+    return sharpest;
+  }
+
+  /// Holds those pieces of a border in a plane from which the faces rise, as where only some of its sides do.
+  bool hold_runs(std::span<const std::uint32_t> all, const SymmetryPlane& plane) {
+    bool any = false;
+    for (std::size_t first = 0, last = 0; first < all.size(); first = last + 1) {
+      const auto rises = [&](std::size_t i) { return is_in_reach(all[i], plane.normal); };
+      for (last = first; last < all.size() && rises(last);) ++last;
+      if (last - first > kManyEdges) any = hold_piece(all.subspan(first, last - first), plane) || any;
+    }
+    return any;
+  }
+
+  /// Looks for the longest piece that begins at a vertex of a border and lies in a plane, or on a line. Returns where
+  /// the next one begins.
+  std::size_t hold_from(std::span<const std::uint32_t> all, std::size_t first) {
+    const std::size_t straight = end_of_line(all, first), last = longest_from(all, first, straight);
+    // A straight piece and the first edge behind it always lie in a plane.
+    if (straight - first >= kFewEdges && last <= straight + 1) {
+      hold_line(all.subspan(first, straight - first + 1));
+      return straight;
+    }
+    const auto piece = all.subspan(first, last - first + 1);
+    const Fit found = fit(piece);
+    const bool on_axis = is_axis(found.plane.normal);
+    if (found.shape != Shape::Plane || last - first < (on_axis ? kFewEdges : kManyEdges) ||
+        !leaves_at_ends(all, first, last, found.plane))
+      return first + 1;
+    hold_piece(piece, found.plane);
+    return last;
+  }
+
+  /// Whether a border leaves the plane of a piece abruptly before and behind it. Any smooth one nearly lies in a plane
+  /// for a few edges, here and there, and leaves that little by little.
+  bool leaves_at_ends(std::span<const std::uint32_t> all, std::size_t first, std::size_t last,
+                      const SymmetryPlane& plane) const {
+    const bool closed = all.front() == all.back();
+    const auto leaves = [&](std::uint32_t from, std::uint32_t to) {
+      const Vec3d &a = surface_.vertices[from], &b = surface_.vertices[to];
+      return std::abs(plane.height(b)) > std::max(kLeaves * (b - a).length(), kWideEnough * tolerance_);
+    };
+    if ((first > 0 || closed) && !leaves(all[first], all[first > 0 ? first - 1 : all.size() - 2])) return false;
+    const bool at_end = last + 1 == all.size();
+    return (at_end && !closed) || leaves(all[last], all[at_end ? 1 : last + 1]);
+  }
+
+  /// The last vertex of the straight piece that begins at one.
+  std::size_t end_of_line(std::span<const std::uint32_t> all, std::size_t first) const {
+    const Vec3d &a = surface_.vertices[all[first]], along = surface_.vertices[all[first + 1]] - a;
+    std::size_t last = first + 1;
+    for (; last + 1 < all.size(); ++last) {
+      const Vec3d to = surface_.vertices[all[last + 1]] - a;
+      const double far = along.dot(to);
+      if (!(far > 0 && (to - along * (far / along.lengthSqr())).length() <= 2 * tolerance_)) break;
+    }
+    return last;
+  }
+
+  /// The last vertex up to which all lies in a plane, at least `known`: twice as far for as long as that holds, then by
+  /// halves.
+  std::size_t longest_from(std::span<const std::uint32_t> all, std::size_t first, std::size_t known) const {
+    const auto holds = [&](std::size_t last) {
+      return fit(all.subspan(first, last - first + 1)).shape != Shape::Neither;
+    };
+    std::size_t low = known, high = all.size();
+    for (std::size_t step = 1; low + 1 < high; step *= 2) {
+      const std::size_t next = std::min(low + step, high - 1);
+      if (!holds(next)) high = next;
+      else low = next;
+      if (high < all.size()) break;
+    }
+    while (low + 1 < high) {
+      const std::size_t middle = (low + high) / 2;
+      (holds(middle) ? low : high) = middle;
+    }
+    return low;
+  }
+
+  /// A straight piece along which all faces are in one plane stays in the plane across that, which is no wall to what
+  /// bends farther on.
+  void hold_line(std::span<const std::uint32_t> piece) {
+    const Vec3d along = surface_.vertices[piece.back()] - surface_.vertices[piece.front()];
+    if (piece.size() <= kFewEdges) return;
+    Vec3d across(0.0);
+    for (std::size_t i = 1; i + 1 < piece.size(); ++i) {
+      const Vec3d& c = surface_.conormals[piece[i]];
+      if (c.lengthSqr() == 0) return;
+      if (i == 1) across = c;
+      else if (!(across.dot(c) >= 1 - kSameNormal)) return;
+    }
+    across -= along * (across.dot(along) / along.lengthSqr());
+    if (!(across.lengthSqr() > 0.5)) return;
+    across.normalize();
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(across[k]) >= 1 - kSameNormal) across = axis_of(k);
+    hold_piece(piece, {across, spread(piece, across).first}, false);
+  }
+
+  /// One vertex: in one plane, on the line between two, or where more meet. Planes that are not named give way where
+  /// they leave it no way off its faces. What is at right angles to an axis comes first, to stay so exactly.
+  void settle(std::span<Hold> all) {
+    const std::uint32_t v = all.front().vertex;
+    const auto normal_of = [&](const Hold& each) -> const Vec3d& { return surface_.planes[each.plane].normal; };
+    std::stable_partition(all.begin(), all.end(), [&](const Hold& each) { return is_axis(normal_of(each)); });
+    std::stable_partition(all.begin(), all.end(), [&](const Hold& each) { return each.plane < named_; });
+    std::array<Vec3d, 3> conormal{Vec3d(0.0), Vec3d(0.0), Vec3d(0.0)};
+    std::uint8_t count = 0;
+    for (const Hold& each : all) {
+      Vec3d left = normal_of(each);
+      for (std::uint8_t i = 0; i < count; ++i) left -= conormal[i] * conormal[i].dot(left);
+      if (!(left.length() > kSamePlane)) continue;
+      conormal[count] = left.unit();
+      if (each.plane >= named_ && count > 0 &&
+          (count == 2 || !leads_off(v, std::span(conormal).first(count + 1u), kWithinReach / 2)))
+        continue;
+      if (++count == 3) break;
+    }
+    surface_.held[v] = count;
+    surface_.conormals[v] = conormal[0];
+    if (count == 2) surface_.second_conormals.emplace_back(v, conormal[1]);
+  }
+
+  /// What hangs together with vertices that a plane holds, and is on one side of it, has a wall there.
+  void raise_walls() {
+    std::vector<std::vector<std::uint32_t>> of_plane(surface_.planes.size());
+    for (const auto& [v, number] : holds_) of_plane[number].push_back(v);
+    IndexGatherer region(surface_.vertices.size());
+    for (std::uint32_t number = 0; number < of_plane.size(); ++number) {
+      if (!is_wall_[number]) continue;
+      const SymmetryPlane& plane = surface_.planes[number];
+      const double far = number < named_ ? std::numeric_limits<double>::infinity() : reach_;
+      for (const auto v : of_plane[number]) region.add(v);
+      double low = 0, high = 0;
+      for (std::size_t i = 0; i < region.so_far().size(); ++i)
+        for (const auto t : surface_.triangles_around(region.so_far()[i]))
+          for (const auto v : surface_.triangles[t]) {
+            const double height = plane.height(surface_.vertices[v]);
+            if (!(std::abs(height) <= far)) continue;
+            low = std::min(low, height), high = std::max(high, height);
+            region.add(v);
+          }
+      const double slack = 2 * tolerance_;
+      const bool below = high <= slack, above = low >= -slack;
+      for (const auto v : region.take()) {
+        if (below) surface_.walls.push_back({v, plane, slack});
+        else if (above) surface_.walls.push_back({v, {-plane.normal, -plane.offset}, slack});
+      }
+    }
+    std::stable_sort(surface_.walls.begin(), surface_.walls.end(),
+                     [](const Wall& a, const Wall& b) { return a.vertex < b.vertex; });
+  }
+
+  Surface& surface_;
+  double reach_, tolerance_ = 0;
+  std::size_t named_ = 0;              // the first planes are
+  std::vector<std::uint8_t> is_wall_;  // of each plane
+  std::vector<Hold> holds_;
+};
+
+}  // namespace
+
+void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach) {
+  if (surface.conormals.empty() && options.planes.empty()) return;
+  PlaneFinder finder(surface, reach);
+  for (const SymmetryPlane& plane : options.planes) finder.name(plane);
+  if (options.find && surface.facts.boundary_left > 0) finder.find();
+  finder.settle();
+}
+
+bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack) {
+  if (surface.walls.empty()) return false;
+  const auto [first, last] = std::equal_range(surface.walls.begin(), surface.walls.end(), Wall{vertex, {}, 0},
+                                              [](const Wall& a, const Wall& b) { return a.vertex < b.vertex; });
+  return std::any_of(first, last, [&](const Wall& wall) { return wall.plane.height(x) > wall.slack + slack; });
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/mesh/polygons.h"
+
+/// Planes that vertices stay in: those of symmetry, of half models, and those that borders lie in.
+namespace vdb_offset {
+
+struct Surface;
+
+/// All x with normal . x = offset; the normal has unit length.
+struct SymmetryPlane {
+  Vec3d normal{0.0};
+  double offset = 0;
+
+  double height(const Vec3d& x) const { return normal.dot(x) - offset; }
+};
+
+struct SymmetryOptions {
+  bool find = true;  ///< Borders stay in the planes that they lie in.
+  std::vector<SymmetryPlane>
+      planes;  ///< World coordinates. All vertices on one of these stay in it, whatever is around them.
+};
+
+/// What keeps a vertex on its side of a plane: its places are at heights of 0 or less above that.
+struct Wall {
+  std::uint32_t vertex;
+  SymmetryPlane plane;
+  double slack;  ///< What the input's own rounding may put above it, world units.
+};
+
+/// Decides which vertices of a surface stay in planes, and has its conormals say so: along_border() takes from a vector
+/// what leads out of those planes, exactly where these are at right angles to an axis.
+///
+/// Without being told, that are the vertices of borders, or of pieces of these, that lie in a plane to the precision of
+/// a file of seven digits, if the faces there rise from that plane by at least 12 degrees, so that ways in it lead off
+/// all of them; of straight pieces, those along which the faces are in one plane, too: they stay in the plane across
+/// that. Where the surface lies on one side of a plane, that becomes a wall: of a border's plane for what hangs
+/// together with it no farther off than `reach`, the farthest that vertices go; of a named plane for all that hangs
+/// together. \pre conormals and normals are those of the surface as it stands. \throw InvalidInput if there is no
+/// vertex on a plane that is named
+void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
+
+/// Whether a place of a vertex is beyond one of its walls, by more than `slack`.
+bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack);
+
+}  // namespace vdb_offset

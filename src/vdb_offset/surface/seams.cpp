@@ -1,0 +1,384 @@
+#include "vdb_offset/surface/seams.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "vdb_offset/base/hash_mix.h"
+#include "vdb_offset/mesh/edge_sides.h"
+
+namespace vdb_offset {
+namespace {
+
+// What a few roundings make of one place, in each of three coordinates.
+constexpr double kUnitsApart = 4;
+// Of the diagonal: a crack that no one means, whatever the coordinates could tell apart.
+constexpr double kNothingOfDiagonal = 1e-9;
+// Borders are told of that are closer to each other than this share of their edges.
+constexpr double kSuspiciousOfEdge = 5e-3;
+// An edge that is not longer than so many gaps does not say which way a border runs.
+constexpr double kLongInGaps = 4;
+
+struct BorderEdge {
+  std::uint32_t a, b;
+};
+
+/// The sides of all faces, summed up by what their edges hash to; sides of both directions cancel out. Only edges in a
+/// bucket that did not come to zero can be borders: none at all on a closed surface.
+class EdgeSums {
+ public:
+  EdgeSums(PolygonView polygons, std::span<const std::uint32_t> place) : sums_(kBuckets, 0) {
+    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts(kBuckets, 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), kRun), [&](const auto& range) {
+      std::vector<std::uint64_t>& part = parts.local();
+      for (std::size_t f = range.begin(); f != range.end(); ++f)
+        visit_sides(polygons, place, f, [&](auto, std::uint32_t from, std::uint32_t to) {
+          const std::uint64_t hash = mix(key(from, to)), value = mix(hash + 1);
+          part[hash % kBuckets] += from < to ? value : -value;
+        });
+    });
+    for (const std::vector<std::uint64_t>& part : parts)
+      for (std::size_t i = 0; i < kBuckets; ++i) sums_[i] += part[i];
+  }
+  bool all_cancel() const {
+    return std::all_of(sums_.begin(), sums_.end(), [](std::uint64_t sum) { return sum == 0; });
+  }
+  bool cancels(std::uint32_t from, std::uint32_t to) const { return sums_[mix(key(from, to)) % kBuckets] == 0; }
+
+  static std::uint64_t key(std::uint32_t from, std::uint32_t to) {
+    return std::uint64_t{std::min(from, to)} << 32 | std::max(from, to);
+  }
+
+ private:
+  // As many as stay in a core's cache.
+  static constexpr std::size_t kBuckets = 1 << 15, kRun = 1 << 14;
+
+  std::vector<std::uint64_t> sums_;
+};
+
+/// The edges of a single face.
+std::vector<BorderEdge> find_single_edges(PolygonView polygons, std::span<const std::uint32_t> place) {
+  const EdgeSums sums(polygons, place);
+  if (sums.all_cancel()) return {};
+  std::atomic<std::size_t> count = 0;
+  const auto for_each_doubtful = [&](auto&& visit) {
+    for_each_side(polygons, place, [&](auto, std::uint32_t from, std::uint32_t to) {
+      if (!sums.cancels(from, to)) visit(EdgeSums::key(from, to));
+    });
+  };
+  for_each_doubtful([&](std::uint64_t) { count.fetch_add(1, std::memory_order_relaxed); });
+  std::vector<std::uint64_t> keys(count);
+  count = 0;
+  for_each_doubtful([&](std::uint64_t key) { keys[count.fetch_add(1, std::memory_order_relaxed)] = key; });
+  std::sort(keys.begin(), keys.end());
+  std::vector<BorderEdge> border;
+  for (std::size_t i = 0; i < keys.size();) {
+    std::size_t end = i + 1;
+    while (end < keys.size() && keys[end] == keys[i]) ++end;
+    if (end == i + 1)
+      border.push_back({static_cast<std::uint32_t>(keys[i] >> 32), static_cast<std::uint32_t>(keys[i])});
+    i = end;
+  }
+  return border;
+}
+
+/// The vertices of a border and their neighbours along it.
+class Borders {
+ public:
+  Borders(std::span<const Vec3d> positions, const std::vector<BorderEdge>& edges) : positions_(positions) {
+    for (const auto& [a, b] : edges) {
+      ends_.push_back({a, b});
+      ends_.push_back({b, a});
+    }
+    std::sort(ends_.begin(), ends_.end(),
+              [](const BorderEdge& l, const BorderEdge& r) { return std::pair(l.a, l.b) < std::pair(r.a, r.b); });
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      if (i > 0 && ends_[i - 1].a == ends_[i].a) continue;
+      vertices_.push_back(ends_[i].a);
+      begin_.push_back(i);
+    }
+    begin_.push_back(ends_.size());
+    std::vector<double> lengths;
+    lengths.reserve(edges.size());
+    for (const auto& [a, b] : edges) lengths.push_back((positions[a] - positions[b]).length());
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    median_edge_ = *middle;
+  }
+
+  const std::vector<std::uint32_t>& vertices() const { return vertices_; }
+  double median_edge() const { return median_edge_; }
+  const Vec3d& place(std::size_t i) const { return positions_[vertices_[i]]; }
+
+  /// How far apart two borders are at their i-th and j-th vertex and along the shorter of the edges that leave there:
+  /// of all such pairs of edges, that of the closest. Infinite if no two run along each other, no farther apart than
+  /// that share of their length.
+  double gap(std::size_t i, std::size_t j, double most_share) const {
+    const double apart = (place(i) - place(j)).length();
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t p : neighbours(i))
+      for (const std::uint32_t q : neighbours(j)) {
+        if (p == vertices_[j] || q == vertices_[i]) continue;
+        Vec3d along = positions_[q] - place(j), end = positions_[p] - place(j);
+        if (along.lengthSqr() < (positions_[p] - place(i)).lengthSqr()) {
+          along = positions_[p] - place(i);
+          end = positions_[q] - place(i);
+        }
+        // From here `end` is the nearer one, and to be found on the way to the farther one.
+        const double length = end.length(), share = along.lengthSqr() > 0 ? along.dot(end) / along.lengthSqr() : 0;
+        const double off = std::max(apart, (end - along * std::clamp(share, 0.0, 1.0)).length());
+        if (off <= most_share * length) least = std::min(least, off);
+      }
+    return least;
+  }
+
+ private:
+  struct Neighbours {
+    const BorderEdge *first, *last;
+    struct Iterator {
+      const BorderEdge* at;
+      std::uint32_t operator*() const { return at->b; }
+      Iterator& operator++() { return ++at, *this; }
+      bool operator!=(const Iterator& other) const { return at != other.at; }
+    };
+    Iterator begin() const { return {first}; }
+    Iterator end() const { return {last}; }
+  };
+  Neighbours neighbours(std::size_t i) const { return {ends_.data() + begin_[i], ends_.data() + begin_[i + 1]}; }
+
+  std::span<const Vec3d> positions_;
+  std::vector<BorderEdge> ends_;  // each edge both ways, by where it begins
+  std::vector<std::uint32_t> vertices_;
+  std::vector<std::size_t> begin_;
+  double median_edge_ = 0;
+};
+
+/// Calls visit(i, j), i < j, for the border's vertices that are no farther apart than the radius.
+template <class Visit>
+void for_each_pair(const Borders& borders, double radius, Visit&& visit) {
+  const double side = 8 * radius;  // so that most look into one cell alone
+  using Cell = std::array<std::int64_t, 3>;
+  const auto cell_of = [&](const Vec3d& p) {
+    Cell c;
+    for (int k = 0; k < 3; ++k) c[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(p[k] / side));
+    return c;
+  };
+  const auto hash = [](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return mix(static_cast<std::uint64_t>(x) + mix(static_cast<std::uint64_t>(y) + mix(static_cast<std::uint64_t>(z))));
+  };
+  const std::size_t count = borders.vertices().size();
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> cells(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Cell c = cell_of(borders.place(i));
+    cells[i] = {hash(c[0], c[1], c[2]), i};
+  }
+  std::sort(cells.begin(), cells.end());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Cell low = cell_of(borders.place(i) - Vec3d(radius)), high = cell_of(borders.place(i) + Vec3d(radius));
+    for (std::int64_t x = low[0]; x <= high[0]; ++x)
+      for (std::int64_t y = low[1]; y <= high[1]; ++y)
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const std::uint64_t wanted = hash(x, y, z);
+          for (auto at = std::lower_bound(cells.begin(), cells.end(), std::pair(wanted, i + 1));
+               at != cells.end() && at->first == wanted; ++at)
+            if ((borders.place(i) - borders.place(at->second)).lengthSqr() <= radius * radius) visit(i, at->second);
+        }
+  }
+}
+
+struct Extent {
+  double largest = 0, diagonal = 0;
+};
+
+/// Of the vertices in use.
+Extent extent_of(PolygonView polygons, std::span<const std::uint32_t> first) {
+  Vec3d lower(std::numeric_limits<double>::max()), upper(-lower);
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    if (first[v] == kNone) continue;
+    lower = openvdb::math::minComponent(lower, polygons.positions[v]);
+    upper = openvdb::math::maxComponent(upper, polygons.positions[v]);
+  }
+  Extent extent{0, (upper - lower).length()};
+  for (int k = 0; k < 3; ++k) extent.largest = std::max({extent.largest, std::abs(lower[k]), std::abs(upper[k])});
+  return extent;
+}
+
+/// Vertices that are one; the lowest stands for all.
+class SeamClusters {
+ public:
+  explicit SeamClusters(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(std::uint32_t i, std::uint32_t j) {
+    i = root(i), j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Vertices to be welded: what `first` becomes, for those of the border.
+class SeamWelder {
+ public:
+  SeamWelder(PolygonView polygons, const Borders& borders, std::vector<std::uint32_t>& first)
+      : polygons_(polygons), borders_(borders), first_(first), clusters_(borders.vertices().size()) {}
+
+  void unite(std::uint32_t i, std::uint32_t j) { clusters_.unite(i, j); }
+
+  void weld(double tolerance, SeamFacts& facts) {
+    settle(tolerance);
+    refuse_collapsing();
+    for (std::uint32_t i = 0; i < refused_.size(); ++i) {
+      const std::uint32_t root = clusters_.root(i);
+      if (root == i || refused_[root]) continue;
+      ++facts.vertices;
+      facts.widest = std::max(facts.widest, (borders_.place(i) - borders_.place(root)).length());
+      target_[borders_.vertices()[i]] = borders_.vertices()[root];
+    }
+    if (facts.vertices == 0) return;
+    for_each_index(first_.size(), [&](std::size_t v) {
+      if (first_[v] != kNone) first_[v] = target_[first_[v]];
+    });
+  }
+
+ private:
+  /// Chains that lead farther than a crack is wide are none.
+  void settle(double tolerance) {
+    refused_.assign(borders_.vertices().size(), 0);
+    target_.resize(first_.size());
+    std::iota(target_.begin(), target_.end(), 0u);
+    root_at_.assign(first_.size(), kNone);
+    for (std::uint32_t i = 0; i < refused_.size(); ++i) {
+      const std::uint32_t root = clusters_.root(i);
+      if ((borders_.place(i) - borders_.place(root)).length() > 2 * tolerance) refused_[root] = 1;
+      root_at_[borders_.vertices()[i]] = root;
+    }
+  }
+  /// A face keeps its corners apart that follow each other.
+  void refuse_collapsing() {
+    for_each_side(polygons_, first_, [&](auto, std::uint32_t from, std::uint32_t to) {
+      if (root_at_[from] != kNone && root_at_[from] == root_at_[to])
+        std::atomic_ref(refused_[root_at_[from]]).store(1, std::memory_order_relaxed);
+    });
+  }
+
+  PolygonView polygons_;
+  const Borders& borders_;
+  std::vector<std::uint32_t>& first_;
+  SeamClusters clusters_;
+  std::vector<std::uint8_t> refused_;            // of each root
+  std::vector<std::uint32_t> target_, root_at_;  // of each vertex of the mesh
+};
+
+/// The decimal exponent of the last digit that the shortest form of a number has; 0 has none.
+int last_place(double number) {
+  char text[40];
+  const char* const end = std::to_chars(std::begin(text), std::end(text), number, std::chars_format::scientific).ptr;
+  const char* const mark = std::find(static_cast<const char*>(text), end, 'e');
+  const auto digits = static_cast<int>(
+      std::count_if(static_cast<const char*>(text), mark, [](char c) { return c >= '0' && c <= '9'; }));
+  int exponent = 0;
+  std::from_chars(mark[1] == '+' ? mark + 2 : mark + 1, end, exponent);
+  return exponent - (digits - 1);
+}
+
+/// Whether a number is one of single precision, or the shortest decimal form of one.
+bool is_single(double number) {
+  const auto narrow = static_cast<float>(number);
+  if (static_cast<double>(narrow) == number) return true;
+  char text[40];
+  const char* const end = std::to_chars(std::begin(text), std::end(text), narrow).ptr;
+  double back = 0;
+  std::from_chars(text, end, back);
+  return back == number;
+}
+
+/// Of numbers within a factor of ten, which have all the digits that were written, the last place of the largest ones;
+/// 0 if most have fewer digits, or all have so few that they may well be exact.
+double decimal_unit(const std::vector<double>& numbers, double most) {
+  constexpr double kFewDigits = 1.001e-5;  // fewer than six
+  if (numbers.empty()) return 0;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  int least = std::numeric_limits<int>::max(), of_largest = least;
+  std::vector<int> places(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    places[i] = last_place(numbers[i]);
+    least = std::min(least, places[i]);
+    if (std::abs(numbers[i]) >= power) of_largest = std::min(of_largest, places[i]);
+  }
+  const auto as_many = std::count_if(places.begin(), places.end(), [&](int place) { return place <= least + 1; });
+  if (2 * static_cast<std::size_t>(as_many) < places.size()) return 0;
+  // As many digits for each leave the largest a place less; round ones tell nothing.
+  const double unit = std::pow(10.0, of_largest <= least + 1 ? of_largest : least);
+  return unit <= kFewDigits * most ? unit : 0;
+}
+
+double tolerance_of(const Borders& borders, const Extent& extent, double precision) {
+  double unit = precision * extent.largest;
+  if (precision == 0) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < borders.vertices().size(); ++i)
+      for (int k = 0; k < 3; ++k) numbers.push_back(borders.place(i)[k]);
+    unit = unit_in_last_place(numbers, extent.largest);
+  }
+  return std::max(kUnitsApart * unit, kNothingOfDiagonal * extent.diagonal);
+}
+
+}  // namespace
+
+double unit_in_last_place(const std::vector<double>& numbers, double largest) {
+  // Small ones tell nothing: zeros may come as whatever a computation has left of them.
+  const auto those_from = [&](double least) {
+    std::vector<double> some;
+    std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(some),
+                 [&](double number) { return number != 0 && std::abs(number) >= least; });
+    return some;
+  };
+  double most = 0;
+  for (const double number : numbers) most = std::max(most, std::abs(number));
+  const std::vector<double> large = those_from(most / 1000);
+  const bool single = !large.empty() && std::all_of(large.begin(), large.end(), is_single);
+  const int digits = single ? std::numeric_limits<float>::digits : std::numeric_limits<double>::digits;
+  // Decimal digits are rounded once, at the end: two of them differ by a unit at most.
+  return std::max(std::ldexp(1.0, std::ilogb(largest) - digits + 1), decimal_unit(those_from(most / 10), most) / 2);
+}
+
+SeamFacts close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first) {
+  SeamFacts facts;
+  const std::vector<BorderEdge> edges = find_single_edges(polygons, first);
+  if (edges.empty()) return facts;
+  const Extent extent = extent_of(polygons, first);
+  if (!(extent.diagonal > 0) || !std::isfinite(extent.diagonal)) return facts;
+  const Borders borders(polygons.positions, edges);
+  const double tolerance = tolerance_of(borders, extent, precision);
+  SeamWelder welder(polygons, borders, first);
+  std::vector<std::uint8_t> suspicious(borders.vertices().size(), 0);
+  for_each_pair(borders, std::max(tolerance, kSuspiciousOfEdge * borders.median_edge()), [&](auto i, auto j) {
+    const double gap = borders.gap(i, j, 1 / kLongInGaps);
+    if (gap <= tolerance) {
+      welder.unite(i, j);
+    } else if (const double close = borders.gap(i, j, kSuspiciousOfEdge); std::isfinite(close)) {
+      suspicious[i] = suspicious[j] = 1;
+      facts.widest_near = std::max(facts.widest_near, close);
+    }
+  });
+  facts.near_vertices = static_cast<std::size_t>(std::count(suspicious.begin(), suspicious.end(), 1));
+  welder.weld(tolerance, facts);
+  return facts;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,426 @@
+#include "vdb_offset/surface/surface.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "vdb_offset/base/bucket_sort.h"
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/morton.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/triangulate.h"
+#include "vdb_offset/surface/connect_faces.h"
+#include "vdb_offset/surface/weld.h"
+
+namespace vdb_offset {
+namespace {
+
+/// Triangles with a repeated corner are lines that would only make edges of three faces. Those stay that hold a vertex
+/// which is in no other.
+void leave_out_lines(Surface& surface) {
+  if (std::none_of(surface.triangles.begin(), surface.triangles.end(), repeats_corner)) return;
+  std::vector<std::uint8_t> held(surface.vertices.size(), 0);
+  for (const auto& t : surface.triangles)
+    if (!repeats_corner(t)) held[t[0]] = held[t[1]] = held[t[2]] = 1;
+  keep_triangles(surface, [&](std::size_t i) {
+    const auto& t = surface.triangles[i];
+    return !repeats_corner(t) || !held[t[0]] || !held[t[1]] || !held[t[2]];
+  });
+}
+
+void count_corners(PolygonView polygons, MeshFacts& facts) {
+  for (std::size_t f = 0; f < polygons.face_count();) {
+    const std::size_t first = f, corners = polygons.face(f).size();
+    while (f < polygons.face_count() && polygons.face(f).size() == corners) ++f;
+    facts.faces_by_corners[corners] += f - first;
+  }
+}
+
+/// Each face of n corners has n - 2 triangles.
+void split_faces(PolygonView polygons, Surface& surface) {
+  count_corners(polygons, surface.facts);
+  surface.triangles.resize(polygons.corners.size() - 2 * polygons.face_count());
+  surface.face.resize(surface.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), 1024), [&](const auto& range) {
+    std::vector<std::uint32_t> face;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t f = range.begin(); f != range.end(); ++f) {
+      face.clear();
+      triangles.clear();
+      for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
+      triangulate(surface.vertices, face, triangles);
+      const auto at = static_cast<std::ptrdiff_t>(polygons.face_begin[f] - 2 * f);
+      std::copy(triangles.begin(), triangles.end(), surface.triangles.begin() + at);
+      std::fill_n(surface.face.begin() + at, triangles.size(), static_cast<std::uint32_t>(f));
+    }
+  });
+  leave_out_lines(surface);
+}
+
+/// Numbers the vertices as the triangles come to use them: of all corners those where one is used for the first time
+/// are counted, in runs.
+std::vector<std::uint32_t> order_of_use(const Surface& surface) {
+  constexpr std::size_t kRun = 1 << 16;
+  const std::size_t corners = 3 * surface.triangles.size(), runs = (corners + kRun - 1) / kRun;
+  const auto vertex = [&](std::size_t i) { return surface.triangles[i / 3][i % 3]; };
+  std::vector<std::uint32_t> first(surface.vertices.size(), kNone);
+  for_each_index(corners, [&](std::size_t i) {
+    const std::atomic_ref slot(first[vertex(i)]);
+    std::uint32_t known = slot.load(std::memory_order_relaxed);
+    while (i < known && !slot.compare_exchange_weak(known, static_cast<std::uint32_t>(i), std::memory_order_relaxed)) {
+    }
+  });
+  const auto visit_first = [&](std::size_t run, auto&& visit) {
+    for (std::size_t i = run * kRun; i < std::min(corners, (run + 1) * kRun); ++i)
+      if (first[vertex(i)] == i) visit(vertex(i));
+  };
+  std::vector<std::size_t> before(runs + 1, 0);
+  for_each_index(
+      runs, [&](std::size_t run) { visit_first(run, [&](std::uint32_t) { ++before[run + 1]; }); }, 1);
+  std::partial_sum(before.begin(), before.end(), before.begin());
+  std::vector<std::uint32_t> order(surface.vertices.size());
+  for_each_index(
+      runs,
+      [&](std::size_t run) {
+        std::size_t at = before[run];
+        visit_first(run, [&](std::uint32_t v) { order[at++] = v; });
+      },
+      1);
+  // A face may be in use and yet give no triangle.
+  std::size_t at = before.back();
+  for (std::uint32_t v = 0; at < order.size() && v < first.size(); ++v)
+    if (first[v] == kNone) order[at++] = v;
+  return order;
+}
+
+void renumber_vertices(Surface& surface) {
+  const std::vector<std::uint32_t> order = order_of_use(surface);
+  std::vector<Vec3d> vertices(order.size());
+  std::vector<std::uint32_t> representative(order.size()), number(order.size());
+  for_each_index(order.size(), [&](std::size_t i) {
+    vertices[i] = surface.vertices[order[i]];
+    representative[i] = surface.representative[order[i]];
+    number[order[i]] = static_cast<std::uint32_t>(i);
+  });
+  surface.vertices = std::move(vertices);
+  surface.representative = std::move(representative);
+  for_each_index(surface.triangles.size(), [&](std::size_t t) {
+    for (auto& v : surface.triangles[t]) v = number[v];
+  });
+  for_each_index(surface.welded.size(), [&](std::size_t v) {
+    if (surface.welded[v] != kNone) surface.welded[v] = number[surface.welded[v]];
+  });
+}
+
+void find_bounds(Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  facts.lower = facts.upper = surface.vertices.front();
+  for (const Vec3d& p : surface.vertices) {
+    facts.lower = openvdb::math::minComponent(facts.lower, p);
+    facts.upper = openvdb::math::maxComponent(facts.upper, p);
+  }
+  facts.diagonal = (facts.upper - facts.lower).length();
+  if (!std::isfinite(facts.diagonal))
+    throw InvalidInput("mesh: expected a bounding box with a finite diagonal, got coordinates too far apart");
+}
+
+/// Sorts triangles and vertices along a space-filling curve: whoever works in one place finds them together in memory,
+/// however the file orders them.
+void sort_in_space(Surface& surface) {
+  const MortonCurve curve(surface.facts.lower, surface.facts.upper);
+  const std::size_t count = surface.triangles.size();
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> places(count);
+  for_each_index(count, [&](std::size_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3d centre = surface.vertices[a] / 3.0 + surface.vertices[b] / 3.0 + surface.vertices[c] / 3.0;
+    places[t] = {curve(centre), static_cast<std::uint32_t>(t)};
+  });
+  tbb::parallel_sort(places.begin(), places.end());
+  std::vector<std::array<std::uint32_t, 3>> triangles(count);
+  std::vector<std::uint32_t> faces(count);
+  for_each_index(count, [&](std::size_t i) {
+    triangles[i] = surface.triangles[places[i].second];
+    faces[i] = surface.face[places[i].second];
+  });
+  surface.triangles = std::move(triangles);
+  surface.face = std::move(faces);
+  renumber_vertices(surface);
+}
+
+struct TriangleShape {
+  Vec3d normal;  // unit, or zero for a needle
+  double area;
+};
+
+TriangleShape shape_of(const Surface& surface, std::size_t t) {
+  const auto& [i, j, k] = surface.triangles[t];
+  const Vec3d ab = surface.vertices[j] - surface.vertices[i], ac = surface.vertices[k] - surface.vertices[i],
+              bc = ac - ab, n = ab.cross(ac);
+  if (is_needle(n.lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}))) return {Vec3d(0.0), 0};
+  const double twice = n.length();
+  return {n / twice, twice / 2};
+}
+
+/// Summed up in runs of one length, for any number of threads; marks the faces of triangles that have an area.
+double add_areas(const Surface& surface, std::vector<std::uint8_t>& degenerate) {
+  constexpr std::size_t kRun = 4096;
+  std::vector<double> sums((surface.triangles.size() + kRun - 1) / kRun, 0);
+  for_each_index(
+      sums.size(),
+      [&](std::size_t run) {
+        for (std::size_t t = run * kRun; t < std::min(surface.triangles.size(), (run + 1) * kRun); ++t) {
+          const double area = shape_of(surface, t).area;
+          sums[run] += area;
+          if (area > 0) std::atomic_ref(degenerate[surface.face[t]]).store(0, std::memory_order_relaxed);
+        }
+      },
+      1);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+/// Whether a face has a place at two of its corners.
+bool repeats_place(PolygonView polygons, const Surface& surface, std::size_t f, std::vector<std::uint32_t>& places) {
+  places.clear();
+  for (const auto v : polygons.face(f)) places.push_back(surface.welded[v]);
+  std::sort(places.begin(), places.end());
+  return std::adjacent_find(places.begin(), places.end()) != places.end();
+}
+
+void measure(PolygonView polygons, Surface& surface) {
+  MeshFacts& facts = surface.facts;
+  std::vector<std::uint8_t> degenerate(polygons.face_count(), 1);
+  facts.area = add_areas(surface, degenerate);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), 1024), [&](const auto& range) {
+    std::vector<std::uint32_t> places;
+    for (std::size_t f = range.begin(); f != range.end(); ++f)
+      if (repeats_place(polygons, surface, f, places)) degenerate[f] = 1;
+  });
+  facts.degenerate_faces = static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
+}
+
+double angle_at(const Vec3d& tip, const Vec3d& a, const Vec3d& b) {
+  const Vec3d u = a - tip, v = b - tip;
+  return std::atan2(u.cross(v).length(), u.dot(v));
+}
+
+void find_normals(Surface& surface) {
+  surface.triangle_normals.resize(surface.triangles.size());
+  for_each_index(surface.triangles.size(),
+                 [&](std::size_t t) { surface.triangle_normals[t] = shape_of(surface, t).normal; });
+  surface.vertex_normals.resize(surface.vertices.size());
+  for_each_index(surface.vertices.size(), [&](std::size_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    Vec3d sum(0.0);
+    for (const auto t : surface.triangles_around(vertex)) {
+      const auto& corners = surface.triangles[t];
+      for (int k = 0; k < 3; ++k)
+        if (corners[k] == vertex)
+          sum +=
+              surface.triangle_normals[t] * angle_at(surface.vertices[vertex], surface.vertices[corners[(k + 1) % 3]],
+                                                     surface.vertices[corners[(k + 2) % 3]]);
+    }
+    surface.vertex_normals[v] = sum;
+  });
+}
+
+}  // namespace
+
+double MeshFacts::tolerance_above(double length) {
+  constexpr double kSpare = 1.5;  // chains of such gaps are a little longer
+  return std::pow(10.0, std::ceil(std::log10(kSpare * length)));
+}
+
+Vec3d Surface::pseudonormal(std::uint32_t triangle, Feature feature) const {
+  if (feature == Feature::Face) return triangle_normals[triangle];
+  const auto f = static_cast<std::uint32_t>(feature);
+  if (f < 3) return vertex_normals[triangles[triangle][f]];
+  const std::uint32_t first = 3 * triangle + (f - 3);
+  Vec3d sum = triangle_normals[triangle];
+  for (std::uint32_t e = next_around_edge[first]; e != first; e = next_around_edge[e]) sum += triangle_normals[e / 3];
+  return sum;
+}
+
+Vec3d Surface::across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& way) const {
+  if (feature == Feature::Face) return away * (away.dot(way) / away.lengthSqr());
+  const auto f = static_cast<std::uint32_t>(feature);
+  if (f < 3) return way;
+  const auto& corners = triangles[triangle];
+  const Vec3d edge = vertices[corners[(f - 2) % 3]] - vertices[corners[f - 3]];
+  return way - edge * (edge.dot(way) / edge.lengthSqr());
+}
+
+TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const {
+  TrianglePoint best = closest_on(triangle, x);
+  const auto is_nearer = [&](std::uint32_t other) {
+    const TrianglePoint candidate = closest_on(other, x);
+    if (candidate.squared_distance >= best.squared_distance) return false;
+    best = candidate;
+    triangle = other;
+    return true;
+  };
+  // From a point p on an edge or a corner, a triangle leads nearer to x only if one of its corners w does:
+  // (w - p) . (x - p) > 0. Inside an edge x - p is at right angles to it, and the corner across decides.
+  for (bool moved = true; moved && best.feature != Feature::Face;) {
+    moved = false;
+    const std::uint32_t from = triangle;
+    const auto feature = static_cast<std::uint32_t>(best.feature);
+    const Vec3d p = best.point, towards = x - p;
+    const auto lead = [&](std::uint32_t v) { return towards.dot(vertices[v] - p); };
+    if (feature < 3) {
+      // The one that leads nearest first: it is likely to be the only one to look at.
+      const std::uint32_t centre = triangles[from][feature];
+      const auto around = triangles_around(centre);
+      std::uint32_t first = from;
+      double most = 0;
+      for (const auto other : around) {
+        if (other == from) continue;
+        const auto& t = triangles[other];
+        const std::size_t corner = t[0] == centre ? 0 : t[1] == centre ? 1 : 2;
+        const double leads = std::max(lead(t[(corner + 1) % 3]), lead(t[(corner + 2) % 3]));
+        if (leads > most) {
+          most = leads;
+          first = other;
+        }
+      }
+      if (first == from) break;
+      moved = is_nearer(first);
+      for (std::size_t i = 0; !moved && i < around.size(); ++i)
+        moved = around[i] != from && around[i] != first && is_nearer(around[i]);
+    } else {
+      const std::uint32_t edge = 3 * from + (feature - 3);
+      for (std::uint32_t e = next_around_edge[edge]; e != edge && !moved; e = next_around_edge[e])
+        moved = lead(triangles[e / 3][(e + 2) % 3]) > 0 && is_nearer(e / 3);
+    }
+  }
+  return best;
+}
+
+void list_incident_triangles(Surface& surface) {
+  Buckets buckets(surface.vertices.size());
+  const auto for_each_corner = [&](auto&& visit) {
+    for_each_index(surface.triangles.size(), [&](std::size_t t) {
+      for (const auto v : surface.triangles[t]) visit(v, static_cast<std::uint32_t>(t));
+    });
+  };
+  for_each_corner([&](std::uint32_t v, std::uint32_t) { buckets.count(v); });
+  surface.incident.resize(buckets.close());
+  for_each_corner([&](std::uint32_t v, std::uint32_t t) { surface.incident[buckets.next(v)] = t; });
+  surface.incident_begin = buckets.take();
+  for_each_index(surface.vertices.size(), [&](std::size_t v) {
+    std::sort(surface.incident.begin() + surface.incident_begin[v],
+              surface.incident.begin() + surface.incident_begin[v + 1]);
+  });
+}
+
+Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient orient) {
+  require_usable(polygons);
+  return build_welded(polygons, weld_usable(polygons, options), orient);
+}
+
+Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient) {
+  Surface surface;
+  give_vertices(polygons, welding, surface);
+  find_bounds(surface);
+  split_faces(polygons, surface);
+  sort_in_space(surface);
+  measure(polygons, surface);
+  join_and_settle(polygons, orient, surface);
+  list_incident_triangles(surface);
+  return surface;
+}
+
+void place(Surface& surface, double voxel_size) {
+  const double leaf = 8 * voxel_size;
+  Vec3d origin;
+  for (int k = 0; k < 3; ++k) origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);
+  place_in_frame(surface, origin);
+}
+
+namespace {
+
+/// A border vertex has two edges on it; where it has more, several borders meet.
+void find_conormals(Surface& surface) {
+  surface.conormals.clear();
+  if (surface.facts.boundary_left == 0) return;
+  surface.conormals.assign(surface.vertices.size(), Vec3d(0.0));
+  std::vector<std::uint8_t> edges(surface.vertices.size(), 0);
+  for (std::uint32_t edge = 0; edge < surface.next_around_edge.size(); ++edge) {
+    if (surface.next_around_edge[edge] != edge) continue;
+    const std::uint32_t from = surface.from(edge), to = surface.to(edge);
+    const Vec3d over = (surface.vertices[to] - surface.vertices[from]).cross(surface.triangle_normals[edge / 3]);
+    for (const auto v : {from, to}) {
+      if (over.lengthSqr() > 0) surface.conormals[v] += over.unit();
+      edges[v] = static_cast<std::uint8_t>(std::min(edges[v] + 1, 3));
+    }
+  }
+  constexpr double kTurnsBack = 0.1;  // a border that does leads nowhere
+  for (std::size_t v = 0; v < edges.size(); ++v) {
+    Vec3d& c = surface.conormals[v];
+    const double length = c.length();
+    c = edges[v] == 2 && length > kTurnsBack ? c / length : Vec3d(0.0);
+  }
+}
+
+}  // namespace
+
+void place_in_frame(Surface& surface, const Vec3d& origin) {
+  surface.origin = origin;
+  for_each_index(surface.vertices.size(), [&](std::size_t v) { surface.vertices[v] -= surface.origin; });
+  find_normals(surface);
+  find_conormals(surface);
+}
+
+Vec3d Surface::along_line(std::uint32_t vertex, const Vec3d& v) const {
+  if (held[vertex] > 2) return Vec3d(0.0);
+  const auto second = std::lower_bound(second_conormals.begin(), second_conormals.end(), vertex,
+                                       [](const auto& each, std::uint32_t at) { return each.first < at; });
+  return v - second->second * second->second.dot(v);
+}
+
+std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld, Orient orient) {
+  Surface surface = build_surface(polygons, weld, orient);
+  find_normals(surface);
+  std::vector<Vec3d> normals(polygons.positions.size(), Vec3d(0.0));
+  for_each_index(normals.size(), [&](std::size_t v) {
+    if (surface.welded[v] == kNone) return;
+    const Vec3d& sum = surface.vertex_normals[surface.welded[v]];
+    if (const double length = sum.length(); length > 0) normals[v] = sum / length;
+  });
+  return normals;
+}
+
+void append(Surface& surface, const Surface& other) {
+  const auto vertices = static_cast<std::uint32_t>(surface.vertices.size()),
+             triangles = static_cast<std::uint32_t>(surface.triangles.size()),
+             components = static_cast<std::uint32_t>(surface.facts.components);
+  const auto add_all = [](auto& to, const auto& from, auto&& of) {
+    to.reserve(to.size() + from.size());
+    for (const auto& value : from) to.push_back(of(value));
+  };
+  const auto as_it_is = [](const auto& value) { return value; };
+  const auto shifted = [](std::uint32_t by) { return [by](std::uint32_t i) { return i + by; }; };
+  add_all(surface.vertices, other.vertices, as_it_is);
+  add_all(surface.triangles, other.triangles, [&](const std::array<std::uint32_t, 3>& t) {
+    return std::array<std::uint32_t, 3>{t[0] + vertices, t[1] + vertices, t[2] + vertices};
+  });
+  add_all(surface.face, other.face, as_it_is);
+  surface.turned.resize(triangles, 0);
+  add_all(surface.turned, other.turned, as_it_is);
+  surface.turned.resize(surface.triangles.size(), 0);
+  add_all(surface.next_around_edge, other.next_around_edge, shifted(3 * triangles));
+  add_all(surface.triangle_normals, other.triangle_normals, as_it_is);
+  add_all(surface.vertex_normals, other.vertex_normals, as_it_is);
+  const auto incident = static_cast<std::uint32_t>(surface.incident.size());
+  add_all(surface.incident, other.incident, shifted(triangles));
+  surface.incident_begin.pop_back();
+  add_all(surface.incident_begin, other.incident_begin, shifted(incident));
+  add_all(surface.component, other.component, shifted(components));
+  surface.representative.resize(surface.vertices.size(), kNone);
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,190 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/mesh/point_triangle.h"
+#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/surface/border_planes.h"
+
+namespace vdb_offset {
+
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Which vertices move as one. Bit-equal positions (hard edges, UV seams, STL corners) by default.
+struct WeldOptions {
+  bool enabled = true;
+  double tolerance = 0;  ///< World units, >= 0. Vertices closer than this are taken to stand where the first stands.
+  bool close_seams = false;  ///< Without a tolerance: also borders that are one but for rounding (see seams.h).
+  double precision = 0;      ///< For that: of a coordinate, relative to the largest; 0: as the coordinates have it.
+
+  /// Equal positions, and seams.
+  static WeldOptions automatic() { return {true, 0, true, 0}; }
+};
+
+/// What was done about borders that all but meet, see seams.h. Lengths in world units.
+struct SeamFacts {
+  std::size_t vertices = 0;       ///< Positions on borders that went to another one.
+  double widest = 0;              ///< The farthest that one of them was away from that.
+  std::size_t near_vertices = 0;  ///< Positions on borders that run along another one, close by, and stay.
+  double widest_near = 0;         ///< How far apart these are at most.
+};
+
+/// Which side of a closed component is outward.
+enum class Orient {
+  Keep,              ///< Where its faces point.
+  FixDirectionOnly,  ///< Out of the solid that it encloses, wherever its faces point. They stay as they are.
+};
+
+/// What a mesh is made of, counted on its polygons after welding.
+struct MeshFacts {
+  std::size_t vertices = 0;         ///< As in the input.
+  std::size_t unused_vertices = 0;  ///< In no face.
+  std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
+  SeamFacts seams;
+  std::map<std::size_t, std::size_t> faces_by_corners;
+  std::size_t components = 0;          ///< Of faces, joined over edges.
+  std::size_t boundary_edges = 0;      ///< With one face.
+  std::size_t non_manifold_edges = 0;  ///< With three faces or more.
+  std::size_t repeated_faces = 0;      ///< Over the corners of an earlier face, either way round: left out inside.
+  std::size_t folded_triangles = 0;    ///< Of bent faces, over the corners of another triangle: left out too.
+  std::size_t boundary_left = 0;       ///< Boundary and non-manifold edges without all these.
+  std::size_t non_manifold_left = 0;
+  std::size_t degenerate_faces = 0;       ///< With a repeated corner or no area.
+  std::size_t orientation_conflicts = 0;  ///< Edges whose two faces run through it in the same direction.
+  std::size_t turned_triangles = 0;       ///< Turned round, for the distance's sign alone, to settle such conflicts.
+  std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
+  std::size_t closed_components = 0;      ///< Those whose edges all have two faces, which agree about the outside.
+  std::size_t inside_out_components = 0;  ///< Closed ones that face the wrong way as a whole (see orientation.h).
+  Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
+  double diagonal = 0;                    ///< Of that box.
+  double area = 0;
+  double median_edge = 0;        ///< Median edge length of the triangulated surface.
+  std::size_t sliver_edges = 0;  ///< Shorter than kSliver of that.
+  double longest_sliver = 0;     ///< The longest of those edges.
+
+  static constexpr double kSliver = 1e-5;
+
+  /// A tolerance (a power of ten) that makes one place of what is no farther apart than that.
+  static double tolerance_above(double length);
+
+  bool closed() const { return boundary_left == 0 && non_manifold_left == 0; }
+  /// Whether each edge has two faces, of opposite directions, and no face had to be left out or turned round for that.
+  bool two_sided() const {
+    return components > 0 && boundary_edges == 0 && non_manifold_edges == 0 && orientation_conflicts == 0 &&
+           repeated_faces == 0 && folded_triangles == 0 && degenerate_faces == 0;
+  }
+  bool oriented() const { return unsettled_conflicts == 0 && non_manifold_left == 0; }
+};
+
+/// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
+///
+/// Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t. Lengths are in world units; positions are
+/// relative to `origin`, which place() puts on the voxel grid, so that every later figure is the same for a mesh
+/// that is moved by whole voxels.
+struct Surface {
+  Vec3d origin{0.0};
+  std::vector<Vec3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Sorted along a space-filling curve, as are the vertices.
+  std::vector<std::uint32_t> face;                      ///< The input's face that each triangle is part of.
+  std::vector<std::uint8_t>
+      turned;  ///< Of each triangle: 1 if it runs against its face. Empty if none was turned round.
+  /// The next half-edge around the same edge, cyclic: itself at a border, the twin on a manifold.
+  std::vector<std::uint32_t> next_around_edge;
+  std::vector<Vec3d> triangle_normals;  ///< Unit length; zero for a needle (see is_needle).
+  std::vector<Vec3d> vertex_normals;    ///< Sum of the incident triangles' normals times their angles there.
+  /// For a vertex on a border, the unit vector that leads from the surface over the border's edges there, in the plane
+  /// of their faces; zero for the others, and where borders meet. For a vertex that stays in a plane that plane's
+  /// normal, either way round. Empty if nothing has a border, or stays in a plane.
+  std::vector<Vec3d> conormals;
+  /// Planes that vertices stay in (see border_planes.h), in this frame; of each vertex, how many of them hold it, 0 ..
+  /// 3 (empty if there are none); for those that two hold, a second conormal, at right angles to the first one, sorted
+  /// by vertex; and the walls, sorted by vertex.
+  std::vector<SymmetryPlane> planes;
+  std::vector<std::uint8_t> held;
+  std::vector<std::pair<std::uint32_t, Vec3d>> second_conormals;
+  std::vector<Wall> walls;
+  /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
+  std::vector<std::uint32_t> incident, incident_begin;
+  std::vector<std::uint32_t> component;       ///< Of each surface vertex, 0 .. facts.components - 1.
+  std::vector<std::uint32_t> representative;  ///< The input vertex whose position each surface vertex has.
+  std::vector<std::uint32_t> welded;          ///< Surface vertex of each input vertex; kNone if no face uses it.
+  MeshFacts facts;
+
+  std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
+    return std::span(incident).subspan(incident_begin[vertex], incident_begin[vertex + 1] - incident_begin[vertex]);
+  }
+  std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
+  std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
+  bool is_turned(std::uint32_t triangle) const { return !turned.empty() && turned[triangle]; }
+  TrianglePoint closest_on(std::uint32_t triangle, const Vec3d& x) const {
+    const auto& t = triangles[triangle];
+    return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+  }
+  /// Goes from triangle to triangle, across the edge or around the vertex that the closest point lies on, for as long
+  /// as that leads nearer to x: a local minimum of the distance. `triangle` is where to start, and becomes where the
+  /// walk ended.
+  TrianglePoint walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const;
+  /// Takes from a vector at a vertex what leads over the border there, if it is on one, or out of planes that hold it.
+  Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
+    if (conormals.empty()) return v;
+    const Vec3d along = v - conormals[vertex] * conormals[vertex].dot(v);
+    return held.empty() || held[vertex] < 2 ? along : along_line(vertex, along);
+  }
+  /// Whether a vertex must not leave the plane that along_border() keeps to.
+  bool is_held(std::uint32_t vertex) const { return !held.empty() && held[vertex] > 0; }
+  /// What is left of a vector in one of the planes that hold a vertex, in all of them.
+  Vec3d along_line(std::uint32_t vertex, const Vec3d& v) const;
+  /// The part of a way that changes the distance from what is closest, `away` from there: all of it off a corner, what
+  /// is across an edge, what is along `away` off a face.
+  Vec3d across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& way) const;
+  /// Not normalised; its dot product with x - closest point has the sign of the side that x lies on
+  /// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005).
+  Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;
+};
+
+/// Welds, triangulates, joins and counts, and settles which side is outward (see orientation.h). Origin and normals are
+/// left to place(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
+/// finite, or there are 2^31 triangles or more.
+Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
+
+/// Which vertices of a mesh are one.
+struct Welding {
+  std::vector<std::uint32_t> first;  ///< Of each vertex the one whose position counts; kNone for one in no face.
+  SeamFacts seams;
+};
+/// Of polygons with any number of corners. \throw InvalidInput as build_surface(), or for a tolerance or a precision
+/// that cannot be used
+Welding find_welding(PolygonView polygons, const WeldOptions& weld);
+/// build_surface() of all or some of a mesh's faces, welded as all of it is.
+Surface build_welded(PolygonView faces, const Welding& of_all, Orient orient);
+
+/// For each vertex the first that stands where it does; kNone for one that is in no face.
+std::vector<std::uint32_t> first_at_place(const Surface& surface);
+/// The same of polygons, which may have any number of corners. \throw as build_surface().
+std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& weld);
+
+/// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
+/// box, and computes its normals there. \pre voxel_size > 0, called once.
+void place(Surface& surface, double voxel_size);
+/// The same with the origin of another surface's frame.
+void place_in_frame(Surface& surface, const Vec3d& origin);
+
+/// Lists the triangles around each vertex, as they are now.
+void list_incident_triangles(Surface& surface);
+
+/// Puts another surface beside one, without joining them. \pre both stand in one frame. Facts, and what is said of the
+/// input's vertices, stay those of the first; the other's have no representative (kNone).
+void append(Surface& surface, const Surface& other);
+
+/// Unit normals of the mesh's vertices, outward: of the welded surface and weighted by angles, as the offset itself
+/// takes them. Zero for a vertex that no face uses, and where the faces around have no normals or these cancel out.
+/// \throw InvalidInput as build_surface()
+std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld = {}, Orient orient = Orient::Keep);
+
+}  // namespace vdb_offset

@@ -1,0 +1,233 @@
+#include "vdb_offset/surface/weld.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/hash_mix.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/surface/seams.h"
+
+namespace vdb_offset {
+namespace {
+
+constexpr std::uint64_t kNone64 = ~std::uint64_t{0};
+
+using Cell = std::array<std::int64_t, 3>;
+std::size_t hash(const Cell& c) {
+  return mix(static_cast<std::uint64_t>(c[0]) +
+             mix(static_cast<std::uint64_t>(c[1]) + mix(static_cast<std::uint64_t>(c[2]))));
+}
+std::size_t slots_for(std::size_t count) { return std::bit_ceil(2 * count + 16); }
+
+/// Finds the first vertex within a tolerance of another one, one after the other. Open addressing over vertex numbers.
+class TolerantWelder {
+ public:
+  TolerantWelder(std::span<const Vec3d> positions, double tolerance)
+      : positions_(positions), tolerance_(tolerance), slots_(slots_for(positions.size()), kNone) {}
+
+  /// The first vertex seen within the tolerance of vertex v: v itself if there is none.
+  std::uint32_t first_at(std::uint32_t v) {
+    if (const std::uint32_t near = search_around(v); near != kNone) return near;
+    std::size_t slot = hash(cell(positions_[v])) & (slots_.size() - 1);
+    while (slots_[slot] != kNone) slot = (slot + 1) & (slots_.size() - 1);
+    return slots_[slot] = v;
+  }
+
+ private:
+  /// Of side `tolerance`.
+  Cell cell(const Vec3d& p) const {
+    Cell c;
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<std::int64_t>(std::floor(p[k] / tolerance_));
+    return c;
+  }
+  std::uint32_t search_around(std::uint32_t v) const {
+    const Cell centre = cell(positions_[v]);
+    std::uint32_t best = kNone;
+    for (int n = 0; n < 27; ++n) {
+      const Cell c = {centre[0] + n / 9 - 1, centre[1] + n / 3 % 3 - 1, centre[2] + n % 3 - 1};
+      for (std::size_t s = hash(c) & (slots_.size() - 1); slots_[s] != kNone; s = (s + 1) & (slots_.size() - 1))
+        if (slots_[s] < best && cell(positions_[slots_[s]]) == c &&
+            (positions_[slots_[s]] - positions_[v]).length() <= tolerance_)
+          best = slots_[s];
+    }
+    return best;
+  }
+
+  std::span<const Vec3d> positions_;
+  double tolerance_;
+  std::vector<std::uint32_t> slots_;
+};
+
+/// Finds the first vertex of all that stand at one place, bit by bit, from any number of threads: first all are added,
+/// then each may ask. A place keeps the slot that its first comer got, where the lowest number stays.
+class ExactWelder {
+ public:
+  explicit ExactWelder(std::span<const Vec3d> positions)
+      : positions_(positions), slots_(slots_for(positions.size()), kNone) {}
+
+  void add(std::uint32_t v) {
+    for (std::size_t at = start(v);; at = (at + 1) & (slots_.size() - 1)) {
+      const std::atomic_ref slot(slots_[at]);
+      std::uint32_t known = slot.load(std::memory_order_relaxed);
+      if (known == kNone && slot.compare_exchange_strong(known, v, std::memory_order_relaxed)) return;
+      if (positions_[known] != positions_[v]) continue;
+      while (v < known && !slot.compare_exchange_weak(known, v, std::memory_order_relaxed)) {
+      }
+      return;
+    }
+  }
+  std::uint32_t first_at(std::uint32_t v) const {
+    std::size_t at = start(v);
+    while (positions_[slots_[at]] != positions_[v]) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at];
+  }
+
+ private:
+  /// By the position's bits, with -0 as 0.
+  std::size_t start(std::uint32_t v) const {
+    Cell bits;
+    for (int k = 0; k < 3; ++k) bits[static_cast<std::size_t>(k)] = std::bit_cast<std::int64_t>(positions_[v][k] + 0.0);
+    return hash(bits) & (slots_.size() - 1);
+  }
+
+  std::span<const Vec3d> positions_;
+  std::vector<std::uint32_t> slots_;
+};
+
+/// Of each vertex in use the first one that it is welded with, itself or another; kNone of others.
+std::vector<std::uint32_t> find_firsts(PolygonView polygons, const WeldOptions& options) {
+  const std::size_t count = polygons.positions.size();
+  std::vector<std::uint32_t> first(count, kNone);
+  for_each_index(polygons.corners.size(), [&](std::size_t i) {
+    const std::uint32_t v = polygons.corners[i];
+    std::atomic_ref(first[v]).store(v, std::memory_order_relaxed);
+  });
+  if (!options.enabled) return first;
+  if (options.tolerance > 0) {
+    TolerantWelder welder(polygons.positions, options.tolerance);
+    for (std::uint32_t v = 0; v < count; ++v)
+      if (first[v] != kNone) first[v] = welder.first_at(v);
+    return first;
+  }
+  ExactWelder welder(polygons.positions);
+  for_each_index(count, [&](std::size_t v) {
+    if (first[v] != kNone) welder.add(static_cast<std::uint32_t>(v));
+  });
+  for_each_index(count, [&](std::size_t v) {
+    if (first[v] != kNone) first[v] = welder.first_at(static_cast<std::uint32_t>(v));
+  });
+  return first;
+}
+
+void require_tolerance(PolygonView polygons, const WeldOptions& options) {
+  if (!(options.precision >= 0 && options.precision < 1))
+    throw InvalidInput("weld: expected a precision from 0 to 1, got " + std::to_string(options.precision));
+  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
+    throw InvalidInput("weld: expected a tolerance >= 0, got " + std::to_string(options.tolerance));
+  if (options.tolerance == 0) return;
+  for (const auto v : polygons.corners)
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(polygons.positions[v][k]) > 0x1p52 * options.tolerance)
+        throw InvalidInput("weld: expected a tolerance above the rounding of the coordinates (use bit-equal welding)");
+}
+
+}  // namespace
+
+void require_usable(PolygonView polygons, std::uint32_t least_corners) {
+  if (polygons.face_count() == 0) throw InvalidInput("mesh: expected at least one face, got none");
+  // The guard leaves room for the two triangles fewer than corners that each face gives.
+  if (polygons.corners.size() >= (std::size_t{1} << 31) / 3)
+    throw InvalidInput("mesh: expected fewer than 2^31 half-edges, got " + std::to_string(polygons.corners.size()) +
+                       " face corners");
+  if (polygons.face_begin.front() != 0 || polygons.face_begin.back() != polygons.corners.size())
+    throw InvalidInput("mesh: expected face_begin to run from 0 to the number of corners");
+  const auto first_of = [](std::size_t count, auto&& is_wrong) {
+    std::atomic<std::uint64_t> first = kNone64;
+    for_each_index(count, [&](std::size_t i) {
+      if (is_wrong(i)) lower_to(first, i);
+    });
+    return first.load();
+  };
+  const std::uint64_t f = first_of(polygons.face_count(), [&](std::size_t i) {
+    const std::uint32_t begin = polygons.face_begin[i], end = polygons.face_begin[i + 1];
+    return begin > end || end - begin < least_corners;
+  });
+  if (f != kNone64)
+    throw InvalidInput("mesh: expected at least " + std::to_string(least_corners) + " corners in face " +
+                       std::to_string(f));
+  const auto& corners = polygons.corners;
+  const auto& positions = polygons.positions;
+  if (const std::uint64_t i = first_of(corners.size(), [&](std::size_t c) { return corners[c] >= positions.size(); });
+      i != kNone64)
+    throw InvalidInput("mesh: expected vertex indices below " + std::to_string(positions.size()) + ", got " +
+                       std::to_string(corners[i]));
+  if (const std::uint64_t i =
+          first_of(corners.size(), [&](std::size_t c) { return !positions[corners[c]].isFinite(); });
+      i != kNone64)
+    throw InvalidInput("mesh: expected finite coordinates, got a NaN or an infinity at vertex " +
+                       std::to_string(corners[i]));
+}
+
+Welding find_welding(PolygonView polygons, const WeldOptions& options) {
+  require_usable(polygons, 1);
+  return weld_usable(polygons, options);
+}
+
+Welding weld_usable(PolygonView polygons, const WeldOptions& options) {
+  require_tolerance(polygons, options);
+  Welding welding{find_firsts(polygons, options), {}};
+  if (options.enabled && options.tolerance == 0 && options.close_seams)
+    welding.seams = close_seams(polygons, options.precision, welding.first);
+  return welding;
+}
+
+Welding restricted(Welding welding, PolygonView some_faces) {
+  std::vector<std::uint32_t> first(welding.first.size(), kNone);
+  for (const auto v : some_faces.corners) {
+    const std::uint32_t one = welding.first[v];
+    first[v] = first[one] = one;  // which may be in none of the faces, but has their place
+  }
+  welding.first = std::move(first);
+  return welding;
+}
+
+void give_vertices(PolygonView polygons, const Welding& welding, Surface& surface) {
+  const std::size_t count = polygons.positions.size();
+  const std::vector<std::uint32_t>& first = welding.first;
+  surface.welded.assign(count, kNone);
+  surface.representative.reserve(count);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    if (first[v] != v) continue;
+    surface.welded[v] = static_cast<std::uint32_t>(surface.representative.size());
+    surface.representative.push_back(v);
+  }
+  for_each_index(count, [&](std::size_t v) {
+    if (first[v] != kNone && first[v] != v) surface.welded[v] = surface.welded[first[v]];
+  });
+  surface.vertices.resize(surface.representative.size());
+  for_each_index(surface.vertices.size(),
+                 [&](std::size_t w) { surface.vertices[w] = polygons.positions[surface.representative[w]]; });
+  surface.facts.vertices = count;
+  surface.facts.seams = welding.seams;
+  surface.facts.unused_vertices = static_cast<std::size_t>(std::count(first.begin(), first.end(), kNone));
+  surface.facts.welded_vertices = surface.vertices.size();
+}
+
+std::vector<std::uint32_t> first_at_place(const Surface& surface) {
+  std::vector<std::uint32_t> first(surface.welded.size(), kNone);
+  for_each_index(first.size(), [&](std::size_t v) {
+    if (surface.welded[v] != kNone) first[v] = surface.representative[surface.welded[v]];
+  });
+  return first;
+}
+
+std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& options) {
+  return find_welding(polygons, options).first;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/parts/constrained_surface.h"
+
+namespace vdb_offset {
+
+/// How far a flat face is off between its vertices, which alone are put at the distance: |distance - target| / target
+/// at the centres of triangles and the middles of their edges.
+struct InteriorError {
+  std::size_t samples = 0;
+  double mean = 0, quantile_99 = 0, worst = 0;
+};
+
+/// `places` of the body's vertices in world coordinates; between them, their distances' mean is asked for. Looks at no
+/// more than `most` triangles, evenly taken from all; 0 is all. Samples that are asked to stay on the front, and
+/// triangles off it, are left out. The result does not depend on the number of threads.
+InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, const Distances& distances,
+                               std::size_t most = 0);
+
+/// Sums up errors of single places, relative to what was asked there.
+InteriorError sum_up_errors(std::vector<double> errors);
+
+}  // namespace vdb_offset

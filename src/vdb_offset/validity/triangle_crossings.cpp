@@ -1,0 +1,446 @@
+// Compiled with -frounding-math, which CGAL's interval arithmetic needs.
+#include "vdb_offset/validity/triangle_crossings.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
+#include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "vdb_offset/base/memory.h"
+#include "vdb_offset/base/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Triangle = Kernel::Triangle_3;
+using Segment = Kernel::Segment_3;
+
+/// Two triangles, the corners that they share first.
+struct Couple {
+  std::array<Vec3d, 3> a, b;
+  int shared = 0;
+
+  /// A triangle where its corners stand at some places, and one where they may stand at others. They share a corner
+  /// only if it is at one place.
+  Couple(const Surface& surface, std::span<const Vec3d> places_of_a, std::uint32_t s,
+         std::span<const Vec3d> places_of_b, std::uint32_t t) {
+    std::array<std::uint32_t, 3> of_a = surface.triangles[s], of_b = surface.triangles[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto n = static_cast<std::size_t>(shared);
+      const auto found = std::find(of_b.begin() + shared, of_b.end(), of_a[i]);
+      if (found == of_b.end() || places_of_a[of_a[i]] != places_of_b[*found]) continue;
+      std::swap(*found, of_b[n]);
+      std::swap(of_a[i], of_a[n]);
+      ++shared;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = places_of_a[of_a[k]];
+      b[k] = places_of_b[of_b[k]];
+    }
+  }
+
+  /// Two triangles that share what corners of theirs are at one place.
+  Couple(const std::array<Vec3d, 3>& first, const std::array<Vec3d, 3>& second) : a(first), b(second) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto n = static_cast<std::size_t>(shared);
+      const auto found = std::find(b.begin() + shared, b.end(), a[i]);
+      if (found == b.end()) continue;
+      std::swap(*found, b[n]);
+      std::swap(a[i], a[n]);
+      ++shared;
+    }
+  }
+};
+
+// Differences of coordinates are exact to 2^-53 of themselves; a dot product of three with a cross product, or with a
+// sum of such differences, is off by far less than this share of the product of lengths.
+constexpr double kRounding = 1e-14;
+
+/// No less than a vector's length, and found faster.
+double no_shorter(const Vec3d& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
+
+/// A triangle's plane, which tells most of what does not meet the triangle.
+class Plane {
+ public:
+  explicit Plane(const std::array<Vec3d, 3>& triangle) : point_(triangle[0]) {
+    const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    normal_ = ab.cross(ac);
+    size_ = kRounding * no_shorter(ab) * no_shorter(ac);
+  }
+
+  /// 1 for what is clearly above, -1 for what is clearly below.
+  int side(const Vec3d& x) const {
+    const Vec3d to = x - point_;
+    const double height = normal_.dot(to), margin = size_ * no_shorter(to);
+    return static_cast<int>(height > margin) - static_cast<int>(height < -margin);
+  }
+
+  /// True if the triangle clearly has an area.
+  bool is_clear() const { return std::max({std::abs(normal_[0]), std::abs(normal_[1]), std::abs(normal_[2])}) > size_; }
+
+ private:
+  Vec3d point_, normal_;
+  double size_;
+};
+
+/// True if a triangle, with no corner in the plane, lies clearly on one side of it.
+bool misses(const Plane& plane, const std::array<Vec3d, 3>& triangle) {
+  const int side = plane.side(triangle[0]);
+  return side != 0 && plane.side(triangle[1]) == side && plane.side(triangle[2]) == side;
+}
+
+/// True if the corners of a triangle after those that are shared lie clearly on one side of the plane of the other.
+bool on_one_side(const Plane& plane, const std::array<Vec3d, 3>& b, int shared) {
+  int sum = 0;
+  for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) sum += plane.side(b[k]);
+  return std::abs(sum) == 3 - shared;
+}
+
+/// The same of two of a surface's triangles, of the first of which the plane is known.
+bool on_one_side(const Plane& plane, const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s,
+                 std::uint32_t t) {
+  const auto& [a, b, c] = surface.triangles[s];
+  int sum = 0, corners = 0;
+  for (const auto v : surface.triangles[t]) {
+    if (v == a || v == b || v == c) continue;
+    sum += plane.side(positions[v]);
+    ++corners;
+  }
+  return corners > 0 && std::abs(sum) == corners;
+}
+
+/// True if the triangles, which share their first corner, clearly lie to either side of a plane through it: one at
+/// right angles to the difference of the directions that they lie in.
+bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
+  const std::array<Vec3d, 4> edge = {a[1] - a[0], a[2] - a[0], b[1] - b[0], b[2] - b[0]};
+  Vec3d w(0.0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double length = edge[i].length();
+    if (!(length > 0)) return false;
+    w += edge[i] * ((i < 2 ? 1 : -1) / length);
+  }
+  const double margin = kRounding * w.length();
+  for (std::size_t i = 0; i < 4; ++i)
+    if (!((i < 2 ? 1 : -1) * w.dot(edge[i]) > margin * edge[i].length())) return false;
+  return true;
+}
+
+/// Most pairs are clearly apart; no more than rounding is left to the exact predicates.
+bool meet(const Couple& pair) {
+  if (pair.shared == 3) return false;  // the same triangle twice, or a sheet's two sides
+  const Plane plane_of_a(pair.a), plane_of_b(pair.b);
+  if (on_one_side(plane_of_a, pair.b, pair.shared) || on_one_side(plane_of_b, pair.a, pair.shared)) return false;
+  if (pair.shared == 1 && on_either_side(pair.a, pair.b)) return false;
+  std::array<Point, 3> a, b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    a[k] = {pair.a[k][0], pair.a[k][1], pair.a[k][2]};
+    b[k] = {pair.b[k][0], pair.b[k][1], pair.b[k][2]};
+  }
+  const Triangle of_a(a[0], a[1], a[2]), of_b(b[0], b[1], b[2]);
+  if (!plane_of_a.is_clear() && of_a.is_degenerate()) return false;
+  if (!plane_of_b.is_clear() && of_b.is_degenerate()) return false;
+  if (pair.shared == 0) return CGAL::do_intersect(of_a, of_b);
+  if (pair.shared == 1)
+    return CGAL::do_intersect(Segment(a[1], a[2]), of_b) || CGAL::do_intersect(Segment(b[1], b[2]), of_a);
+  return CGAL::coplanar(a[0], a[1], a[2], b[2]) && CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::POSITIVE;
+}
+
+/// Whether a triangle has corners strictly on both sides of another's plane.
+bool has_both_sides(const std::array<Vec3d, 3>& triangle, const std::array<Vec3d, 3>& other) {
+  const auto point = [](const Vec3d& x) { return Point(x[0], x[1], x[2]); };
+  int least = 0, most = 0;
+  for (const Vec3d& corner : triangle) {
+    const auto side =
+        static_cast<int>(CGAL::orientation(point(other[0]), point(other[1]), point(other[2]), point(corner)));
+    least = std::min(least, side);
+    most = std::max(most, side);
+  }
+  return least < 0 && most > 0;
+}
+
+bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
+  return meet(Couple(surface, positions, s, positions, t));
+}
+
+// Where lists of crossings are refused.
+constexpr const char* kCrossings = "crossings";
+constexpr std::size_t kSmallList = std::size_t{1} << 20;  // bytes
+
+/// Lets find(first, last, found) look at runs of 0 .. count - 1 in parallel; sorts what they find.
+template <class Find>
+std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain, Find&& find) {
+  tbb::enumerable_thread_specific<std::vector<TrianglePair>> found;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    auto& mine = found.local();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) find(i, mine);
+  });
+  std::vector<TrianglePair> all;
+  std::size_t pairs = 0;
+  for (const auto& some : found) pairs += some.size();
+  if (pairs * sizeof(TrianglePair) > kSmallList) require_memory(pairs * sizeof(TrianglePair), kCrossings);
+  all.reserve(pairs);
+  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  tbb::parallel_sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace
+
+CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
+    : surface_(surface), positions_(positions), is_updated_(surface.triangles.size(), 0) {
+  build();
+}
+
+void CrossingFinder::build() {
+  tree_.build(surface_.triangles.size(), [&](std::size_t t) { return box_of(corners(t, positions_)); });
+}
+
+void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
+  for (const auto t : updated_) is_updated_[t] = 0;
+  updated_.assign(triangles.begin(), triangles.end());
+  for (const auto t : updated_) is_updated_[t] = 1;
+  if (triangles.size() == surface_.triangles.size()) build();
+  else tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
+}
+
+std::array<Vec3d, 3> CrossingFinder::corners(std::size_t t, std::span<const Vec3d> places) const {
+  const auto& [a, b, c] = surface_.triangles[t];
+  return {places[a], places[b], places[c]};
+}
+
+/// Rounded outwards, relative to the surface's own frame.
+FloatBox CrossingFinder::box_of(const std::array<Vec3d, 3>& corners) const {
+  FloatBox box;
+  for (const Vec3d& corner : corners)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = static_cast<float>(corner[static_cast<int>(k)] - surface_.origin[static_cast<int>(k)]);
+      const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
+      box.lower[k] = std::min(box.lower[k], x - rounding);
+      box.upper[k] = std::max(box.upper[k], x + rounding);
+    }
+  return box;
+}
+
+/// Calls visit(s, t), which says whether that is enough, for the pairs that meet of a block's triangles and those that
+/// follow. Few of a block's triangles come near the box around another.
+template <class Takes, class Visit>
+void CrossingFinder::for_each_pair_of(std::size_t block, Takes&& takes, Visit&& visit) const {
+  const auto& blocks = tree_.levels().front();
+  constexpr std::uint32_t kWidth = BoxTree::kWidth;
+  const auto compare = [&](std::size_t other, unsigned near) {
+    for (; near != 0; near &= near - 1) {
+      const int i = std::countr_zero(near);
+      const auto s = static_cast<std::uint32_t>(block) * kWidth + static_cast<std::uint32_t>(i);
+      unsigned meets = BoxTree::overlaps(blocks[other], BoxTree::box(blocks[block], i));
+      if (block == other) meets &= ~0u << (i + 1);
+      if (meets == 0 || !takes(s)) continue;
+      const Plane plane(corners(s, positions_));
+      for (; meets != 0; meets &= meets - 1) {
+        const auto t = static_cast<std::uint32_t>(other) * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
+        if (!on_one_side(plane, surface_, positions_, s, t) && takes(t) && meet(surface_, positions_, s, t) &&
+            visit(s, t))
+          return true;
+      }
+    }
+    return false;
+  };
+  constexpr unsigned kAll = (1u << kWidth) - 1;
+  if (tree_.levels().size() == 1) {
+    compare(block, kAll);
+    return;
+  }
+  tree_.any_overlap(
+      BoxTree::around(blocks[block]),
+      [&](std::size_t other) {
+        if (other < block) return false;
+        const FloatBox box = BoxTree::box(tree_.levels()[1][other / kWidth], static_cast<int>(other % kWidth));
+        return compare(other, other == block ? kAll : BoxTree::overlaps(blocks[block], box));
+      },
+      1);
+}
+
+std::vector<TrianglePair> CrossingFinder::all(const std::function<bool(std::uint32_t)>& matters) const {
+  return find_in_parallel(tree_.levels().front().size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
+    for_each_pair_of(
+        block, [&](std::uint32_t t) { return !matters || matters(t); },
+        [&](std::uint32_t s, std::uint32_t t) {
+          append_within_limit(found, {s, t}, kCrossings);
+          return false;
+        });
+  });
+}
+
+SelfCrossings CrossingFinder::listed() const {
+  std::atomic<std::size_t> count = 0;
+  SelfCrossings crossings;
+  crossings.pairs =
+      find_in_parallel(tree_.levels().front().size(), 64, [&](std::size_t block, std::vector<TrianglePair>& found) {
+        if (count.load(std::memory_order_relaxed) > kMostListedPairs) return;
+        const std::size_t before = found.size();
+        for_each_pair_of(
+            block, [](std::uint32_t) { return true; },
+            [&](std::uint32_t s, std::uint32_t t) {
+              append_within_limit(found, TrianglePair(s, t), "crossings");
+              return found.size() - before > kMostListedPairs;
+            });
+        count += found.size() - before;
+      });
+  crossings.more = crossings.pairs.size() > kMostListedPairs;
+  if (!crossings.more) return crossings;
+  crossings.pairs = {};
+  crossings.crossed.assign(surface_.triangles.size(), 0);
+  for_each_index(
+      surface_.triangles.size(),
+      [&](std::size_t t) { crossings.crossed[t] = meets_any(static_cast<std::uint32_t>(t)); }, 64);
+  return crossings;
+}
+
+bool CrossingFinder::meets_any(std::uint32_t t) const {
+  const std::array<Vec3d, 3> here = corners(t, positions_);
+  const Plane plane(here);
+  return tree_.any_overlap(box_of(here), [&](std::size_t child) {
+    const auto other = static_cast<std::uint32_t>(child);
+    if (other == t || on_one_side(plane, surface_, positions_, t, other)) return false;
+    const TrianglePair pair = std::minmax(t, other);
+    return meet(surface_, positions_, pair.first, pair.second);
+  });
+}
+
+/// Runs of the last update's triangles that are in one block, by where they begin; then where the last one ends.
+std::vector<std::uint32_t> CrossingFinder::updated_runs() const {
+  std::vector<std::uint32_t> runs;
+  for (std::uint32_t i = 0; i < updated_.size(); ++i)
+    if (i == 0 || updated_[i] / BoxTree::kWidth != updated_[i - 1] / BoxTree::kWidth) runs.push_back(i);
+  runs.push_back(static_cast<std::uint32_t>(updated_.size()));
+  return runs;
+}
+
+/// Calls is_it(t, other, plane) for each triangle of a run that `takes` and each other whose boxes meet, `plane` being
+/// that of the former; no more for who has had true.
+template <class Takes, class IsIt>
+void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes, IsIt&& is_it) const {
+  struct Open {
+    std::uint32_t triangle;
+    FloatBox box;
+    Plane plane;
+  };
+  std::array<std::optional<Open>, BoxTree::kWidth> open;
+  std::size_t count = 0;
+  FloatBox all;
+  for (const auto t : run) {
+    if (!takes(t)) continue;
+    const std::array<Vec3d, 3> here = corners(t, positions_);
+    open[count].emplace(Open{t, box_of(here), Plane(here)});
+    all.include(open[count++]->box);
+  }
+  const auto look_at = [&](std::size_t block) {
+    for (std::size_t i = 0; i < count;) {
+      const auto& [t, box, plane] = *open[i];
+      bool found = false;
+      for (unsigned near = BoxTree::overlaps(tree_.levels().front()[block], box); near != 0 && !found;
+           near &= near - 1) {
+        const auto other =
+            static_cast<std::uint32_t>(block) * BoxTree::kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
+        found = other != t && is_it(t, other, plane);
+      }
+      if (found) open[i] = open[--count];
+      else ++i;
+    }
+    return count == 0;
+  };
+  if (count == 0) return;
+  if (tree_.levels().size() == 1) look_at(0);
+  else tree_.any_overlap(all, look_at, 1);
+}
+
+std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(std::uint32_t)>& matters) const {
+  const std::vector<std::uint32_t> runs = updated_runs();
+  const auto may_take = [&](std::uint32_t t) { return !matters || matters(t); };
+  return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
+    any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), may_take,
+             [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
+               if (other < t && is_updated_[other]) return false;
+               if (on_one_side(plane, surface_, positions_, t, other) || !may_take(other)) return false;
+               const TrianglePair pair = std::minmax(t, other);
+               if (meet(surface_, positions_, pair.first, pair.second)) append_within_limit(found, pair, kCrossings);
+               return false;
+             });
+  });
+}
+
+/// First each looks at those that are not to look at it; then who has found none, and has been found by none, looks at
+/// those that would have, had they not stopped before.
+std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
+    const std::function<bool(std::uint32_t)>& matters, const std::function<bool(const TrianglePair&)>& counts) const {
+  const std::vector<std::uint32_t> runs = updated_runs();
+  const auto may_take = [&](std::uint32_t t) { return !matters || matters(t); };
+  const auto find_one_of_each = [&](auto&& takes, auto&& may_meet) {
+    return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
+      any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), takes,
+               [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
+                 if (!may_meet(t, other) || on_one_side(plane, surface_, positions_, t, other) || !may_take(other))
+                   return false;
+                 const TrianglePair pair = std::minmax(t, other);
+                 if (!meet(surface_, positions_, pair.first, pair.second) || !counts(pair)) return false;
+                 found.push_back(pair);
+                 return true;
+               });
+    });
+  };
+  std::vector<TrianglePair> pairs = find_one_of_each(
+      may_take, [&](std::uint32_t t, std::uint32_t other) { return other > t || !is_updated_[other]; });
+  if (pairs.empty()) return pairs;
+  std::vector<std::uint8_t> meets(is_updated_.size(), 0);
+  for (const auto& [s, t] : pairs) meets[s] = meets[t] = 1;
+  const std::vector<TrianglePair> more = find_one_of_each(
+      [&](std::uint32_t t) { return !meets[t] && may_take(t); },
+      [&](std::uint32_t t, std::uint32_t other) { return other < t && is_updated_[other] && meets[other]; });
+  pairs.insert(pairs.end(), more.begin(), more.end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+bool CrossingFinder::go_through(const TrianglePair& pair) const {
+  const Couple couple(surface_, positions_, pair.first, positions_, pair.second);
+  return has_both_sides(couple.a, couple.b) && has_both_sides(couple.b, couple.a) && meet(couple);
+}
+
+std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
+  std::vector<std::uint32_t> met;
+  const Plane plane(corners(triangle, places));
+  tree_.for_each_overlap(box_of(corners(triangle, places)), [&](std::size_t child) {
+    const auto other = static_cast<std::uint32_t>(child);
+    if (!misses(plane, corners(other, positions_)) && meet(Couple(surface_, places, triangle, positions_, other)))
+      met.push_back(other);
+  });
+  return met;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> CrossingFinder::met_by(
+    std::span<const std::uint32_t> others, const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const {
+  return find_in_parallel(others.size(), 64, [&](std::size_t i, std::vector<TrianglePair>& found) {
+    const std::array<Vec3d, 3> other = corners_of(others[i]);
+    const Plane plane(other);
+    tree_.for_each_overlap(box_of(other), [&](std::size_t child) {
+      const auto t = static_cast<std::uint32_t>(child);
+      const std::array<Vec3d, 3> here = corners(t, positions_);
+      if (!misses(plane, here) && meet(Couple(other, here))) found.emplace_back(others[i], t);
+    });
+  });
+}
+
+}  // namespace vdb_offset

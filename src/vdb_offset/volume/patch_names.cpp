@@ -1,0 +1,50 @@
+#include "vdb_offset/volume/patch_names.h"
+
+#include "vdb_offset/base/error.h"
+
+#include <algorithm>
+#include <set>
+
+namespace vdb_offset {
+namespace {
+
+/// By hand, as <cctype> depends on the locale.
+bool is_ascii_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_word_character(char c) {
+  return is_ascii_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+}
+
+std::string cleaned(std::string name) {
+  if (name.empty()) return "wall";
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !is_word_character(c); }, '_');
+  return is_ascii_letter(name[0]) ? name : "wall_" + name;
+}
+
+}  // namespace
+
+void require_names(const WallNames& walls, std::size_t faces) {
+  if (walls.of_face.empty()) return;
+  if (walls.of_face.size() != faces)
+    throw InvalidInput("layers: expected " + std::to_string(faces) + " names of faces, got " +
+                       std::to_string(walls.of_face.size()));
+  for (const std::uint32_t name : walls.of_face)
+    if (name >= walls.names.size())
+      throw InvalidInput("layers: expected names below " + std::to_string(walls.names.size()) + ", got " +
+                         std::to_string(name));
+}
+
+std::vector<std::string> patch_names(const WallNames& walls) {
+  if (walls.of_face.empty()) return {"wall"};
+  std::set<std::string> taken = {"outer", "sides"};
+  std::vector<std::string> names;
+  for (const std::string& wall : walls.names) {
+    const std::string first = cleaned(wall);
+    std::string name = first;
+    for (std::size_t n = 2; !taken.insert(name).second; ++n) name = first + "_" + std::to_string(n);
+    names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,11 @@
+#include "vdb_offset/volume/volume_mesh.h"
+
+namespace vdb_offset {
+
+const char* name(CellType type) {
+  constexpr const char* kNames[kCellTypeCount] = {"tetrahedra", "pyramids",  "prisms",        "hexahedra",
+                                                  "polyhedra",  "triangles", "quadrilaterals"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+}  // namespace vdb_offset
