@@ -1,4 +1,6 @@
 #include <vdb_offset/pipeline/offset.h>
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/vertex_state.h"
 
 int main() {
   vdb_offset::Polygons tetrahedron;

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/io/curve/curve_file.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/mesh_file.h"
 
 using namespace vdb_offset;
 

@@ -9,10 +9,10 @@
 #include <fstream>
 #include <string>
 
-#include "bytes.h"
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
-#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "support/bytes.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 

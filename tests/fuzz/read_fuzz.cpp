@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
-#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_offset/pipeline/offset.h"
-#include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 
 namespace vdb_offset {
 namespace {

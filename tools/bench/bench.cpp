@@ -15,16 +15,17 @@
 #include <random>
 #include <span>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/field/direction_field.h"
 #include "vdb_offset/field/rasterise.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/mesh/triangulate.h"
-#include "vdb_offset/pipeline/offset.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/openmesh.h"
+#include "vdb_offset/output_files.h"
 #include "vdb_offset/query/closest_query.h"
-#include "vdb_offset/scene/scene.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset::bench {
 namespace {

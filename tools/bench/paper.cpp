@@ -13,12 +13,13 @@
 #include <numbers>
 #include <string_view>
 
-#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/curve/ribbon.h"
+#include "vdb_offset/curve_offset.h"
 #include "vdb_offset/field/direction_field.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
-#include "vdb_offset/pipeline/offset.h"
-#include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/shapes.h"
 
 namespace vdb_offset {
 namespace {

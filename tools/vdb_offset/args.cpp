@@ -11,14 +11,19 @@
 #include <sstream>
 
 #include "messages.h"
-#include "vdb_offset/base/decimal.h"
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/memory.h"
-#include "vdb_offset/io/curve/curve_file.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
-#include "vdb_offset/io/result/states_file.h"
-#include "vdb_offset/io/volume/volume_file.h"
-#include "vdb_offset/report/report.h"
+#include "vdb_offset/decimal.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/selection.h"
+#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/memory_limit.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/report.h"
+#include "vdb_offset/scene.h"
+#include "vdb_offset/version.h"
 
 namespace vdb_offset::tool {
 namespace {

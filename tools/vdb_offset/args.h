@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
-#include "vdb_offset/io/iso/iso_file.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
-#include "vdb_offset/io/mesh/selection.h"
-#include "vdb_offset/pipeline/offset.h"
-#include "vdb_offset/scene/scene.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/selection.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/scene.h"
 
 namespace CLI {
 class App;

@@ -4,6 +4,11 @@
 #include <cmath>
 
 #include "args.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/metric.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "messages.h"
-#include "vdb_offset/base/temporary.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -6,11 +6,17 @@
 #include <filesystem>
 
 #include "messages.h"
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/memory.h"
-#include "vdb_offset/io/base/file_bytes.h"
-#include "vdb_offset/io/mesh/attributes.h"
-#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "vdb_offset/curves.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/grid.h"
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/io/vertex_numbers.h"
+#include "vdb_offset/memory_limit.h"
+#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
 namespace {

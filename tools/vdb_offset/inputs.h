@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "args.h"
-#include "vdb_offset/curve/curve_line.h"
-#include "vdb_offset/io/curve/curve_file.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
-#include "vdb_offset/scene/scene.h"
+#include "vdb_offset/curves.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
 

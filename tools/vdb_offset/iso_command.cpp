@@ -6,10 +6,10 @@
 
 #include "places.h"
 #include "summary.h"
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
-#include "vdb_offset/io/iso/iso_file.h"
-#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -84,13 +84,6 @@ CaptureResult capture_valid(const Arguments& args, const Source& source, const D
   return result;
 }
 
-/// With what is told of the mesh as it is.
-CaptureStatistics plan_of(const Arguments& args, const Source& source, const CaptureOptions& options) {
-  CaptureStatistics statistics = plan_capture(InMetric(source.view(), args.options.metric).view(), options);
-  if (!args.options.metric.even()) statistics.source = build_surface(source.view(), options.weld, options.orient).facts;
-  return statistics;
-}
-
 void require_inside(const CaptureResult& result) {
   if (!result.statistics.is_signed)
     throw InvalidInput("--shell with --mode iso: expected a mesh that has an inside, got an open one");
@@ -124,7 +117,10 @@ void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressB
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
     for (std::size_t i = 0; i < places.size(); ++i)
-      print_iso_dry_run(args, plan_of(args, source, options_of(args, distances[i], places[i].mesh)), distances[i][0]);
+      print_iso_dry_run(
+          args,
+          plan_capture_in_metric(source.view(), options_of(args, distances[i], places[i].mesh), args.options.metric),
+          distances[i][0]);
     return;
   }
   const io::Transported transported = read_attributes_of(args, source);

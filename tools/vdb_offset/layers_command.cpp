@@ -6,18 +6,17 @@
 
 #include "places.h"
 #include "summary.h"
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
-#include "vdb_offset/curve_offset/curve_cells.h"
-#include "vdb_offset/curve_offset/curve_offset.h"
-#include "vdb_offset/io/result/states_file.h"
-#include "vdb_offset/io/volume/volume_file.h"
-#include "vdb_offset/io/volume/wall_names_of_file.h"
-#include "vdb_offset/layers/cells/make_cells.h"
-#include "vdb_offset/layers/cells/structured_block.h"
-#include "vdb_offset/layers/layer_report.h"
-#include "vdb_offset/pipeline/run_statistics.h"
-#include "vdb_offset/report/report.h"
+#include "vdb_offset/curve_cells.h"
+#include "vdb_offset/curve_offset.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/io/wall_names.h"
+#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/layer_report.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/report.h"
+#include "vdb_offset/structured_block.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -30,14 +29,12 @@ bool is_volume(const std::string& path) {
 struct Grown {
   LayersResult layers;
   WallNames names;
-  LayerCells cells;
-  LayerQuality quality;
+  std::optional<MeasuredCells> cells;
   VolumeMesh on_curves;
   LayerReport report;
 };
 
 void measure_on_curves(CurvesView curves, Grown& grown) {
-  const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   CurveCells cells = make_curve_cells(curves, grown.layers);
   grown.report =
       report_layers(cells.segments.view(), grown.layers, {}, cells.facts, measure_curve_cells(cells, grown.layers));
@@ -45,24 +42,23 @@ void measure_on_curves(CurvesView curves, Grown& grown) {
 }
 
 void measure(const Source& source, Grown& grown) {
-  const StageTimer timer(grown.layers.statistics.seconds, Stage::Measure);
   if (source.file) grown.names = io::wall_names(*source.file);
-  grown.cells = number_cells(source.view(), grown.layers);
-  grown.quality = measure_cells(grown.layers, grown.cells);
-  grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells.facts, grown.quality);
+  grown.cells.emplace(source.view(), grown.layers);
+  grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells->facts(), grown.cells->quality());
 }
 
-Grown grow(const Arguments& args, const Source& source, std::span<const Distances> heights) {
-  Grown grown;
+/// Into an object that stays where it is, as what is measured refers to its layers.
+void grow(const Arguments& args, const Source& source, std::span<const Distances> heights, Grown& grown) {
   if (source.curves) {
     grown.layers = grow_curve_layers(source.view(), heights, args.options);
-    measure_on_curves(source.view(), grown);
   } else {
     const bool foam = io::volume_format_of(args.output) == io::VolumeFormat::Foam;
     grown.layers = grow_layers(source.view(), heights, args.options, foam ? CellRules::OpenFoam : CellRules::AnySolver);
-    measure(source, grown);
   }
-  return grown;
+  const auto start = Clock::now();
+  if (source.curves) measure_on_curves(source.view(), grown);
+  else measure(source, grown);
+  grown.layers.statistics.seconds[static_cast<std::size_t>(Stage::Measure)] += seconds_since(start);
 }
 
 void write_surfaces(const Arguments& args, const Source& source, const LayersResult& layers) {
@@ -86,8 +82,7 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
 
 void write_volume(const Arguments& args, const Source& source, Grown& grown) {
   const io::VolumeWriteResult written = io::write_volume(
-      args.output, source.curves ? std::move(grown.on_curves)
-                                 : make_cells(grown.layers, grown.cells, grown.names, std::move(grown.quality)));
+      args.output, source.curves ? std::move(grown.on_curves) : std::move(*grown.cells).make(grown.names));
   grown.report.foam = written.foam;
 }
 
@@ -137,7 +132,8 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   if (source.file && !is_volume(args.output))
     args.options.precision = io::precision_of(name_of_layer(args.output, 1, heights.size()), *source.file, args.write);
   if (source.curves && !is_volume(args.output)) args.options.precision = io::precision_of_curves(args.write);
-  Grown grown = grow(args, source, heights);
+  Grown grown;
+  grow(args, source, heights, grown);
   LayersResult& layers = grown.layers;
   bar.show(Stage::Write, 0);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;

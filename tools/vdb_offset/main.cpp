@@ -18,11 +18,12 @@
 #include "places.h"
 #include "summary.h"
 #include "terminal.h"
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
-#include "vdb_offset/curve_offset/curve_offset.h"
-#include "vdb_offset/pipeline/fit.h"
-#include "vdb_offset/report/report.h"
+#include "vdb_offset/curve_offset.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/fit.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <new>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -6,12 +6,13 @@
 #include <cctype>
 
 #include "messages.h"
-#include "vdb_offset/base/file_replace.h"
-#include "vdb_offset/field/distance_field.h"
-#include "vdb_offset/io/curve/curve_file.h"
-#include "vdb_offset/io/result/states_file.h"
-#include "vdb_offset/io/shell/shell_file.h"
-#include "vdb_offset/report/report.h"
+#include "vdb_offset/distance_field.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/report.h"
+#include "vdb_offset/version.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "inputs.h"
-#include "vdb_offset/iso/iso_surface.h"
-#include "vdb_offset/layers/layer_report.h"
-#include "vdb_offset/pipeline/offset.h"
-#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/layer_report.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::tool {
 

@@ -10,8 +10,9 @@
 
 #include "messages.h"
 #include "outputs.h"
-#include "vdb_offset/base/file_replace.h"
-#include "vdb_offset/io/volume/volume_file.h"
+#include "vdb_offset/io/selection.h"
+#include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -7,8 +7,9 @@
 
 #include "messages.h"
 #include "places.h"
-#include "vdb_offset/curve/curve_line.h"
-#include "vdb_offset/report/report.h"
+#include "vdb_offset/curves.h"
+#include "vdb_offset/hollow.h"
+#include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
 namespace {

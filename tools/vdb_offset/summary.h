@@ -6,7 +6,10 @@
 #include "args.h"
 #include "inputs.h"
 #include "outputs.h"
-#include "vdb_offset/shell/hollow.h"
+#include "vdb_offset/hollow.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/layer_report.h"
+#include "vdb_offset/layers.h"
 
 namespace vdb_offset::tool {
 

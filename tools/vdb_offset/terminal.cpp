@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "messages.h"
-#include "vdb_offset/base/temporary.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
 namespace {

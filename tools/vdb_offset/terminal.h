@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "vdb_offset/base/progress.h"
+#include "vdb_offset/progress.h"
 
 namespace vdb_offset::tool {
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {

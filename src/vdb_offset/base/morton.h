@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/vec.h"
 
 namespace vdb_offset {
 

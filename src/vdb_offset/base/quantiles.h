@@ -11,14 +11,9 @@
 #include <vector>
 
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/spread.h"
 
 namespace vdb_offset {
-
-/// How numbers are spread.
-struct Spread {
-  double least = 0, quantile_01 = 0, quantile_05 = 0, median = 0, quantile_95 = 0, quantile_99 = 0, most = 0;
-  double mean = 0;
-};
 
 /// A number as a key that grows with it, so many times.
 struct Ranked {

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 

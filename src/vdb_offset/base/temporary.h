@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "vdb_offset/output_files.h"
 namespace vdb_offset {
 
 /// A file or an empty folder that goes again with this object, or when remove_temporaries() is called, unless it is
@@ -39,10 +40,6 @@ Temporary new_temporary_file(const std::filesystem::path& target, const std::str
 
 /// Removes files of new_temporary_file() that runs on this machine have left in a folder as they were killed.
 void remove_stale_temporaries(const std::filesystem::path& folder) noexcept;
-
-/// Removes all temporary files and folders that are there now; no others can be put in place from then on. For signal
-/// handlers that end the process. False, and nothing is removed, if files are being put in place.
-bool remove_temporaries() noexcept;
 
 /// While it lives, remove_temporaries() does nothing. One at a time: others wait, and for ever once the process ends.
 class PuttingInPlace {

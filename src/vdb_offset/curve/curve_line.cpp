@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {
@@ -110,5 +110,7 @@ std::vector<OpenCurve> close_curves(Curves& curves) {
   for (const OpenCurve& each : closed) close(curves, each);
   return closed;
 }
+
+bool OpenCurve::is_nearly_closed() const { return gap < kNearlyClosed * length; }
 
 }  // namespace vdb_offset

@@ -32,19 +32,4 @@ struct DrawnLine {
 /// Puts the line into a frame whose origin is this, at so much of its z.
 DrawnLine draw_line(const PlaneChains& plane, const Vec3d& origin, double z);
 
-/// An open curve, and how far its ends are apart.
-struct OpenCurve {
-  std::uint32_t first, last;  ///< Points of the input.
-  double length, gap;         ///< World units.
-
-  /// Whether the ends are so near each other that a base may have been left out between them.
-  bool is_nearly_closed() const { return gap < kNearlyClosed * length; }
-  static constexpr double kNearlyClosed = 0.1;
-};
-/// Those with two ends, in the order of their chains. \throw as chains_in_plane()
-std::vector<OpenCurve> open_curves(CurvesView curves);
-
-/// Closes those that are nearly closed, by a straight segment. Returns which.
-std::vector<OpenCurve> close_curves(Curves& curves);
-
 }  // namespace vdb_offset

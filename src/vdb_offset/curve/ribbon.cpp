@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

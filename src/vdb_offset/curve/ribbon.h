@@ -1,22 +1,14 @@
 #pragma once
 
-#include <openvdb/math/Vec2.h>
-
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/curves.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
-
-using openvdb::math::Vec2d;
-
-/// Curves in the layout of a polygon mesh: "face" f lists the points that curve f runs through, at least one. It is
-/// closed if it ends where it begins. Curves that meet end to end at one place go on as one.
-using CurvesView = PolygonView;
-using Curves = Polygons;
 
 /// The plane that curves lie in, with axes of its own. Those of a plane z = constant are x and y; a plane across
 /// another axis has the other two, so that coordinates are the input's to the last bit; any other has unit vectors.
@@ -48,10 +40,6 @@ struct CurveChains {
 /// others the right, as one goes along them (along most of the pieces that they are made of), which is the outer side
 /// of a closed curve that runs counterclockwise.
 CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points);
-
-/// Unit normals of the points, outward, in the plane: halfway between those of the segments that meet there. Zero for
-/// points on no curve, and where segments turn back on each other. \throw InvalidInput as plane_of()
-std::vector<Vec3d> curve_normals(CurvesView curves);
 
 /// The ribbon that stands on segments, from z = 0 up to `height`: what is at a height in between is as far from it as
 /// from the curve in its plane, exactly. Point p becomes the vertices 2 p, below, and 2 p + 1.

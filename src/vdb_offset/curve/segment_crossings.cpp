@@ -18,7 +18,7 @@ namespace vdb_offset {
 namespace {
 
 int side_of(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-  // What rounding cannot have turned is decided here (Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast
+  // What rounding cannot have turned is decided here (Shewchuk, Adaptive Rounding Floating-Point Arithmetic and Fast
   // Robust Geometric Predicates, 1997); CGAL is right in any case, and slower.
   constexpr double kRounding = (3 + 16 * 0x1p-53) * 0x1p-53, kUnderflow = 1e-280;
   const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]), difference = left - right,

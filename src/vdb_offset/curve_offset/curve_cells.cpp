@@ -1,10 +1,11 @@
-#include "vdb_offset/curve_offset/curve_cells.h"
+#include "vdb_offset/curve_cells.h"
 
 #include <algorithm>
 #include <array>
 #include <string>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/curve/ribbon.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/volume/cell_quality.h"
 
 namespace vdb_offset {

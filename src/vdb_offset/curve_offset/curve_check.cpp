@@ -1,4 +1,4 @@
-#include "vdb_offset/curve_offset/curve_check.h"
+#include "vdb_offset/curve_check.h"
 
 #include <tbb/task_arena.h>
 
@@ -7,10 +7,12 @@
 #include <numeric>
 #include <string>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/curve/curve_line.h"
 #include "vdb_offset/curve_offset/curve_faults.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/validity/face_error.h"
 
 namespace vdb_offset {
 namespace {
@@ -101,7 +103,7 @@ class CurveChecker {
   }
 
   void judge_points(const CurveFaults& faults) {
-    const double target = std::abs(result_.distance), epsilon = options_.precision.epsilon();
+    const double target = std::abs(result_.distance), epsilon = Rounding(options_.precision).epsilon();
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p) {
       const std::uint32_t v = drawn_.vertex[p];
       if (v == kNone) continue;

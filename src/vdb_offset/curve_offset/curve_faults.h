@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/base/precision.h"
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/curve/segment_crossings.h"
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/validity/fault_finder.h"
 
 namespace vdb_offset {
@@ -18,7 +18,7 @@ struct PlaneCurves {
   const CurveQuery& front;
   std::span<const Vec2d> source;  ///< Where the vertices of its polyline stand in the plane.
   const Distances& distances;     ///< Of the same.
-  Precision precision;            ///< Of the coordinates that will be written.
+  Rounding precision;             ///< Of the coordinates that will be written.
 
   const Polyline& line() const { return front.surface(); }
   /// A place of the plane in the polyline's frame.

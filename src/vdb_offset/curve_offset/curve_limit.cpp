@@ -1,5 +1,7 @@
 #include "vdb_offset/curve_offset/curve_limit.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>

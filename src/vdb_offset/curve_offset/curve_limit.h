@@ -2,11 +2,11 @@
 
 #include <span>
 
-#include "vdb_offset/base/progress.h"
 #include "vdb_offset/curve_offset/curve_faults.h"
 #include "vdb_offset/curve_offset/restore_order.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/progress.h"
 
 namespace vdb_offset {
 

@@ -1,4 +1,4 @@
-#include "vdb_offset/curve_offset/curve_offset.h"
+#include "vdb_offset/curve_offset.h"
 
 #include <tbb/task_arena.h>
 
@@ -8,14 +8,22 @@
 #include <numeric>
 #include <optional>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/base/thread_count.h"
 #include "vdb_offset/curve/curve_line.h"
 #include "vdb_offset/curve_offset/curve_limit.h"
 #include "vdb_offset/curve_offset/grow_curve_layers.h"
+#include "vdb_offset/data/count_states.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/field/describe_field.h"
 #include "vdb_offset/field/direction_field.h"
+#include "vdb_offset/field/grid_plan.h"
 #include "vdb_offset/field/rasterise.h"
-#include "vdb_offset/pipeline/run_statistics.h"
+#include "vdb_offset/field/sweep.h"
+#include "vdb_offset/mesh/layer_heights.h"
+#include "vdb_offset/paths/side_room.h"
+#include "vdb_offset/validity/face_error.h"
 
 namespace vdb_offset {
 namespace {

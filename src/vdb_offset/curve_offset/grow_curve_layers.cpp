@@ -1,5 +1,7 @@
 #include "vdb_offset/curve_offset/grow_curve_layers.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <algorithm>
 
 #include "vdb_offset/base/parallel.h"

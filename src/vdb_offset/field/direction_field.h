@@ -2,7 +2,7 @@
 
 #include <openvdb/tree/ValueAccessor.h>
 
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

@@ -1,4 +1,4 @@
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 
 #include <fmt/format.h>
 #include <openvdb/io/Archive.h>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset {
 namespace {

@@ -10,7 +10,7 @@
 #include <bit>
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 
 namespace vdb_offset {
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "vdb_offset/base/progress.h"
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/field/leaf_graph.h"
 #include "vdb_offset/surface/surface.h"
 

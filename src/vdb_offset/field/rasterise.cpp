@@ -1,5 +1,7 @@
 #include "vdb_offset/field/rasterise.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vdb_offset/base/progress.h"
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
+#include "vdb_offset/progress.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

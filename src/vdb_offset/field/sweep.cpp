@@ -1,6 +1,6 @@
 #include "vdb_offset/field/sweep.h"
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/field/leaf_rounds.h"
 
 namespace vdb_offset {

@@ -1,15 +1,11 @@
 #pragma once
 
-#include "vdb_offset/base/progress.h"
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/progress.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
-
-enum class Solver {
-  Closest,  ///< Hands closest points on from voxel to voxel, each walking on from there over the mesh: exact.
-  Eikonal,  ///< Godunov's update of |grad phi| = 1 on phi alone: first order, the paper's method.
-};
 
 struct SweepOptions {
   Solver solver = Solver::Closest;

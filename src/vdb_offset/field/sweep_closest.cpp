@@ -5,6 +5,7 @@
 
 #include "vdb_offset/base/float_lanes.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/field/leaf_rounds.h"
 
 namespace vdb_offset {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/field/leaf_rounds.h"
 
 namespace vdb_offset {

@@ -1,5 +1,7 @@
 #include "vdb_offset/iso/iso_grid.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <fmt/format.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
@@ -7,8 +9,8 @@
 #include <cmath>
 #include <memory>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {

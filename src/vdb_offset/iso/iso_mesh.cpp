@@ -1,5 +1,7 @@
 #include "vdb_offset/iso/iso_mesh.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>

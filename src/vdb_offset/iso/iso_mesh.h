@@ -1,9 +1,9 @@
 #pragma once
 
-#include "vdb_offset/base/progress.h"
 #include "vdb_offset/iso/iso_grid.h"
 #include "vdb_offset/iso/iso_level.h"
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/progress.h"
 
 namespace vdb_offset {
 

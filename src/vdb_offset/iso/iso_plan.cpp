@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/field/grid_plan.h"
+#include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
 namespace {
@@ -72,7 +75,8 @@ CapturePlan choose_voxels(const Surface& surface, const CaptureOptions& options,
 /// and cross wherever they are mended, without end.
 void require_fine_places(const MeshFacts& facts, const CaptureOptions& options, double h) {
   constexpr double kMostVoxels = 2;
-  const double rounding = options.precision.half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
+  const double rounding =
+      Rounding(options.precision).half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
   if (rounding <= kMostVoxels * h) return;
   throw InvalidInput(
       fmt::format("capture: expected coordinates that are rounded by less than {:g} voxels of {:.6g}, got {:.3g} (move "

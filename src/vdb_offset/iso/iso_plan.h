@@ -1,6 +1,7 @@
 #pragma once
 
-#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
 

@@ -1,4 +1,6 @@
-#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/iso_surface.h"
+
+#include "vdb_offset/base/progress_count.h"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -8,15 +10,21 @@
 #include <limits>
 #include <optional>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/base/thread_count.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/iso/capture_source.h"
 #include "vdb_offset/iso/iso_grid.h"
 #include "vdb_offset/iso/iso_level.h"
 #include "vdb_offset/iso/iso_mesh.h"
 #include "vdb_offset/iso/iso_plan.h"
+#include "vdb_offset/iso/mend.h"
 #include "vdb_offset/iso/merge_flats.h"
+#include "vdb_offset/iso/solid_boundary.h"
 #include "vdb_offset/iso/specks.h"
-#include "vdb_offset/pipeline/run_statistics.h"
+#include "vdb_offset/validity/face_error.h"
 
 namespace vdb_offset {
 namespace {
@@ -65,7 +73,7 @@ class Capture {
   void mend_on_surface(Surface& mesh);
   void merge_where_flat(Surface& mesh);
   std::optional<Vec3d> onto(const Vec3d& wish);
-  Vec3d as_written(const Vec3d& local) const { return options_.precision(source().origin + local); }
+  Vec3d as_written(const Vec3d& local) const { return Rounding(options_.precision)(source().origin + local); }
   void hand_over(const Surface& mesh);
   Surface check_topology();
   void tell_topology(const Surface& in_file);
@@ -176,7 +184,7 @@ void Capture::merge_where_flat(Surface& mesh) {
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   double farthest = 0;
   for (const Vec3d& p : mesh.vertices) farthest = std::max({farthest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-  const double tolerance = kShareOfDistance * level_->distance() + options_.precision.epsilon() * farthest;
+  const double tolerance = kShareOfDistance * level_->distance() + Rounding(options_.precision).epsilon() * farthest;
   result_.statistics.merged_vertices = merge_flats_soundly(mesh, tolerance);
 }
 
@@ -225,7 +233,7 @@ Surface Capture::check_topology() {
   }
   // Rounding on the way to the file's own coordinates may decide otherwise.
   Polygons file = result_.polygons;
-  for (Vec3d& p : file.positions) p = options_.precision.in_file(p);
+  for (Vec3d& p : file.positions) p = Rounding(options_.precision).in_file(p);
   const Surface in_file = build_surface(file.view(), {});
   tell_topology(in_file);
   result_.statistics.mending.left = find_faults(in_file);

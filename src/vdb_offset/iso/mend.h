@@ -6,28 +6,15 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/iso_surface.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
-
-/// What may be wrong with a closed mesh's places.
-struct MeshFaults {
-  std::size_t crossings = 0;  ///< Pairs of triangles that meet elsewhere than in the corners and edges they share.
-  std::size_t needles = 0;    ///< Triangles without area (see is_needle).
-
-  std::size_t total() const { return crossings + needles; }
-};
 
 /// Of all pairs of a mesh's triangles. \pre the mesh is built
 MeshFaults find_faults(const Surface& mesh);
 /// The triangles that have faults in which some, sorted, take part: sorted.
 std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std::uint32_t> some);
-
-/// What mending found and did, to the mesh that was kept.
-struct MendStatistics {
-  MeshFaults before, left;
-  std::size_t rounds = 0, moved_vertices = 0, flipped_edges = 0, split_edges = 0;
-};
 
 /// A place near a wish on the surface that a mesh is to approximate, world coordinates; none if there is none near.
 using Onto = std::function<std::optional<Vec3d>(const Vec3d& wish)>;

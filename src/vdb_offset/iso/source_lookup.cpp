@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/point_triangle.h"
+#include "vdb_offset/query/closest_query.h"
 
 namespace vdb_offset {
 namespace {

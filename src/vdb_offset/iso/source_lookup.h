@@ -5,7 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/iso/iso_surface.h"
+#include "vdb_offset/iso/capture_source.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/mesh/point_triangle.h"
+#include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
 

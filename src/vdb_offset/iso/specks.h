@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

@@ -9,10 +9,10 @@
 
 #include "vdb_offset/base/double_lanes.h"
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/cells/column_mesh.h"
+#include "vdb_offset/layers/column_mesh.h"
 #include "vdb_offset/layers/rails.h"
 #include "vdb_offset/volume/cell_quality.h"
-#include "vdb_offset/volume/foam_quality.h"
+#include "vdb_offset/volume/foam_measures.h"
 
 namespace vdb_offset {
 namespace {

@@ -5,17 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/layers/vertex_stacks.h"
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/layers.h"
 #include "vdb_offset/parts/constrained_surface.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/vertex_stacks.h"
 
 namespace vdb_offset {
-
-/// What makes cells valid.
-enum class CellRules : std::uint8_t {
-  AnySolver,
-  OpenFoam,  ///< Beside all else, its checkMesh must find no face of a cell oriented wrongly (foam_quality.h).
-};
 
 /// The columns of cells that stand on the faces of a body's front, on its welded vertices.
 ///

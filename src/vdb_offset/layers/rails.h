@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "vdb_offset/mesh/point_triangle.h"
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 
 /// What layers over surfaces and over curves have in common.
 namespace vdb_offset {

@@ -1,5 +1,7 @@
 #include "vdb_offset/layers/stacker.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <algorithm>
 #include <limits>
 

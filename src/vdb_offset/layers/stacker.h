@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/layers/rails.h"
 #include "vdb_offset/layers/surface_stacker.h"
 

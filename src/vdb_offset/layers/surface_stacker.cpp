@@ -1,5 +1,7 @@
 #include "vdb_offset/layers/surface_stacker.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -225,11 +227,11 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
   return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
 }
 
-void round_layers(std::span<const Vec3d> source, const Precision& precision,
+void round_layers(std::span<const Vec3d> source, const Rounding& precision,
                   const std::function<bool(std::uint32_t)>& is_written,
                   const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
                   LayerStack& stack, Paths& paths) {
-  if (precision.kind == Precision::Kind::Double && precision.scale == Vec3d(1.0)) return;
+  if (precision.kind == Rounding::Kind::Double && precision.scale == Vec3d(1.0)) return;
   for_each_index(source.size(), [&](std::size_t i) {
     const auto v = static_cast<std::uint32_t>(i);
     // Layers that are not there stay on the wall.

@@ -6,23 +6,15 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/base/progress.h"
+#include "vdb_offset/layers.h"
 #include "vdb_offset/layers/growth_columns.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/parts/border_slide.h"
 #include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/progress.h"
 #include "vdb_offset/validity/fault_finder.h"
 
 namespace vdb_offset {
-
-/// What growing layers found and did.
-struct LayerStatistics {
-  std::size_t wrong_columns = 0;     ///< CellColumns of cells of which one was not valid before anything was thinned.
-  std::size_t straightened = 0;      ///< Vertices whose layers stand on a straight line for that.
-  std::size_t rounds = 0;            ///< Rounds in which layers were thinned or let out again.
-  std::size_t thinned_vertices = 0;  ///< Of the surface, that keep less than all of their heights.
-  std::size_t flat_vertices = 0;     ///< That keep none, although asked to.
-};
 
 /// Layers over a body's vertices.
 struct LayerStack {
@@ -49,7 +41,7 @@ LayerStack stack_layers(const Body& body, const BorderSlides* slides, const Cell
 /// Puts layers where a file has them that keeps coordinates so precisely, and tells their first and last distances
 /// there, by distance_at(vertex, place), which is called in parallel; not of vertices that it has none for. The wall
 /// stays, and what is not written.
-void round_layers(std::span<const Vec3d> source, const Precision& precision,
+void round_layers(std::span<const Vec3d> source, const Rounding& precision,
                   const std::function<bool(std::uint32_t)>& is_written,
                   const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
                   LayerStack& stack, Paths& paths);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/base/index_set.h"
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
 
 namespace vdb_offset {

@@ -1,5 +1,7 @@
 #include "vdb_offset/limit/limit.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -6,23 +6,10 @@
 
 #include "vdb_offset/limit/warm_start.h"
 #include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/statistics.h"
 #include "vdb_offset/validity/fault_finder.h"
 
 namespace vdb_offset {
-
-/// What limit() found and did.
-struct LimitStatistics {
-  FaultCounts before;                     ///< In what propagate() made; of curves, with points in order.
-  FaultCounts left;                       ///< 0 but where rounding to the format's numbers makes a source cross itself.
-  std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
-  bool more_source_crossings = false;     ///< There are more of them than these, and what is near is not looked at.
-  std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
-  std::size_t followed_vertices = 0;      ///< That have begun with what became of a farther offset.
-  std::size_t untanglings = 0;            ///< Rounds in which patches were untangled.
-  std::size_t rounds = 0;                 ///< Rounds in which vertices were pulled back or let out again.
-  std::size_t limited_vertices = 0;
-  double thickness_lost = 0;  ///< Mean over the vertices of (asked - achieved) / asked that limit() took away.
-};
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew.
 ///

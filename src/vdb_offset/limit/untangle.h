@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
 
 namespace vdb_offset {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
 
 namespace vdb_offset {

@@ -1,4 +1,4 @@
-#include "vdb_offset/mesh/distance_expression.h"
+#include "vdb_offset/distance_expression.h"
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -11,8 +11,8 @@
 #include <map>
 #include <numbers>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 namespace {

@@ -1,10 +1,10 @@
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset {
 

@@ -7,7 +7,7 @@
 
 #include "vdb_offset/base/bucket_sort.h"
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

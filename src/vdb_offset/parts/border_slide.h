@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/mesh_parts.h"
 #include "vdb_offset/paths/propagate.h"
 

@@ -4,28 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/metric.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/mesh/in_metric.h"
 #include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/query/obstacles.h"
 
 namespace vdb_offset {
-
-/// How near a body's triangles stand to obstacles before anything moves. What is nearer than the clearance there may
-/// move as long as it comes no nearer.
-struct StartingGaps {
-  std::vector<double> bound;          ///< Of each triangle of the body: its gap, or the clearance if that is less.
-  std::vector<std::uint8_t> touches;  ///< Of each triangle of the body: 1 if it meets an obstacle.
-  double least = 0;                   ///< World units; 0 if any meets one.
-  std::size_t touching = 0;           ///< Pairs of the body's triangles and obstacles' that meet, and
-  std::size_t crossing = 0;           ///< those that go through each other.
-};
-
-/// Other geometry, that nothing which moves may come nearer to than this, in world units. Its triangles are the last of
-/// the body's surface.
-struct Obstacles {
-  const ClosestQuery& query;
-  double clearance;
-  const StartingGaps* start = nullptr;  ///< Without: everything stands clear of them.
-};
 
 /// Where distances are measured in the space of a metric: what vertices are in the file, which is what counts where
 /// triangles meet.
@@ -35,7 +19,7 @@ struct FileFrame {
   std::span<const Vec3d> places;  ///< Where they stand, if that is known; else where they are put, rounded.
 
   /// Of a vertex that is put to a place in that space.
-  Vec3d of(std::size_t vertex, const Vec3d& from, const Vec3d& to, const Precision& precision) const {
+  Vec3d of(std::size_t vertex, const Vec3d& from, const Vec3d& to, const Rounding& precision) const {
     if (!places.empty()) return places[vertex];
     const Vec3d& before = source[vertex];
     return precision(before, to == from ? before : space.moved(before, from, to));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/surface/weld.h"
 
 namespace vdb_offset {

@@ -6,18 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/options.h"
 #include "vdb_offset/parts/constrained_surface.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
-
-/// What the edge of a part does where the rest of the mesh goes on.
-enum class Border {
-  Slide,  ///< It slides along the rest of the surface, or along that surface's extension.
-  Fixed,  ///< It stays where it is.
-  Free,   ///< It goes as the part alone asks for.
-};
 
 struct WorkpieceOptions {
   std::span<const std::uint8_t> only;  ///< Of each face: 1 if it is part of the front. Empty: all are.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vdb_offset/parts/constrained_surface.h"
+#include "vdb_offset/query/obstacles.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,7 @@
 #include "vdb_offset/paths/propagate.h"
 
+#include "vdb_offset/base/progress_count.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>

@@ -4,27 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/base/progress.h"
 #include "vdb_offset/curve/curve_query.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/field/direction_field.h"
-#include "vdb_offset/mesh/distances.h"
-#include "vdb_offset/parts/constrained_surface.h"
+#include "vdb_offset/progress.h"
+#include "vdb_offset/query/obstacles.h"
+#include "vdb_offset/vertex_state.h"
 
 namespace vdb_offset {
-
-/// What became of a vertex.
-enum class VertexState : std::uint8_t {
-  Reached,       ///< Its exact distance is the target's, to 1e-6 of it and the rounding of the coordinates.
-  Collision,     ///< Stopped short where the distance grows no further: at the medial axis, or closed in.
-  Limited,       ///< Held back to keep the result valid.
-  OutsideField,  ///< Left the voxels that the field covers before it arrived.
-  Unused,        ///< In no face; it stays where it is.
-};
-inline constexpr std::size_t kVertexStateCount = 5;
-const char* name(VertexState state);
-
-/// A vertex is at its distance if it is that near to it, relative to the distance.
-inline constexpr double kReachedTolerance = 1e-6;
 
 /// Where each surface vertex went.
 struct Paths {

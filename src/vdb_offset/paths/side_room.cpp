@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_offset/paths/start_direction.h"
+#include "vdb_offset/surface/start_direction.h"
 
 namespace vdb_offset {
 namespace {
@@ -48,5 +48,7 @@ bool falls_short(std::span<const VertexState> states) {
              reached = std::count(states.begin(), states.end(), VertexState::Reached);
   return static_cast<double>(used - reached) > kFew * static_cast<double>(used);
 }
+
+bool SideRoom::suggests_other() const { return known && here < 0.9 && there > here + 0.2; }
 
 }  // namespace vdb_offset

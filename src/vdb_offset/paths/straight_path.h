@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vdb_offset/paths/propagate.h"
-#include "vdb_offset/paths/start_direction.h"
+#include "vdb_offset/surface/start_direction.h"
 
 /// Ways along a vertex's normal, which need no field.
 namespace vdb_offset {

@@ -12,9 +12,9 @@
 #include "vdb_offset/paths/obstacle_guard.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/paths/ridge_path.h"
-#include "vdb_offset/paths/start_direction.h"
 #include "vdb_offset/paths/straight_path.h"
 #include "vdb_offset/query/cut_at_distance.h"
+#include "vdb_offset/surface/start_direction.h"
 
 /// How one vertex finds its way: of a Surface, by its ClosestQuery, and of a Polyline, by its CurveQuery, alike.
 namespace vdb_offset {

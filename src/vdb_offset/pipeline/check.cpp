@@ -1,4 +1,4 @@
-#include "vdb_offset/pipeline/check.h"
+#include "vdb_offset/check.h"
 
 #include <tbb/task_arena.h>
 
@@ -6,9 +6,14 @@
 #include <cmath>
 #include <string>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/parts/mesh_parts.h"
 #include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/validity/face_error.h"
+#include "vdb_offset/validity/fault_finder.h"
+#include "vdb_offset/validity/obstacle_facts.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 namespace vdb_offset {
 namespace {
@@ -40,7 +45,7 @@ std::vector<Vec3d> places_of(const Surface& surface, std::span<const Vec3d> sour
 /// Vertices that stand elsewhere than the one that they are to move with. What has been welded with a tolerance keeps
 /// its own place where it stays.
 std::size_t count_torn(const Surface& surface, PolygonView source, std::span<const Vec3d> positions,
-                       const Precision& precision) {
+                       const Rounding& precision) {
   std::size_t torn = 0;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (surface.welded[v] == kNone) continue;
@@ -75,7 +80,7 @@ double find_distance(const Body& body, std::span<const Vec3d> places) {
 
 /// States and distances of the input's vertices.
 void judge_vertices(const Surface& surface, const FaultFinder& finder, const Distances& distances,
-                    const Precision& precision, CheckResult& result) {
+                    const Rounding& precision, CheckResult& result) {
   const double epsilon = precision.epsilon();
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     const std::uint32_t w = surface.welded[v];

@@ -1,4 +1,4 @@
-#include "vdb_offset/pipeline/fit.h"
+#include "vdb_offset/fit.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/validity/clearance.h"
 
 namespace vdb_offset {
@@ -107,7 +108,7 @@ class Fitting {
     double largest = 0;
     for (const Vec3d& p : mesh.positions)
       for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(p[k]));
-    wanted_ = clearance * (1 + kBeyond) + 2 * largest * options.precision.epsilon();
+    wanted_ = clearance * (1 + kBeyond) + 2 * largest * Rounding(options.precision).epsilon();
     options_.obstacles = {};
     options_.clearance = 0;
     options_.metric = {};
@@ -164,7 +165,7 @@ class Fitting {
     places_.resize(surface_.vertices.size());
     for (std::size_t w = 0; w < places_.size(); ++w) {
       const auto v = surface_.representative[w];
-      places_[w] = options_.precision(mesh_.positions[v], positions[v]);
+      places_[w] = Rounding(options_.precision)(mesh_.positions[v], positions[v]);
     }
     std::vector<double> before(near_.size());
     for (std::size_t t = 0; t < near_.size(); ++t) before[t] = near_[t].gap;
@@ -252,7 +253,7 @@ class Fitting {
   double least_gap(std::span<const Vec3d> positions) const {
     const auto at = [&](std::uint32_t w) {
       const auto v = surface_.representative[w];
-      return options_.precision(mesh_.positions[v], positions[v]);
+      return Rounding(options_.precision)(mesh_.positions[v], positions[v]);
     };
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t w = 0; w < surface_.vertices.size(); ++w) least = std::min(least, other_.gap_at(at(w)));

@@ -1,4 +1,6 @@
-#include "vdb_offset/pipeline/offset.h"
+#include "vdb_offset/offset.h"
+
+#include "vdb_offset/base/progress_count.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -11,16 +13,32 @@
 #include <numeric>
 #include <optional>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/base/thread_count.h"
+#include "vdb_offset/data/count_states.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/field/describe_field.h"
 #include "vdb_offset/field/direction_field.h"
+#include "vdb_offset/field/grid_plan.h"
 #include "vdb_offset/field/rasterise.h"
-#include "vdb_offset/layers/layers.h"
+#include "vdb_offset/field/sweep.h"
+#include "vdb_offset/layers.h"
+#include "vdb_offset/layers/growth_columns.h"
+#include "vdb_offset/layers/surface_stacker.h"
+#include "vdb_offset/limit/limit.h"
 #include "vdb_offset/limit/warm_start.h"
+#include "vdb_offset/mesh/layer_heights.h"
+#include "vdb_offset/parts/border_facts.h"
 #include "vdb_offset/parts/border_slide.h"
-#include "vdb_offset/pipeline/run_statistics.h"
+#include "vdb_offset/paths/side_room.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/sheets/sheet_sides.h"
+#include "vdb_offset/validity/face_error.h"
+#include "vdb_offset/validity/fault_finder.h"
+#include "vdb_offset/validity/obstacle_facts.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 namespace vdb_offset {
 namespace {
@@ -459,7 +477,7 @@ class Pipeline {
     const auto& of_mesh = work_.surface().representative;
     for (std::size_t w = 0; w < places.size(); ++w)
       if (w < of_mesh.size() && of_mesh[w] != kNone)
-        places[w] = options_.precision(places[w], places[w] + paths.displacement[w]);
+        places[w] = Rounding(options_.precision)(places[w], places[w] + paths.displacement[w]);
     return places;
   }
 
@@ -469,7 +487,7 @@ class Pipeline {
     inner_skin_ = source_;
     for (std::size_t w = 0; w < inner_skin_.size(); ++w) {
       const auto v = surface.representative[w];
-      if (v != kNone) inner_skin_[w] = options_.precision(source_[w], result.positions[v]);
+      if (v != kNone) inner_skin_[w] = Rounding(options_.precision)(source_[w], result.positions[v]);
     }
   }
 
@@ -603,41 +621,6 @@ LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, c
 
 OffsetResult offset(PolygonView mesh, const OffsetOptions& options) {
   return std::move(offset_several(mesh, {&options.distance, 1}, options).front());
-}
-
-OffsetResult offset(Mesh& mesh, const OffsetOptions& options) {
-  const Polygons polygons = to_polygons(mesh);
-  OffsetResult result = offset(polygons.view(), options);
-  for (const auto vertex : mesh.all_vertices()) {
-    const Vec3d& p = result.positions[static_cast<std::size_t>(vertex.idx())];
-    mesh.set_point(vertex, {p[0], p[1], p[2]});
-  }
-  return result;
-}
-
-double used_diagonal(PolygonView mesh) {
-  if (mesh.corners.empty()) return 0;
-  using openvdb::math::maxComponent, openvdb::math::minComponent;
-  struct Box {
-    Vec3d lower, upper;
-  };
-  const Vec3d& first = mesh.positions[mesh.corners[0]];
-  const Box box = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, mesh.corners.size()), Box{first, first},
-      [&](const auto& range, Box part) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          const Vec3d& x = mesh.positions[mesh.corners[i]];
-          part = {minComponent(part.lower, x), maxComponent(part.upper, x)};
-        }
-        return part;
-      },
-      [](const Box& a, const Box& b) {
-        return Box{minComponent(a.lower, b.lower), maxComponent(a.upper, b.upper)};
-      });
-  const Vec3d size = box.upper - box.lower;
-  const double largest = openvdb::math::Max(size[0], size[1], size[2]);
-  // Squares of what is tiny or huge are no numbers.
-  return largest < 1e-150 || largest > 1e150 ? largest * (largest > 0 ? (size / largest).length() : 0) : size.length();
 }
 
 OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/base/float_lanes.h"
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

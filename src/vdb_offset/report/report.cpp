@@ -1,4 +1,4 @@
-#include "vdb_offset/report/report.h"
+#include "vdb_offset/report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/version.h"
 
 namespace vdb_offset {
 namespace {
@@ -406,6 +407,10 @@ std::string check_json(const CheckResult& result, const std::string& source, con
                  {"face_interior_error", interior_json(result.interior)}};
   if (result.obstacles) report["obstacles"] = obstacles_json(*result.obstacles);
   return as_text(report);
+}
+
+AchievedSummary summarise(const OffsetResult& result) {
+  return summarise(result.states, result.achieved, result.distances);
 }
 
 }  // namespace vdb_offset

@@ -1,4 +1,4 @@
-#include "vdb_offset/scene/scene.h"
+#include "vdb_offset/scene.h"
 
 #include <fmt/format.h>
 
@@ -11,12 +11,12 @@
 #include <set>
 #include <string_view>
 
-#include "vdb_offset/base/decimal.h"
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
-#include "vdb_offset/io/base/file_bytes.h"
+#include "vdb_offset/decimal.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
-#include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/shapes.h"
 
 namespace vdb_offset::scene {
 namespace {
@@ -469,5 +469,7 @@ std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& she
                       shell.volume));
   return failed;
 }
+
+double Distance::in_world_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
 
 }  // namespace vdb_offset::scene

@@ -1,4 +1,4 @@
-#include "vdb_offset/scene/shapes.h"
+#include "vdb_offset/shapes.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset::scene {
 namespace {

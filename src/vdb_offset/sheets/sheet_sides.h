@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

@@ -1,10 +1,10 @@
-#include "vdb_offset/shell/hollow.h"
+#include "vdb_offset/hollow.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/mesh/edge_sides.h"
 #include "vdb_offset/surface/surface.h"
 #include "vdb_offset/validity/triangle_crossings.h"

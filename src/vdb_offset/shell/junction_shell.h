@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/base/precision.h"
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/sheets/sheet_sides.h"
-#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset {
 
@@ -16,7 +16,7 @@ struct JunctionInput {
   std::span<const Vec3d> outer, inner;      ///< Skins that are valid with all junctions where they are in the mesh.
   std::span<const std::uint8_t> junctions;  ///< Of each vertex: 1 at a junction (see find_junctions()).
   WeldOptions weld;
-  Precision precision;
+  Rounding precision;
   bool to_be_valid = true;  ///< What folds or crosses there goes back towards those skins.
 };
 

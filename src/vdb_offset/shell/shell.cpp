@@ -1,13 +1,15 @@
-#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/shell.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/base/thread_count.h"
+#include "vdb_offset/data/count_states.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/mesh/edge_sides.h"
-#include "vdb_offset/pipeline/run_statistics.h"
 #include "vdb_offset/shell/junction_shell.h"
 #include "vdb_offset/shell/shell_facts.h"
 

@@ -54,7 +54,7 @@ void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shel
 
 /// Vertices at one place count as one there, though one that has not moved keeps its own coordinates.
 void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written,
-                     std::span<const std::uint32_t> place, const Precision& precision, Shell& shell) {
+                     std::span<const std::uint32_t> place, const Rounding& precision, Shell& shell) {
   std::vector<Vec3d> joined(written.begin(), written.end());
   for (std::size_t v = 0; v < joined.size(); ++v)
     if (place[v] != kNone) joined[v] = written[place[v]];
@@ -80,7 +80,7 @@ void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const 
 
 }  // namespace
 
-std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Precision& precision) {
+std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Rounding& precision) {
   std::vector<Vec3d> written = shell.polygons.positions;
   for (std::uint32_t v = 0; v < written.size(); ++v)
     written[v] = precision(mesh.positions[shell.source_vertex(v)], written[v]);
@@ -96,7 +96,7 @@ std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOption
   return near;
 }
 
-void count_facts(PolygonView mesh, const WeldOptions& weld, const Precision& precision,
+void count_facts(PolygonView mesh, const WeldOptions& weld, const Rounding& precision,
                  std::span<const std::uint32_t> place, Shell& shell) {
   const std::vector<Vec3d> written = written_positions(mesh, shell, precision);
   count_edges(place, shell);

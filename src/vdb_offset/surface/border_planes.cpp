@@ -7,10 +7,10 @@
 #include <span>
 #include <string>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/index_set.h"
-#include "vdb_offset/paths/start_direction.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/surface/border_loops.h"
+#include "vdb_offset/surface/start_direction.h"
 
 namespace vdb_offset {
 namespace {
@@ -389,6 +389,8 @@ class PlaneFinder {
 };
 
 }  // namespace
+
+double SymmetryPlane::height(const Vec3d& x) const { return normal.dot(x) - offset; }
 
 void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach) {
   if (surface.conormals.empty() && options.planes.empty()) return;

@@ -3,26 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/symmetry.h"
 
 /// Planes that vertices stay in: those of symmetry, of half models, and those that borders lie in.
 namespace vdb_offset {
 
 struct Surface;
-
-/// All x with normal . x = offset; the normal has unit length.
-struct SymmetryPlane {
-  Vec3d normal{0.0};
-  double offset = 0;
-
-  double height(const Vec3d& x) const { return normal.dot(x) - offset; }
-};
-
-struct SymmetryOptions {
-  bool find = true;  ///< Borders stay in the planes that they lie in.
-  std::vector<SymmetryPlane>
-      planes;  ///< World coordinates. All vertices on one of these stay in it, whatever is around them.
-};
 
 /// What keeps a vertex on its side of a plane: its places are at heights of 0 or less above that.
 struct Wall {

@@ -10,9 +10,9 @@
 #include <numeric>
 
 #include "vdb_offset/base/bucket_sort.h"
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/morton.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/surface/connect_faces.h"
 #include "vdb_offset/surface/weld.h"
@@ -208,6 +208,8 @@ double angle_at(const Vec3d& tip, const Vec3d& a, const Vec3d& b) {
   return std::atan2(u.cross(v).length(), u.dot(v));
 }
 
+}  // namespace
+
 void find_normals(Surface& surface) {
   surface.triangle_normals.resize(surface.triangles.size());
   for_each_index(surface.triangles.size(),
@@ -227,8 +229,6 @@ void find_normals(Surface& surface) {
     surface.vertex_normals[v] = sum;
   });
 }
-
-}  // namespace
 
 double MeshFacts::tolerance_above(double length) {
   constexpr double kSpare = 1.5;  // chains of such gaps are a little longer
@@ -380,18 +380,6 @@ Vec3d Surface::along_line(std::uint32_t vertex, const Vec3d& v) const {
   const auto second = std::lower_bound(second_conormals.begin(), second_conormals.end(), vertex,
                                        [](const auto& each, std::uint32_t at) { return each.first < at; });
   return v - second->second * second->second.dot(v);
-}
-
-std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld, Orient orient) {
-  Surface surface = build_surface(polygons, weld, orient);
-  find_normals(surface);
-  std::vector<Vec3d> normals(polygons.positions.size(), Vec3d(0.0));
-  for_each_index(normals.size(), [&](std::size_t v) {
-    if (surface.welded[v] == kNone) return;
-    const Vec3d& sum = surface.vertex_normals[surface.welded[v]];
-    if (const double length = sum.length(); length > 0) normals[v] = sum / length;
-  });
-  return normals;
 }
 
 void append(Surface& surface, const Surface& other) {

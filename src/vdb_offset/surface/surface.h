@@ -9,78 +9,12 @@
 #include <vector>
 
 #include "vdb_offset/mesh/point_triangle.h"
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/surface/border_planes.h"
 
 namespace vdb_offset {
-
-inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-/// Which vertices move as one. Bit-equal positions (hard edges, UV seams, STL corners) by default.
-struct WeldOptions {
-  bool enabled = true;
-  double tolerance = 0;  ///< World units, >= 0. Vertices closer than this are taken to stand where the first stands.
-  bool close_seams = false;  ///< Without a tolerance: also borders that are one but for rounding (see seams.h).
-  double precision = 0;      ///< For that: of a coordinate, relative to the largest; 0: as the coordinates have it.
-
-  /// Equal positions, and seams.
-  static WeldOptions automatic() { return {true, 0, true, 0}; }
-};
-
-/// What was done about borders that all but meet, see seams.h. Lengths in world units.
-struct SeamFacts {
-  std::size_t vertices = 0;       ///< Positions on borders that went to another one.
-  double widest = 0;              ///< The farthest that one of them was away from that.
-  std::size_t near_vertices = 0;  ///< Positions on borders that run along another one, close by, and stay.
-  double widest_near = 0;         ///< How far apart these are at most.
-};
-
-/// Which side of a closed component is outward.
-enum class Orient {
-  Keep,              ///< Where its faces point.
-  FixDirectionOnly,  ///< Out of the solid that it encloses, wherever its faces point. They stay as they are.
-};
-
-/// What a mesh is made of, counted on its polygons after welding.
-struct MeshFacts {
-  std::size_t vertices = 0;         ///< As in the input.
-  std::size_t unused_vertices = 0;  ///< In no face.
-  std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
-  SeamFacts seams;
-  std::map<std::size_t, std::size_t> faces_by_corners;
-  std::size_t components = 0;          ///< Of faces, joined over edges.
-  std::size_t boundary_edges = 0;      ///< With one face.
-  std::size_t non_manifold_edges = 0;  ///< With three faces or more.
-  std::size_t repeated_faces = 0;      ///< Over the corners of an earlier face, either way round: left out inside.
-  std::size_t folded_triangles = 0;    ///< Of bent faces, over the corners of another triangle: left out too.
-  std::size_t boundary_left = 0;       ///< Boundary and non-manifold edges without all these.
-  std::size_t non_manifold_left = 0;
-  std::size_t degenerate_faces = 0;       ///< With a repeated corner or no area.
-  std::size_t orientation_conflicts = 0;  ///< Edges whose two faces run through it in the same direction.
-  std::size_t turned_triangles = 0;       ///< Turned round, for the distance's sign alone, to settle such conflicts.
-  std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
-  std::size_t closed_components = 0;      ///< Those whose edges all have two faces, which agree about the outside.
-  std::size_t inside_out_components = 0;  ///< Closed ones that face the wrong way as a whole (see orientation.h).
-  Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
-  double diagonal = 0;                    ///< Of that box.
-  double area = 0;
-  double median_edge = 0;        ///< Median edge length of the triangulated surface.
-  std::size_t sliver_edges = 0;  ///< Shorter than kSliver of that.
-  double longest_sliver = 0;     ///< The longest of those edges.
-
-  static constexpr double kSliver = 1e-5;
-
-  /// A tolerance (a power of ten) that makes one place of what is no farther apart than that.
-  static double tolerance_above(double length);
-
-  bool closed() const { return boundary_left == 0 && non_manifold_left == 0; }
-  /// Whether each edge has two faces, of opposite directions, and no face had to be left out or turned round for that.
-  bool two_sided() const {
-    return components > 0 && boundary_edges == 0 && non_manifold_edges == 0 && orientation_conflicts == 0 &&
-           repeated_faces == 0 && folded_triangles == 0 && degenerate_faces == 0;
-  }
-  bool oriented() const { return unsettled_conflicts == 0 && non_manifold_left == 0; }
-};
 
 /// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
 ///
@@ -175,16 +109,14 @@ void place(Surface& surface, double voxel_size);
 /// The same with the origin of another surface's frame.
 void place_in_frame(Surface& surface, const Vec3d& origin);
 
+/// Computes normals of triangles and vertices as they stand.
+void find_normals(Surface& surface);
+
 /// Lists the triangles around each vertex, as they are now.
 void list_incident_triangles(Surface& surface);
 
 /// Puts another surface beside one, without joining them. \pre both stand in one frame. Facts, and what is said of the
 /// input's vertices, stay those of the first; the other's have no representative (kNone).
 void append(Surface& surface, const Surface& other);
-
-/// Unit normals of the mesh's vertices, outward: of the welded surface and weighted by angles, as the offset itself
-/// takes them. Zero for a vertex that no face uses, and where the faces around have no normals or these cancel out.
-/// \throw InvalidInput as build_surface()
-std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld = {}, Orient orient = Orient::Keep);
 
 }  // namespace vdb_offset

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/hash_mix.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/surface/seams.h"
 
 namespace vdb_offset {

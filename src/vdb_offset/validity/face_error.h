@@ -4,17 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
+#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
-
-/// How far a flat face is off between its vertices, which alone are put at the distance: |distance - target| / target
-/// at the centres of triangles and the middles of their edges.
-struct InteriorError {
-  std::size_t samples = 0;
-  double mean = 0, quantile_99 = 0, worst = 0;
-};
 
 /// `places` of the body's vertices in world coordinates; between them, their distances' mean is asked for. Looks at no
 /// more than `most` triangles, evenly taken from all; 0 is all. Samples that are asked to stay on the front, and

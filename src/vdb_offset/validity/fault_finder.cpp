@@ -22,7 +22,7 @@ void replace(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
 }
 
 /// Empty where what has not moved keeps its bytes.
-std::vector<Vec3d> rewrite(const Body& body, std::span<const Vec3d> source, const Precision& precision) {
+std::vector<Vec3d> rewrite(const Body& body, std::span<const Vec3d> source, const Rounding& precision) {
   std::vector<Vec3d> places;
   if (!precision.rounds_all || body.file) return places;
   places.assign(source.begin(), source.end());
@@ -34,7 +34,7 @@ std::vector<Vec3d> rewrite(const Body& body, std::span<const Vec3d> source, cons
 }  // namespace
 
 FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                         Precision precision, std::optional<SelfCrossings> source_crossings)
+                         Rounding precision, std::optional<SelfCrossings> source_crossings)
     : body_(body),
       surface_(body.surface),
       source_(source),

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "vdb_offset/base/index_set.h"
-#include "vdb_offset/base/precision.h"
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
+#include "vdb_offset/statistics.h"
 #include "vdb_offset/validity/clearance.h"
 #include "vdb_offset/validity/rim_crossings.h"
 #include "vdb_offset/validity/source_crossings.h"
@@ -20,15 +21,6 @@
 namespace vdb_offset {
 
 struct Paths;
-
-/// What may be wrong with a result.
-struct FaultCounts {
-  std::size_t inverted = 0, collapsed = 0;  ///< Faces.
-  std::size_t crowded = 0;                  ///< Faces nearer to an obstacle than may be, or through the source.
-  std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
-
-  std::size_t total() const { return inverted + collapsed + crowded + crossings; }
-};
 
 /// What is wrong with an offset of a surface, as its vertices are moved about.
 ///
@@ -46,7 +38,7 @@ class FaultFinder {
   /// theirs; those that are not on the front do not matter. Places are rounded to `precision`.
   /// Keeps references to all but the last.
   /// `source_crossings`, if they are known of the same source already, need not be looked for again.
-  FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision,
+  FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Rounding precision,
               std::optional<SelfCrossings> source_crossings = {});
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
 #include "vdb_offset/validity/source_crossings.h"
 #include "vdb_offset/validity/triangle_crossings.h"

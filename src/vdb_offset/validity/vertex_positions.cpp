@@ -31,7 +31,7 @@ bool turns_from(const Vec3d& outward, const Vec3d& away) {
 
 }  // namespace
 
-Stands::Stands(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision)
+Stands::Stands(const Body& body, std::span<const Vec3d> source, const Distances& distances, Rounding precision)
     : body_(body),
       surface_(body.surface),
       source_(source),

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "vdb_offset/base/index_set.h"
-#include "vdb_offset/base/precision.h"
-#include "vdb_offset/mesh/distances.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
 
 namespace vdb_offset {
@@ -31,7 +31,7 @@ class Stands {
   };
 
   /// The vertices stand at `source`, world coordinates. Keeps references to all but the last.
-  Stands(const Body& body, std::span<const Vec3d> source, const Distances& distances, Precision precision);
+  Stands(const Body& body, std::span<const Vec3d> source, const Distances& distances, Rounding precision);
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel. Where they stand at the ends
   /// of paths, what is closest there is taken from those; where another point of the front may be as near, that is
@@ -85,7 +85,7 @@ class Stands {
   std::span<const Vec3d> source_;
   const Distances& distances_;
   double near_;  // what is nearer to the front says nothing about sides
-  Precision precision_;
+  Rounding precision_;
   std::vector<Vec3d> place_, away_;  // of each vertex, as the rest
   std::vector<Vec3d> written_;       // its place in the file, if that is another space
   std::vector<double> distance_;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vdb_offset/volume/volume_mesh.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vdb_offset/volume/prism_quality.h"
-#include "vdb_offset/volume/volume_mesh.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
 

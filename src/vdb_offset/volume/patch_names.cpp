@@ -1,6 +1,6 @@
-#include "vdb_offset/volume/patch_names.h"
+#include "vdb_offset/patch_names.h"
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 #include <algorithm>
 #include <set>

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_offset/mesh/polygons.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

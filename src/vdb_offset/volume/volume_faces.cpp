@@ -7,8 +7,8 @@
 #include <atomic>
 #include <memory>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/volume/cell_faces.h"
 
 namespace vdb_offset {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/volume/volume_mesh.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
 

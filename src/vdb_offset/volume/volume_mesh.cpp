@@ -1,4 +1,4 @@
-#include "vdb_offset/volume/volume_mesh.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
 
@@ -7,5 +7,7 @@ const char* name(CellType type) {
                                                   "polyhedra",  "triangles", "quadrilaterals"};
   return kNames[static_cast<std::size_t>(type)];
 }
+
+bool VolumeMesh::plane() const { return normal.lengthSqr() > 0; }
 
 }  // namespace vdb_offset

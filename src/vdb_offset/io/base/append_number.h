@@ -5,17 +5,17 @@
 #include <iterator>
 #include <string>
 
-#include "vdb_offset/base/precision.h"
+#include "vdb_offset/base/rounding.h"
 
 namespace vdb_offset::io {
 
 /// The fewest digits that read back to the same number, of its kind; or the digits asked for.
-inline void append_number(std::string& text, double value, const Precision& precision = {}) {
+inline void append_number(std::string& text, double value, const Rounding& precision = {}) {
   char digits[40];
   char* const first = std::begin(digits);
   char* const last = std::end(digits);
-  const auto result = precision.kind == Precision::Kind::Double ? std::to_chars(first, last, value)
-                      : precision.kind == Precision::Kind::Single
+  const auto result = precision.kind == Rounding::Kind::Double ? std::to_chars(first, last, value)
+                      : precision.kind == Rounding::Kind::Single
                           ? std::to_chars(first, last, static_cast<float>(value))
                           : std::to_chars(first, last, value, std::chars_format::general, precision.digits);
   text.append(first, result.ptr);

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/base/file_replace.h"
 #include "vdb_offset/io/base/compression.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -70,10 +69,10 @@ void write_pieces(const std::string& path, const Pieces& pieces) {
   write_file(path, [&](const Sink& sink) { produce(pieces, compression_of(path), sink); });
 }
 
-void write_pieces_of(const MeshFile& source, const std::string& path, const Pieces& pieces) {
+void write_pieces_of(const std::string& source, const FileBytes& bytes, const std::string& path, const Pieces& pieces) {
   Replacements files;
   write_pieces(path, pieces);
-  source.bytes.require_unchanged(source.path);
+  bytes.require_unchanged(source);
   files.commit();
 }
 

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/io/file_bytes.h"
 namespace vdb_offset::io {
-
-struct MeshFile;
 
 /// A file to be, in pieces that can be made in any order and from several threads at once.
 struct Pieces {
@@ -31,8 +30,9 @@ Pieces in_a_row(std::vector<Pieces> files);
 /// piece by piece, if the path ends in .gz or .zst. \throw WriteError
 void write_pieces(const std::string& path, const Pieces& pieces);
 
-/// The same of what was made of a file's bytes: if these have changed since, nothing is put in place. \throw ReadError
-void write_pieces_of(const MeshFile& source, const std::string& path, const Pieces& pieces);
+/// The same of what was made of the bytes of a file, `source`: if these have changed since, nothing is put in place.
+/// \throw ReadError
+void write_pieces_of(const std::string& source, const FileBytes& bytes, const std::string& path, const Pieces& pieces);
 
 /// All of them in memory.
 std::string join(const Pieces& pieces);

@@ -10,8 +10,8 @@
 #include <new>
 #include <vector>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 
 namespace vdb_offset::io {

@@ -1,4 +1,4 @@
-#include "vdb_offset/io/base/file_bytes.h"
+#include "vdb_offset/io/file_bytes.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/compression.h"
 
 namespace vdb_offset::io {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/line_records.h"
 
 namespace vdb_offset::io {

@@ -5,7 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/number_positions.h"
+#include "vdb_offset/vec.h"
 
 namespace vdb_offset::io {
 

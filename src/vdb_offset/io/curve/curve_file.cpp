@@ -1,4 +1,4 @@
-#include "vdb_offset/io/curve/curve_file.h"
+#include "vdb_offset/io/curve_file.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,13 @@
 #include <system_error>
 #include <utility>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/base/compression.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/curve/svg.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
 
@@ -213,7 +214,7 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   return curves;
 }
 
-void append_point(std::string& text, const Vec3d& p, int count, const Precision& precision) {
+void append_point(std::string& text, const Vec3d& p, int count, const Rounding& precision) {
   for (int k = 0; k < count; ++k) {
     if (k > 0) text += ' ';
     append_number(text, precision(p[k]), precision);
@@ -221,7 +222,7 @@ void append_point(std::string& text, const Vec3d& p, int count, const Precision&
   text += '\n';
 }
 
-std::string as_obj(CurvesView curves, const Precision& precision) {
+std::string as_obj(CurvesView curves, const Rounding& precision) {
   std::string text;
   for (const Vec3d& p : curves.positions) append_point(text += "v ", p, 3, precision);
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
@@ -234,7 +235,7 @@ std::string as_obj(CurvesView curves, const Precision& precision) {
 }
 
 /// Point by point as the curves run; one that several curves use is written for each of them.
-std::string as_text(CurvesView curves, const Precision& precision) {
+std::string as_text(CurvesView curves, const Rounding& precision) {
   const bool planar = std::all_of(curves.corners.begin(), curves.corners.end(),
                                   [&](std::uint32_t p) { return curves.positions[p][2] == 0; });
   std::string text;
@@ -245,7 +246,7 @@ std::string as_text(CurvesView curves, const Precision& precision) {
   return text;
 }
 
-std::string as_file(CurveFormat format, CurvesView curves, const Precision& precision) {
+std::string as_file(CurveFormat format, CurvesView curves, const Rounding& precision) {
   return format == CurveFormat::Obj   ? as_obj(curves, precision)
          : format == CurveFormat::Svg ? as_svg(curves, precision)
                                       : as_text(curves, precision);
@@ -302,14 +303,14 @@ Precision precision_of_curves(const WriteOptions& options) {
 
 void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
-  const Precision precision = precision_of_curves(options);
+  const Rounding precision = precision_of_curves(options);
   write_pieces(path, in_sections(as_file(format, curves, precision), {}));
 }
 
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
                   const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
-  const Precision precision = precision_of_curves(options);
+  const Rounding precision = precision_of_curves(options);
   const Curves& read = source.file.polygons;
   const CurvesView moved{positions, read.corners, read.face_begin};
   const Pieces pieces =
@@ -317,7 +318,7 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
       : format == CurveFormat::Svg
           ? in_sections(patch_svg(source.file.text(), source.svg, read.view(), positions, precision), {})
           : patch(source.file, positions, precision);
-  write_pieces_of(source.file, path, pieces);
+  write_pieces_of(source.file.path, source.file.bytes, path, pieces);
 }
 
 }  // namespace vdb_offset::io

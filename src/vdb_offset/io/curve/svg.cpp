@@ -11,8 +11,8 @@
 #include <memory>
 #include <utility>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/scanner.h"
@@ -379,14 +379,14 @@ class SvgReader {
   MemoryWatch held_{path_, sizeof(Vec3d) + sizeof(Vec2d) + sizeof(std::uint32_t)};
 };
 
-void append_point(std::string& text, const Vec2d& p, const Precision& precision = {}) {
+void append_point(std::string& text, const Vec2d& p, const Rounding& precision = {}) {
   append_number(text, precision(p[0]), precision);
   append_number(text += ',', precision(p[1]), precision);
 }
 
 /// A point as its shape has it. Digits are those of the drawing's coordinates, on which results are judged: undoing a
 /// transform takes all there are.
-void append_own(std::string& text, const Matrix& to_drawing, const Vec3d& position, const Precision& precision) {
+void append_own(std::string& text, const Matrix& to_drawing, const Vec3d& position, const Rounding& precision) {
   if (to_drawing == kIdentity) append_point(text, {position[0], position[1]}, precision);
   else append_point(text, transformed_back(to_drawing, precision(position)));
 }
@@ -396,7 +396,7 @@ void append_own(std::string& text, const Matrix& to_drawing, const Vec3d& positi
 SvgLines parse_svg(const std::string& path, std::string_view text) { return SvgReader(path, text).run(); }
 
 std::string patch_svg(std::string_view text, const SvgLines& lines, CurvesView source, std::span<const Vec3d> positions,
-                      const Precision& precision) {
+                      const Rounding& precision) {
   std::string patched;
   std::size_t copied = 0, curve = 0;
   const auto has_moved = [&](std::uint32_t p) { return positions[p] != source.positions[p]; };
@@ -425,7 +425,7 @@ std::string patch_svg(std::string_view text, const SvgLines& lines, CurvesView s
   return patched.append(text, copied);
 }
 
-std::string as_svg(CurvesView curves, const Precision& precision) {
+std::string as_svg(CurvesView curves, const Rounding& precision) {
   Vec2d lower(0.0, 0.0), upper(0.0, 0.0);
   for (std::size_t i = 0; i < curves.corners.size(); ++i) {
     const Vec3d& p = curves.positions[curves.corners[i]];

@@ -1,10 +1,11 @@
-#include "vdb_offset/io/iso/iso_file.h"
+#include "vdb_offset/io/iso_file.h"
 
 #include <fmt/format.h>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/chunked_output.h"
-#include "vdb_offset/io/mesh/convert.h"
+#include "vdb_offset/io/iso/convert_iso.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 
 namespace vdb_offset::io {
@@ -32,8 +33,8 @@ Transported read_transported(const MeshFile& source, const TransportRequest& req
 
 Precision precision_of_captured(const std::string& path, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
-  if (format == Format::Stl) return {Precision::Kind::Single};
-  if (format != Format::Ply && options.digits > 0) return {Precision::Kind::Digits, options.digits};
+  if (format == Format::Stl) return {Rounding::Kind::Single};
+  if (format != Format::Ply && options.digits > 0) return {Rounding::Kind::Digits, options.digits};
   return {};
 }
 
@@ -42,7 +43,7 @@ WriteResult write_captured(const std::string& path, const MeshFile& source, cons
   WriteResult result;
   const Pieces pieces = convert(source, require_format(path, options.format), captured, transported,
                                 precision_of_captured(path, options), result);
-  write_pieces_of(source, path, pieces);
+  write_pieces_of(source.path, source.bytes, path, pieces);
   return result;
 }
 
@@ -56,7 +57,7 @@ WriteResult write_hollow(const std::string& path, const MeshFile* source, const 
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;
   const Pieces pieces = is_skin ? convert(*source, format, hollow, captured, result) : convert(format, hollow, result);
-  if (source) write_pieces_of(*source, path, pieces);
+  if (source) write_pieces_of(source->path, source->bytes, path, pieces);
   else write_pieces(path, pieces);
   return result;
 }

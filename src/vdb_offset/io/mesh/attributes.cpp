@@ -1,4 +1,4 @@
-#include "vdb_offset/io/mesh/attributes.h"
+#include "vdb_offset/io/attributes.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <optional>
 #include <unordered_map>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/face_labels.h"
 #include "vdb_offset/io/mesh/read/off_binary.h"

@@ -1,40 +1,39 @@
 #pragma once
 
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/io/base/chunked_output.h"
-#include "vdb_offset/io/iso/iso_file.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
-#include "vdb_offset/iso/iso_surface.h"
-#include "vdb_offset/shell/hollow.h"
-#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/io/mesh/encode.h"
+#include "vdb_offset/io/mesh/new_normals.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 
 /// The source as a file of another format, with other positions and, if asked for, other normals where a face moved:
 /// all that the format can hold. `result` receives the rest. The pieces refer to `source` and `positions`.
-Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Precision& precision,
+Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Rounding& precision,
                Normals normals, WriteResult& result);
 
-/// A shell of the source's mesh in another format: both skins have what the source has; what is the same for all
-/// corners of a vertex, or of a border face, goes to the rim as well. The pieces refer to `source` and `shell`.
-Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Precision& precision, Normals normals,
-               WriteResult& result);
+// For all that is made of a mesh file and is to have what that holds:
 
-/// A shell of a mesh that comes from no file.
-Pieces convert(Format target, const Shell& shell, const Precision& precision, WriteResult& result);
+/// Puts in the normals of faces that moved, which are computed from the coordinates as written, and need no more than
+/// single precision.
+void update_normals(const NewNormals& computed, std::vector<Vec3d>& normals, WriteResult& result);
 
-/// A captured mesh with what it takes of the source (see iso_file.h); normals are those of phi.
-Pieces convert(const MeshFile& source, Format target, const CaptureResult& captured, const Transported& transported,
-               const Precision& precision, WriteResult& result);
+/// Drops what the format has no place for, and names it in `attributes.lost`.
+void fit_to_format(Format target, PolygonView mesh, Attributes& attributes);
 
-/// The same of a mesh that comes from no file.
-Pieces convert(Format target, const CaptureResult& captured, const Precision& precision);
+/// Encodes the content without what would be no number, and what the format has no place for; `result` names that.
+Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
+                      WriteResult& result);
 
-/// A hollow solid; the skin that is the source has all that the format can hold of it, and the other one its colours
-/// and materials where it is closest. `captured` is the other skin.
-Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const CaptureResult& captured,
-               WriteResult& result);
+/// Whether a format has names or properties of faces, for the parts of a solid.
+bool keeps_parts(Format format);
 
-/// A hollow solid without more than that.
-Pieces convert(Format target, const Hollow& hollow, WriteResult& result);
+/// What the others lose.
+inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
 
 }  // namespace vdb_offset::io

@@ -13,7 +13,7 @@
 namespace vdb_offset::io {
 namespace {
 
-void append_point(std::string& text, const Vec3d& p, const Precision& precision) {
+void append_point(std::string& text, const Vec3d& p, const Rounding& precision) {
   for (int k = 0; k < 3; ++k) {
     if (k > 0) text += ' ';
     append_number(text, p[k], precision);
@@ -26,7 +26,7 @@ void append_values(std::string& text, const Point& p) {
   for (int k = 0; k < Point::size; ++k) {
     const bool single = static_cast<double>(static_cast<float>(p[k])) == p[k];
     text += ' ';
-    append_number(text, p[k], {single ? Precision::Kind::Single : Precision::Kind::Double});
+    append_number(text, p[k], {single ? Rounding::Kind::Single : Rounding::Kind::Double});
   }
 }
 
@@ -72,7 +72,7 @@ Pieces to_obj(const SharedContent& content) {
     append_point(text, content->mesh.positions[v], content->precision);
     for (std::size_t k = 0; !with.colours.empty() && k < (with.has_alpha ? 4 : 3); ++k) {
       text += ' ';
-      append_number(text, with.colours[v][k], {Precision::Kind::Single});
+      append_number(text, with.colours[v][k], {Rounding::Kind::Single});
     }
     text += '\n';
   };
@@ -138,7 +138,7 @@ Pieces to_off(const SharedContent& content) {
 bool fits_float(double value) {
   const auto narrow = static_cast<float>(value);
   std::string digits;
-  append_number(digits, value, {Precision::Kind::Single});
+  append_number(digits, value, {Rounding::Kind::Single});
   double back = 0;
   return static_cast<double>(narrow) == value || (parse_double(digits, back) && back == value);
 }
@@ -232,7 +232,7 @@ Pieces to_stl(PolygonView mesh) {
   return in_sections(
       header,
       {{triangles->size(), [=](std::string& bytes, std::size_t t) {
-          const Precision single{Precision::Kind::Single};
+          const Rounding single{Rounding::Kind::Single};
           const auto& [a, b, c] = (*triangles)[t];
           append_facet(bytes, {single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
         }}});

@@ -2,8 +2,9 @@
 
 #include <memory>
 
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/base/chunked_output.h"
-#include "vdb_offset/io/mesh/attributes.h"
 
 namespace vdb_offset::io {
 
@@ -16,7 +17,7 @@ struct Part {
 /// What a file is made of.
 struct Content {
   PolygonView mesh;
-  Precision precision;  ///< Of coordinates in a text.
+  Rounding precision;  ///< Of coordinates in a text.
   Attributes with;
   std::vector<Part> parts;  ///< One behind the other: all faces, or no part at all.
   Materials materials;      ///< Kept in OBJ.

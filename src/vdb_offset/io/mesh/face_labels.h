@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vdb_offset/io/base/scanner.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 

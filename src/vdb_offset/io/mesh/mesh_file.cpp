@@ -1,9 +1,10 @@
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh_file.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/base/compression.h"
 #include "vdb_offset/io/base/scanner.h"
@@ -86,8 +87,8 @@ Precision precision_of(const std::string& path, const MeshFile& source, const Wr
   const bool same = format == source.format;
   const bool text = same ? source.encoding == Encoding::Ascii : format != Format::Ply;
   Precision precision = same ? source.precision : Precision{};
-  if (format == Format::Stl && !same) precision = {Precision::Kind::Single};
-  else if (text && options.digits > 0) precision = {Precision::Kind::Digits, options.digits};
+  if (format == Format::Stl && !same) precision = {Rounding::Kind::Single};
+  else if (text && options.digits > 0) precision = {Rounding::Kind::Digits, options.digits};
   precision.rounds_all = !same;
   return precision;
 }
@@ -95,7 +96,7 @@ Precision precision_of(const std::string& path, const MeshFile& source, const Wr
 WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
                        const WriteOptions& options) {
   const Format format = require_format(path, options.format);
-  const Precision precision = precision_of(path, source, options);
+  const Rounding precision = precision_of(path, source, options);
   WriteResult result;
   Pieces pieces;
   if (format == source.format) {
@@ -106,7 +107,7 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
   } else {
     pieces = convert(source, format, positions, precision, options.normals, result);
   }
-  write_pieces_of(source, path, pieces);
+  write_pieces_of(source.path, source.bytes, path, pieces);
   return result;
 }
 
@@ -116,7 +117,7 @@ std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positio
 
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
-  const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
+  const Rounding precision = options.digits > 0 ? Rounding{Rounding::Kind::Digits, options.digits} : Rounding{};
   write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})));
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -133,7 +134,7 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
 
 }  // namespace
 
-NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed) {
   if (source.normal_at.empty()) return {};
   std::vector<Vec3d> stored(positions.size());

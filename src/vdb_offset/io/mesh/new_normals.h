@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 
@@ -14,7 +15,7 @@ struct NewNormals {
 };
 
 /// Whether the file, at its precision, holds another position now.
-inline bool has_moved(const Vec3d& before, const Vec3d& after, const Precision& precision) {
+inline bool has_moved(const Vec3d& before, const Vec3d& after, const Rounding& precision) {
   return !(after == before) && !(precision(after) == before);
 }
 
@@ -27,7 +28,7 @@ struct PlacedFaces {
 
 /// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners
 /// that name a normal, of the corner's face normal times its angle. They are those of the positions as written.
-NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
+NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed = {});
 
 }  // namespace vdb_offset::io

@@ -26,7 +26,7 @@ struct Patch {
 
 class Patcher {
  public:
-  Patcher(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, NewNormals normals)
+  Patcher(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision, NewNormals normals)
       : source_(source), positions_(positions), precision_(precision), normals_(std::move(normals)) {
     cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text(), 0) : cut_between_numbers();
   }
@@ -90,7 +90,7 @@ class Patcher {
     const std::string_view bytes = source_.text();
     std::string text;
     text.reserve((end - begin) + patches.size() * 12);
-    const Precision of_normals{Precision::Kind::Single};  // a normal needs no more
+    const Rounding of_normals{Rounding::Kind::Single};  // a normal needs no more
     std::uint64_t copied = begin;
     for (const Patch& patch : patches) {
       text.append(bytes, copied, patch.at - copied);
@@ -134,7 +134,7 @@ class Patcher {
 
   const MeshFile& source_;
   std::span<const Vec3d> positions_;
-  Precision precision_;
+  Rounding precision_;
   NewNormals normals_;
   std::vector<std::size_t> cuts_;
 };
@@ -150,7 +150,7 @@ Pieces with_line_ends_of(const MeshFile& source, Pieces pieces) {
           }};
 }
 
-Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision, NewNormals normals) {
+Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision, NewNormals normals) {
   const auto patcher = std::make_shared<const Patcher>(source, positions, precision, std::move(normals));
   return with_line_ends_of(source, {patcher->pieces(), [patcher](std::size_t piece) { return patcher->make(piece); }});
 }

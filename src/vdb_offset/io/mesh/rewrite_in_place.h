@@ -2,15 +2,16 @@
 
 #include <span>
 
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/io/base/chunked_output.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
 #include "vdb_offset/io/mesh/new_normals.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 
 /// The source's own bytes, with other coordinates where a vertex moved and other normals where there are new ones. The
 /// pieces refer to `source` and `positions`; those of a text begin where cut_at_lines() cuts it.
-Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Precision& precision,
+Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
              NewNormals normals = {});
 
 /// A text with line feeds in that source's format as it has its lines end.

@@ -1,4 +1,4 @@
-#include "vdb_offset/io/mesh/selection.h"
+#include "vdb_offset/io/selection.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 #include <set>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/nearest_names.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/face_labels.h"

@@ -1,4 +1,4 @@
-#include "vdb_offset/io/mesh/triangle_positions.h"
+#include "vdb_offset/io/triangle_positions.h"
 
 #include <algorithm>
 #include <array>

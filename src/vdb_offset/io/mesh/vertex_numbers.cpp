@@ -1,4 +1,4 @@
-#include "vdb_offset/io/mesh/vertex_numbers.h"
+#include "vdb_offset/io/vertex_numbers.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/compression.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/nearest_names.h"

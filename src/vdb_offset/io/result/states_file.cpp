@@ -1,4 +1,4 @@
-#include "vdb_offset/io/result/states_file.h"
+#include "vdb_offset/io/states_file.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <iterator>
 
-#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {

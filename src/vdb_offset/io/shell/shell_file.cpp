@@ -1,25 +1,25 @@
-#include "vdb_offset/io/shell/shell_file.h"
+#include "vdb_offset/io/shell_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/nearest_names.h"
 #include "vdb_offset/io/base/scanner.h"
-#include "vdb_offset/io/mesh/convert.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
+#include "vdb_offset/io/shell/convert_shell.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 
 namespace vdb_offset::io {
 namespace {
 
 // A normal needs no more.
-const Precision kNormalPrecision{Precision::Kind::Single};
+const Rounding kNormalPrecision{Rounding::Kind::Single};
 
 void require_same_mesh(const MeshFile& source, const Shell& shell) {
   const std::size_t faces = source.polygons.face_count();
@@ -58,7 +58,7 @@ std::string negated(std::string_view word) {
 
 }  // namespace
 
-Skin::Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision, Normals normals)
+Skin::Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision, Normals normals)
     : source_(source),
       shell_(shell),
       positions_(part == ShellPart::Inner ? shell.inner() : shell.outer()),
@@ -121,7 +121,7 @@ std::string_view Skin::word_at(std::uint64_t byte) const {
   return Scanner(source_.path, source_.text(), byte, source_.format == Format::Obj, comment).token();
 }
 
-NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision) {
+NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision) {
   const bool inner = part == ShellPart::Inner;
   if (shell.splits.empty())
     return new_normals(source, inner ? shell.inner() : shell.outer(), precision, {.faces = shell.faces});
@@ -136,7 +136,7 @@ NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart pa
   return new_normals(source, shell.polygons.positions, precision, {shell.faces, corners, origin});
 }
 
-std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Precision& precision) {
+std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& precision) {
   std::vector<Vec3d> normals(shell.polygons.positions.size(), Vec3d(0.0));
   for (std::size_t f = 0; f < 2 * shell.skin_faces(); ++f) {
     const auto face = shell.polygons.view().face(f);
@@ -155,7 +155,7 @@ std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Precision& pre
 WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
                         const WriteOptions& options) {
   const Format format = require_format(path, options.format);
-  const Precision precision = precision_of(path, source, options);
+  const Rounding precision = precision_of(path, source, options);
   require_same_mesh(source, shell);
   WriteResult result;
   Pieces pieces;
@@ -169,13 +169,13 @@ WriteResult write_shell(const std::string& path, const MeshFile& source, const S
   } else {
     pieces = convert(source, format, shell, precision, options.normals, result);
   }
-  write_pieces_of(source, path, pieces);
+  write_pieces_of(source.path, source.bytes, path, pieces);
   return result;
 }
 
 WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
-  const Precision precision = options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
+  const Rounding precision = options.digits > 0 ? Rounding{Rounding::Kind::Digits, options.digits} : Rounding{};
   WriteResult result;
   write_pieces(path, convert(format, shell, precision, result));
   return result;

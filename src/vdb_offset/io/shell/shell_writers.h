@@ -3,22 +3,21 @@
 #include <memory>
 #include <optional>
 
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/io/base/chunked_output.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh/convert.h"
 #include "vdb_offset/io/mesh/new_normals.h"
-#include "vdb_offset/shell/shell.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::io {
-
-/// What a format without names or properties of faces loses.
-inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
 
 /// One skin of a shell, as a file of its source's format has it. Refers to what it is made of.
 ///
 /// Its vertices are numbered as the source's; behind those come the splits of both skins.
 class Skin {
  public:
-  Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision, Normals normals);
+  Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision, Normals normals);
 
   /// What is added to the number of a vertex of the source.
   std::uint32_t first_vertex() const { return first_vertex_; }
@@ -53,23 +52,23 @@ class Skin {
   const Shell& shell_;
   std::span<const Vec3d> positions_;
   std::uint32_t first_vertex_;
-  Precision precision_;
+  Rounding precision_;
   NewNormals normals_;
   std::vector<Vec3d> vertex_normals_;  // of the shell's, where splits need some of their own
 };
 
 /// The normals of a file's corners, as a skin of its shell has them; not turned round.
-NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Precision& precision);
+NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision);
 
 /// Those of a shell's vertices, outward: the means of the faces of both skins by angle, without the rim. Zero where
 /// there is none.
-std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Precision& precision);
+std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& precision);
 
 /// A shell that is to be a file of its source's format. Refers to what it is made of.
 struct ShellContent {
   const MeshFile& source;
   const Shell& shell;
-  Precision precision;
+  Rounding precision;
   Normals normals;
   Skin outer{source, shell, ShellPart::Outer, precision, normals};
   Skin inner{source, shell, ShellPart::Inner, precision, normals};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/scanner.h"

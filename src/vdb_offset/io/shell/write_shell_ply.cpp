@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"

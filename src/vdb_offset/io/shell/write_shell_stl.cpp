@@ -46,7 +46,7 @@ class StlShellWriter {
   void append_rim_text(std::string& text, std::size_t i) const {
     text += "  facet normal";
     const Vec3d normal = rim_normal(i);
-    for (int k = 0; k < 3; ++k) append_number(text += ' ', normal[k], {Precision::Kind::Single});
+    for (int k = 0; k < 3; ++k) append_number(text += ' ', normal[k], {Rounding::Kind::Single});
     text += "\n    outer loop\n";
     for (const std::uint32_t v : rim_[i].corners) append_vertex(text, v);
     text += "    endloop\n  endfacet\n";

@@ -4,12 +4,12 @@
 #include <vtkStructuredGrid.h>
 #include <vtkXMLStructuredGridWriter.h>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/base/scanner.h"
-#include "vdb_offset/io/volume/volume_file.h"
 #include "vdb_offset/io/volume/vtk_write.h"
+#include "vdb_offset/io/volume_file.h"
 
 namespace vdb_offset::io {
 namespace {

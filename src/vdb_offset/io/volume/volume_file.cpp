@@ -1,4 +1,4 @@
-#include "vdb_offset/io/volume/volume_file.h"
+#include "vdb_offset/io/volume_file.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <span>
 #include <unordered_set>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/volume/volume_writers.h"
 

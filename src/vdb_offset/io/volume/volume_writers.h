@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/volume/foam_quality.h"
-#include "vdb_offset/volume/volume_mesh.h"
+#include "vdb_offset/volume/foam_measures.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset::io {
 

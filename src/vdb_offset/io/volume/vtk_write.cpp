@@ -8,8 +8,8 @@
 #include <vtkPoints.h>
 #include <vtkXMLWriter.h>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/volume/volume_mesh.h"
+#include "vdb_offset/volume_mesh.h"
 
 class vtkDataSet;
 class vtkDataSetAttributes;

@@ -8,9 +8,9 @@
 #include <limits>
 #include <numeric>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/volume/volume_writers.h"
+#include "vdb_offset/output_files.h"
 #include "vdb_offset/volume/volume_faces.h"
 
 /// https://cgns.github.io/standard/SIDS: elements are numbered from 1, those of all sections in one row.

@@ -5,11 +5,11 @@
 #include <memory>
 #include <numeric>
 
-#include "vdb_offset/base/error.h"
-#include "vdb_offset/base/file_replace.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/volume/volume_writers.h"
+#include "vdb_offset/output_files.h"
 #include "vdb_offset/volume/volume_faces.h"
 
 /// https://doc.cfd.direct/openfoam/user-guide/mesh-description: faces between cells come first, those of each cell

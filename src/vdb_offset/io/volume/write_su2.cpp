@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/volume/volume_writers.h"

@@ -1,5 +1,7 @@
 #include "vdb_offset/layers/cells/make_cells.h"
 
+#include "vdb_offset/layer_cells.h"
+
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -10,7 +12,7 @@
 #include <string>
 
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/cells/column_cells.h"
+#include "vdb_offset/layers/column_cells.h"
 
 namespace vdb_offset {
 namespace {
@@ -220,6 +222,21 @@ VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WallNa
   VolumeMesh volume = make_cells(layers, cells, names, measure_cells(layers, cells));
   if (facts != nullptr) *facts = std::move(cells.facts);
   return volume;
+}
+
+MeasuredCells::MeasuredCells(PolygonView mesh, const LayersResult& layers)
+    : layers_(&layers),
+      cells_(std::make_unique<LayerCells>(number_cells(mesh, layers))),
+      quality_(measure_cells(layers, *cells_)) {}
+
+MeasuredCells::MeasuredCells(MeasuredCells&&) noexcept = default;
+MeasuredCells& MeasuredCells::operator=(MeasuredCells&&) noexcept = default;
+MeasuredCells::~MeasuredCells() = default;
+
+const LayerCellFacts& MeasuredCells::facts() const { return cells_->facts; }
+
+VolumeMesh MeasuredCells::make(const WallNames& names) && {
+  return make_cells(*layers_, *cells_, names, std::move(quality_));
 }
 
 }  // namespace vdb_offset

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/cells/column_cells.h"
-#include "vdb_offset/layers/cells/column_mesh.h"
+#include "vdb_offset/layers/column_cells.h"
+#include "vdb_offset/layers/column_mesh.h"
 #include "vdb_offset/volume/cell_quality.h"
 #include "vdb_offset/volume/prism_quality_columns.h"
 

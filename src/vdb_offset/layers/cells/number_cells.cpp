@@ -11,9 +11,9 @@
 #include <string>
 #include <utility>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/cells/column_cells.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/layers/column_cells.h"
 #include "vdb_offset/mesh/edge_sides.h"
 #include "vdb_offset/mesh/repeated_faces.h"
 #include "vdb_offset/surface/weld.h"

@@ -4,34 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/layers/layers.h"
+#include "vdb_offset/layer_facts.h"
+#include "vdb_offset/layers.h"
+#include "vdb_offset/layers/layer_points.h"
+#include "vdb_offset/patch_names.h"
 #include "vdb_offset/surface/weld.h"
-#include "vdb_offset/volume/patch_names.h"
 
 namespace vdb_offset {
-
-/// What became of a face of the mesh.
-enum class FaceRole : std::uint8_t {
-  Bare,        ///< Asked to carry nothing.
-  Full,        ///< One cell in each layer, or two prisms on a split quad; none of its corners is flat.
-  Transition,  ///< Some of its corners keep no height: its cells are those of other types that close the layers there.
-  Flat,        ///< None of its corners keeps any height: left out.
-  Degenerate,  ///< Left out: fewer than three places, or one that it comes by twice.
-  Repeated,    ///< Left out: over the corners of an earlier one, either way round.
-};
-inline constexpr std::size_t kFaceRoleCount = 6;
-const char* name(FaceRole role);
-
-/// What making cells found.
-struct LayerCellFacts {
-  std::vector<FaceRole> role;        ///< Of each face of the input.
-  std::vector<std::uint8_t> cells;   ///< Of each face of the input: how many in each layer.
-  std::size_t turned_faces = 0;      ///< Whose cells lie on the side that the heights' sign does not say.
-  std::size_t border_sides = 0;      ///< In each layer, on edges of one face that carries cells.
-  std::size_t unpaired_sides = 0;    ///< On other edges: no cell of opposite direction is left for them.
-  std::size_t split_points = 0;      ///< Of the wall: added so that unpaired sides have points of their own.
-  std::size_t coincident_sides = 0;  ///< Unpaired ones that have the points of other sides nevertheless.
-};
 
 /// The faces that carry cells, which run so that their normals point into the layers.
 struct LayerColumns {
@@ -48,22 +27,6 @@ struct LayerColumns {
   }
   std::uint32_t next(std::size_t c, std::uint32_t corner) const {
     return corner + 1 < begin[c + 1] ? corner + 1 : begin[c];
-  }
-};
-
-/// The points: 0 .. wall() - 1 on the wall, and risen() in each layer above it.
-struct LayerPoints {
-  std::vector<std::uint32_t> vertex;  ///< Of the mesh, of each point of the wall.
-  /// Of each point of the wall: its number among those that rise; kNone for flat ones.
-  std::vector<std::uint32_t> in_layer;
-  std::vector<std::uint32_t> rising;  ///< The points of the wall that rise.
-
-  std::uint32_t wall() const { return static_cast<std::uint32_t>(vertex.size()); }
-  std::uint32_t risen() const { return static_cast<std::uint32_t>(rising.size()); }
-  bool flat(std::uint32_t point) const { return in_layer[point] == kNone; }
-  std::uint32_t at(std::uint32_t point, std::size_t layer) const {
-    return layer == 0 || flat(point) ? point
-                                     : wall() + static_cast<std::uint32_t>(layer - 1) * risen() + in_layer[point];
   }
 };
 

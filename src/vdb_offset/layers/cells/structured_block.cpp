@@ -1,4 +1,4 @@
-#include "vdb_offset/layers/cells/structured_block.h"
+#include "vdb_offset/structured_block.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,8 +6,8 @@
 #include <numeric>
 #include <string>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/layers/cells/number_cells.h"
 #include "vdb_offset/volume/cell_quality.h"
 

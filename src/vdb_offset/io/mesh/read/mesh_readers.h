@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 

@@ -4,9 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "vdb_offset/io/base/chunked_output.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
-#include "vdb_offset/io/shell/shell_writers.h"
+#include "vdb_offset/io/mesh_file.h"
 
 /// Binary OFF files, as Geomview has them: the line "[ST][C][N]OFF BINARY", then numbers of four bytes, big-endian:
 /// numbers of vertices, faces and edges; for each vertex its coordinates, normal, colour and texture coordinates; for
@@ -28,7 +26,5 @@ std::int64_t integer_at(const MeshFile& file, std::uint64_t at);
 
 /// Where each face stands, and behind the last one.
 std::vector<std::uint64_t> face_places(const MeshFile& file);
-
-Pieces shell_to_binary(const SharedShell& content);
 
 }  // namespace vdb_offset::io::off

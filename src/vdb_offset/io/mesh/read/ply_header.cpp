@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "vdb_offset/base/error.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset::io::ply {
 namespace {

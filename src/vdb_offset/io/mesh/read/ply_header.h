@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vdb_offset/io/base/scanner.h"
-#include "vdb_offset/io/mesh/mesh_file.h"
+#include "vdb_offset/io/mesh_file.h"
 
 /// What a PLY file says of itself, and the numbers behind it.
 namespace vdb_offset::io::ply {

@@ -6,8 +6,8 @@
 #include <exception>
 #include <tuple>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"

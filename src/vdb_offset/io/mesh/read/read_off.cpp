@@ -2,8 +2,9 @@
 
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 #include "vdb_offset/io/mesh/read/off_binary.h"
@@ -46,7 +47,7 @@ class BinaryOffParser {
   void run() {
     file_.encoding = Encoding::BigEndian;
     file_.position_bytes = 4;
-    file_.precision = {Precision::Kind::Single};
+    file_.precision = {Rounding::Kind::Single};
     const off::Layout layout = off::layout_of(file_);
     const std::size_t vertices = count("a number of vertices", 4 * layout.width);
     const std::size_t faces = count("a number of faces", 4 * kLeastWords);

@@ -5,9 +5,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
@@ -55,7 +56,7 @@ class PlyParser {
         file_.encoding == Encoding::Ascii ? read_vertex_lines(element, layout) : read_vertex_records(element, layout);
     if (!plain) read_vertices_one_by_one(element, layout);
     if (layout.normals) file_.extras.emplace_back("normals");
-    if (file_.position_bytes == 4) file_.precision = {Precision::Kind::Single};
+    if (file_.position_bytes == 4) file_.precision = {Rounding::Kind::Single};
     if (file_.encoding == Encoding::Ascii) file_.position_bytes = file_.normal_bytes = 0;
   }
 

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "vdb_offset/base/error.h"
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 
@@ -89,7 +90,7 @@ void parse_binary(MeshFile& file) {
   const std::size_t facets = promised_facets(file);
   file.encoding = Encoding::LittleEndian;
   file.position_bytes = file.normal_bytes = 4;
-  file.precision = {Precision::Kind::Single};
+  file.precision = {Rounding::Kind::Single};
   if (facets == 0) throw InvalidInput(file.path + ", byte 80: expected at least one facet, got a count of 0");
   if (3 * facets > kMostVertices)
     throw InvalidInput(

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/io/number_positions.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/precision.h"
+#include "vdb_offset/progress.h"
+
+namespace vdb_offset::io {
+
+enum class Format { Obj, Off, Ply, Stl };
+
+/// The format that a file name's ending stands for (.obj .off .ply .stl, any case, also before .gz or .zst), if it
+/// does.
+std::optional<Format> format_of(std::string_view path);
+const char* name(Format format);
+
+/// How the numbers of an OFF, PLY or STL file are stored.
+enum class Encoding { Ascii, LittleEndian, BigEndian };
+
+/// A mesh as read, with all that is needed to write the same file again with other coordinates.
+struct MeshFile {
+  std::string path;
+  Format format = Format::Obj;
+  Encoding encoding = Encoding::Ascii;
+  FileBytes bytes;  ///< The whole file, decompressed.
+  Polygons polygons;
+
+  /// First byte of each coordinate of each vertex, in the order of `polygons.positions`.
+  Places position_at;
+  /// The same for the file's normals, in their own order. OBJ: `vn` lines; OFF, PLY: one a vertex; STL: one a facet.
+  Places normal_at;
+  /// OBJ: the normal that each face corner names, kNoNormal where it names none. Empty if no corner does.
+  std::vector<std::uint32_t> corner_normal;
+  std::vector<std::string> extras;   ///< What the file holds besides positions and faces, in words.
+  std::vector<std::string> remarks;  ///< What is wrong with the file and yet no reason to refuse it, in words.
+  std::uint8_t position_bytes = 0, normal_bytes = 0;  ///< Size of a binary number: 4 or 8; 0 for text.
+  Precision precision;                                ///< What its coordinates can hold.
+  /// Lines end with a carriage return alone. `bytes` has a line feed in the place of each.
+  bool has_carriage_returns = false;
+
+  std::string_view text() const { return bytes.view(); }
+};
+inline constexpr std::uint32_t kNoNormal = 0xffffffff;
+
+/// Reads .obj, .off, .ply or .stl, by the file's ending or as told; STL gives three vertices a facet. `.gz` and `.zst`
+/// behind that ending are decompressed; "-" is standard input, and needs to be told its format.
+/// \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was expected, what was
+/// found) for content that is no mesh. Never allocates more than a small multiple of the file's size.
+MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
+
+/// The same for bytes that are at hand; `name` is for messages.
+MeshFile parse_mesh(const std::string& name, Format format, std::string bytes);
+
+/// What becomes of a file's normals where a face moved.
+enum class Normals { Recompute, Keep };
+
+struct WriteOptions {
+  std::optional<Format> format;  ///< By the file's ending, if not told.
+  Normals normals = Normals::Recompute;
+  int digits = 0;  ///< Significant digits of coordinates in text, 1 .. 17; 0: as many as read back to the same number.
+};
+
+struct WriteResult {
+  std::string lost;                     ///< What the target cannot hold, in words; empty if nothing.
+  std::size_t disagreeing_normals = 0;  ///< OBJ normals whose vertices ask for different ones now; they get the mean.
+};
+
+/// Writes the mesh with other positions to `path`, through a temporary file that is renamed at the end; "-" is standard
+/// output. In the source's own format every byte stays but for the coordinates of vertices that moved and the normals
+/// of faces that moved, which are computed anew from the coordinates as written; binary numbers keep their width. In
+/// another format the file holds positions and faces (STL: triangles) and, as far as the format can, vertex colours,
+/// texture coordinates and normals.
+/// \pre one position a vertex. \throw InvalidInput for an unknown ending, WriteError, ReadError if the source's file
+/// was written to meanwhile.
+WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
+                       const WriteOptions& options = {});
+
+/// What write_mesh() would write in the source's own format.
+std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions);
+
+/// What write_mesh() would keep of coordinates.
+Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options = {});
+
+/// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
+void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/distances.h"
+#include "vdb_offset/grid.h"
+#include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/metric.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/precision.h"
+#include "vdb_offset/progress.h"
+#include "vdb_offset/symmetry.h"
+
+namespace vdb_offset {
+
+enum class Solver {
+  Closest,  ///< Hands closest points on from voxel to voxel, each walking on from there over the mesh: exact.
+  Eikonal,  ///< Godunov's update of |grad phi| = 1 on phi alone: first order, the paper's method.
+};
+
+/// What the edge of a part does where the rest of the mesh goes on.
+enum class Border {
+  Slide,  ///< It slides along the rest of the surface, or along that surface's extension.
+  Fixed,  ///< It stays where it is.
+  Free,   ///< It goes as the part alone asks for.
+};
+
+/// What happens where fronts meet.
+enum class Collision {
+  Limit,  ///< The result stays valid: vertices are held back where faces would fold or cross.
+  Merge,  ///< The paper's weak solution: every vertex goes as far as phi allows; faces there may fold or collapse.
+};
+
+struct OffsetOptions {
+  /// World units, one for all or one for each vertex of the input; negative is inward, 0 leaves a vertex where it is.
+  /// Vertices that move as one go their numbers' mean.
+  Distances distance;
+  GridOptions grid;
+  /// Of each face: 1 for those that are offset; the others stay, and are in the way. Distances are those from the part.
+  /// Empty: all are.
+  std::vector<std::uint8_t> only;
+  Border border = Border::Slide;  ///< What the edge of that part does.
+  SymmetryOptions symmetry;       ///< Which vertices stay in planes.
+  PolygonView obstacles;          ///< Other geometry that nothing may touch, or come nearer to than `clearance`.
+  double clearance = 0;           ///< World units, >= 0.
+  bool off_source = false;        ///< For shells: neither the result nor the rim may meet the surface they come from.
+  bool inner_skin_last = false;   ///< For shells of two offsets: the last of several is one that the others keep off.
+  /// Distances are measured in its space, and so are states and all else that is told of them; not with obstacles,
+  /// shells or layers. Positions are the file's.
+  Metric metric;
+  Solver solver = Solver::Closest;
+  Collision collision = Collision::Limit;
+  Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
+  WeldOptions weld = WeldOptions::automatic();
+  Orient orient = Orient::Keep;
+  int threads = 0;  ///< 0: as many as the machine has.
+  /// Bytes for the whole run, by the plan; 0: no limit. What is read, and lists that may grow to anything, keep to that
+  /// of the process (set_memory_limit in memory.h).
+  std::size_t max_memory = 0;
+  bool keep_field = false;    ///< Hand the distance field out with the result.
+  bool keep_paths = false;    ///< The same for the vertices' paths; not for layers.
+  ProgressCallback progress;  ///< See progress.h; may cancel.
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/vec.h"
+
+namespace vdb_offset {
+
+/// A polygon mesh as plain spans; nothing is copied and nothing need be manifold.
+/// Face f has the corners `corners[face_begin[f]] .. corners[face_begin[f + 1] - 1]`, each an index into
+/// `positions` (world units). `face_begin` has one entry more than there are faces and starts with 0.
+struct PolygonView {
+  std::span<const Vec3d> positions;
+  std::span<const std::uint32_t> corners;
+  std::span<const std::uint32_t> face_begin;
+
+  std::size_t face_count() const { return face_begin.empty() ? 0 : face_begin.size() - 1; }
+  std::span<const std::uint32_t> face(std::size_t f) const {
+    return corners.subspan(face_begin[f], face_begin[f + 1] - face_begin[f]);
+  }
+};
+
+/// A polygon mesh that owns its arrays; the layout is that of PolygonView.
+struct Polygons {
+  std::vector<Vec3d> positions;
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint32_t> face_begin{0};
+
+  PolygonView view() const { return {positions, corners, face_begin}; }
+  std::size_t face_count() const { return face_begin.size() - 1; }
+
+  /// Ends the face whose corners were pushed since the last call.
+  void close_face() { face_begin.push_back(static_cast<std::uint32_t>(corners.size())); }
+  void add_face(std::initializer_list<std::uint32_t> face) {
+    corners.insert(corners.end(), face);
+    close_face();
+  }
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_offset/check.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/layer_report.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/shell.h"
+
+namespace vdb_offset {
+
+/// How near the vertices in use came to the target.
+struct AchievedSummary {
+  std::size_t vertices = 0;  ///< In use.
+  double share_reached = 0;
+  double asked_least = 0, asked_mean = 0, asked_most = 0;                ///< Signed, world units.
+  double least = 0, mean = 0, most = 0;                                  ///< Achieved distance, world units.
+  double quantile_01 = 0, quantile_05 = 0, median = 0, quantile_95 = 0;  ///< Of the achieved distance.
+  double worst_reached_error = 0;  ///< Largest |achieved - target| / target among the reached.
+};
+AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> achieved,
+                          const Distances& distances);
+AchievedSummary summarise(const OffsetResult& result);
+
+/// What a report adds to a result: what was asked for, and where.
+struct RunFacts {
+  std::string input, output;
+  std::string distance_text;  ///< As given.
+  double total_seconds = 0;
+  std::optional<ShellFacts> shell;                           ///< Of what was written, if it is one.
+  std::optional<CaptureStatistics> inner_surface;            ///< Of a hollow solid, both skins of which were captured.
+  std::optional<LayerReport> layers;                         ///< The same, of cells in layers.
+  std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
+};
+
+/// The report of a run as JSON text; the keys are documented in the README.
+std::string report_json(const OffsetResult& result, const RunFacts& run);
+/// The same for layers: what is said of vertices is that of the outermost surface.
+std::string report_json(const LayersResult& result, const RunFacts& run);
+
+/// The same for a captured surface.
+std::string report_json(const CaptureStatistics& statistics, const RunFacts& run);
+
+/// What a check found, as JSON text; the same keys where they mean the same.
+std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);
+
+}  // namespace vdb_offset

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "vdb_offset/distances.h"
+#include "vdb_offset/statistics.h"
+#include "vdb_offset/vec.h"
+
+namespace vdb_offset {
+
+struct DistanceField;
+
+struct OffsetResult {
+  std::vector<Vec3d> positions;     ///< One per input vertex, in the input's order.
+  std::vector<VertexState> states;  ///< One per input vertex.
+  std::vector<double> achieved;     ///< Exact unsigned distance to the input surface, world units.
+  Distances distances;              ///< What was asked of each input vertex, in the end.
+  OffsetStatistics statistics;
+  std::shared_ptr<DistanceField> field;  ///< Only with keep_field and a distance other than 0.
+  /// Only with keep_paths: the places that each input vertex came by on its march, from where it stood to where that
+  /// ended; after that, if it has been moved to keep the result valid, its position.
+  std::vector<std::vector<Vec3d>> paths;
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/distance_expression.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/shell.h"
+
+namespace vdb_offset::scene {
+
+/// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
+/// use ("1.5%"); or an expression that tells each vertex its own.
+struct Distance {
+  double value = 0;
+  bool percent = false;
+  std::optional<DistanceExpression> expression;  ///< Then the two above do not count.
+
+  double in_world_units(double diagonal) const;
+};
+/// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
+Distance parse_distance(const std::string& text);
+/// The same, or an expression. \throw InvalidExpression
+Distance parse_distance_or_expression(const std::string& text);
+
+/// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
+/// expression that uses normals or texture coordinates.
+/// \throw InvalidInput, see DistanceExpression
+Distances distances_of(const Distance& distance, PolygonView mesh,
+                       const std::function<std::vector<Vec3d>()>& normals_of,
+                       const std::function<std::vector<Vec2d>()>& texture_of);
+
+/// Where every reached vertex should be, in closed form.
+struct Answer {
+  enum class Form {
+    Sphere,  ///< At `radius` from the origin, on the ray from there.
+    Box,     ///< The source vertex, clamped to the box of half sizes `half` around the origin.
+    Torus,   ///< At `minor` from the circle of radius `major` around the z axis, on the ray from its centre.
+    Shift,   ///< The source vertex plus `shift`.
+    Ray,     ///< At the vertex's own distance from the source vertex, on the ray from the origin.
+    Lift,    ///< Over the square of half side `radius` around the origin in the plane z = 0: see Answer::lifted.
+    Under,   ///< As Ray, but on the way there no higher than z = `shift[2]`.
+  };
+  Form form = Form::Sphere;
+  double radius = 0, major = 0, minor = 0;
+  Vec3d half{0.0}, shift{0.0};
+
+  /// `distance` is the vertex's own.
+  Vec3d operator()(const Vec3d& source, double distance) const;
+
+ private:
+  /// What lies in the square goes up by its distance; its edge, if `shift` is (1, 1, 0), as far out within the plane,
+  /// if (0, 0, 1), up as well, and if zero it stays. What lies beyond stays, too.
+  Vec3d lifted(const Vec3d& source, double distance) const;
+};
+
+struct Expectations {
+  std::optional<double> min_reached, max_reached;  ///< Share of the vertices in use.
+  std::optional<double> max_position_error;        ///< World units; needs an answer.
+  std::optional<Answer> answer;
+  std::optional<double> min_gap, max_gap;  ///< Of a fit, world units: the least one that is left.
+  std::optional<double> volume;            ///< Of a shell, world units^3.
+  std::optional<double> max_volume_error;  ///< As a share of that; needs it.
+};
+
+/// A shape or a file, an offset, a grid, and what is expected: `scenes/*.json`, described in the README.
+struct Scene {
+  std::string path, description;
+  std::string mesh_path;  ///< Of a scene that names a file; else empty and `shape` holds the mesh.
+  Polygons shape;
+  Distance distance;
+  GridOptions grid;
+  Solver solver = Solver::Closest;
+  Collision collision = Collision::Limit;
+  std::vector<std::uint8_t> only;  ///< As in OffsetOptions.
+  Border border = Border::Slide;
+  Polygons obstacle;
+  Polygons to_fit;  ///< What is nearer to this than the clearance is to give way (see fit()), instead of `distance`.
+  double clearance = 0;  ///< To either.
+  bool shell = false;    ///< Source and offset are to be joined into one solid.
+  Expectations expect;
+
+  /// Its part of the options: all but the distance, into `options`. They refer to the scene.
+  void set(OffsetOptions& options) const;
+};
+
+/// True of file names that end in .json.
+bool is_scene(const std::string& path);
+
+/// \throw ReadError if the file cannot be opened, InvalidInput (file, key, what was expected) for what is no scene.
+Scene read_scene(const std::string& path);
+
+/// What a result does not fulfil, in words; empty if all is as expected.
+std::vector<std::string> unmet(const Expectations& expect, PolygonView source, const OffsetResult& result);
+/// The same for the shell of a scene that expects a volume: it is to be a solid, too, closed, manifold and oriented,
+/// that does not cross itself.
+std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell);
+
+}  // namespace vdb_offset::scene

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "vdb_offset/grid.h"
+#include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/progress.h"
+#include "vdb_offset/symmetry.h"
+#include "vdb_offset/vertex_state.h"
+
+namespace vdb_offset {
+
+/// What may be wrong with a result.
+struct FaultCounts {
+  std::size_t inverted = 0, collapsed = 0;  ///< Faces.
+  std::size_t crowded = 0;                  ///< Faces nearer to an obstacle than may be, or through the source.
+  std::size_t crossings = 0;                ///< Pairs of triangles that meet, and did not in the source.
+
+  std::size_t total() const { return inverted + collapsed + crowded + crossings; }
+};
+
+/// What limit() found and did.
+struct LimitStatistics {
+  FaultCounts before;                     ///< In what propagate() made; of curves, with points in order.
+  FaultCounts left;                       ///< 0 but where rounding to the format's numbers makes a source cross itself.
+  std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
+  bool more_source_crossings = false;     ///< There are more of them than these, and what is near is not looked at.
+  std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
+  std::size_t followed_vertices = 0;      ///< That have begun with what became of a farther offset.
+  std::size_t untanglings = 0;            ///< Rounds in which patches were untangled.
+  std::size_t rounds = 0;                 ///< Rounds in which vertices were pulled back or let out again.
+  std::size_t limited_vertices = 0;
+  double thickness_lost = 0;  ///< Mean over the vertices of (asked - achieved) / asked that limit() took away.
+};
+
+/// What became of borders, and of what stays in planes.
+struct BorderFacts {
+  std::vector<SymmetryPlane> planes;  ///< World coordinates.
+  std::size_t held_vertices = 0;      ///< Of the surface, that stay in them.
+  std::size_t beyond = 0;             ///< Vertices of the surface that end beyond a plane which it lies on one side of.
+  std::size_t across_vertices = 0;    ///< Other vertices at borders, which go in the plane across these if they can.
+  std::size_t strayed_vertices = 0;   ///< Those of them that leave it by more than a degree,
+  double worst_angle = 0;             ///< and the worst of all, in degrees.
+};
+
+/// How far a flat face is off between its vertices, which alone are put at the distance: |distance - target| / target
+/// at the centres of triangles and the middles of their edges.
+struct InteriorError {
+  std::size_t samples = 0;
+  double mean = 0, quantile_99 = 0, worst = 0;
+};
+
+/// How much of an open surface, or of open curves, has room for a distance on either side: which of them faces point to
+/// is the file's say alone, and often wrong.
+struct SideRoom {
+  bool known = false;          ///< It is looked for where little has reached its distance.
+  double here = 1, there = 1;  ///< Shares of the vertices: on the side that was asked for, and on the other one.
+
+  /// Whether the other side may well be the one that was meant.
+  bool suggests_other() const;
+};
+
+/// What is between a result and its obstacles. World units; triangles of the whole mesh, whether or not they move.
+struct ObstacleFacts {
+  double gap = 0, starting_gap = 0;  ///< Least distance to an obstacle: of the result as written, and of the input.
+  std::size_t near = 0;              ///< Triangles of the result nearer than the clearance, or that meet an obstacle.
+  std::size_t touching = 0;          ///< Pairs of the input's triangles and obstacles' that meet: not through each
+  std::size_t crossing = 0;          ///< other, and through.
+};
+
+/// What fit() did. Gaps are world units, below 0 inside of the other mesh, if that is a solid.
+struct FitFacts {
+  double clearance = 0;
+  double gap = 0, starting_gap = 0;         ///< Least gap: of the result as written, and of the input.
+  std::size_t near = 0, near_at_start = 0;  ///< Triangles nearer than the clearance by more than 1e-6 of it.
+  std::size_t moved = 0;                    ///< Vertices of the mesh that gave way.
+  double deepest = 0;                       ///< How far any went inward, as exact distance from the input.
+  std::size_t rounds = 0;                   ///< Offsets that were made.
+  bool is_signed = false;                   ///< The other mesh is a solid: what is inside of it is known.
+  std::size_t enclosed = 0;                 ///< Components of the other mesh that lie inside of the result as a whole.
+};
+
+/// Figures of a run, beside its result.
+struct OffsetStatistics {
+  MeshFacts facts;
+  GridPlan plan;
+  int threads = 0;
+  std::size_t active_voxels = 0, leaf_nodes = 0;
+  std::size_t phi_bytes = 0, closest_bytes = 0, gradient_bytes = 0;
+  std::array<double, kStageCount> seconds{};  ///< By Stage.
+  std::array<std::size_t, kVertexStateCount> vertices_by_state{};
+  std::size_t straight_vertices = 0;
+  std::size_t disagreeing_distances = 0;  ///< Vertices that move with one of which another distance was asked;
+                                          ///< of layers, at the height at which most do.
+  LimitStatistics limit;
+  BorderFacts borders;
+  SideRoom room;
+  std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
+  std::optional<FitFacts> fit;             ///< Of what fit() made.
+  InteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
+};
+
+}  // namespace vdb_offset

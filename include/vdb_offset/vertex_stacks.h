@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset {
+
+/// Where vertices stand in each layer: from the wall outward, one vertex after the other.
+class Stacks {
+ public:
+  Stacks() = default;
+  /// Places are not set: who does that, in parallel, is the first to touch the memory.
+  Stacks(std::size_t vertices, std::size_t layers)
+      : vertices_(vertices),
+        layers_(layers),
+        places_(std::make_unique_for_overwrite<Vec3d[]>(vertices * (layers + 1))) {}
+
+  Stacks(const Stacks& other) : Stacks(other.vertices_, other.layers_) {
+    std::copy_n(other.places_.get(), vertices_ * (layers_ + 1), places_.get());
+  }
+  Stacks(Stacks&&) = default;
+  Stacks& operator=(const Stacks& other) { return *this = Stacks(other); }
+  Stacks& operator=(Stacks&&) = default;
+  ~Stacks() = default;
+
+  std::size_t vertices() const { return vertices_; }
+  std::size_t layers() const { return layers_; }
+  /// World coordinates: layers() + 1 places, the first of them on the wall.
+  std::span<Vec3d> of(std::size_t vertex) { return {places_.get() + vertex * (layers_ + 1), layers_ + 1}; }
+  std::span<const Vec3d> of(std::size_t vertex) const { return {places_.get() + vertex * (layers_ + 1), layers_ + 1}; }
+  /// Whether all of a vertex's layers are at one place.
+  bool is_flat(std::size_t vertex) const { return of(vertex).front() == of(vertex).back(); }
+
+ private:
+  std::size_t vertices_ = 0, layers_ = 0;
+  std::unique_ptr<Vec3d[]> places_;
+};
+
+/// The stacks of a mesh's vertices, of which several may share one, in whatever order those lie.
+class SharedStacks {
+ public:
+  SharedStacks() = default;
+  /// `stack` is that of each vertex.
+  SharedStacks(Stacks stacks, std::vector<std::uint32_t> stack)
+      : stacks_(std::move(stacks)), stack_(std::move(stack)) {}
+
+  std::size_t vertices() const { return stack_.size(); }
+  std::size_t layers() const { return stacks_.layers(); }
+  std::span<const Vec3d> of(std::size_t vertex) const { return stacks_.of(stack_[vertex]); }
+  bool is_flat(std::size_t vertex) const { return stacks_.is_flat(stack_[vertex]); }
+
+  /// Where all vertices are in one layer, 0 for the wall.
+  std::vector<Vec3d> surface(std::size_t layer) const;
+
+ private:
+  Stacks stacks_;
+  std::vector<std::uint32_t> stack_;
+};
+
+}  // namespace vdb_offset

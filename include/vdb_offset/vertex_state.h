@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace vdb_offset {
+
+/// What became of a vertex.
+enum class VertexState : std::uint8_t {
+  Reached,       ///< Its exact distance is the target's, to 1e-6 of it and the rounding of the coordinates.
+  Collision,     ///< Stopped short where the distance grows no further: at the medial axis, or closed in.
+  Limited,       ///< Held back to keep the result valid.
+  OutsideField,  ///< Left the voxels that the field covers before it arrived.
+  Unused,        ///< In no face; it stays where it is.
+};
+
+inline constexpr std::size_t kVertexStateCount = 5;
+
+const char* name(VertexState state);
+
+/// A vertex is at its distance if it is that near to it, relative to the distance.
+inline constexpr double kReachedTolerance = 1e-6;
+
+}  // namespace vdb_offset

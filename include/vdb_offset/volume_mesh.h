@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset {
+
+/// With the order of a cell's corners, as in Gmsh, CGNS and SU2; VTK has prisms the other way round.
+enum class CellType : std::uint8_t {
+  Tetrahedron,  ///< 0 1 2, whose normal by the right hand points to 3.
+  Pyramid,      ///< 0 1 2 3 around the base, whose normal points to 4.
+  Prism,        ///< 0 1 2, whose normal points to 3 4 5 above them.
+  Hexahedron,   ///< 0 1 2 3, whose normal points to 4 5 6 7 above them.
+  Polyhedron,   ///< A stream: number of faces, then for each its number of corners and these, seen from outside ccw.
+  Triangle,     ///< Of a plane mesh, as are quadrilaterals: ccw seen from where its normal points to.
+  Quadrilateral,
+};
+inline constexpr std::size_t kCellTypeCount = 7;
+const char* name(CellType type);
+
+/// Numbers that belong to points or cells, one each.
+struct VolumeField {
+  std::string name;
+  std::vector<float> values;
+};
+
+/// A part of the boundary.
+struct VolumePatch {
+  enum class Kind : std::uint8_t { Wall, Outer, Side };
+  std::string name;  ///< No two patches have one name.
+  Kind kind = Kind::Wall;
+  /// Points; a face runs ccw seen from outside the volume. Of a plane mesh two each, in the order of the cell's.
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint32_t> face_begin{0};  ///< One more than faces.
+  std::vector<std::uint32_t> cell;           ///< The cell behind each face.
+
+  std::size_t face_count() const { return face_begin.size() - 1; }
+  std::span<const std::uint32_t> face(std::size_t f) const {
+    return std::span(corners).subspan(face_begin[f], face_begin[f + 1] - face_begin[f]);
+  }
+};
+
+/// Cells of mixed types that share their points and faces, and the boundary, every face of which is in one patch. A
+/// plane mesh has triangles and quadrilaterals alone; its faces are edges, and its volume is an area.
+struct VolumeMesh {
+  std::vector<Vec3d> points;  ///< World units.
+  std::vector<CellType> cell_types;
+  std::vector<std::uint32_t> corners;        ///< Of all cells, one after the other.
+  std::vector<std::uint64_t> cell_begin{0};  ///< Into `corners`; one more than cells.
+  std::vector<VolumePatch> patches;
+  std::vector<VolumeField> point_fields, cell_fields;
+  Vec3d normal{0.0};  ///< Of a plane mesh, unit length; zero of others.
+
+  bool plane() const;
+  std::size_t cell_count() const { return cell_types.size(); }
+  std::span<const std::uint32_t> cell(std::size_t c) const {
+    return std::span(corners).subspan(cell_begin[c], cell_begin[c + 1] - cell_begin[c]);
+  }
+};
+
+/// A block of hexahedra: points in a grid, i fastest, k from wall to outer surface. Or, where nk is 1, of
+/// quadrilaterals in a plane: j from wall to outer curve.
+struct StructuredBlock {
+  std::uint32_t ni = 0, nj = 0, nk = 0;  ///< Points in each direction.
+  std::vector<Vec3d> points;             ///< ni nj nk of them, world units.
+  std::vector<VolumeField> point_fields;
+};
+
+}  // namespace vdb_offset

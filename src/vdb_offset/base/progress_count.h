@@ -1,0 +1,47 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <vector>
+
+#include "vdb_offset/progress.h"
+namespace vdb_offset {
+
+/// Tells one callback of several like pieces of work that are done at the same time as if they were one.
+class JointProgress {
+ public:
+  /// Keeps a reference to the callback.
+  JointProgress(const ProgressCallback& callback, std::size_t pieces) : callback_(callback), share_(pieces, 0.0) {}
+
+  /// What a piece of the work is to call. Empty if the callback is.
+  ProgressCallback of(std::size_t piece);
+
+ private:
+  const ProgressCallback& callback_;
+  std::vector<double> share_;  // that is done of each piece
+  std::mutex mutex_;
+};
+
+/// Carries one stage's progress from many threads to one callback.
+class Progress {
+ public:
+  /// `total` units of work make up the stage. An empty callback costs nothing and never cancels.
+  Progress(const ProgressCallback& callback, Stage stage, std::size_t total);
+
+  /// Reports `count` more units. \throw Cancelled once the callback has returned false.
+  void advance(std::size_t count);
+
+ private:
+  void tell(std::size_t done);
+
+  const ProgressCallback& callback_;
+  Stage stage_;
+  std::size_t total_;
+  std::atomic<std::size_t> done_{0};
+  std::atomic<bool> cancelled_{false};
+  std::mutex mutex_;
+};
+
+}  // namespace vdb_offset

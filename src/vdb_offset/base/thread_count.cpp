@@ -1,0 +1,19 @@
+#include "vdb_offset/base/thread_count.h"
+
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <string>
+
+#include "vdb_offset/error.h"
+
+namespace vdb_offset {
+
+int thread_count(int asked) {
+  if (asked < 0) throw InvalidInput("offset: expected 0 threads or more, got " + std::to_string(asked));
+  // More than the machine has would only be asked for in vain.
+  const int most = tbb::info::default_concurrency();
+  return asked > 0 ? std::min(asked, most) : most;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "vdb_offset/field/direction_field.h"
+#include "vdb_offset/statistics.h"
+
+namespace vdb_offset {
+
+/// Tells how large the grids are.
+void describe_field(const DistanceField& field, const DirectionField& directions, OffsetStatistics& statistics);
+
+}  // namespace vdb_offset

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/io/base/chunked_output.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/shell.h"
+
+namespace vdb_offset::io {
+
+/// A shell of the source's mesh in another format: both skins have what the source has; what is the same for all
+/// corners of a vertex, or of a border face, goes to the rim as well. The pieces refer to `source` and `shell`.
+Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Rounding& precision, Normals normals,
+               WriteResult& result);
+
+/// A shell of a mesh that comes from no file.
+Pieces convert(Format target, const Shell& shell, const Rounding& precision, WriteResult& result);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vdb_offset/metric.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/precision.h"
+
+namespace vdb_offset {
+
+/// A mesh, or curves, in the space of a metric. Refers to them.
+class InMetric {
+ public:
+  /// \throw InvalidInput for a scale that is not above 0 and finite
+  InMetric(PolygonView mesh, const Metric& metric);
+
+  PolygonView view() const { return metric_.even() ? file_ : PolygonView{scaled_, file_.corners, file_.face_begin}; }
+  /// As it is.
+  PolygonView file() const { return file_; }
+  const Metric& metric() const { return metric_; }
+
+  /// Where something is in the file that has moved from one place to another, in this space: what has not moved along
+  /// an axis keeps that coordinate's bits. `file` is where it was.
+  Vec3d moved(const Vec3d& file, const Vec3d& from, const Vec3d& to) const {
+    return metric_.even() ? to : to == from ? file : file + metric_.from(to - from);
+  }
+
+ private:
+  PolygonView file_;
+  Metric metric_;
+  std::vector<Vec3d> scaled_;
+};
+
+}  // namespace vdb_offset

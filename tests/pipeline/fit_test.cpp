@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/oracles.h"
+#include "vdb_offset/check.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/fit.h"
+#include "vdb_offset/shapes.h"
+#include "vdb_offset/validity/clearance.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+constexpr int kFacets = 32;
+
+/// A tube around the z axis, from -half to half.
+Polygons sleeve(double inner, double outer, double half) {
+  Polygons mesh;
+  for (int i = 0; i < kFacets; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kFacets;
+    for (const auto& [r, z] : {std::pair{inner, -half}, {outer, -half}, {outer, half}, {inner, half}})
+      mesh.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  const auto at = [](int i, int k) { return static_cast<std::uint32_t>(4 * (i % kFacets) + k % 4); };
+  for (int i = 0; i < kFacets; ++i)
+    for (int k = 0; k < 4; ++k) mesh.add_face({at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
+  return mesh;
+}
+
+/// The least distance between faces, by trying all.
+double gap_of(const Polygons& mesh, const std::vector<Vec3d>& positions, const Polygons& other) {
+  const auto triangles = [](const Polygons& of, const std::vector<Vec3d>& at) {
+    std::vector<TriangleCorners> all;
+    for (std::size_t f = 0; f < of.face_count(); ++f) {
+      const auto face = of.view().face(f);
+      for (std::size_t k = 2; k < face.size(); ++k) all.push_back({at[face[0]], at[face[k - 1]], at[face[k]]});
+    }
+    return all;
+  };
+  double least = 1e300;
+  const auto of_other = triangles(other, other.positions);
+  for (const TriangleCorners& a : triangles(mesh, positions))
+    for (const TriangleCorners& b : of_other) least = std::min(least, distance_between(a, b));
+  return least;
+}
+
+void require_valid(const Polygons& mesh, const OffsetResult& result) {
+  CHECK(result.statistics.limit.left.total() == 0);
+  CHECK(check_offset(mesh.view(), result.positions, {.distance = result.distances.farthest()}).faults.crossings == 0);
+}
+
+}  // namespace
+
+TEST_CASE("fit: a peg gives way in its socket, and nowhere else", "[fit]") {
+  const Polygons peg = scene::cylinder(1, 4, kFacets, 16, 3), socket = sleeve(1, 2, 1);
+  const double clearance = 0.1;
+  const OffsetResult result = fit(peg.view(), socket.view(), clearance, {});
+  REQUIRE(result.statistics.fit);
+  const FitFacts& facts = *result.statistics.fit;
+  CHECK(facts.starting_gap == Approx(0).margin(1e-12));
+  CHECK(facts.near_at_start > 0);
+  CHECK(facts.near == 0);
+  CHECK(facts.is_signed);
+  CHECK(facts.enclosed == 0);
+  CHECK(facts.gap >= clearance * (1 - 1e-6));
+  CHECK(facts.gap <= clearance * (1 + 1e-3));
+  CHECK(gap_of(peg, result.positions, socket) == Approx(facts.gap).epsilon(1e-9));
+  require_valid(peg, result);
+  // Facets stand opposite each other: their apothems differ by the clearance.
+  const double fitting = 1 - clearance / std::cos(std::numbers::pi / kFacets);
+  for (std::size_t v = 0; v < peg.positions.size(); ++v) {
+    const Vec3d& from = peg.positions[v];
+    if (std::abs(from[2]) >= 1.5 || std::hypot(from[0], from[1]) < 0.99) CHECK(result.positions[v] == from);
+    else if (std::abs(from[2]) < 0.7)
+      CHECK(std::hypot(result.positions[v][0], result.positions[v][1]) == Approx(fitting).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("fit: a socket gives way to its peg", "[fit]") {
+  Polygons socket = sleeve(1, 2, 1);
+  const Polygons peg = scene::cylinder(1.02, 4, kFacets, 8, 2);  // pressed in
+  const OffsetResult result = fit(socket.view(), peg.view(), 0.05, {});
+  const FitFacts& facts = *result.statistics.fit;
+  CHECK(facts.starting_gap < 0);
+  CHECK(facts.near == 0);
+  CHECK(facts.gap >= 0.05 * (1 - 1e-6));
+  CHECK(gap_of(socket, result.positions, peg) == Approx(facts.gap).epsilon(1e-9));
+  require_valid(socket, result);
+  for (std::size_t v = 0; v < socket.positions.size(); ++v)
+    if (std::hypot(socket.positions[v][0], socket.positions[v][1]) > 1.5)
+      CHECK(result.positions[v] == socket.positions[v]);
+}
+
+TEST_CASE("fit: what is inside a solid comes out of it", "[fit]") {
+  const Polygons sphere = scene::icosphere(1, 4);
+  Polygons floor = scene::box(Vec3d(4, 4, 1), 1, true);
+  for (Vec3d& p : floor.positions) p[2] -= 1.4;              // its upper side at -0.9
+  std::reverse(floor.corners.begin(), floor.corners.end());  // a solid, whichever way its faces point
+  const OffsetResult result = fit(sphere.view(), floor.view(), 0.05, {});
+  const FitFacts& facts = *result.statistics.fit;
+  double lowest = 0;
+  for (const Vec3d& p : sphere.positions) lowest = std::min(lowest, p[2]);
+  CHECK(facts.starting_gap == Approx(lowest + 0.9).epsilon(1e-9));
+  CHECK(facts.near == 0);
+  for (std::size_t v = 0; v < sphere.positions.size(); ++v) {
+    CHECK(result.positions[v][2] >= -0.85 - 0.05 * 1e-6);
+    if (sphere.positions[v][2] > -0.8) CHECK(result.positions[v] == sphere.positions[v]);
+  }
+  require_valid(sphere, result);
+}
+
+TEST_CASE("fit: faces give way between their vertices", "[fit]") {
+  const Polygons cube = scene::box(Vec3d(1, 1, 1), 1, true);
+  Polygons spike = scene::icosphere(0.1, 1);
+  for (Vec3d& p : spike.positions) p += Vec3d(0.12, 0.05, 0.62);
+  const OffsetResult result = fit(cube.view(), spike.view(), 0.05, {});
+  const FitFacts& facts = *result.statistics.fit;
+  CHECK(facts.near == 0);
+  CHECK(facts.gap >= 0.05 * (1 - 1e-6));
+  CHECK(facts.gap <= 0.05 * 1.2);
+  CHECK(gap_of(cube, result.positions, spike) == Approx(facts.gap).epsilon(1e-9));
+  for (std::size_t v = 0; v < cube.positions.size(); ++v)
+    if (cube.positions[v][2] < 0) CHECK(result.positions[v] == cube.positions[v]);
+  require_valid(cube, result);
+}
+
+TEST_CASE("fit: nothing moves where there is room, and what has none is told", "[fit]") {
+  const Polygons sphere = scene::icosphere(1, 2);
+  Polygons far = scene::icosphere(1, 2);
+  for (Vec3d& p : far.positions) p += Vec3d(0, 0, 3);
+  const OffsetResult room = fit(sphere.view(), far.view(), 0.2, {});
+  CHECK(room.positions == sphere.positions);
+  CHECK(room.statistics.fit->moved == 0);
+  CHECK(room.statistics.fit->rounds == 0);
+  CHECK(room.statistics.fit->gap == Approx(gap_of(sphere, sphere.positions, far)).epsilon(1e-12));
+  // A plate between two others has no more than itself to give.
+  const Polygons plate = scene::box(Vec3d(1, 1, 0.2), 4, true);
+  Polygons others = scene::plates(2, 0.3, 0.3, 2);
+  const OffsetResult thin = fit(plate.view(), others.view(), 0.2, {});
+  CHECK(thin.statistics.fit->near > 0);
+  CHECK(thin.statistics.fit->gap < 0.2);
+  CHECK(thin.statistics.fit->gap >= 0.05 - 1e-12);
+  require_valid(plate, thin);
+  // Nothing can give way to what lies inside.
+  const Polygons pin = scene::icosphere(0.2, 1);
+  CHECK(fit(sphere.view(), pin.view(), 0.1, {}).statistics.fit->enclosed == 1);
+  CHECK_THROWS_AS(fit(sphere.view(), pin.view(), 0, {}), InvalidInput);
+  CHECK_THROWS_AS(fit(sphere.view(), Polygons().view(), 0.1, {}), InvalidInput);
+}
+
+TEST_CASE("fit: the same for any number of threads", "[fit]") {
+  const Polygons peg = scene::cylinder(1, 4, kFacets, 16, 3), socket = sleeve(0.98, 2, 1);
+  OffsetOptions one, all;
+  one.threads = 1;
+  CHECK(fit(peg.view(), socket.view(), 0.05, one).positions == fit(peg.view(), socket.view(), 0.05, all).positions);
+}

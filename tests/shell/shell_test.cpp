@@ -1,0 +1,808 @@
+#include "vdb_offset/shell.h"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <random>
+#include <sstream>
+
+#include "support/folder.h"
+#include "support/oracles.h"
+#include "support/random_scenes.h"
+#include "vdb_offset/base/index_set.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/shapes.h"
+#include "vdb_offset/validity/rim_crossings.h"
+#include "vdb_offset/validity/triangle_crossings.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+std::vector<Vec3d> raised(std::vector<Vec3d> positions, double by) {
+  for (Vec3d& p : positions) p[2] += by;
+  return positions;
+}
+
+/// Of triangle fans, which the shapes' flat or four-sided faces are split into.
+double volume(const Polygons& mesh, std::span<const Vec3d> positions) {
+  double sum = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    for (std::size_t k = 2; k < face.size(); ++k)
+      sum += positions[face[0]].dot(positions[face[k - 1]].cross(positions[face[k]])) / 6;
+  }
+  return sum;
+}
+
+/// The faces above z = 0 of a shape; the other vertices stay, unused.
+Polygons upper_half(const Polygons& mesh) {
+  Polygons half;
+  half.positions = mesh.positions;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    double height = 0;
+    for (const auto v : face) height += mesh.positions[v][2];
+    if (height <= 0) continue;
+    half.corners.insert(half.corners.end(), face.begin(), face.end());
+    half.close_face();
+  }
+  return half;
+}
+
+Shell offset_shell(const Polygons& mesh, double distance) {
+  OffsetOptions options;
+  options.distance = distance;
+  return shell_of(mesh.view(), offset(mesh.view(), options), options);
+}
+
+/// As the command makes it: what moves keeps off the source.
+Shell solid_of(const Polygons& mesh, double distance) {
+  OffsetOptions options;
+  options.distance = distance;
+  options.off_source = true;
+  return shell_of(mesh.view(), offset(mesh.view(), options), options);
+}
+
+/// Judged by what reads meshes: every edge has two faces, which run through it in both directions and meet nowhere
+/// else.
+void check_solid(const Shell& shell) {
+  CHECK(shell.facts.closed);
+  CHECK(shell.facts.oriented);
+  CHECK(shell.facts.border_edges_left == 0);
+  CHECK(shell.facts.non_manifold_edges == 0);
+  CHECK(shell.facts.volume > 0);
+  const Surface surface = build_surface(shell.polygons.view(), {});
+  CHECK(surface.facts.boundary_edges == 0);
+  CHECK(surface.facts.non_manifold_edges == 0);
+  CHECK(surface.facts.orientation_conflicts == 0);
+  CHECK(surface.facts.inside_out_components == 0);
+  CHECK(CrossingFinder(surface, surface.vertices).all().empty());
+}
+
+/// One face over four corners.
+Polygons quad() {
+  Polygons mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.add_face({0, 1, 2, 3});
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("shell: two skins and a rim, by hand", "[shell]") {
+  const Polygons mesh = quad();
+  const Shell shell = make_shell(mesh.view(), raised(mesh.positions, 2), mesh.positions, {});
+  CHECK(shell.polygons.positions.size() == 8);
+  CHECK(shell.polygons.corners ==
+        std::vector<std::uint32_t>{0, 1, 2, 3, 4, 7, 6, 5, 1, 0, 4, 5, 2, 1, 5, 6, 3, 2, 6, 7, 0, 3, 7, 4});
+  CHECK(shell.part(0) == ShellPart::Outer);
+  CHECK(shell.part(1) == ShellPart::Inner);
+  CHECK(shell.part(2) == ShellPart::Rim);
+  CHECK(shell.source_face(5) == 0);
+  CHECK(shell.source_corner(mesh.view(), 1, 1) == 3);
+  CHECK(shell.source_corner(mesh.view(), 5, 0) == 0);
+  CHECK(shell.source_corner(mesh.view(), 5, 2) == 3);
+  CHECK(shell.facts.rim_quads == 4);
+  CHECK(shell.facts.volume == 2);
+  check_solid(shell);
+}
+
+TEST_CASE("shell: where an end of a border edge stays, the rim has a triangle or nothing", "[shell]") {
+  const Polygons mesh = quad();
+  std::vector<Vec3d> outer = raised(mesh.positions, 1);
+  outer[0] = mesh.positions[0];
+  const Shell one = make_shell(mesh.view(), outer, mesh.positions, {});
+  CHECK(one.facts.rim_quads == 2);
+  CHECK(one.facts.rim_triangles == 2);
+  CHECK(one.facts.volume == Approx(2. / 3));  // half the box, and a sixth
+  check_solid(one);
+  outer[1] = mesh.positions[1];
+  const Shell two = make_shell(mesh.view(), outer, mesh.positions, {});
+  CHECK(two.facts.rim_quads == 1);
+  CHECK(two.facts.rim_triangles == 2);
+  CHECK(two.rim.size() == 3);
+  CHECK(two.facts.volume == 0.5);
+  check_solid(two);
+}
+
+TEST_CASE("shell: of open and closed shapes and their offsets", "[shell]") {
+  const Polygons sphere = scene::icosphere(1, 3);
+  struct Case {
+    const char* name;
+    Polygons mesh;
+    double distance;
+    bool open;
+  };
+  const Case cases[] = {{"hemisphere of quads", upper_half(scene::uv_sphere(1, 32, 16)), 0.1, true},
+                        {"hemisphere inwards", upper_half(scene::uv_sphere(1, 32, 16)), -0.1, true},
+                        {"hemisphere with a jagged border", upper_half(sphere), 0.05, true},
+                        {"wavy patch", scene::patch(1, 0.1, 12), 0.05, true},
+                        {"cube", scene::box(Vec3d(1), 6, false), 0.1, false},
+                        {"cube inwards", scene::box(Vec3d(1), 6, true), -0.1, false},
+                        {"torus", scene::torus(1, 0.3, 32, 16), 0.1, false},
+                        {"sphere inwards", sphere, -0.2, false}};
+  for (const Case& c : cases) {
+    INFO(c.name);
+    const Shell shell = offset_shell(c.mesh, c.distance);
+    check_solid(shell);
+    CHECK(shell.facts.rim_triangles == 0);
+    CHECK((shell.facts.rim_quads > 0) == c.open);
+    CHECK(shell.rim.size() == build_surface(c.mesh.view(), {}).facts.boundary_edges);
+    if (!c.open)
+      CHECK(shell.facts.volume == Approx(volume(c.mesh, shell.outer()) - volume(c.mesh, shell.inner())).epsilon(1e-12));
+    // Corners of their own, as in STL, change nothing but the numbers of vertices.
+    const Polygons soup = test::torn(c.mesh);
+    const Shell of_soup = offset_shell(soup, c.distance);
+    CHECK(of_soup.rim.size() == shell.rim.size());
+    CHECK(of_soup.facts.volume == Approx(shell.facts.volume).epsilon(1e-9));
+    check_solid(of_soup);
+  }
+}
+
+TEST_CASE("shell: a flat patch becomes a box of that height", "[shell]") {
+  const Polygons patch = scene::patch(3, 0, 5);
+  CHECK(make_shell(patch.view(), raised(patch.positions, 0.25), patch.positions, {}).facts.volume ==
+        Approx(9 * 0.25).epsilon(1e-14));
+  const Shell shell = offset_shell(patch, 0.25);
+  CHECK(shell.facts.volume == Approx(9 * 0.25).epsilon(1e-6));
+  CHECK(shell.facts.rim_quads == 20);
+  // The other way round it is inside out, which the sign tells.
+  CHECK(make_shell(patch.view(), patch.positions, raised(patch.positions, 0.25), {}).facts.volume ==
+        Approx(-9 * 0.25).epsilon(1e-14));
+}
+
+TEST_CASE("shell: a rim stops before what stands in its way", "[shell]") {
+  // A plate, and the tip of a triangle over its border, in the rim's way but not in that of the plate.
+  Polygons mesh = quad();
+  for (const Vec3d& p : {Vec3d(0.98, 0.5, 0.06), Vec3d(2, 0.4, 0.06), Vec3d(2, 0.6, 0.06)}) mesh.positions.push_back(p);
+  mesh.add_face({4, 5, 6});
+  OffsetOptions options;
+  options.distance = Distances(std::vector<double>{0.1, 0.1, 0.1, 0.1, 0, 0, 0});
+  CHECK(shell_of(mesh.view(), offset(mesh.view(), options), options).facts.crossings > 0);
+  options.off_source = true;
+  const OffsetResult result = offset(mesh.view(), options);
+  const Shell shell = shell_of(mesh.view(), result, options);
+  CHECK(shell.facts.crossings == 0);
+  CHECK(shell.facts.pinched_vertices == 3);
+  // The edge between these runs below the tip, halfway, whichever of them goes farther.
+  const double halfway = (result.achieved[1] + result.achieved[2]) / 2;
+  CHECK(halfway < 0.06);
+  CHECK(halfway > 0.05);
+  CHECK(std::min(result.achieved[1], result.achieved[2]) > 0.01);
+  for (const std::size_t v : {0, 3}) CHECK(result.states[v] == VertexState::Reached);
+}
+
+TEST_CASE("shell: the outer skin of one sheet keeps off the inner skin of another", "[shell]") {
+  Polygons mesh = quad();
+  for (const Vec3d& p : raised(mesh.positions, 0.15)) mesh.positions.push_back(p + Vec3d(0.3, 0, 0));
+  mesh.add_face({4, 5, 6, 7});
+  const std::vector<Distances> both = {0.1, -0.1};
+  OffsetOptions options;
+  options.off_source = true;
+  std::vector<OffsetResult> results = offset_several(mesh.view(), both, options);
+  CHECK(shell_of(mesh.view(), results[0], options, &results[1]).facts.crossings > 0);
+  options.inner_skin_last = true;
+  results = offset_several(mesh.view(), both, options);
+  const Shell shell = shell_of(mesh.view(), results[0], options, &results[1]);
+  check_solid(shell);
+  CHECK(shell.facts.pinched_vertices == 0);
+  CHECK(results[1].states[0] == VertexState::Reached);
+  CHECK(results[0].states[4] == VertexState::Reached);
+}
+
+/// A shape made up from a seed, every other one opened by a plane, or two that may be in each other.
+Polygons random_sheets(unsigned seed) {
+  Polygons all;
+  for (const unsigned part : {seed, seed + 100000}) {
+    const Polygons whole = test::random_scene(part).mesh;
+    Vec3d lower = whole.positions[0], upper = lower;
+    for (const Vec3d& p : whole.positions) {
+      lower = openvdb::math::minComponent(lower, p);
+      upper = openvdb::math::maxComponent(upper, p);
+    }
+    Polygons mesh = whole;
+    for (Vec3d& p : mesh.positions) p = (p - (lower + upper) / 2.0) * (1.0 / (upper - lower).length());
+    if (seed % 2 == 0) mesh = upper_half(mesh);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      for (const auto v : mesh.view().face(f)) all.corners.push_back(first + v);
+      all.close_face();
+    }
+    if (seed % 3 == 0) break;
+  }
+  return all;
+}
+
+TEST_CASE("shell: of random sheets, nothing meets but where the source does", "[shell][property][random]") {
+  const test::Seeds seeds = test::random_seeds(6);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
+    INFO("seed " << seed);
+    const Polygons mesh = random_sheets(seed);
+    if (mesh.face_count() == 0) continue;
+    OffsetOptions options;
+    options.off_source = options.inner_skin_last = true;
+    const double distance = 0.003 * (1 + seed % 11);
+    const std::vector<OffsetResult> results =
+        offset_several(mesh.view(), std::vector<Distances>{distance, -distance}, options);
+    for (const OffsetResult* inner : {&results[1], static_cast<const OffsetResult*>(nullptr)}) {
+      const Shell shell = shell_of(mesh.view(), results[inner ? 0 : 1], options, inner);
+      CHECK(shell.facts.crossings == 0);
+    }
+  }
+}
+
+TEST_CASE("shell: what stays is where the source is in another format, too", "[shell]") {
+  const auto [mesh, distances] = test::far_sphere();
+  OffsetOptions options;
+  options.distance = Distances(distances);
+  options.off_source = true;
+  options.precision = {.kind = Precision::Kind::Single, .rounds_all = true};
+  const OffsetResult result = offset(mesh.view(), options);
+  CHECK(result.statistics.limit.left.total() == 0);
+  for (std::size_t v = 0; v < distances.size(); ++v)
+    if (distances[v] > 0) CHECK(result.states[v] == VertexState::Reached);
+  const Shell shell = shell_of(mesh.view(), result, options);
+  CHECK(shell.facts.crossings + shell.facts.crossings_near_source == 0);
+}
+
+TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way faces run", "[shell]") {
+  std::mt19937 engine(7);
+  const auto in_box = [&](const Vec3d& lower, const Vec3d& upper) {
+    Vec3d p;
+    for (int k = 0; k < 3; ++k) p[k] = lower[k] + (upper[k] - lower[k]) * (engine() / 4294967296.0);
+    return p;
+  };
+  for (int round = 0; round < 20; ++round) {
+    INFO(round);
+    // A patch with some faces turned, and small triangles above it.
+    const Polygons patch = scene::patch(1, 0.05, 4);
+    Polygons mesh;
+    mesh.positions = patch.positions;
+    for (std::size_t f = 0; f < patch.face_count(); ++f) {
+      const auto face = patch.view().face(f);
+      if (f % 3 == 1) mesh.corners.insert(mesh.corners.end(), face.rbegin(), face.rend());
+      else mesh.corners.insert(mesh.corners.end(), face.begin(), face.end());
+      mesh.close_face();
+    }
+    for (int i = 0; i < 12; ++i) {
+      const Vec3d centre = in_box(Vec3d(-0.6, -0.6, 0.1), Vec3d(0.6, 0.6, 0.4));
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (int k = 0; k < 3; ++k) mesh.positions.push_back(centre + in_box(Vec3d(-0.1), Vec3d(0.1)));
+      mesh.add_face({first, first + 1, first + 2});
+    }
+    Surface surface = build_surface(mesh.view(), {});
+    REQUIRE(surface.facts.turned_triangles > 0);
+    place(surface, 0.1);
+    std::vector<Vec3d> source;
+    for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
+    std::vector<Vec3d> places = source;
+    const ClosestQuery query(surface);
+    const Distances distances(0.3);
+    CrossingFinder now(surface, places);
+    const CrossingFinder before(surface, source);
+    const NearCrossings none(surface, {});
+    const Body body{query, surface, {}, {}, {}};
+    RimCrossings rim(body, source, places, distances);
+    for (int step = 0; step < 4; ++step) {
+      std::vector<std::uint32_t> moved, touched;
+      for (std::uint32_t v = 0; v < places.size(); ++v) {
+        if (step > 0 && engine() % 10 < 7) continue;
+        moved.push_back(v);
+        places[v] = source[v] + in_box(Vec3d(-0.1, -0.1, 0), Vec3d(0.1, 0.1, 0.4));
+        const auto around = surface.triangles_around(v);
+        touched.insert(touched.end(), around.begin(), around.end());
+      }
+      sort_unique(touched);
+      now.update(touched);
+      rim.look(moved, touched, now, before, none);
+      std::vector<Vec3d> outer = mesh.positions;
+      for (std::size_t v = 0; v < outer.size(); ++v) outer[v] = places[surface.welded[v]];
+      const Shell shell = make_shell(mesh.view(), outer, mesh.positions, {});
+      const Surface solid = build_surface(shell.polygons.view(), {});
+      std::size_t expected = 0;
+      for (const auto& [s, t] : CrossingFinder(solid, solid.vertices).all())
+        expected += shell.part(solid.face[s]) == ShellPart::Rim || shell.part(solid.face[t]) == ShellPart::Rim;
+      CHECK(rim.count() == expected);
+      CHECK(expected > 0);
+    }
+  }
+}
+
+TEST_CASE("shell: what cannot be joined is counted", "[shell]") {
+  // Three leaves of a book: edges of three faces have no rim, and so the rims at their ends are three, too.
+  Polygons book;
+  book.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}};
+  book.add_face({0, 2, 3, 1});
+  book.add_face({4, 0, 1, 5});
+  book.add_face({0, 1, 7, 6});
+  const Shell leaves = make_shell(book.view(), raised(book.positions, 0.1), book.positions, {});
+  CHECK(leaves.facts.rim_quads == 9);
+  CHECK(leaves.facts.non_manifold_edges == 4);
+  CHECK_FALSE(leaves.facts.closed);
+  CHECK_FALSE(leaves.facts.oriented);
+
+  Polygons turned = quad();
+  turned.positions.insert(turned.positions.end(), {{2, 0, 0}, {2, 1, 0}});
+  turned.add_face({1, 2, 5, 4});
+  const Shell twisted = make_shell(turned.view(), raised(turned.positions, 1), turned.positions, {});
+  CHECK(twisted.facts.rim_quads == 6);
+  CHECK(twisted.facts.closed);
+  CHECK_FALSE(twisted.facts.oriented);
+
+  // Two faces that share a corner: the rim touches itself there.
+  Polygons bow = quad();
+  bow.positions.insert(bow.positions.end(), {{2, 1, 0}, {2, 2, 0}, {1, 2, 0}});
+  bow.add_face({2, 4, 5, 6});
+  const Shell touching = make_shell(bow.view(), raised(bow.positions, 1), bow.positions, {});
+  CHECK(touching.facts.non_manifold_edges == 1);
+  CHECK(touching.facts.closed);
+  CHECK(touching.facts.oriented);
+  CHECK(touching.facts.volume == 2);
+}
+
+TEST_CASE("shell: where the source crosses itself skins keep their thickness, and what meets is counted apart",
+          "[shell]") {
+  Polygons boxes = scene::box(Vec3d(1), 6, true);
+  const auto count = static_cast<std::uint32_t>(boxes.positions.size());
+  const std::size_t faces = boxes.face_count();
+  for (std::size_t v = 0; v < count; ++v) boxes.positions.push_back(boxes.positions[v] + Vec3d(0.47, 0.41, 0.53));
+  for (std::size_t f = 0; f < faces; ++f) {
+    for (std::size_t k = 0; k < 3; ++k) boxes.corners.push_back(boxes.corners[3 * f + k] + count);
+    boxes.close_face();
+  }
+  const Shell shell = solid_of(boxes, 0.03);
+  const Surface source = build_surface(boxes.view(), {});
+  CHECK(shell.facts.source_crossings == CrossingFinder(source, source.vertices).all().size());
+  CHECK(shell.facts.source_crossings > 0);
+  CHECK(shell.facts.crossings_near_source > 0);
+  CHECK(shell.facts.crossings == 0);
+  CHECK(shell.facts.pinched_vertices == 0);
+  CHECK(shell.facts.non_manifold_edges == 0);
+}
+
+TEST_CASE("shell: of a folded vertex and those around it, only that one stays", "[shell]") {
+  // A cone over a U, as seen from its apex: whatever direction sees the insides of one prong is behind the other's.
+  Polygons cone;
+  cone.positions = {{0, 0, 0}};
+  for (const auto& [x, y] : {std::pair(-3, -2), {3, -2}, {3, 2}, {1, 2}, {1, -1}, {-1, -1}, {-1, 2}, {-3, 2}})
+    cone.positions.emplace_back(x, y, 2);
+  for (std::uint32_t k = 1; k <= 8; ++k) cone.add_face({0, k % 8 + 1, k});
+  const Shell shell = solid_of(cone, 0.1);
+  CHECK(shell.outer()[0] == cone.positions[0]);
+  CHECK(shell.facts.pinched_vertices == 1);
+  CHECK(shell.facts.crossings == 0);
+  CHECK(shell.facts.closed);
+}
+
+TEST_CASE("shell: faces without extent, nothing moved, and welding", "[shell]") {
+  Polygons mesh = quad();
+  mesh.add_face({0, 1, 1});  // a line along the border
+  CHECK(make_shell(mesh.view(), raised(mesh.positions, 1), mesh.positions, {}).facts.rim_quads == 4);
+  const Polygons flat = quad();
+  const Shell nothing = make_shell(flat.view(), flat.positions, flat.positions, {});
+  CHECK(nothing.rim.empty());
+  CHECK(nothing.facts.closed);
+  CHECK(nothing.facts.volume == 0);
+
+  const Polygons soup = test::torn(scene::box(Vec3d(1), 2, false));
+  std::vector<Vec3d> grown = soup.positions;
+  for (Vec3d& p : grown) p *= 1.5;
+  const Shell welded = make_shell(soup.view(), grown, soup.positions, {});
+  CHECK(welded.rim.empty());
+  CHECK(welded.facts.closed);
+  const Shell apart = make_shell(soup.view(), grown, soup.positions, {.enabled = false});
+  CHECK(apart.facts.rim_quads == 4 * soup.face_count());
+  CHECK(apart.facts.closed);
+  CHECK(apart.facts.oriented);
+  CHECK(apart.facts.volume == Approx(welded.facts.volume));
+  // Copies that are not quite at one place.
+  Polygons loose = soup;
+  for (std::size_t v = 0; v < loose.positions.size(); ++v) loose.positions[v][0] += static_cast<double>(v % 2) * 1e-9;
+  CHECK_FALSE(make_shell(loose.view(), grown, loose.positions, {}).rim.empty());
+  const Shell near = make_shell(loose.view(), grown, loose.positions, {.tolerance = 1e-6});
+  CHECK(near.rim.empty());
+  CHECK(near.facts.closed);
+}
+
+TEST_CASE("shell: refuses skins of another mesh", "[shell]") {
+  const Polygons mesh = quad();
+  const std::vector<Vec3d> three(3);
+  CHECK_THROWS_WITH(make_shell(mesh.view(), three, mesh.positions, {}),
+                    Catch::Contains("4 vertices") && Catch::Contains("got 3 and 4"));
+  CHECK_THROWS_AS(make_shell(Polygons().view(), {}, {}, {}), InvalidInput);
+}
+
+namespace {
+
+/// A file's shell, its outer skin raised by 1; written and read.
+struct Written {
+  std::string bytes, lost;
+  Shell shell;
+  io::MeshFile back;
+};
+
+Written written(const std::string& from, const std::string& bytes, const std::string& to,
+                const io::WriteOptions& options = {}, bool source_is_inner = true) {
+  const Folder folder;
+  const io::MeshFile file = io::parse_mesh("in." + from, *io::format_of("in." + from), bytes);
+  const std::vector<Vec3d> moved = raised(file.polygons.positions, source_is_inner ? 1 : -1);
+  Written result;
+  result.shell = source_is_inner ? make_shell(file.polygons.view(), moved, file.polygons.positions, {})
+                                 : make_shell(file.polygons.view(), file.polygons.positions, moved, {});
+  result.lost = io::write_shell(folder.file("out." + to), file, result.shell, options).lost;
+  result.bytes = slurp(folder.file("out." + to));
+  result.back = io::read_mesh(folder.write("back." + to, result.bytes));
+  if (to != "stl") {
+    CHECK(result.back.polygons.positions == result.shell.polygons.positions);
+    CHECK(result.back.polygons.corners == result.shell.polygons.corners);
+    CHECK(result.back.polygons.face_begin == result.shell.polygons.face_begin);
+  }
+  return result;
+}
+
+const std::string kTwoParts =
+    "# made by hand\nmtllib a.mtl\nv 0 0 0 1 0 0\nv 1.50 0 0 0 1 0\nv 0 1 0 0 0 1\nv 1 1 0 1 1 1\n"
+    "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvn 0 0 1\no part\ng left\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1 # face\n"
+    "g right both\nusemtl blue\nf -3/2/1 -1/-1/1 -2/3/1\nl 1 -3\nunknown 1";
+
+/// What an OBJ file says of a face, besides its vertices.
+struct ObjFace {
+  std::string group, object, material, smooth;
+  std::vector<std::string> textures, normals;  // the values, not the numbers
+};
+
+std::string value(const std::vector<std::string>& values, const std::string& number) {
+  if (number.empty()) return {};
+  const long index = std::stol(number);
+  return values.at(static_cast<std::size_t>(index < 0 ? static_cast<long>(values.size()) + index : index - 1));
+}
+
+std::vector<ObjFace> obj_faces(const std::string& text) {
+  std::vector<std::string> textures, normals;
+  std::vector<ObjFace> faces;
+  ObjFace now;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string keyword = line.substr(0, line.find(' ')),
+                      rest = keyword.size() < line.size() ? line.substr(keyword.size() + 1) : "";
+    if (keyword == "vt") textures.push_back(rest);
+    if (keyword == "vn") normals.push_back(rest);
+    if (keyword == "g") now.group = rest;
+    if (keyword == "o") now.object = rest;
+    if (keyword == "usemtl") now.material = rest;
+    if (keyword == "s") now.smooth = rest == "off" ? "" : rest;
+    if (keyword != "f") continue;
+    ObjFace face = now;
+    std::istringstream corners(rest);
+    for (std::string corner; corners >> corner;) {
+      const std::size_t first = corner.find('/'), second = corner.find('/', first + 1);
+      const std::string t = first == std::string::npos ? "" : corner.substr(first + 1, second - first - 1),
+                        n = second == std::string::npos ? "" : corner.substr(second + 1);
+      face.textures.push_back(value(textures, t));
+      face.normals.push_back(value(normals, n));
+    }
+    faces.push_back(face);
+  }
+  return faces;
+}
+
+/// Compares every face of a shell's file with the one it comes from.
+void check_obj_faces(const std::string& source, const Written& result) {
+  const std::vector<ObjFace> before = obj_faces(source), after = obj_faces(result.bytes);
+  const Polygons polygons = io::parse_mesh("in.obj", io::Format::Obj, source).polygons;
+  const PolygonView mesh = polygons.view();
+  REQUIRE(after.size() == result.shell.polygons.face_count());
+  std::size_t different = 0;
+  for (std::size_t f = 0; f < after.size(); ++f) {
+    const ShellPart part = result.shell.part(f);
+    const ObjFace& of = before[result.shell.source_face(f)];
+    const std::string group = part == ShellPart::Rim ? "rim"
+                              : of.group.empty()     ? name(part)
+                                                     : name(part) + (" " + of.group);
+    different += after[f].group != group || after[f].material != of.material || after[f].object != of.object ||
+                 after[f].smooth != (part == ShellPart::Rim ? "" : of.smooth);
+    for (std::size_t k = 0; k < after[f].textures.size(); ++k) {
+      const std::size_t corner = result.shell.source_corner(mesh, f, k) - mesh.face_begin[result.shell.source_face(f)];
+      different += after[f].textures[k] != of.textures[corner];
+      different += after[f].normals[k].empty() != (part == ShellPart::Rim || of.normals[corner].empty());
+    }
+  }
+  CHECK(different == 0);
+}
+
+}  // namespace
+
+TEST_CASE("shell: an obj keeps everything on both sides", "[shell]") {
+  const Written result = written("obj", kTwoParts, "obj");
+  CHECK(result.lost.empty());
+  CHECK(result.bytes ==
+        "# made by hand\nmtllib a.mtl\nv 0 0 1 1 0 0\nv 1.5 0 1 0 1 0\nv 0 1 1 0 0 1\nv 1 1 1 1 1 1\n"
+        "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvn 0 0 1\no part\ng outer left\nusemtl red\ns 1\n"
+        "f 1/1/1 2/2/1 3/3/1 # face\ng outer right both\nusemtl blue\nf -3/2/1 -1/-1/1 -2/3/1\nunknown 1\n"
+        "v 0 0 0 1 0 0\nv 1.50 0 0 0 1 0\nv 0 1 0 0 0 1\nv 1 1 0 1 1 1\nvn 0 0 -1\n"
+        "g inner left\nusemtl red\nf 5/1/2 7/3/2 6/2/2\ng inner right both\nusemtl blue\nf 6/2/2 7/3/2 8/4/2\nl 5 6\n"
+        "g rim\nusemtl red\ns off\nf 2/2 1/1 5/1 6/2\nf 1/1 3/3 7/3 5/1\nusemtl blue\nf 4/4 2/2 6/2 8/4\n"
+        "f 3/3 4/4 8/4 7/3\n");
+  check_solid(result.shell);
+
+  // With the source outside, its lines stay where they are.
+  const Written inwards = written("obj", kTwoParts, "obj", {}, false);
+  std::string before = kTwoParts + "\n";
+  before.replace(before.find("g left"), 6, "g outer left").replace(before.find("g right"), 7, "g outer right");
+  CHECK_THAT(inwards.bytes, Catch::StartsWith(before + "v 0 0 -1 1 0 0\nv 1.5 0 -1 0 1 0\n"));
+}
+
+TEST_CASE("shell: an obj without groups, with late materials and objects, and with its normals kept", "[shell]") {
+  const std::string obj =
+      "\xef\xbb\xbfv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 2 0 0\r\nvn 0.6 0 0.8\r\nf 1//1 2//1 3//1 4//1\r\n"
+      "usemtl red\r\ns 2\r\no late\r\nf 2 5 \\\r\n 3\r\n";
+  const Written result = written("obj", obj, "obj", {.normals = io::Normals::Keep});
+  CHECK(result.lost == "that the inner skin's first faces are in no object");
+  CHECK(result.bytes ==
+        "\xef\xbb\xbfv 0 0 1\r\nv 1 0 1\r\nv 1 1 1\r\nv 0 1 1\r\nv 2 0 1\r\nvn 0.6 0 0.8\r\ng outer\n"
+        "f 1//1 2//1 3//1 4//1\r\nusemtl red\r\ns 2\r\no late\r\nf 2 5 \\\r\n 3\r\n"
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nvn -0.6 0 -0.8\n"
+        "g inner\nusemtl\ns off\nf 6//2 9//2 8//2 7//2\nusemtl red\r\ns 2\r\nf 7 8 10\n"
+        "g rim\nusemtl\ns off\nf 2 1 6 7\nf 4 3 8 9\nf 1 4 9 6\nusemtl red\r\nf 5 2 7 10\nf 3 5 10 8\n");
+}
+
+TEST_CASE("shell: a large obj with seams, groups and materials, face by face", "[shell][long]") {
+  const Polygons patch = scene::patch(1, 0.1, 150);
+  for (const bool relative : {false, true}) {
+    std::string obj = "mtllib a.mtl\n";
+    for (const Vec3d& p : patch.positions) obj += fmt::format("v {} {} {}\n", p[0], p[1], p[2]);
+    std::size_t textures = 0;
+    for (std::size_t f = 0; f < patch.face_count(); ++f) {
+      // Four texture coordinates for each face: nothing but seams.
+      for (int k = 0; k < 4; ++k) obj += fmt::format("vt {} {}\n", f, k);
+      textures += 4;
+      if (f % 700 == 0) obj += fmt::format("g group{} all\n", f / 700);
+      if (f % 999 == 0) obj += fmt::format("usemtl material{}\n", f / 999 % 5);
+      if (f % 5000 == 0) obj += fmt::format("o object{}\n", f / 5000);
+      if (f % 333 == 0) obj += f % 2 == 0 ? "s off\n" : fmt::format("s {}\n", f);
+      obj += "f";
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t v = patch.view().face(f)[k];
+        if (relative) obj += fmt::format(" -{}/-{}", patch.positions.size() - v, 4 - k);
+        else obj += fmt::format(" {}/{}", v + 1, textures - 3 + k);
+      }
+      obj += "\n";
+    }
+    REQUIRE(obj.size() > (std::size_t{1} << 20));  // some pieces
+    for (const bool source_is_inner : {true, false}) {
+      const Written result = written("obj", obj, "obj", {}, source_is_inner);
+      CHECK(result.lost.empty());
+      CHECK(result.shell.facts.rim_quads == 600);
+      check_obj_faces(obj, result);
+    }
+  }
+}
+
+namespace {
+
+/// Two triangles in a PLY file, or the shell of them, in any encoding.
+class PlyText {
+ public:
+  explicit PlyText(const std::string& encoding) : encoding_(encoding) {}
+  PlyText& header(const std::string& text) {
+    bytes_ += text;
+    return *this;
+  }
+  template <class... Numbers>
+  PlyText& row(Numbers... numbers) {
+    std::size_t left = sizeof...(numbers);
+    (append(numbers, --left == 0), ...);
+    return *this;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  template <class T>
+  void append(T number, bool last) {
+    if (encoding_ == "ascii") {
+      bytes_ += fmt::format("{}{}", number, last ? "\n" : " ");
+      return;
+    }
+    char raw[sizeof number];
+    std::memcpy(raw, &number, sizeof number);
+    if (encoding_ == "binary_big_endian") std::reverse(raw, raw + sizeof number);
+    bytes_.append(raw, sizeof number);
+  }
+  std::string encoding_, bytes_;
+};
+
+using U8 = std::uint8_t;
+using I16 = std::int16_t;
+
+std::string ply_header(const std::string& encoding, int vertices, int faces, const std::string& part) {
+  return fmt::format(
+      "ply\nformat {} 1.0\ncomment by hand\nelement vertex {}\nproperty float x\nproperty uchar red\nproperty float y\n"
+      "property float z\nproperty float nz\nproperty float nx\nproperty float ny\nproperty list uchar short tags\n"
+      "element edge 1\nproperty short vertex1\nproperty short vertex2\nelement face {}\nproperty float quality\n"
+      "property list uchar short vertex_indices\nproperty list uchar float texcoord\nproperty short flags\n{}"
+      "end_header\n",
+      encoding, vertices, faces, part);
+}
+
+}  // namespace
+
+TEST_CASE("shell: a ply keeps all properties of both sides, in every encoding", "[shell]") {
+  for (const std::string encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    INFO(encoding);
+    PlyText source(encoding), expected(encoding);
+    source.header(ply_header(encoding, 3, 1, ""));
+    source.row(0.f, U8{1}, 0.f, 0.f, 1.f, 0.f, 0.f, U8{1}, I16{-7})
+        .row(1.f, U8{2}, 0.f, 0.f, 1.f, 0.f, 0.f, U8{0})
+        .row(0.f, U8{3}, 1.f, 0.f, .8f, 0.f, .6f, U8{0})
+        .row(I16{0}, I16{2})
+        .row(.5f, U8{3}, I16{0}, I16{1}, I16{2}, U8{6}, 0.f, .25f, 1.f, .5f, 0.f, .75f, I16{-3});
+    expected.header(ply_header(encoding, 6, 5, "property uchar part\n"));
+    expected.row(0.f, U8{1}, 0.f, 1.f, 1.f, 0.f, 0.f, U8{1}, I16{-7})
+        .row(1.f, U8{2}, 0.f, 1.f, 1.f, 0.f, 0.f, U8{0})
+        .row(0.f, U8{3}, 1.f, 1.f, 1.f, 0.f, 0.f, U8{0})
+        .row(0.f, U8{1}, 0.f, 0.f, -1.f, 0.f, 0.f, U8{1}, I16{-7})
+        .row(1.f, U8{2}, 0.f, 0.f, -1.f, 0.f, 0.f, U8{0})
+        .row(0.f, U8{3}, 1.f, 0.f, -.8f, 0.f, -.6f, U8{0})
+        .row(I16{0}, I16{2})
+        .row(.5f, U8{3}, I16{0}, I16{1}, I16{2}, U8{6}, 0.f, .25f, 1.f, .5f, 0.f, .75f, I16{-3}, U8{0})
+        .row(.5f, U8{3}, I16{3}, I16{5}, I16{4}, U8{6}, 0.f, .25f, 0.f, .75f, 1.f, .5f, I16{-3}, U8{1})
+        .row(.5f, U8{4}, I16{1}, I16{0}, I16{3}, I16{4}, U8{8}, 1.f, .5f, 0.f, .25f, 0.f, .25f, 1.f, .5f, I16{-3},
+             U8{2})
+        .row(.5f, U8{4}, I16{2}, I16{1}, I16{4}, I16{5}, U8{8}, 0.f, .75f, 1.f, .5f, 1.f, .5f, 0.f, .75f, I16{-3},
+             U8{2})
+        .row(.5f, U8{4}, I16{0}, I16{2}, I16{5}, I16{3}, U8{8}, 0.f, .25f, 0.f, .75f, 0.f, .75f, 0.f, .25f, I16{-3},
+             U8{2});
+    const Written result = written("ply", source.bytes(), "ply");
+    CHECK(result.bytes == expected.bytes());
+    CHECK(result.lost.empty());
+    // A shell of the shell: the property is taken.
+    CHECK(written("ply", result.bytes, "ply").lost == "the parts of the shell (the face property 'part' is taken)");
+  }
+}
+
+TEST_CASE("shell: a ply's list of corners is widened where its numbers are too small", "[shell]") {
+  const Polygons patch = scene::patch(1, 0, 13);  // 196 vertices, 392 in the shell
+  for (const std::string encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    PlyText text(encoding);
+    text.header(
+        fmt::format("ply\r\nformat {} 1.0\r\nelement vertex 196\r\nproperty double x\r\nproperty double y\r\n"
+                    "property double z\r\nelement face 169\r\nproperty list int uchar vertex_index\r\n"
+                    "end_header\r\n",
+                    encoding));
+    for (const Vec3d& p : patch.positions) text.row(p[0], p[1], p[2]);
+    for (std::size_t f = 0; f < patch.face_count(); ++f) {
+      const auto face = patch.view().face(f);
+      text.row(4, static_cast<U8>(face[0]), static_cast<U8>(face[1]), static_cast<U8>(face[2]),
+               static_cast<U8>(face[3]));
+    }
+    const Written result = written("ply", text.bytes(), "ply");
+    CHECK_THAT(result.bytes,
+               Catch::Contains("property list int int vertex_index\r\nproperty uchar part\r\nend_header\r\n"));
+  }
+}
+
+TEST_CASE("shell: stl files have a solid for each part, or keep attribute bytes", "[shell]") {
+  const std::string facet =
+      "facet normal 0.6 0 0.8\nouter loop\nvertex 0 0 0\nvertex 1.0 0 0\nvertex 0 1 0\nendloop\n"
+      "endfacet\n";
+  const Written text = written("stl", "solid my part\n" + facet + "endsolid\n", "stl");
+  const auto loop = [](const std::string& normal, const std::string& a, const std::string& b, const std::string& c) {
+    return "  facet normal " + normal + "\n    outer loop\n      vertex " + a + "\n      vertex " + b +
+           "\n      vertex " + c + "\n    endloop\n  endfacet\n";
+  };
+  CHECK(text.lost.empty());
+  CHECK_THAT(text.bytes,
+             Catch::StartsWith("solid outer my part\n" + loop("0 0 1", "0 0 1", "1 0 1", "0 1 1") +
+                               "endsolid outer my part\nsolid inner my part\n" +
+                               loop("-0.6 0 -0.8", "0 0 0", "0 1 0", "1.0 0 0") +
+                               "endsolid inner my part\nsolid rim\n" + loop("0 -1 0", "1 0 1", "0 0 1", "0 0 0")));
+  CHECK(text.back.polygons.face_count() == 8);
+  CHECK(build_surface(text.back.polygons.view(), {}).facts.closed());
+  const std::string two = "solid a\n" + facet + "endsolid a\nsolid b\n" + facet + "endsolid b\n";
+  CHECK(written("stl", two, "stl").lost == "the source's solids and their names");
+
+  PlyText source("binary_little_endian"), start("binary_little_endian");
+  source.header(std::string(80, 'h')).row(1u).row(9.f, 9.f, 9.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
+  source.row(std::uint16_t{0xabcd}).header("tail");
+  start.header(std::string(80, 'h')).row(8u).row(0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 1.f, 0.f, 1.f, 1.f);
+  start.row(std::uint16_t{0xabcd}).row(-9.f, -9.f, -9.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 1.f, 0.f, 0.f);
+  start.row(std::uint16_t{0xabcd}).row(0.f, -1.f, 0.f, 1.f, 0.f, 1.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f);
+  start.row(std::uint16_t{0xabcd});
+  const Written binary = written("stl", source.bytes(), "stl");
+  CHECK_THAT(binary.bytes, Catch::StartsWith(start.bytes()) && Catch::EndsWith("tail"));
+  CHECK_THAT(binary.lost, Catch::StartsWith("the parts of the shell"));
+  CHECK(build_surface(binary.back.polygons.view(), {}).facts.closed());
+}
+
+TEST_CASE("shell: an off keeps colours of vertices and faces", "[shell]") {
+  const Written result = written("off",
+                                 "CNOFF # colours\n# counts\n3 1 3\n# first\n0 0 0 0.6 0 0.8 255 0 0 255\n"
+                                 "1.0 0 0 0 0 1 0 255 0 255 # second\n0 1 0 0 0 1 0 0 255 255\n3 0 1 2 0.5 0.25 1",
+                                 "off");
+  CHECK(result.bytes ==
+        "CNOFF # colours\n# counts\n6 5 0\n# first\n0 0 1 0 0 1 255 0 0 255\n1 0 1 0 0 1 0 255 0 255 # second\n"
+        "0 1 1 0 0 1 0 0 255 255\n0 0 0 -0.6 0 -0.8 255 0 0 255\n1.0 0 0 0 0 -1 0 255 0 255\n"
+        "0 1 0 0 0 -1 0 0 255 255\n3 0 1 2 0.5 0.25 1\n3 3 5 4 0.5 0.25 1\n4 1 0 3 4 0.5 0.25 1\n"
+        "4 2 1 4 5 0.5 0.25 1\n4 0 2 5 3 0.5 0.25 1\n");
+  CHECK_THAT(result.lost, Catch::StartsWith("the parts of the shell"));
+  for (const std::string counts : {"3\n1\n0", "3 1"})
+    CHECK_THAT(written("off", "OFF\n" + counts + "\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "off").bytes,
+               Catch::StartsWith("OFF\n6 5 0\n0 0 1\n"));
+}
+
+TEST_CASE("shell: in other formats, both sides have what the format can hold", "[shell]") {
+  const Written ply = written("obj", kTwoParts, "ply");
+  CHECK_THAT(ply.bytes, Catch::Contains("property uchar red") && Catch::Contains("property double nx\n") &&
+                            Catch::Contains("property double s\n") &&
+                            Catch::Contains("property uchar part\nend_header\n"));
+  CHECK(ply.lost == "materials, groups and object names, smoothing groups, other lines");
+  CHECK(ply.bytes.back() == '\2');
+  // A closed solid has no rim.
+  CHECK_THAT(written("ply", ply.bytes, "obj").bytes, Catch::Contains("\ng outer\nf 1/1/1 ") &&
+                                                         Catch::Contains("\ng inner\nf 9/9/9 ") &&
+                                                         !Catch::Contains("g rim"));
+  const Written off = written("obj", kTwoParts, "off");
+  CHECK_THAT(off.bytes, Catch::StartsWith("STCNOFF\n8 8 0\n0 0 1 0 0 1 255 0 0 255 0 0\n") &&
+                            Catch::Contains("\n1.5 0 0 0 0 -1 0 255 0 255 1 0\n"));
+  CHECK_THAT(off.lost, Catch::EndsWith("the parts of the shell (outer, inner and rim follow each other)"));
+  const Written stl = written("obj", kTwoParts, "stl");
+  CHECK(stl.back.polygons.face_count() == 12);
+  CHECK_THAT(stl.lost, Catch::Contains("shared vertices") && Catch::Contains("the parts of the shell"));
+  CHECK(build_surface(stl.back.polygons.view(), {}).facts.closed());
+
+  const std::string off_file = "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
+  const Written grouped = written("off", off_file, "obj");
+  CHECK_THAT(grouped.bytes, Catch::EndsWith("vn 0 0 -1\ng outer\nf 1//1 2//2 3//3\ng inner\nf 4//4 6//6 5//5\n"
+                                            "g rim\nf 2 1 4 5\nf 3 2 5 6\nf 1 3 6 4\n"));
+  CHECK(grouped.lost.empty());
+  CHECK(written("off", off_file, "ply").lost.empty());
+}
+
+TEST_CASE("shell: of plain polygons, in every format", "[shell]") {
+  const Folder folder;
+  const Shell shell = offset_shell(upper_half(scene::uv_sphere(1, 16, 8)), 0.1);
+  for (const char* name : {"a.obj", "a.ply", "a.off"}) {
+    const io::WriteResult result = io::write_shell(folder.file(name), shell);
+    CHECK(result.lost.empty() == (name != std::string("a.off")));
+    const io::MeshFile back = io::read_mesh(folder.file(name));
+    CHECK(back.polygons.positions == shell.polygons.positions);
+    CHECK(back.polygons.corners == shell.polygons.corners);
+  }
+  CHECK_THAT(slurp(folder.file("a.obj")), Catch::Contains("\ng outer\nf ") && Catch::Contains("\ng rim\nf "));
+  io::write_shell(folder.file("a.stl"), shell);
+  const MeshFacts facts = build_surface(io::read_mesh(folder.file("a.stl")).polygons.view(), {}).facts;
+  CHECK(facts.closed());
+  CHECK(facts.oriented());
+}
+
+TEST_CASE("shell: a file of another mesh is refused", "[shell]") {
+  const Folder folder;
+  const Polygons mesh = quad();
+  const Shell shell = make_shell(mesh.view(), raised(mesh.positions, 1), mesh.positions, {});
+  const io::MeshFile other = io::parse_mesh("a.obj", io::Format::Obj, kTwoParts);
+  CHECK_THROWS_WITH(io::write_shell(folder.file("b.obj"), other, shell), Catch::Contains("4 vertices and 2 faces"));
+}

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset::test {
+
+/// A shape and a distance to offset it by, made up from a seed.
+struct RandomScene {
+  Polygons mesh;
+  double distance;
+  bool closed;
+};
+RandomScene random_scene(unsigned seed);
+
+/// The seeds to try: `count` of them, but at most VDB_OFFSET_RANDOM_MOST, from 1 on, if VDB_OFFSET_RANDOM_COUNT and
+/// VDB_OFFSET_RANDOM_FIRST say nothing else.
+struct Seeds {
+  unsigned first, end;
+};
+Seeds random_seeds(unsigned count);
+
+}  // namespace vdb_offset::test
