@@ -62,7 +62,7 @@ Examples:
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
 met), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
 once they are put in place, all together, a signal changes nothing more.
-Report keys, library and guarantees: see the README.)";
+Report keys, library and guarantees: see the guides in docs/.)";
 
 // What is above this is 0 or more.
 constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
