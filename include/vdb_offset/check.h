@@ -41,7 +41,7 @@ struct CheckResult {
   FaultCounts faults;
   std::size_t source_crossings = 0, crossings_near_source = 0;
   bool more_source_crossings = false;      ///< There are more of them than these, and what is near is not looked at.
-  InteriorError interior;                  ///< Of all faces.
+  FaceInteriorError interior;              ///< Of all faces.
   std::optional<ObstacleFacts> obstacles;  ///< If there are any.
 
   bool valid() const { return faults.total() + wrong_side + torn == 0; }

@@ -15,7 +15,7 @@
 
 namespace vdb_offset {
 
-struct CaptureOptions {
+struct IsoOptions {
   double distance = 0;      ///< World units, not 0; negative is inward.
   GridOptions grid;         ///< The voxel size is an accuracy knob here: the length of the new mesh's edges.
   bool use_winding = true;  ///< Else nothing is inside of a mesh, one edge of which does not have two faces.
@@ -32,7 +32,7 @@ struct CaptureOptions {
 };
 
 /// What a run will need, known before it starts.
-struct CapturePlan {
+struct IsoPlan {
   double voxel_size = 0;                  ///< World units.
   std::string reason;                     ///< Why this size, in words.
   std::size_t leaf_nodes = 0, bytes = 0;  ///< Estimates; bytes is the peak of the whole run.
@@ -62,17 +62,17 @@ struct MendStatistics {
 };
 
 /// Figures of a run. All is measured on coordinates as they will be written, vertices at one place counted as one.
-struct CaptureStatistics {
+struct IsoStatistics {
   MeshFacts source;
   double distance = 0;  ///< As asked for.
-  CapturePlan plan;
+  IsoPlan plan;
   int threads = 0;
   std::size_t leaf_nodes = 0;
   std::array<double, kStageCount> seconds{};  ///< By Stage.
   bool is_signed = false;                     ///< The source has an inside; else the result goes round all of it.
   SolidFacts solid;
   std::size_t vertices = 0, triangles = 0, components = 0;
-  std::size_t dropped_specks = 0;         ///< Pieces that enclosed less than a voxel (see CaptureOptions::keep_specks).
+  std::size_t dropped_specks = 0;         ///< Pieces that enclosed less than a voxel (see IsoOptions::keep_specks).
   std::size_t merged_vertices = 0;        ///< Taken out of what is flat (see merge_flats.h).
   std::size_t attempts = 0;               ///< On how many lattices the surface was captured until it was valid.
   std::size_t border_edges = 0;           ///< With one face.
@@ -81,7 +81,7 @@ struct CaptureStatistics {
   std::size_t turned_edges = 0;           ///< Whose two faces run through them in the same direction.
   MendStatistics mending;                 ///< What crossed, and what was done about it.
   double worst_error = 0, rms_error = 0;  ///< Of vertices: |distance to the source - target| / target.
-  InteriorError interior;                 ///< Between vertices, of 10,000 triangles, evenly taken from all.
+  FaceInteriorError interior;             ///< Between vertices, of 10,000 triangles, evenly taken from all.
 
   bool closed() const { return border_edges == 0 && non_manifold_edges == 0; }
   bool manifold() const { return non_manifold_edges == 0 && pinched_vertices == 0 && turned_edges == 0; }
@@ -89,18 +89,18 @@ struct CaptureStatistics {
 };
 
 /// The stages that take time here: Rasterise makes the surface and phi, Capture the mesh, Limit mends it.
-inline constexpr Stage kCaptureStages[] = {Stage::Read,  Stage::Rasterise, Stage::Capture,
-                                           Stage::Limit, Stage::Measure,   Stage::Write};
+inline constexpr Stage kIsoStages[] = {Stage::Read,  Stage::Rasterise, Stage::Capture,
+                                       Stage::Limit, Stage::Measure,   Stage::Write};
 
-struct CaptureSource;
+struct IsoSource;
 
 /// The captured surface, all triangles, outward as the source's faces are.
-struct CaptureResult {
+struct IsoResult {
   Polygons polygons;                   ///< Positions are those that will be written.
   std::vector<Vec3d> normals;          ///< Of vertices: the gradient of phi, unit length.
-  std::vector<std::uint32_t> closest;  ///< Of vertices: the source's triangle that is closest (see CaptureSource).
-  std::shared_ptr<const CaptureSource> source;
-  CaptureStatistics statistics;
+  std::vector<std::uint32_t> closest;  ///< Of vertices: the source's triangle that is closest (see IsoSource).
+  std::shared_ptr<const IsoSource> source;
+  IsoStatistics statistics;
 };
 
 /// The surface phi = distance, where phi is the distance to a mesh, below 0 inside of it: closed and manifold, with
@@ -118,16 +118,16 @@ struct CaptureResult {
 /// depend on the number of threads. \throw InvalidInput for a mesh or an option that cannot be used, and if there is no
 /// surface at that distance; OutOfBudget before work that would not fit; Cancelled when the progress callback asks for
 /// it.
-CaptureResult capture(PolygonView mesh, const CaptureOptions& options);
+IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options);
 
-/// What capture() would do, without doing it.
-CaptureStatistics plan_capture(PolygonView mesh, const CaptureOptions& options);
+/// What make_iso_surface() would do, without doing it.
+IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options);
 
-/// capture() with distances in a metric. Validity is checked on coordinates as they will be written; distances and what
-/// they tell are the metric's. \throw as capture()
-CaptureResult capture_in_metric(PolygonView mesh, const CaptureOptions& options, const Metric& metric);
+/// make_iso_surface() with distances in a metric. Validity is checked on coordinates as they will be written; distances
+/// and what they tell are the metric's. \throw as make_iso_surface()
+IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric);
 
-/// What capture_in_metric() would do, without doing it.
-CaptureStatistics plan_capture_in_metric(PolygonView mesh, const CaptureOptions& options, const Metric& metric);
+/// What make_iso_surface_in_metric() would do, without doing it.
+IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric);
 
 }  // namespace vdb_offset

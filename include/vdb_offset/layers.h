@@ -18,7 +18,7 @@ enum class CellRules : std::uint8_t {
 
 /// What growing layers found and did.
 struct LayerStatistics {
-  std::size_t wrong_columns = 0;     ///< CellColumns of cells of which one was not valid before anything was thinned.
+  std::size_t wrong_columns = 0;     ///< GrowthColumns of cells of which one was not valid before anything was thinned.
   std::size_t straightened = 0;      ///< Vertices whose layers stand on a straight line for that.
   std::size_t rounds = 0;            ///< Rounds in which layers were thinned or let out again.
   std::size_t thinned_vertices = 0;  ///< Of the surface, that keep less than all of their heights.
@@ -45,7 +45,7 @@ struct LayersResult {
 };
 
 /// Grows layers of cells on a mesh's faces: one march passes all heights, so that exact distances are at each of them
-/// (1e-6 relative) where a vertex keeps all of its heights. The cells over the faces are valid (CellColumns) by
+/// (1e-6 relative) where a vertex keeps all of its heights. The cells over the faces are valid (GrowthColumns) by
 /// `rules`, and neither cross each other nor the wall: where they would, all layers of the vertices
 /// there are thinned by one share, which changes by no more than a bounded step from neighbour to neighbour. A vertex
 /// that cannot move at all has the share 0, and cells of no height stand on it.

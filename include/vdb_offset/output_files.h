@@ -15,16 +15,16 @@ class Temporary;
 /// While one lives, what replace_file() writes on the same thread waits under a temporary name; commit() puts all of it
 /// in place. One that begins while another lives hands over to that one instead. What has not been committed goes with
 /// it: then all is as it was before.
-class Replacements {
+class OutputFiles {
  public:
   /// Whether what is put in place is on the disk before, so that after a loss of power, too, a file is as it was before
   /// or complete.
   enum class Sync { Yes, No };
 
-  explicit Replacements(Sync sync = Sync::Yes);
-  Replacements(const Replacements&) = delete;
-  Replacements& operator=(const Replacements&) = delete;
-  ~Replacements();
+  explicit OutputFiles(Sync sync = Sync::Yes);
+  OutputFiles(const OutputFiles&) = delete;
+  OutputFiles& operator=(const OutputFiles&) = delete;
+  ~OutputFiles();
 
   /// A new file for `target`, until then. `path` is what messages call it. Returns the temporary name. \throw
   /// WriteError
@@ -43,7 +43,7 @@ class Replacements {
   void put_in_place(File& file) const;
   static void put_back(File& file);
 
-  Replacements* const outer_;
+  OutputFiles* const outer_;
   Sync sync_;
   std::vector<File> files_;
   std::vector<Temporary> folders_;

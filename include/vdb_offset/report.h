@@ -30,7 +30,7 @@ struct RunFacts {
   std::string distance_text;  ///< As given.
   double total_seconds = 0;
   std::optional<ShellFacts> shell;                           ///< Of what was written, if it is one.
-  std::optional<CaptureStatistics> inner_surface;            ///< Of a hollow solid, both skins of which were captured.
+  std::optional<IsoStatistics> inner_surface;                ///< Of a hollow solid, both skins of which were captured.
   std::optional<LayerReport> layers;                         ///< The same, of cells in layers.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };
@@ -41,7 +41,7 @@ std::string report_json(const OffsetResult& result, const RunFacts& run);
 std::string report_json(const LayersResult& result, const RunFacts& run);
 
 /// The same for a captured surface.
-std::string report_json(const CaptureStatistics& statistics, const RunFacts& run);
+std::string report_json(const IsoStatistics& statistics, const RunFacts& run);
 
 /// What a check found, as JSON text; the same keys where they mean the same.
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);

@@ -48,7 +48,7 @@ struct BorderFacts {
 
 /// How far a flat face is off between its vertices, which alone are put at the distance: |distance - target| / target
 /// at the centres of triangles and the middles of their edges.
-struct InteriorError {
+struct FaceInteriorError {
   std::size_t samples = 0;
   double mean = 0, quantile_99 = 0, worst = 0;
 };
@@ -100,7 +100,7 @@ struct OffsetStatistics {
   SideRoom room;
   std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
   std::optional<FitFacts> fit;             ///< Of what fit() made.
-  InteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
+  FaceInteriorError interior;  ///< Of 10,000 triangles, evenly taken from all, or of all if there are fewer.
 };
 
 }  // namespace vdb_offset

@@ -13,22 +13,22 @@
 namespace vdb_offset {
 
 /// Where vertices stand in each layer: from the wall outward, one vertex after the other.
-class Stacks {
+class VertexStacks {
  public:
-  Stacks() = default;
+  VertexStacks() = default;
   /// Places are not set: who does that, in parallel, is the first to touch the memory.
-  Stacks(std::size_t vertices, std::size_t layers)
+  VertexStacks(std::size_t vertices, std::size_t layers)
       : vertices_(vertices),
         layers_(layers),
         places_(std::make_unique_for_overwrite<Vec3d[]>(vertices * (layers + 1))) {}
 
-  Stacks(const Stacks& other) : Stacks(other.vertices_, other.layers_) {
+  VertexStacks(const VertexStacks& other) : VertexStacks(other.vertices_, other.layers_) {
     std::copy_n(other.places_.get(), vertices_ * (layers_ + 1), places_.get());
   }
-  Stacks(Stacks&&) = default;
-  Stacks& operator=(const Stacks& other) { return *this = Stacks(other); }
-  Stacks& operator=(Stacks&&) = default;
-  ~Stacks() = default;
+  VertexStacks(VertexStacks&&) = default;
+  VertexStacks& operator=(const VertexStacks& other) { return *this = VertexStacks(other); }
+  VertexStacks& operator=(VertexStacks&&) = default;
+  ~VertexStacks() = default;
 
   std::size_t vertices() const { return vertices_; }
   std::size_t layers() const { return layers_; }
@@ -48,7 +48,7 @@ class SharedStacks {
  public:
   SharedStacks() = default;
   /// `stack` is that of each vertex.
-  SharedStacks(Stacks stacks, std::vector<std::uint32_t> stack)
+  SharedStacks(VertexStacks stacks, std::vector<std::uint32_t> stack)
       : stacks_(std::move(stacks)), stack_(std::move(stack)) {}
 
   std::size_t vertices() const { return stack_.size(); }
@@ -60,7 +60,7 @@ class SharedStacks {
   std::vector<Vec3d> surface(std::size_t layer) const;
 
  private:
-  Stacks stacks_;
+  VertexStacks stacks_;
   std::vector<std::uint32_t> stack_;
 };
 

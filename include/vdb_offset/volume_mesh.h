@@ -29,7 +29,7 @@ struct VolumeField {
 };
 
 /// A part of the boundary.
-struct VolumePatch {
+struct BoundaryPatch {
   enum class Kind : std::uint8_t { Wall, Outer, Side };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;
@@ -51,7 +51,7 @@ struct VolumeMesh {
   std::vector<CellType> cell_types;
   std::vector<std::uint32_t> corners;        ///< Of all cells, one after the other.
   std::vector<std::uint64_t> cell_begin{0};  ///< Into `corners`; one more than cells.
-  std::vector<VolumePatch> patches;
+  std::vector<BoundaryPatch> patches;
   std::vector<VolumeField> point_fields, cell_fields;
   Vec3d normal{0.0};  ///< Of a plane mesh, unit length; zero of others.
 

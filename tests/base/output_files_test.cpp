@@ -45,7 +45,7 @@ TEST_CASE("replace: files are put in place together, or not at all", "[io]") {
     for (const std::string& path : {a, b, c}) write_file(path, "new");
   };
   {
-    Replacements files;
+    OutputFiles files;
     write_all();
     CHECK(slurp(a) == "old a");
     CHECK_FALSE(fs::exists(b));
@@ -53,7 +53,7 @@ TEST_CASE("replace: files are put in place together, or not at all", "[io]") {
   CHECK(slurp(a) == "old a");
   CHECK(count_entries(folder) == 2);
   {
-    Replacements files;
+    OutputFiles files;
     write_all();
     fs::remove(c);
     fs::create_directory(c);  // the last one cannot be replaced any more
@@ -65,7 +65,7 @@ TEST_CASE("replace: files are put in place together, or not at all", "[io]") {
   fs::remove(c);
   fs::permissions(a, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
   bool in_place = false;
-  Replacements files;
+  OutputFiles files;
   write_all();
   files.commit([&] { in_place = slurp(a) == "new" && slurp(b) == "new" && slurp(c) == "new"; });
   CHECK(in_place);
@@ -77,9 +77,9 @@ TEST_CASE("replace: what is put in place within another goes with that one", "[i
   const Folder folder;
   const std::string path = folder.file("made/for/it/a.txt");
   {
-    Replacements outer;
+    OutputFiles outer;
     {
-      Replacements inner;
+      OutputFiles inner;
       inner.add_folders(folder.path / "made/for/it");
       write_file(path, "new");
       inner.commit();
@@ -87,9 +87,9 @@ TEST_CASE("replace: what is put in place within another goes with that one", "[i
     CHECK_FALSE(fs::exists(path));
   }
   CHECK(count_entries(folder) == 0);
-  Replacements outer(Replacements::Sync::No);
+  OutputFiles outer(OutputFiles::Sync::No);
   {
-    Replacements inner;
+    OutputFiles inner;
     inner.add_folders(folder.path / "made/for/it");
     write_file(path, "new");
     inner.commit();
@@ -150,7 +150,7 @@ TEST_CASE("replace: many threads write at once, and a handler finds what is thei
   // In a process of its own, which has to end afterwards.
   const pid_t child = ::fork();
   if (child == 0) {
-    Replacements files(Replacements::Sync::No);
+    OutputFiles files(OutputFiles::Sync::No);
     files.add_folders(folder.path / "x/y");
     write_file(folder.file("x/y/a"), "new");
     write_file(folder.file("0.txt"), "new");

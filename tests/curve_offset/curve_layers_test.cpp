@@ -82,7 +82,7 @@ void check_layers(const Curves& curves, const GrownCurves& grown) {
   CHECK(new_crossings(curves, layers.stacks.surface(layers.count())) == 0);
   Curves boundary;
   boundary.positions = mesh.points;
-  for (const VolumePatch& patch : mesh.patches)
+  for (const BoundaryPatch& patch : mesh.patches)
     for (std::size_t f = 0; f < patch.face_count(); ++f) boundary.add_face({patch.face(f)[0], patch.face(f)[1]});
   CHECK(meeting(boundary, boundary.positions).empty());
 }

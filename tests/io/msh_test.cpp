@@ -234,7 +234,7 @@ TEST_CASE("msh: patches that touch at a point have a corner there", "[msh]") {
   add_cell(mesh, CellType::Tetrahedron, {0, 2, 1, 3});
   add_cell(mesh, CellType::Tetrahedron, {0, 4, 5, 6});
   for (std::uint32_t c = 0; c < 2; ++c) {
-    VolumePatch& patch = mesh.patches.emplace_back();
+    BoundaryPatch& patch = mesh.patches.emplace_back();
     patch.name = "wall_" + std::to_string(c);
     for (const Corners& face : faces_of(mesh.cell_types[c], mesh.cell(c))) {
       patch.corners.insert(patch.corners.end(), face.begin(), face.end());
@@ -250,7 +250,7 @@ TEST_CASE("msh: each opening of a pipe is a patch, and curves are named by what 
   const Folder folder;
   const VolumeMesh mesh = pipe();
   std::vector<std::string> names;
-  for (const VolumePatch& patch : mesh.patches) names.push_back(patch.name);
+  for (const BoundaryPatch& patch : mesh.patches) names.push_back(patch.name);
   CHECK(names == std::vector<std::string>{"wall", "outer", "sides_1", "sides_2"});
   for (const std::size_t side : {2, 3}) {
     CHECK(mesh.patches[side].face_count() == 2 * 12);
@@ -302,7 +302,7 @@ TEST_CASE("msh: a chimney of several solids is filled around by Gmsh and goes on
   const io::MeshFile file = io::read_mesh(folder.write("chimney.stl", house_with_chimney()));
   const VolumeMesh mesh = layers_on(file.polygons, io::wall_names(file), 0.2);
   std::vector<std::string> names;
-  for (const VolumePatch& patch : mesh.patches) names.push_back(patch.name);
+  for (const BoundaryPatch& patch : mesh.patches) names.push_back(patch.name);
   CHECK(names == std::vector<std::string>{"chimney", "outlet", "roof", "x_least", "x_most", "y_least", "y_most",
                                           "outer", "sides"});
   check_entities(mesh);

@@ -202,11 +202,11 @@ TEST_CASE("volume file: su2 parsed back", "[volume_file]") {
     CHECK(row(1) == Corners{p});
   }
   REQUIRE(count_of("NMARK=") == mesh.patches.size());
-  for (const VolumePatch& patch : mesh.patches) {
+  for (const BoundaryPatch& patch : mesh.patches) {
     std::string word, tag;
     in >> word >> tag;
     CHECK(word == "MARKER_TAG=");
-    CHECK(tag == (patch.kind == VolumePatch::Kind::Wall ? "the__wall_" : patch.name));
+    CHECK(tag == (patch.kind == BoundaryPatch::Kind::Wall ? "the__wall_" : patch.name));
     REQUIRE(count_of("MARKER_ELEMS=") == patch.face_count());
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       Corners expected = {patch.face(f).size() == 3 ? 5u : 9u};

@@ -49,8 +49,8 @@ Polygons without(const Polygons& mesh, const std::function<bool(std::size_t)>& i
   return rest;
 }
 
-CaptureOptions options_of(double distance, double voxel_size) {
-  CaptureOptions options;
+IsoOptions options_of(double distance, double voxel_size) {
+  IsoOptions options;
   options.distance = distance;
   options.grid.voxel_size = voxel_size;
   return options;
@@ -109,7 +109,7 @@ TEST_CASE("iso inside: solids that overlap are hollowed as one", "[iso]") {
   // Two boxes as one: by hand, with the rim where they meet.
   const Polygons big = scene::box({2, 2, 2}, 1, true), beam = moved(scene::box({3, 1, 1}, 1, true), {1.5, 0, 0}),
                  both = together(big, beam);
-  const CaptureResult result = capture(both.view(), options_of(-0.1, 0.05));
+  const IsoResult result = make_iso_surface(both.view(), options_of(-0.1, 0.05));
   CHECK(result.statistics.valid());
   CHECK(result.statistics.components == 1);
   CHECK(result.statistics.solid.buried + result.statistics.solid.cut > 0);
@@ -130,25 +130,25 @@ TEST_CASE("iso inside: solids that overlap are hollowed as one", "[iso]") {
 
 TEST_CASE("iso inside: what lies in a solid is not surface, whether faces meet or not", "[iso]") {
   const Polygons box = scene::box({1, 1, 1}, 1, true);
-  const double alone = enclosed_by(capture(box.view(), options_of(-0.1, 0.03)).polygons);
+  const double alone = enclosed_by(make_iso_surface(box.view(), options_of(-0.1, 0.03)).polygons);
   CHECK(alone == Approx(0.512).epsilon(1e-6));
   for (const Polygons& other : {scene::box({0.5, 0.4, 0.3}, 1, true), scene::icosphere(0.4, 2)}) {
-    const CaptureResult nested = capture(together(box, other).view(), options_of(-0.1, 0.03));
+    const IsoResult nested = make_iso_surface(together(box, other).view(), options_of(-0.1, 0.03));
     CHECK(nested.statistics.components == 1);
     CHECK(nested.statistics.solid.buried == other.face_count());
     CHECK(enclosed_by(nested.polygons) == Approx(alone).epsilon(1e-9));
   }
   // Flush: part of a side is shared.
-  const CaptureResult flush = capture(
+  const IsoResult flush = make_iso_surface(
       together(box, moved(scene::box({0.5, 0.5, 0.5}, 1, true), {0.25, 0.25, 0.25})).view(), options_of(-0.1, 0.03));
   CHECK(flush.statistics.components == 1);
   CHECK(enclosed_by(flush.polygons) == Approx(alone).epsilon(1e-6));
   // Face to face: two halves of a bar.
-  const CaptureResult bar = capture(together(box, moved(box, {1, 0, 0})).view(), options_of(-0.1, 0.03));
+  const IsoResult bar = make_iso_surface(together(box, moved(box, {1, 0, 0})).view(), options_of(-0.1, 0.03));
   CHECK(bar.statistics.components == 1);
   CHECK(enclosed_by(bar.polygons) == Approx(1.8 * 0.8 * 0.8).epsilon(1e-6));
   // A cavity stays one.
-  const CaptureResult hollow = capture(scene::hollow_box(1, 0.3, 2).view(), options_of(-0.05, 0.03));
+  const IsoResult hollow = make_iso_surface(scene::hollow_box(1, 0.3, 2).view(), options_of(-0.05, 0.03));
   CHECK(hollow.statistics.components == 2);
   CHECK(hollow.statistics.solid.buried + hollow.statistics.solid.cut == 0);
 }
@@ -156,21 +156,21 @@ TEST_CASE("iso inside: what lies in a solid is not surface, whether faces meet o
 TEST_CASE("iso inside: an edge of four faces does not make solids open", "[iso]") {
   const Polygons cube = scene::box({1, 1, 1}, 1, true);
   const Polygons cubes = together(cube, moved(cube, {1, 1, 0}));
-  const CaptureResult result = capture(cubes.view(), options_of(-0.05, 0.02));
+  const IsoResult result = make_iso_surface(cubes.view(), options_of(-0.05, 0.02));
   CHECK(result.statistics.is_signed);
   CHECK(result.statistics.valid());
   CHECK(result.statistics.components == 2);
   CHECK(enclosed_by(result.polygons) == Approx(2 * 0.9 * 0.9 * 0.9).epsilon(1e-6));
-  CaptureOptions never = options_of(-0.05, 0.02);
+  IsoOptions never = options_of(-0.05, 0.02);
   never.use_winding = false;
-  CHECK_FALSE(capture(cubes.view(), never).statistics.is_signed);
+  CHECK_FALSE(make_iso_surface(cubes.view(), never).statistics.is_signed);
 }
 
 TEST_CASE("iso inside: small holes are filled, and what is open stays so", "[iso]") {
   const Polygons sphere = scene::icosphere(1, 3);
   const Polygons pierced = without(sphere, [](std::size_t f) { return f == 3 || f == 200 || f == 777; });
   for (const double d : {0.2, -0.2, 0.03}) {  // the last: less than a hole is wide
-    const CaptureResult result = capture(pierced.view(), options_of(d, std::min(0.1, std::abs(d))));
+    const IsoResult result = make_iso_surface(pierced.view(), options_of(d, std::min(0.1, std::abs(d))));
     CHECK(result.statistics.valid());
     CHECK(result.statistics.is_signed);
     CHECK(result.statistics.components == 1);
@@ -178,7 +178,7 @@ TEST_CASE("iso inside: small holes are filled, and what is open stays so", "[iso
     CHECK(enclosed_by(result.polygons) == Approx(4.0 / 3 * M_PI * std::pow(1 + d, 3)).epsilon(0.03));
   }
   // Distances are to the mesh as it is, if the ball of that radius does not pass through the holes.
-  const CaptureResult inner = capture(pierced.view(), options_of(-0.2, 0.1));
+  const IsoResult inner = make_iso_surface(pierced.view(), options_of(-0.2, 0.1));
   for (std::size_t v = 0; v < inner.polygons.positions.size(); v += 11)
     CHECK(test::brute_force_distance(pierced.view(), inner.polygons.positions[v]) == Approx(0.2).epsilon(1e-6));
 
@@ -189,13 +189,13 @@ TEST_CASE("iso inside: small holes are filled, and what is open stays so", "[iso
             if (std::abs(std::abs(m.positions[v][2]) - 2.5) > 1e-9) return false;
           return true;
         })}) {
-    const CaptureResult tube = capture(open.view(), options_of(0.05, 0.05));
+    const IsoResult tube = make_iso_surface(open.view(), options_of(0.05, 0.05));
     CHECK_FALSE(tube.statistics.is_signed);
     CHECK(tube.statistics.valid());
   }
   // A sheet beside a solid: that has an inside, the sheet a tube around it.
-  const CaptureResult mixed =
-      capture(together(sphere, moved(scene::patch(1, 0, 4), {3, 0, 0})).view(), options_of(0.1, 0.1));
+  const IsoResult mixed =
+      make_iso_surface(together(sphere, moved(scene::patch(1, 0, 4), {3, 0, 0})).view(), options_of(0.1, 0.1));
   CHECK(mixed.statistics.is_signed);
   CHECK(mixed.statistics.components == 2);
   CHECK(mixed.statistics.solid.open_parts == 1);
@@ -232,7 +232,7 @@ TEST_CASE("holes: loops are found whatever meets at their vertices", "[iso]") {
 
 TEST_CASE("iso: flat faces on round places are valid", "[iso]") {
   for (const double d : {0.5, -0.5, 1.0}) {
-    const CaptureResult result = capture(prism(24).view(), options_of(d, 0.25));
+    const IsoResult result = make_iso_surface(prism(24).view(), options_of(d, 0.25));
     CHECK(result.statistics.valid());
     CHECK(result.statistics.components == 1);
     CHECK(result.statistics.mending.before.total() < 10);
@@ -241,13 +241,13 @@ TEST_CASE("iso: flat faces on round places are valid", "[iso]") {
 
 TEST_CASE("iso: knife edges leave no specks", "[iso]") {
   const Polygons wedge = knife(10);
-  CaptureOptions options = options_of(-0.2, 0.1);
-  const CaptureResult result = capture(wedge.view(), options);
+  IsoOptions options = options_of(-0.2, 0.1);
+  const IsoResult result = make_iso_surface(wedge.view(), options);
   CHECK(result.statistics.valid());
   CHECK(result.statistics.components == 1);
   CHECK(result.statistics.dropped_specks > 0);
   options.keep_specks = true;
-  const CaptureResult all = capture(wedge.view(), options);
+  const IsoResult all = make_iso_surface(wedge.view(), options);
   CHECK(all.statistics.components == 1 + result.statistics.dropped_specks);
   CHECK(enclosed_by(all.polygons) - enclosed_by(result.polygons) <
         1e-3 * static_cast<double>(result.statistics.dropped_specks));
@@ -267,13 +267,14 @@ TEST_CASE("specks: the largest piece stays, cavities are specks as well", "[iso]
 
 TEST_CASE("iso: what is flat is merged, and nothing of its shape is lost", "[iso]") {
   const Polygons box = scene::box({1, 0.7, 0.52}, 1, true);
-  const CaptureResult inner = capture(box.view(), options_of(-0.1, 0.03));
+  const IsoResult inner = make_iso_surface(box.view(), options_of(-0.1, 0.03));
   CHECK(inner.statistics.valid());
   CHECK(inner.polygons.face_count() == 12);
   CHECK(enclosed_by(inner.polygons) == Approx(0.8 * 0.5 * 0.32).epsilon(1e-7));
-  CaptureOptions uniform = options_of(0.1, 0.03);
+  IsoOptions uniform = options_of(0.1, 0.03);
   uniform.adaptivity = 0;
-  const CaptureResult all = capture(box.view(), uniform), outer = capture(box.view(), options_of(0.1, 0.03));
+  const IsoResult all = make_iso_surface(box.view(), uniform),
+                  outer = make_iso_surface(box.view(), options_of(0.1, 0.03));
   CHECK(outer.statistics.valid());
   CHECK(outer.statistics.merged_vertices + outer.polygons.positions.size() == all.polygons.positions.size());
   CHECK(outer.polygons.face_count() < all.polygons.face_count() / 2);
@@ -341,7 +342,7 @@ TEST_CASE("flats: what crosses when it is merged stays as it was, and only that"
 
 TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", "[iso]") {
   const Polygons box = scene::box({1, 1, 1}, 2, false);
-  const CaptureResult cavity = capture(box.view(), options_of(-0.1, 0.05));
+  const IsoResult cavity = make_iso_surface(box.view(), options_of(-0.1, 0.05));
   const Hollow inward = make_hollow(box.view(), cavity.polygons.view(), Hollow::Source::Outer);
   CHECK(inward.facts.closed);
   CHECK(inward.facts.oriented);
@@ -351,7 +352,7 @@ TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", 
     const auto face = box.view().face(f), kept = inward.polygons.view().face(f);
     CHECK(std::equal(face.begin(), face.end(), kept.begin(), kept.end()));
   }
-  const CaptureResult skin = capture(box.view(), options_of(0.1, 0.05));
+  const IsoResult skin = make_iso_surface(box.view(), options_of(0.1, 0.05));
   const Hollow outward = make_hollow(skin.polygons.view(), box.view(), Hollow::Source::Inner);
   CHECK(outward.facts.closed);
   CHECK(outward.facts.oriented);
@@ -367,7 +368,7 @@ TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", 
       "box.obj",
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvt 0.5 0.25\n"
       "usemtl red\nf 1/1 4/1 3/1 2/1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nusemtl blue\nf 4 1 5 8\n"));
-  const CaptureResult inside = capture(source.polygons.view(), options_of(-0.1, 0.05));
+  const IsoResult inside = make_iso_surface(source.polygons.view(), options_of(-0.1, 0.05));
   const Hollow hollow = make_hollow(source.polygons.view(), inside.polygons.view(), Hollow::Source::Outer);
   for (const char* name : {"out.obj", "out.ply", "out.stl", "out.off"}) {
     io::write_hollow(folder.file(name), &source, hollow, inside);

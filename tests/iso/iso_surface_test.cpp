@@ -34,12 +34,12 @@ Triangles triangles_of(const Polygons& mesh) {
   return triangles;
 }
 
-CaptureResult captured(const Polygons& mesh, double distance, double voxel_size, double adaptivity = 0) {
-  CaptureOptions options;
+IsoResult captured(const Polygons& mesh, double distance, double voxel_size, double adaptivity = 0) {
+  IsoOptions options;
   options.distance = distance;
   options.grid.voxel_size = voxel_size;
   options.adaptivity = adaptivity;
-  return capture(mesh.view(), options);
+  return make_iso_surface(mesh.view(), options);
 }
 
 /// Edges that do not have two faces, one each way, and vertices whose faces are not one ring: by maps, which share
@@ -123,7 +123,7 @@ std::size_t brute_force_crossings(const Polygons& mesh) {
 }
 
 /// Largest | |distance| - target | / target of a vertex, and how many are on the wrong side.
-void check_distances(const Polygons& source, const CaptureResult& result, double distance, std::size_t stride = 1) {
+void check_distances(const Polygons& source, const IsoResult& result, double distance, std::size_t stride = 1) {
   double worst = 0;
   std::size_t wrong_side = 0;
   for (std::size_t v = 0; v < result.polygons.positions.size(); v += stride) {
@@ -136,7 +136,7 @@ void check_distances(const Polygons& source, const CaptureResult& result, double
   CHECK(wrong_side == 0);
 }
 
-void check_sound(const CaptureResult& result) {
+void check_sound(const IsoResult& result) {
   CHECK(unsound(result.polygons) == 0);
   CHECK(brute_force_crossings(result.polygons) == 0);
   CHECK(result.statistics.valid());
@@ -151,7 +151,7 @@ double volume(const Polygons& mesh) {
   return sum;
 }
 
-std::ptrdiff_t euler(const CaptureResult& result) {
+std::ptrdiff_t euler(const IsoResult& result) {
   const auto faces = static_cast<std::ptrdiff_t>(result.polygons.face_count());
   return static_cast<std::ptrdiff_t>(result.polygons.positions.size()) - faces / 2;
 }
@@ -225,7 +225,7 @@ TEST_CASE("capture: the judges of soundness reject what is not", "[capture]") {
 TEST_CASE("capture: around a box every vertex is at the closed form's distance", "[capture]") {
   const Polygons box = scene::box({1, 0.7, 0.5}, 3, false);
   const double d = GENERATE(0.1, -0.1);
-  const CaptureResult result = captured(box, d, 0.03);
+  const IsoResult result = captured(box, d, 0.03);
   check_sound(result);
   double worst = 0, worst_normal = 0;
   for (std::size_t v = 0; v < result.polygons.positions.size(); ++v) {
@@ -254,7 +254,7 @@ TEST_CASE("capture: around a box every vertex is at the closed form's distance",
 
 TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]") {
   // Inward of a box they are its edges and corners, so that all of the smaller box is exact, between vertices, too.
-  const CaptureResult inner = captured(scene::box({1, 0.7, 0.52}, 3, true), -0.1, 0.03);
+  const IsoResult inner = captured(scene::box({1, 0.7, 0.52}, 3, true), -0.1, 0.03);
   check_sound(inner);
   CHECK(volume(inner.polygons) == Approx(0.8 * 0.5 * 0.32).epsilon(1e-7));
   CHECK(inner.statistics.interior.worst < 1e-7);
@@ -267,7 +267,7 @@ TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]")
   // Outward, where spheres around two balls meet: in a plane between them.
   Polygons balls = scene::icosphere(1, 4);
   add(balls, scene::icosphere(1, 4), {2.2, 0, 0});
-  const CaptureResult outer = captured(balls, 0.4, 0.1);
+  const IsoResult outer = captured(balls, 0.4, 0.1);
   check_sound(outer);
   const double exact = std::sqrt(1.4 * 1.4 - 1.1 * 1.1);
   double least = 10, most = 0;  // distance from the axis, of vertices in the plane
@@ -286,14 +286,14 @@ TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]")
 
 TEST_CASE("capture: spheres and tori keep their shape", "[capture]") {
   const Polygons sphere = scene::icosphere(1, 3);
-  const CaptureResult ball = captured(sphere, 0.3, 0.12);
+  const IsoResult ball = captured(sphere, 0.3, 0.12);
   check_sound(ball);
   check_distances(sphere, ball, 0.3);
   CHECK(euler(ball) == 2);
   CHECK(volume(ball.polygons) == Approx(4.0 / 3 * M_PI * 1.3 * 1.3 * 1.3).epsilon(0.02));
 
   const Polygons torus = scene::torus(1, 0.4, 48, 24);
-  const CaptureResult ring = captured(torus, -0.15, 0.08);
+  const IsoResult ring = captured(torus, -0.15, 0.08);
   check_sound(ring);
   check_distances(torus, ring, -0.15);
   CHECK(euler(ring) == 0);
@@ -303,7 +303,7 @@ TEST_CASE("capture: spheres and tori keep their shape", "[capture]") {
 TEST_CASE("capture: what is merged where it is flat is still closed and at the distance", "[capture]") {
   const Polygons box = scene::box({1, 0.7, 0.5}, 3, true);
   const double adaptivity = GENERATE(0.1, 1.0);
-  const CaptureResult all = captured(box, 0.1, 0.03), merged = captured(box, 0.1, 0.03, adaptivity);
+  const IsoResult all = captured(box, 0.1, 0.03), merged = captured(box, 0.1, 0.03, adaptivity);
   CHECK(merged.polygons.face_count() < all.polygons.face_count() / 2);
   check_sound(merged);
   check_distances(box, merged, 0.1);
@@ -311,14 +311,14 @@ TEST_CASE("capture: what is merged where it is flat is still closed and at the d
 
 TEST_CASE("capture: the result does not depend on the number of threads", "[capture]") {
   const Polygons gear = scene::gear(8, 0.7, 1, 0.3, 0.4, 3);
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = 0.03;
   options.grid.voxel_size = 0.04;
   options.adaptivity = GENERATE(std::optional<double>(), std::optional(0.0), std::optional(0.2));
   options.threads = 1;
-  const CaptureResult alone = capture(gear.view(), options);
+  const IsoResult alone = make_iso_surface(gear.view(), options);
   options.threads = 2;
-  const CaptureResult together = capture(gear.view(), options);
+  const IsoResult together = make_iso_surface(gear.view(), options);
   CHECK(alone.polygons.positions == together.polygons.positions);
   CHECK(alone.polygons.corners == together.polygons.corners);
   CHECK(alone.normals == together.normals);
@@ -329,7 +329,7 @@ TEST_CASE("capture: the result does not depend on the number of threads", "[capt
 
 TEST_CASE("capture: a sheet gets a tube around it", "[capture]") {
   const Polygons sheet = scene::patch(1, 0, 4);
-  const CaptureResult tube = captured(sheet, 0.1, 0.04);
+  const IsoResult tube = captured(sheet, 0.1, 0.04);
   check_sound(tube);
   check_distances(sheet, tube, 0.1);
   CHECK(!tube.statistics.is_signed);
@@ -342,19 +342,19 @@ TEST_CASE("capture: solids that overlap or lie in each other are one, cavities a
   const Polygons box = scene::box({1, 1, 1}, 2, true);
   Polygons overlapping = box;
   add(overlapping, box, {0.6, 0.3, 0.2});
-  const CaptureResult both = captured(overlapping, 0.1, 0.05);
+  const IsoResult both = captured(overlapping, 0.1, 0.05);
   check_sound(both);
   CHECK(both.statistics.components == 1);
   check_distances(overlapping, both, 0.1, 7);
 
   Polygons nested = box;
   add(nested, scene::box({0.3, 0.3, 0.3}, 1, true), {0, 0, 0});
-  const CaptureResult outer = captured(nested, 0.1, 0.05);
+  const IsoResult outer = captured(nested, 0.1, 0.05);
   CHECK(outer.statistics.components == 1);
   CHECK(volume(outer.polygons) == Approx(volume(captured(box, 0.1, 0.05).polygons)).epsilon(1e-3));
 
   const Polygons hollow = scene::hollow_box(1, 0.3, 4);
-  const CaptureResult shell = captured(hollow, 0.05, 0.03);
+  const IsoResult shell = captured(hollow, 0.05, 0.03);
   check_sound(shell);
   CHECK(shell.statistics.components == 2);
   check_distances(hollow, shell, 0.05, 5);
@@ -363,25 +363,26 @@ TEST_CASE("capture: solids that overlap or lie in each other are one, cavities a
 TEST_CASE("capture: where the faces point is outward, also of a solid that is inside out", "[capture]") {
   Polygons sphere = scene::icosphere(1, 3);
   std::reverse(sphere.corners.begin(), sphere.corners.end());
-  const CaptureResult inner = captured(sphere, 0.2, 0.12);
+  const IsoResult inner = captured(sphere, 0.2, 0.12);
   for (const Vec3d& p : inner.polygons.positions) CHECK(p.length() < 0.81);
   CHECK(volume(inner.polygons) < 0);
   for (std::size_t v = 0; v < inner.normals.size(); ++v)
     CHECK(inner.normals[v].dot(inner.polygons.positions[v]) < -0.7);
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = 0.2;
   options.grid.voxel_size = 0.12;
   options.orient = Orient::FixDirectionOnly;
-  CHECK(volume(capture(sphere.view(), options).polygons) == Approx(4.0 / 3 * M_PI * 1.2 * 1.2 * 1.2).epsilon(0.02));
+  CHECK(volume(make_iso_surface(sphere.view(), options).polygons) ==
+        Approx(4.0 / 3 * M_PI * 1.2 * 1.2 * 1.2).epsilon(0.02));
 }
 
 TEST_CASE("capture: validity is that of coordinates as written", "[capture]") {
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = 0.1;
   options.grid.voxel_size = 0.05;
   options.precision = {Precision::Kind::Digits, 3};
   const Polygons box = scene::box({1, 0.7, 0.5}, 3, true);
-  const CaptureResult result = capture(box.view(), options);
+  const IsoResult result = make_iso_surface(box.view(), options);
   for (const Vec3d& p : result.polygons.positions) CHECK(Rounding(options.precision)(p) == p);
   check_sound(result);
   CHECK(result.statistics.worst_error > 1e-6);
@@ -394,22 +395,22 @@ TEST_CASE("capture: what cannot be is refused", "[capture]") {
   CHECK_THROWS_AS(captured(box, 0, 0.05), InvalidInput);
   CHECK_THROWS_AS(captured(box, 0.1, -1), InvalidInput);
   CHECK_THROWS_AS(captured(box, 0.1, 0.05, 1.5), InvalidInput);
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = 0.1;
   options.max_memory = std::size_t{1} << 28;
-  CHECK(plan_capture(box.view(), options).plan.bytes <= options.max_memory);
+  CHECK(plan_iso_surface(box.view(), options).plan.bytes <= options.max_memory);
   options.grid.voxel_size = 1e-4;
-  CHECK_THROWS_AS(capture(box.view(), options), OutOfBudget);
-  CHECK_THROWS_AS(plan_capture(box.view(), options), OutOfBudget);
+  CHECK_THROWS_AS(make_iso_surface(box.view(), options), OutOfBudget);
+  CHECK_THROWS_AS(plan_iso_surface(box.view(), options), OutOfBudget);
   options.grid.voxel_size = 0.05;
   options.progress = [](Stage stage, double) { return stage != Stage::Capture; };
-  CHECK_THROWS_AS(capture(box.view(), options), Cancelled);
+  CHECK_THROWS_AS(make_iso_surface(box.view(), options), Cancelled);
 }
 
 TEST_CASE("capture: a voxel coarser than the distance tells the two sides apart", "[capture]") {
   const Polygons sphere = scene::icosphere(1, 3);
   const double d = GENERATE(0.02, -0.02);
-  const CaptureResult result = captured(sphere, d, 0.1);
+  const IsoResult result = captured(sphere, d, 0.1);
   check_sound(result);
   check_distances(sphere, result, d);
 }
@@ -502,9 +503,9 @@ TEST_CASE("mend: splits that lead nowhere end, and leave nothing behind", "[capt
 TEST_CASE("transport: texture, colours and materials are those of the closest points", "[capture]") {
   const Folder folder;
   const io::MeshFile source = io::read_mesh(folder.write("sphere.obj", textured_sphere()));
-  const CaptureResult result = captured(source.polygons, 0.1, 0.1);
+  const IsoResult result = captured(source.polygons, 0.1, 0.1);
   const io::Transported transported = io::read_transported(source, {}, io::Format::Obj);
-  io::write_captured(folder.file("out.obj"), source, transported, result);
+  io::write_iso_surface(folder.file("out.obj"), source, transported, result);
   const io::MeshFile written = io::read_mesh(folder.file("out.obj"));
   const Polygons& mesh = written.polygons;
   const io::Attributes with = io::read_attributes(written);

@@ -31,7 +31,7 @@ LayersResult layers_along(const Polygons& mesh, const std::vector<Vec3d>& direct
   LayersResult layers;
   share.resize(mesh.positions.size(), 1);
   layers.share = share;
-  Stacks stacks(mesh.positions.size(), heights.size());
+  VertexStacks stacks(mesh.positions.size(), heights.size());
   std::vector<std::uint32_t> own(mesh.positions.size());
   std::iota(own.begin(), own.end(), 0);
   for (std::size_t v = 0; v < share.size(); ++v) {
@@ -72,7 +72,7 @@ std::size_t unmatched_faces(const VolumeMesh& volume) {
       const Face face = rotated(corners);
       if (seen.erase(reversed(face)) == 0) wrong += !seen.emplace(face, c).second;
     });
-  for (const VolumePatch& patch : volume.patches)
+  for (const BoundaryPatch& patch : volume.patches)
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       const auto found = seen.find(rotated(patch.face(f)));
       if (found != seen.end() && found->second == patch.cell[f]) seen.erase(found);
@@ -215,10 +215,10 @@ TEST_CASE("layer cells: a plane of triangles, by numbers", "[layer_cells]") {
   CHECK(volume.patches[0].name == "wall");
   CHECK(volume.patches[0].face_count() == 32);
   CHECK(volume.patches[1].name == "outer");
-  CHECK(volume.patches[1].kind == VolumePatch::Kind::Outer);
+  CHECK(volume.patches[1].kind == BoundaryPatch::Kind::Outer);
   CHECK(volume.patches[1].face_count() == 32);
   CHECK(volume.patches[2].name == "sides");
-  CHECK(volume.patches[2].kind == VolumePatch::Kind::Side);
+  CHECK(volume.patches[2].kind == BoundaryPatch::Kind::Side);
   CHECK(volume.patches[2].face_count() == 32);
   CHECK(facts.border_sides == 16);
   CHECK(facts.unpaired_sides == 0);
@@ -502,7 +502,7 @@ TEST_CASE("prism columns: four at once and pairs give the same bits", "[cell_qua
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1, 1);
   const Vec3d origin(any(random), any(random), any(random));
-  std::vector<Vec3d> stacks(3 * PrismColumns::kCount * (kLayers + 1));
+  std::vector<Vec3d> stacks(3 * PrismQualityColumns::kCount * (kLayers + 1));
   struct Found {
     std::vector<float> jacobian = std::vector<float>(kLayers * kInLayer, -2), aspect = jacobian, angle = jacobian;
     SixVolumes six_volumes{};
@@ -514,20 +514,20 @@ TEST_CASE("prism columns: four at once and pairs give the same bits", "[cell_qua
     Found found[2];
     for (const bool pairs : {false, true}) {
       Found& to = found[pairs];
-      PrismColumns columns{.layers = kLayers,
-                           .in_layer = kInLayer,
-                           .scaled_jacobian = to.jacobian.data() + 1,
-                           .aspect_ratio = to.aspect.data() + 1,
-                           .wall_angle = to.angle.data() + 1,
-                           .origin = origin.asPointer()};
+      PrismQualityColumns columns{.layers = kLayers,
+                                  .in_layer = kInLayer,
+                                  .scaled_jacobian = to.jacobian.data() + 1,
+                                  .aspect_ratio = to.aspect.data() + 1,
+                                  .wall_angle = to.angle.data() + 1,
+                                  .origin = origin.asPointer()};
       for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t i = 0; i < PrismColumns::kCount; ++i)
+        for (std::size_t i = 0; i < PrismQualityColumns::kCount; ++i)
           columns.stack[k][i] = stacks[(i * 3 + k) * (kLayers + 1)].asPointer();
       to.six_volumes = pairs ? measure_prism_pairs(columns) : measure_prism_columns(columns);
     }
     REQUIRE(found[0] == found[1]);
     CHECK(found[0].jacobian[kInLayer] == -2);
-    CHECK(found[0].jacobian[PrismColumns::kCount] >= -2 / std::numbers::sqrt3);
+    CHECK(found[0].jacobian[PrismQualityColumns::kCount] >= -2 / std::numbers::sqrt3);
   }
 }
 

@@ -88,7 +88,7 @@ double positive_cells(const VolumeMesh& volume) {
 std::size_t boundary_crossings(const VolumeMesh& volume) {
   Polygons boundary;
   boundary.positions = volume.points;
-  for (const VolumePatch& patch : volume.patches)
+  for (const BoundaryPatch& patch : volume.patches)
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       boundary.corners.insert(boundary.corners.end(), patch.face(f).begin(), patch.face(f).end());
       boundary.close_face();
@@ -257,13 +257,13 @@ TEST_CASE("layers: a hexahedron that is inside out in its middle alone is not va
   Surface surface = build_surface(mesh.view(), {});
   place(surface, 0.5);
   const ClosestQuery query(surface);
-  const Body body{query, surface, {}, {}, {}};
+  const ConstrainedSurface constrained{query, surface, {}, {}, {}};
   std::vector<Vec3d> source;
   for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
-  const CellColumns columns(mesh.view(), body, source);
+  const GrowthColumns columns(mesh.view(), constrained, source);
   REQUIRE(columns.size() == 1);
   const bool turned = GENERATE(false, true);  // by half a turn, as all corners still see the other base above them
-  Stacks stacks(4, 1);
+  VertexStacks stacks(4, 1);
   for (std::uint32_t v = 0; v < 4; ++v) {
     stacks.of(v)[0] = source[v];
     stacks.of(v)[1] = Vec3d(0, 0, 1) + source[v] * (turned ? -1.0 : 1.0);

@@ -48,7 +48,7 @@ TEST_CASE("precedent: a way to a distance ends there exactly, on the straight wa
   Surface surface = build_surface(mesh.view(), {});
   place(surface, 0.05);
   const ClosestQuery query(surface);
-  const Body body{query, surface, {}, {}, {}};
+  const ConstrainedSurface constrained{query, surface, {}, {}, {}};
   double worst = 0;
   for (std::uint32_t v = 0; v < surface.vertices.size(); v += 7) {
     // Not along the normal, so that other parts than those around the vertex decide in the hollows.
@@ -56,7 +56,7 @@ TEST_CASE("precedent: a way to a distance ends there exactly, on the straight wa
     const Vec3d from = mesh.positions[surface.representative[v]];
     const double far = test::brute_force_distance(mesh.view(), from + way);
     for (const double distance : {0.02, 0.1, 0.2}) {
-      const Vec3d part = way_to_distance(body, v, way, distance);
+      const Vec3d part = way_to_distance(constrained, v, way, distance);
       if (part == way) {
         CHECK(far <= distance);
         continue;

@@ -123,11 +123,11 @@ TEST_CASE("metric: what does not move along an axis keeps that coordinate's bits
 TEST_CASE("metric: an iso-surface is at ellipsoids, too, and valid as written", "[metric][iso]") {
   const Polygons mesh = scene::box(Vec3d(1, 1, 1), 4, true);
   const Metric metric = Metric::of_half_axes(0.1, 0.2);
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = 0.1;
   options.precision = {Precision::Kind::Single};
   options.grid.voxel_size = 0.06;
-  const CaptureResult result = capture_in_metric(mesh.view(), options, metric);
+  const IsoResult result = make_iso_surface_in_metric(mesh.view(), options, metric);
   CHECK(result.statistics.valid());
   const Polygons space = in_space(mesh, metric);
   double highest = 0;
@@ -145,11 +145,11 @@ TEST_CASE("metric: what is told of an iso-surface is told of the file's coordina
   const Polygons mesh = scene::torus(1, 0.4, 24, 12);
   const Metric metric = Metric::of_half_axes(0.1, 0.3);
   for (const auto kind : {Precision::Kind::Double, Precision::Kind::Single, Precision::Kind::Digits}) {
-    CaptureOptions options;
+    IsoOptions options;
     options.distance = 0.1;
     options.precision = {kind, 3};
     options.grid.voxel_size = 0.05;
-    const CaptureResult result = capture_in_metric(mesh.view(), options, metric);
+    const IsoResult result = make_iso_surface_in_metric(mesh.view(), options, metric);
     const Surface written = build_surface(result.polygons.view(), {});
     CHECK(result.statistics.valid());
     CHECK(written.facts.closed());

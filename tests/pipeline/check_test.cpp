@@ -67,7 +67,7 @@ TEST_CASE("check: flat faces over a round source are off between their vertices"
   const Polygons sphere = scene::icosphere(1, 3);
   std::vector<Vec3d> places = sphere.positions;
   for (Vec3d& p : places) p *= 1.1;
-  const InteriorError error = check_of(sphere, places, 0.1).interior;
+  const FaceInteriorError error = check_of(sphere, places, 0.1).interior;
   CHECK(error.samples == 4 * sphere.face_count());
   CHECK(error.mean < 0.02);
   CHECK(error.quantile_99 <= error.worst);

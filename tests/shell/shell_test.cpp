@@ -304,9 +304,9 @@ TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way 
     const Distances distances(0.3);
     CrossingFinder now(surface, places);
     const CrossingFinder before(surface, source);
-    const NearCrossings none(surface, {});
-    const Body body{query, surface, {}, {}, {}};
-    RimCrossings rim(body, source, places, distances);
+    const SourceCrossings none(surface, {});
+    const ConstrainedSurface constrained{query, surface, {}, {}, {}};
+    RimCrossings rim(constrained, source, places, distances);
     for (int step = 0; step < 4; ++step) {
       std::vector<std::uint32_t> moved, touched;
       for (std::uint32_t v = 0; v < places.size(); ++v) {

@@ -19,9 +19,9 @@ void add_patches(VolumeMesh& mesh) {
   std::map<Corners, int> cells;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
     for (const Corners& face : faces_of(mesh.cell_types[c], mesh.cell(c))) ++cells[sorted(face)];
-  mesh.patches = {{"the \"wall\"", VolumePatch::Kind::Wall, {}, {0}, {}},
-                  {"outer", VolumePatch::Kind::Outer, {}, {0}, {}},
-                  {"side", VolumePatch::Kind::Side, {}, {0}, {}}};
+  mesh.patches = {{"the \"wall\"", BoundaryPatch::Kind::Wall, {}, {0}, {}},
+                  {"outer", BoundaryPatch::Kind::Outer, {}, {0}, {}},
+                  {"side", BoundaryPatch::Kind::Side, {}, {0}, {}}};
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c)
     for (const Corners& face : faces_of(mesh.cell_types[c], mesh.cell(c))) {
       if (cells[sorted(face)] > 1) continue;
@@ -30,7 +30,7 @@ void add_patches(VolumeMesh& mesh) {
         low = std::min(low, mesh.points[v].z());
         high = std::max(high, mesh.points[v].z());
       }
-      VolumePatch& patch = mesh.patches[high == -1 ? 0 : low >= 1 ? 1 : 2];
+      BoundaryPatch& patch = mesh.patches[high == -1 ? 0 : low >= 1 ? 1 : 2];
       patch.corners.insert(patch.corners.end(), face.begin(), face.end());
       patch.face_begin.push_back(static_cast<std::uint32_t>(patch.corners.size()));
       patch.cell.push_back(c);

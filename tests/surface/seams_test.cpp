@@ -250,10 +250,10 @@ TEST_CASE("seams: where a part ends the rest goes on, across a seam or not", "[s
 }
 
 TEST_CASE("seams: a captured surface of a cracked body has an inside", "[seams][capture]") {
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = 0.5;
   options.grid.voxel_size = 0.6;
-  const CaptureResult captured = capture(cracked(lump(), 1e-10).view(), options);
+  const IsoResult captured = make_iso_surface(cracked(lump(), 1e-10).view(), options);
   CHECK(captured.statistics.is_signed);
   CHECK(captured.statistics.components == 1);
   CHECK(captured.statistics.source.seams.vertices > 0);

@@ -19,7 +19,7 @@ VolumeMesh row_of_cells(const std::vector<double>& across) {
   for (std::size_t i = 0; i < across.size(); ++i)
     for (const auto& [y, z] : {std::pair(0., 0.), {1., 0.}, {1., 1.}, {0., 1.}})
       mesh.points.emplace_back(double(i), across[i] + y, z);
-  VolumePatch patch{"all", VolumePatch::Kind::Wall, {}, {0}, {}};
+  BoundaryPatch patch{"all", BoundaryPatch::Kind::Wall, {}, {0}, {}};
   const auto add = [&](const Corners& face, std::uint32_t c) {
     patch.corners.insert(patch.corners.end(), face.begin(), face.end());
     patch.face_begin.push_back(static_cast<std::uint32_t>(patch.corners.size()));

@@ -238,7 +238,7 @@ void declare(CLI::App& app, Arguments& args, Raw& raw) {
   app.add_option("--paths", args.paths, "Write the path of every vertex as a line: .obj (or .txt)")->type_name("FILE");
   app.add_option("--save-vdb", args.vdb, "Write phi and the closest triangles as OpenVDB grids")->type_name("FILE");
   app.add_flag_callback(
-      "--no-sync", [&args] { args.sync = Replacements::Sync::No; },
+      "--no-sync", [&args] { args.sync = OutputFiles::Sync::No; },
       "Do not wait until outputs are on the disk before they get their names");
   app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use falls short of the distance");
   app.add_flag("--dry-run", args.dry_run, "Read the input, print what would be done, write nothing");

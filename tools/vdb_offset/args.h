@@ -76,7 +76,7 @@ struct Arguments {
   bool close = false;                ///< Of those, join ends that are near each other.
   std::optional<io::Format> format;  ///< Of files whose ending names none.
   io::WriteOptions write;            ///< All but its format, which is the output's alone.
-  Replacements::Sync sync = Replacements::Sync::Yes;
+  OutputFiles::Sync sync = OutputFiles::Sync::Yes;
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };
 

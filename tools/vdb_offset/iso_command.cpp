@@ -15,7 +15,7 @@ namespace vdb_offset::tool {
 namespace {
 
 /// No file is written of what is not what it is said to be.
-void require_valid(const CaptureStatistics& found) {
+void require_valid(const IsoStatistics& found) {
   if (found.valid()) return;
   throw Error(fmt::format(
       "capture: expected a closed, manifold surface that does not cross itself, got {} border edges, {} non-manifold "
@@ -34,10 +34,10 @@ void require_even(const Arguments& args, std::span<const Distances> distances) {
     throw InvalidOption("--mode iso: expected the whole mesh and nothing else, got a part or obstacles");
 }
 
-CaptureOptions options_of(const Arguments& args, const Distances& distance, const std::string& path,
-                          const io::Transported& transported = {}) {
+IsoOptions options_of(const Arguments& args, const Distances& distance, const std::string& path,
+                      const io::Transported& transported = {}) {
   const OffsetOptions& given = args.options;
-  CaptureOptions options;
+  IsoOptions options;
   options.distance = distance[0];
   options.grid = given.grid;
   options.adaptivity = args.iso->adaptivity;
@@ -49,7 +49,7 @@ CaptureOptions options_of(const Arguments& args, const Distances& distance, cons
   options.keep_specks = args.iso->keep_specks;
   io::WriteOptions writing = args.write;
   writing.format = format_of(path, args);
-  options.precision = io::precision_of_captured(path, writing);
+  options.precision = io::precision_of_iso(path, writing);
   options.weld = given.weld;
   options.orient = given.orient;
   options.threads = given.threads;
@@ -65,39 +65,40 @@ io::Transported read_attributes_of(const Arguments& args, const Source& source) 
   return {};
 }
 
-void write_captured(const Arguments& args, const Source& source, const io::Transported& transported,
-                    const Destination& to, CaptureResult& result, Clock::time_point start) {
+void write_iso_surface(const Arguments& args, const Source& source, const io::Transported& transported,
+                       const Destination& to, IsoResult& result, Clock::time_point start) {
   const auto writing = Clock::now();
   io::WriteOptions options = args.write;
   options.format = format_of(to.mesh, args);
-  if (source.file) tell_losses(args, to.mesh, io::write_captured(to.mesh, *source.file, transported, result, options));
-  else io::write_captured(to.mesh, result, options);
+  if (source.file)
+    tell_losses(args, to.mesh, io::write_iso_surface(to.mesh, *source.file, transported, result, options));
+  else io::write_iso_surface(to.mesh, result, options);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!to.report.empty()) write_iso_report(args, to, result, start);
 }
 
-CaptureResult capture_valid(const Arguments& args, const Source& source, const Distances& distance,
-                            const std::string& path, const io::Transported& transported) {
-  CaptureResult result =
-      capture_in_metric(source.view(), options_of(args, distance, path, transported), args.options.metric);
+IsoResult capture_valid(const Arguments& args, const Source& source, const Distances& distance, const std::string& path,
+                        const io::Transported& transported) {
+  IsoResult result =
+      make_iso_surface_in_metric(source.view(), options_of(args, distance, path, transported), args.options.metric);
   require_valid(result.statistics);
   return result;
 }
 
-void require_inside(const CaptureResult& result) {
+void require_inside(const IsoResult& result) {
   if (!result.statistics.is_signed)
     throw InvalidInput("--shell with --mode iso: expected a mesh that has an inside, got an open one");
 }
 
 /// The mesh and the captured surface, or two of these, as one solid.
-Hollow hollow_of(const Source& source, double distance, const CaptureResult& captured, const CaptureResult* inner) {
+Hollow hollow_of(const Source& source, double distance, const IsoResult& captured, const IsoResult* inner) {
   const PolygonView mesh = source.view(), skin = captured.polygons.view();
   if (inner) return make_hollow(skin, inner->polygons.view(), Hollow::Source::Neither);
   return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer) : make_hollow(skin, mesh, Hollow::Source::Inner);
 }
 
 void write_hollow(const Arguments& args, const Source& source, const Destination& to, const Hollow& hollow,
-                  CaptureResult& captured, const CaptureResult* inner, Clock::time_point start) {
+                  IsoResult& captured, const IsoResult* inner, Clock::time_point start) {
   const auto writing = Clock::now();
   io::WriteOptions options = args.write;
   options.format = format_of(to.mesh, args);
@@ -117,28 +118,28 @@ void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressB
   const double read_seconds = seconds_since(start);
   if (args.dry_run) {
     for (std::size_t i = 0; i < places.size(); ++i)
-      print_iso_dry_run(
-          args,
-          plan_capture_in_metric(source.view(), options_of(args, distances[i], places[i].mesh), args.options.metric),
-          distances[i][0]);
+      print_iso_dry_run(args,
+                        plan_iso_surface_in_metric(source.view(), options_of(args, distances[i], places[i].mesh),
+                                                   args.options.metric),
+                        distances[i][0]);
     return;
   }
   const io::Transported transported = read_attributes_of(args, source);
-  std::vector<CaptureResult> results;
+  std::vector<IsoResult> results;
   for (std::size_t i = 0; i < places.size(); ++i)
     results.push_back(capture_valid(args, source, distances[i], places[i].mesh, transported));
-  std::optional<CaptureResult> inner;
+  std::optional<IsoResult> inner;
   if (args.inner) inner = capture_valid(args, source, distances.back(), places.front().mesh, transported);
   if (args.shell) require_inside(results.front());
   bar.show(Stage::Write, 0);
-  const CaptureResult* const inner_skin = inner ? &*inner : nullptr;
-  Replacements outputs(args.sync);
+  const IsoResult* const inner_skin = inner ? &*inner : nullptr;
+  OutputFiles outputs(args.sync);
   std::optional<Hollow> hollow;  // of one distance
   for (std::size_t i = 0; i < places.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
     if (args.shell) hollow = hollow_of(source, distances[i][0], results[i], inner_skin);
     if (hollow) write_hollow(args, source, places[i], *hollow, results[i], inner_skin, start);
-    else write_captured(args, source, transported, places[i], results[i], start);
+    else write_iso_surface(args, source, transported, places[i], results[i], start);
   }
   outputs.commit(ignore_interrupts);
   bar.clear();

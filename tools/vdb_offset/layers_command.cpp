@@ -138,7 +138,7 @@ bool run_layers(Arguments& args, Source& source, Clock::time_point start, Progre
   bar.show(Stage::Write, 0);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
   const PolygonView mesh = source.view();
-  Replacements outputs(args.sync);
+  OutputFiles outputs(args.sync);
   if (!args.states.empty())
     io::write_states(args.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
                      {layers.states, layers.achieved, layers.heights.back()});

@@ -148,7 +148,7 @@ int run(Arguments args) {
   bar.show(Stage::Write, 0);
   const OffsetResult* const inner = args.inner ? &results.back() : nullptr;
   std::vector<std::optional<ShellFacts>> shells;
-  Replacements outputs(args.sync);
+  OutputFiles outputs(args.sync);
   for (std::size_t i = 0; i < places.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
     shells.push_back(write_outputs(args, source, {places[i], results[i], inner}, start));

@@ -179,8 +179,8 @@ void write_layers_report(const Arguments& args, const LayersResult& result, cons
   write_file(args.report, report_json(result, facts));
 }
 
-void write_iso_report(const Arguments& args, const Destination& to, const CaptureResult& result,
-                      Clock::time_point start, const ShellFacts* shell, const CaptureResult* inner) {
+void write_iso_report(const Arguments& args, const Destination& to, const IsoResult& result, Clock::time_point start,
+                      const ShellFacts* shell, const IsoResult* inner) {
   RunFacts facts = facts_of(args, to, start);
   if (shell) facts.shell = *shell;
   if (inner) facts.inner_surface = inner->statistics;

@@ -44,8 +44,8 @@ void write_layers_report(const Arguments& args, const LayersResult& result, cons
                          Clock::time_point start);
 
 /// The report of a run with --mode iso, to where it goes.
-void write_iso_report(const Arguments& args, const Destination& to, const CaptureResult& result,
-                      Clock::time_point start, const ShellFacts* shell = nullptr, const CaptureResult* inner = nullptr);
+void write_iso_report(const Arguments& args, const Destination& to, const IsoResult& result, Clock::time_point start,
+                      const ShellFacts* shell = nullptr, const IsoResult* inner = nullptr);
 
 /// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
 /// held before. Returns the facts of a shell, if it is one.

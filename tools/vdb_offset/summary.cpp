@@ -257,7 +257,7 @@ void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shel
 }
 
 /// What of the mesh has an inside, and how that is known.
-void print_solids(std::FILE* out, const CaptureStatistics& found) {
+void print_solids(std::FILE* out, const IsoStatistics& found) {
   const SolidFacts& solid = found.solid;
   if (!found.is_signed)
     fmt::print(out,
@@ -275,8 +275,8 @@ void print_solids(std::FILE* out, const CaptureStatistics& found) {
                solid.buried + solid.cut, solid.cut);
 }
 
-void print_iso_plan(std::FILE* out, const CaptureStatistics& statistics, double distance) {
-  const CapturePlan& plan = statistics.plan;
+void print_iso_plan(std::FILE* out, const IsoStatistics& statistics, double distance) {
+  const IsoPlan& plan = statistics.plan;
   print_facts(out, statistics.source);
   fmt::print(out, "distance   {:.9g}{}\n", distance,
              statistics.is_signed ? "" : ", on all sides of the surface, as it has no inside");
@@ -316,7 +316,7 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
   print_doubts(out, args, source, result.statistics, result.distances);
 }
 
-void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance) {
+void print_iso_dry_run(const Arguments& args, const IsoStatistics& statistics, double distance) {
   const Printout out;
   print_iso_plan(out, statistics, distance);
   print_seams(out, statistics.source.seams, std::abs(distance));
@@ -324,7 +324,7 @@ void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistic
 }
 
 void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
-                          const CaptureResult& captured, const CaptureResult* inner, double total_seconds) {
+                          const IsoResult& captured, const IsoResult* inner, double total_seconds) {
   print_iso_summary(args, path, distance, captured, total_seconds);
   if (inner) print_iso_summary(args, path, inner->statistics.distance, *inner, total_seconds);
   const ShellFacts& shell = hollow.facts;
@@ -338,14 +338,14 @@ void print_hollow_summary(const Arguments& args, const std::string& path, double
   fmt::print(out, "\n");
 }
 
-void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
+void print_iso_summary(const Arguments& args, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds) {
   const Printout out(output_is_taken(args));
-  const CaptureStatistics& found = result.statistics;
+  const IsoStatistics& found = result.statistics;
   const MeshFaults& left = found.mending.left;
   if (args.verbose) {
     print_iso_plan(out, found, distance);
-    for (const Stage stage : kCaptureStages)
+    for (const Stage stage : kIsoStages)
       fmt::print(out, "{:<10} {:.3f} s\n", name(stage), found.seconds[static_cast<std::size_t>(stage)]);
   }
   fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {} component{}, {}, {}, {} crossing{}", path,

@@ -22,15 +22,15 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
                    const std::optional<ShellFacts>& shell, double total_seconds);
 
 /// What --dry-run prints with --mode iso.
-void print_iso_dry_run(const Arguments& args, const CaptureStatistics& statistics, double distance);
+void print_iso_dry_run(const Arguments& args, const IsoStatistics& statistics, double distance);
 
 /// What is printed of a captured surface.
-void print_iso_summary(const Arguments& args, const std::string& path, double distance, const CaptureResult& result,
+void print_iso_summary(const Arguments& args, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds);
 
 /// The same of a hollow solid; `inner` is its inner skin if that was captured beside the outer one.
 void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
-                          const CaptureResult& captured, const CaptureResult* inner, double total_seconds);
+                          const IsoResult& captured, const IsoResult* inner, double total_seconds);
 
 /// The same of layers.
 void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,

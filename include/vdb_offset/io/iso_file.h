@@ -22,8 +22,8 @@ struct Transported {
 /// \throw InvalidOption for something required that the source does not have, or the format no place for.
 Transported read_transported(const MeshFile& source, const TransportRequest& request, Format target);
 
-/// What write_captured() would keep of coordinates.
-Precision precision_of_captured(const std::string& path, const WriteOptions& options = {});
+/// What write_iso_surface() would keep of coordinates.
+Precision precision_of_iso(const std::string& path, const WriteOptions& options = {});
 
 /// Writes a captured mesh: triangles, normals (OBJ, OFF, PLY), and what it takes of the source.
 ///
@@ -33,17 +33,17 @@ Precision precision_of_captured(const std::string& path, const WriteOptions& opt
 /// come along, between triangles and as fine as these; which is why OBJ and PLY may have several texture coordinates
 /// for a vertex. In OBJ the faces come material by material.
 /// `captured` was made of the source's polygons. \throw as write_mesh()
-WriteResult write_captured(const std::string& path, const MeshFile& source, const Transported& transported,
-                           const CaptureResult& captured, const WriteOptions& options = {});
+WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
+                              const IsoResult& captured, const WriteOptions& options = {});
 
 /// The same of a mesh that comes from no file.
-void write_captured(const std::string& path, const CaptureResult& captured, const WriteOptions& options = {});
+void write_iso_surface(const std::string& path, const IsoResult& captured, const WriteOptions& options = {});
 
 /// Writes a hollow solid: the skin that is its source with the source's faces in their order and all that the format
 /// can hold of them, the other skin, which was captured, with colours and materials of what is closest. OBJ has groups
 /// `outer` and `inner`, PLY a face property `part`, 0 or 1. Without a source that is one of the skins: plain polygons.
 /// \throw as write_mesh()
 WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
-                         const CaptureResult& captured, const WriteOptions& options = {});
+                         const IsoResult& captured, const WriteOptions& options = {});
 
 }  // namespace vdb_offset::io

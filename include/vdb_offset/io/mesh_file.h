@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "vdb_offset/io/byte_offsets.h"
 #include "vdb_offset/io/file_bytes.h"
-#include "vdb_offset/io/number_positions.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/precision.h"
 #include "vdb_offset/progress.h"
@@ -35,9 +35,9 @@ struct MeshFile {
   Polygons polygons;
 
   /// First byte of each coordinate of each vertex, in the order of `polygons.positions`.
-  Places position_at;
+  ByteOffsets position_at;
   /// The same for the file's normals, in their own order. OBJ: `vn` lines; OFF, PLY: one a vertex; STL: one a facet.
-  Places normal_at;
+  ByteOffsets normal_at;
   /// OBJ: the normal that each face corner names, kNoNormal where it names none. Empty if no corner does.
   std::vector<std::uint32_t> corner_normal;
   std::vector<std::string> extras;   ///< What the file holds besides positions and faces, in words.

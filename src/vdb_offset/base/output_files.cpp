@@ -16,7 +16,7 @@
 namespace vdb_offset {
 namespace {
 
-thread_local Replacements* innermost = nullptr;
+thread_local OutputFiles* innermost = nullptr;
 
 struct Descriptor {
   int fd;
@@ -53,7 +53,7 @@ void write_all(const std::string& path, int file, std::string_view bytes) {
 
 }  // namespace
 
-struct Replacements::File {
+struct OutputFiles::File {
   Temporary temporary;
   std::filesystem::path target;
   std::string path;
@@ -75,15 +75,15 @@ std::filesystem::path replaced_path(const std::string& path) {
   return failed ? std::filesystem::path(path) : whole;
 }
 
-Replacements::Replacements(Sync sync) : outer_(innermost), sync_(sync) { innermost = this; }
+OutputFiles::OutputFiles(Sync sync) : outer_(innermost), sync_(sync) { innermost = this; }
 
-Replacements::~Replacements() {
+OutputFiles::~OutputFiles() {
   innermost = outer_;
   files_.clear();
   while (!folders_.empty()) folders_.pop_back();  // the inner ones first
 }
 
-const std::string& Replacements::add_file(const std::filesystem::path& target, const std::string& path) {
+const std::string& OutputFiles::add_file(const std::filesystem::path& target, const std::string& path) {
   const std::filesystem::path folder = target.parent_path();
   if (std::none_of(files_.begin(), files_.end(), [&](const File& f) { return f.target.parent_path() == folder; }))
     remove_stale_temporaries(folder);
@@ -91,7 +91,7 @@ const std::string& Replacements::add_file(const std::filesystem::path& target, c
   return files_.back().temporary.path();
 }
 
-void Replacements::add_folders(const std::filesystem::path& folder) {
+void OutputFiles::add_folders(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> missing;
   std::error_code failed;
   for (auto path = folder; !path.empty() && !std::filesystem::exists(path, failed); path = path.parent_path())
@@ -103,7 +103,7 @@ void Replacements::add_folders(const std::filesystem::path& folder) {
   }
 }
 
-void Replacements::commit(const std::function<void()>& when_in_place) {
+void OutputFiles::commit(const std::function<void()>& when_in_place) {
   if (outer_) {
     std::move(files_.begin(), files_.end(), std::back_inserter(outer_->files_));
     std::move(folders_.begin(), folders_.end(), std::back_inserter(outer_->folders_));
@@ -127,7 +127,7 @@ void Replacements::commit(const std::function<void()>& when_in_place) {
 }
 
 /// All but its place.
-void Replacements::finish(File& file) const {
+void OutputFiles::finish(File& file) const {
   const Descriptor written{::open(file.temporary.path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC)};
   struct stat before {};
   // Where the process's mask leaves its owner no right to read, the file is only not waited for.
@@ -140,7 +140,7 @@ void Replacements::finish(File& file) const {
     throw WriteError(file.path + ": cannot be written: " + reason());
 }
 
-void Replacements::put_in_place(File& file) const {
+void OutputFiles::put_in_place(File& file) const {
   const char *const from = file.temporary.path().c_str(), *const to = file.target.c_str();
   file.can_go_back = true;
   if (file.was_there) {
@@ -157,7 +157,7 @@ void Replacements::put_in_place(File& file) const {
   throw WriteError(file.path + ": cannot be replaced: " + reason());
 }
 
-void Replacements::put_back(File& file) {
+void OutputFiles::put_back(File& file) {
   const char *const temporary = file.temporary.path().c_str(), *const target = file.target.c_str();
   if (!file.was_there) ::unlink(target);
   else if (file.can_go_back) ::renameat2(AT_FDCWD, temporary, AT_FDCWD, target, RENAME_EXCHANGE);
@@ -178,7 +178,7 @@ void require_writable(const std::string& path) {
 void replace_file(const std::string& path, const std::function<void(const std::string&)>& write) {
   const std::filesystem::path target = file_to_write(path);
   if (is_written_in_place(target)) return write(target.string());
-  Replacements files;
+  OutputFiles files;
   write(files.add_file(target, path));
   files.commit();
 }

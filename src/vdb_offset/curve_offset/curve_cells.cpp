@@ -78,10 +78,10 @@ class CurveCellMaker {
   }
 
   void add_patches() {
-    result_.mesh.patches = {{.name = "wall", .kind = VolumePatch::Kind::Wall},
-                            {.name = "outer", .kind = VolumePatch::Kind::Outer}};
+    result_.mesh.patches = {{.name = "wall", .kind = BoundaryPatch::Kind::Wall},
+                            {.name = "outer", .kind = BoundaryPatch::Kind::Outer}};
     if (result_.facts.border_sides > 0)
-      result_.mesh.patches.push_back({.name = "sides", .kind = VolumePatch::Kind::Side});
+      result_.mesh.patches.push_back({.name = "sides", .kind = BoundaryPatch::Kind::Side});
     result_.mesh.cell_fields = {{"layer", {}}, {"face", {}}, {"patch", {}}};
   }
 
@@ -109,7 +109,7 @@ class CurveCellMaker {
     }
   }
 
-  static void add_edge(VolumePatch& patch, std::uint32_t from, std::uint32_t to, std::uint32_t cell) {
+  static void add_edge(BoundaryPatch& patch, std::uint32_t from, std::uint32_t to, std::uint32_t cell) {
     patch.corners.insert(patch.corners.end(), {from, to});
     patch.face_begin.push_back(static_cast<std::uint32_t>(patch.corners.size()));
     patch.cell.push_back(cell);

@@ -202,7 +202,7 @@ class CurvePipeline {
   }
 
   /// How far off segments are at their middles, relative to what their ends are asked for.
-  InteriorError measure_segments(const Distances& distances, const Paths& paths) const {
+  FaceInteriorError measure_segments(const Distances& distances, const Paths& paths) const {
     std::vector<double> errors(drawn_.line.segments.size(), -1);
     for_each_index(errors.size(), [&](std::size_t s) {
       const auto [a, b] = drawn_.line.segments[s];
@@ -262,7 +262,7 @@ class CurvePipeline {
     const std::size_t count = plane_.points.size();
     result.share.assign(count, 0.0);
     result.first_achieved.assign(count, 0.0);
-    Stacks stacks(count, heights.size());
+    VertexStacks stacks(count, heights.size());
     std::vector<std::vector<double>> asked(heights.size(), std::vector<double>(count, 0.0));
     for (std::uint32_t p = 0; p < count; ++p) {
       const auto v = drawn_.vertex[p];

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/stacker.h"
+#include "vdb_offset/layers/layer_grower.h"
 
 namespace vdb_offset {
 namespace {
@@ -17,11 +17,11 @@ bool turns(const Vec3d& a, const Vec3d& b, const Vec3d& c, double sign) {
 }
 
 /// Columns stand on segments.
-class CurveStacker final : public Stacker {
+class CurveStacker final : public LayerGrower {
  public:
   CurveStacker(const PlaneCurves& curves, std::span<const Vec3d> source, std::span<const Distances> heights,
                CurveFaults& faults, Paths& paths)
-      : Stacker(source, curves.line().origin, heights, paths), curves_(curves), faults_(faults) {}
+      : LayerGrower(source, curves.line().origin, heights, paths), curves_(curves), faults_(faults) {}
 
  private:
   bool moves(std::uint32_t p) const override { return heights_.back()[p] != 0; }
@@ -59,7 +59,7 @@ class CurveStacker final : public Stacker {
           const std::uint32_t p = points[i];
           std::fill(stack_.stacks.of(p).begin(), stack_.stacks.of(p).end(), source_[p]);
           if (stack_.share[p] > 0)
-            put_down(p, 1, CareField<CurveQuery>(curves_.front, faults_.around(p).front()),
+            put_down(p, 1, QueryDistance<CurveQuery>(curves_.front, faults_.around(p).front()),
                      [](std::size_t, double) { return true; });
         },
         64);

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "vdb_offset/curve_offset/curve_faults.h"
-#include "vdb_offset/layers/surface_stacker.h"
+#include "vdb_offset/layers/surface_layer_grower.h"
 
 namespace vdb_offset {
 

@@ -1,6 +1,6 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
-#include "vdb_offset/iso/capture_source.h"
+#include "vdb_offset/iso/iso_source.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/mesh/in_metric.h"
 
@@ -8,21 +8,21 @@ namespace vdb_offset {
 namespace {
 
 /// The source as it is in the file, its triangles in the same order: all of it, for what comes along from there.
-std::shared_ptr<const CaptureSource> unscaled(const Surface& scaled, const Metric& metric, Orient orient) {
+std::shared_ptr<const IsoSource> unscaled(const Surface& scaled, const Metric& metric, Orient orient) {
   Surface surface = scaled;
   for (Vec3d& v : surface.vertices) v = metric.from(v + scaled.origin);
   place_in_frame(surface, metric.from(scaled.origin));
-  return std::make_shared<const CaptureSource>(std::move(surface), std::nullopt, 0.0, orient);
+  return std::make_shared<const IsoSource>(std::move(surface), std::nullopt, 0.0, orient);
 }
 
 }  // namespace
 
-CaptureResult capture_in_metric(PolygonView mesh, const CaptureOptions& options, const Metric& metric) {
-  if (metric.even()) return capture(mesh, options);
+IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric) {
+  if (metric.even()) return make_iso_surface(mesh, options);
   const InMetric scaled(mesh, metric);
-  CaptureOptions inner = options;
+  IsoOptions inner = options;
   inner.precision.scale = metric.scale;
-  CaptureResult result = capture(scaled.view(), inner);
+  IsoResult result = make_iso_surface(scaled.view(), inner);
   for_each_index(result.polygons.positions.size(), [&](std::size_t v) {
     Vec3d &place = result.polygons.positions[v], &normal = result.normals[v];
     place = Rounding(inner.precision).in_file(place);
@@ -34,8 +34,8 @@ CaptureResult capture_in_metric(PolygonView mesh, const CaptureOptions& options,
   return result;
 }
 
-CaptureStatistics plan_capture_in_metric(PolygonView mesh, const CaptureOptions& options, const Metric& metric) {
-  CaptureStatistics statistics = plan_capture(InMetric(mesh, metric).view(), options);
+IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric) {
+  IsoStatistics statistics = plan_iso_surface(InMetric(mesh, metric).view(), options);
   // What is told of the mesh is of the mesh as it is.
   if (!metric.even()) statistics.source = build_surface(mesh, options.weld, options.orient).facts;
   return statistics;

@@ -23,7 +23,7 @@ double longest_of(const MeshFacts& facts, double distance) { return facts.diagon
 /// Cubes whose centre is so near to the surface that it may pass through them make a slab of this many voxels.
 constexpr double kSlabVoxels = 14.2;
 
-CapturePlan estimate_capture(const Surface& surface, double distance, bool is_signed, double h) {
+IsoPlan estimate_capture(const Surface& surface, double distance, bool is_signed, double h) {
   const MeshFacts& facts = surface.facts;
   const double d = std::abs(distance), sides = is_signed ? 1 : 2;
   // What is curved outwards has more area farther out, and whatever it is, at least that of a ball.
@@ -33,7 +33,7 @@ CapturePlan estimate_capture(const Surface& surface, double distance, bool is_si
   const double leaves = std::min(area * kSlabVoxels * h / (leaf * leaf * leaf) + 8, std::pow(across / leaf, 3));
   const double bytes = kCaptureProcessBytes + static_cast<double>(surface_bytes(surface)) + leaves * kCaptureLeafBytes;
   constexpr double kMost = 0x1p62;  // only to be refused; the casts must not overflow
-  CapturePlan plan;
+  IsoPlan plan;
   plan.voxel_size = h;
   plan.leaf_nodes = static_cast<std::size_t>(std::min(leaves, kMost));
   plan.triangles = static_cast<std::size_t>(std::min(leaves * kTrianglesPerLeaf, kMost));
@@ -41,7 +41,7 @@ CapturePlan estimate_capture(const Surface& surface, double distance, bool is_si
   return plan;
 }
 
-bool fits_budget(const CapturePlan& plan, const CaptureOptions& options, const MeshFacts& facts) {
+bool fits_budget(const IsoPlan& plan, const IsoOptions& options, const MeshFacts& facts) {
   // volumeToMesh tells places in single precision, to a small part of a voxel.
   constexpr double kMostVoxelsAcross = 0x1p19;
   return (options.max_memory == 0 || plan.bytes <= options.max_memory) &&
@@ -50,7 +50,7 @@ bool fits_budget(const CapturePlan& plan, const CaptureOptions& options, const M
 
 /// Fine enough that a chord of the rounding around an edge, of radius d, is off by less than 1 % of d in its middle,
 /// and for the details that the mesh has.
-CapturePlan choose_voxels(const Surface& surface, const CaptureOptions& options, bool is_signed) {
+IsoPlan choose_voxels(const Surface& surface, const IsoOptions& options, bool is_signed) {
   constexpr double kPerDistance = 4, kCoarsest = 128, kFinest = 512;
   const MeshFacts& facts = surface.facts;
   const double d = std::abs(options.distance), coarsest = facts.diagonal / kCoarsest, finest = facts.diagonal / kFinest;
@@ -63,7 +63,7 @@ CapturePlan choose_voxels(const Surface& surface, const CaptureOptions& options,
   constexpr double kCoarser = 1.25;
   const double most = longest_of(facts, d);
   for (; h < most; h *= kCoarser) {
-    CapturePlan plan = estimate_capture(surface, options.distance, is_signed, h);
+    IsoPlan plan = estimate_capture(surface, options.distance, is_signed, h);
     plan.reason = reason;
     if (fits_budget(plan, options, facts)) return plan;
     reason = "the finest that the memory allows";
@@ -73,7 +73,7 @@ CapturePlan choose_voxels(const Surface& surface, const CaptureOptions& options,
 
 /// Corners of the new triangles are a part of a voxel apart. Rounded by three voxels (measured: by no less), they fold
 /// and cross wherever they are mended, without end.
-void require_fine_places(const MeshFacts& facts, const CaptureOptions& options, double h) {
+void require_fine_places(const MeshFacts& facts, const IsoOptions& options, double h) {
   constexpr double kMostVoxels = 2;
   const double rounding =
       Rounding(options.precision).half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
@@ -86,10 +86,10 @@ void require_fine_places(const MeshFacts& facts, const CaptureOptions& options, 
 
 }  // namespace
 
-CapturePlan plan_voxels(const Surface& surface, const CaptureOptions& options, bool is_signed) {
+IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_signed) {
   const GridOptions& grid = options.grid;
   require_plannable(surface.facts.diagonal, std::abs(options.distance), grid);
-  CapturePlan plan;
+  IsoPlan plan;
   if (grid.voxel_size) {
     plan = estimate_capture(surface, options.distance, is_signed, *grid.voxel_size);
     plan.reason = "as given";

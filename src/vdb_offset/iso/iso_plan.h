@@ -12,6 +12,6 @@ inline constexpr double kCaptureLeafBytes = 34e3;
 
 /// Chooses the voxel size and estimates the cost, for a surface on one side of what has an inside, or on all sides.
 /// \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
-CapturePlan plan_voxels(const Surface& surface, const CaptureOptions& options, bool is_signed);
+IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_signed);
 
 }  // namespace vdb_offset

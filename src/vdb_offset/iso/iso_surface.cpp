@@ -15,11 +15,11 @@
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/base/thread_count.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/iso/capture_source.h"
 #include "vdb_offset/iso/iso_grid.h"
 #include "vdb_offset/iso/iso_level.h"
 #include "vdb_offset/iso/iso_mesh.h"
 #include "vdb_offset/iso/iso_plan.h"
+#include "vdb_offset/iso/iso_source.h"
 #include "vdb_offset/iso/mend.h"
 #include "vdb_offset/iso/merge_flats.h"
 #include "vdb_offset/iso/solid_boundary.h"
@@ -42,14 +42,14 @@ Lattice lattice_of(std::size_t attempt, double voxel_size) {
 
 class Capture {
  public:
-  Capture(PolygonView mesh, const CaptureOptions& options, int threads) : mesh_(mesh), options_(options) {
+  Capture(PolygonView mesh, const IsoOptions& options, int threads) : mesh_(mesh), options_(options) {
     result_.statistics.threads = threads;
     result_.statistics.distance = options.distance;
   }
 
-  CaptureResult run() {
+  IsoResult run() {
     prepare();
-    CaptureStatistics& statistics = result_.statistics;
+    IsoStatistics& statistics = result_.statistics;
     Surface written;
     do {
       statistics.dropped_specks = statistics.merged_vertices = 0;  // those of another lattice are gone with it
@@ -81,16 +81,15 @@ class Capture {
   void measure_faces(const Surface& written);
 
   PolygonView mesh_;
-  const CaptureOptions& options_;
+  const IsoOptions& options_;
   double h_ = 0;
   std::optional<LevelSet> level_;
   std::uint32_t hint_ = 0;  // while mending, tries follow each other in one place
-  CaptureResult result_;
+  IsoResult result_;
 };
 
 /// What there is to say of a mesh that is not plainly closed.
-std::optional<Solidity> look_at_solids(const Surface& surface, const CaptureOptions& options,
-                                       CaptureStatistics& statistics) {
+std::optional<Solidity> look_at_solids(const Surface& surface, const IsoOptions& options, IsoStatistics& statistics) {
   const MeshFacts& facts = statistics.source = surface.facts;
   SolidFacts& solid = statistics.solid;
   solid.parts = facts.components;
@@ -121,7 +120,7 @@ std::vector<Hole> too_wide(const std::optional<Solidity>& solidity, double dista
   return wide;
 }
 
-void require_usable(const CaptureOptions& options) {
+void require_usable(const IsoOptions& options) {
   if (!std::isfinite(options.distance) || options.distance == 0)
     throw InvalidInput(fmt::format("capture: expected a finite distance other than 0, got {}", options.distance));
   if (options.adaptivity && !(*options.adaptivity >= 0 && *options.adaptivity <= 1))
@@ -130,14 +129,13 @@ void require_usable(const CaptureOptions& options) {
 
 void Capture::prepare() {
   const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
-  CaptureStatistics& statistics = result_.statistics;
+  IsoStatistics& statistics = result_.statistics;
   Surface surface = build_surface(mesh_, options_.weld, options_.orient);
   const std::optional<Solidity> solidity = look_at_solids(surface, options_, statistics);
   statistics.plan = plan_voxels(surface, options_, statistics.is_signed);
   h_ = statistics.plan.voxel_size;
   place(surface, h_);
-  result_.source =
-      std::make_shared<const CaptureSource>(std::move(surface), solidity, options_.distance, options_.orient);
+  result_.source = std::make_shared<const IsoSource>(std::move(surface), solidity, options_.distance, options_.orient);
   if (const auto& boundary = result_.source->boundary) {
     statistics.solid.buried = boundary->buried;
     statistics.solid.cut = boundary->cut;
@@ -241,7 +239,7 @@ Surface Capture::check_topology() {
 }
 
 void Capture::tell_topology(const Surface& in_file) {
-  CaptureStatistics& statistics = result_.statistics;
+  IsoStatistics& statistics = result_.statistics;
   statistics.vertices = in_file.vertices.size();
   statistics.triangles = result_.polygons.face_count();
   statistics.components = in_file.facts.components;
@@ -254,10 +252,10 @@ void Capture::tell_topology(const Surface& in_file) {
 void Capture::measure_faces(const Surface& written) {
   constexpr std::size_t kInteriorSamples = 10000;
   const std::vector<std::uint32_t> none(written.vertices.size(), kNone);  // of its vertices is one of the source's
-  const Body body{result_.source->query, written, none, {}, {}};
+  const ConstrainedSurface constrained{result_.source->query, written, none, {}, {}};
   const StageTimer timer(result_.statistics.seconds, Stage::Measure);
   result_.statistics.interior =
-      measure_interior(body, written.vertices, Distances(level_->distance()), kInteriorSamples);
+      measure_interior(constrained, written.vertices, Distances(level_->distance()), kInteriorSamples);
 }
 
 /// Distances, and all else that closest points tell.
@@ -271,7 +269,7 @@ void Capture::measure_vertices() {
   result_.closest.resize(count);
   // Away from the source, or towards it, is where phi grows, and where the source's faces point.
   const double sense = (level_->level() < 0) != inside().is_turned() ? -1 : 1;
-  CaptureStatistics& statistics = result_.statistics;
+  IsoStatistics& statistics = result_.statistics;
   double squares = 0;
   for (std::size_t v = 0; v < count; ++v) {
     const auto& [distance, triangle, feature, tied, point] = closest[v];
@@ -286,24 +284,24 @@ void Capture::measure_vertices() {
 
 }  // namespace
 
-CaptureSource::CaptureSource(Surface placed, const std::optional<Solidity>& solidity, double distance, Orient orient)
+IsoSource::IsoSource(Surface placed, const std::optional<Solidity>& solidity, double distance, Orient orient)
     : surface(std::move(placed)),
       inside(solidity ? Inside(surface, *solidity, orient) : Inside(surface, orient)),
       boundary(find_boundary(surface, inside, too_wide(solidity, distance), level_of(inside, distance) < 0)),
       query(boundary ? boundary->surface : surface) {}
 
-CaptureResult capture(PolygonView mesh, const CaptureOptions& options) {
+IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options) {
   require_usable(options);
   const int threads = thread_count(options.threads);
-  CaptureResult result;
+  IsoResult result;
   tbb::task_arena arena(threads);
   arena.execute([&] { result = Capture(mesh, options, threads).run(); });
   return result;
 }
 
-CaptureStatistics plan_capture(PolygonView mesh, const CaptureOptions& options) {
+IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options) {
   require_usable(options);
-  CaptureStatistics statistics;
+  IsoStatistics statistics;
   statistics.threads = thread_count(options.threads);
   const Surface surface = build_surface(mesh, options.weld, options.orient);
   look_at_solids(surface, options, statistics);

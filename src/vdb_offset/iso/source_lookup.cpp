@@ -42,7 +42,7 @@ std::array<double, 3> weights_of(const TrianglePoint& closest, const std::array<
 
 }  // namespace
 
-SourceLookup::SourceLookup(const CaptureResult& captured, PolygonView mesh) : captured_(captured), mesh_(mesh) {
+SourceLookup::SourceLookup(const IsoResult& captured, PolygonView mesh) : captured_(captured), mesh_(mesh) {
   const auto& corners = captured.polygons.corners;
   std::vector<Vec3d> centres(captured.polygons.face_count());
   for_each_index(centres.size(), [&](std::size_t t) {

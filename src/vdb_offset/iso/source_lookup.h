@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/iso/capture_source.h"
+#include "vdb_offset/iso/iso_source.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/mesh/point_triangle.h"
 #include "vdb_offset/surface/surface.h"
@@ -23,7 +23,7 @@ struct SourcePoint {
 class SourceLookup {
  public:
   /// `mesh` is what was captured. Keeps references to both.
-  SourceLookup(const CaptureResult& captured, PolygonView mesh);
+  SourceLookup(const IsoResult& captured, PolygonView mesh);
 
   /// Cuts the source into charts, as texture coordinates do: triangles are in one if they share an edge, and the values
   /// at both of its ends. `value_of_corner` numbers the values, one for each of the mesh's corners. Without charts, all
@@ -45,7 +45,7 @@ class SourceLookup {
   SourcePoint point_on(std::uint32_t triangle, const Vec3d& x) const;
   std::uint32_t closest_in_chart(const Vec3d& x, std::uint32_t start) const;
 
-  const CaptureResult& captured_;
+  const IsoResult& captured_;
   PolygonView mesh_;
   std::vector<std::uint32_t> home_;   // of each of the captured triangles: the source's triangle closest to its centre
   std::vector<std::uint32_t> chart_;  // of each of the source's triangles; empty if all are one

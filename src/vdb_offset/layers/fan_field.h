@@ -41,10 +41,10 @@ class SpaceBesideBall {
   double rim_ = 0, pole_ = 0;  // how far rims are from their poles, and these from the vertex, squared
 };
 
-/// As CareField, where the closest triangle is one of those around the vertex.
-class FanField {
+/// As QueryDistance, where the closest triangle is one of those around the vertex.
+class FanDistance {
  public:
-  explicit FanField(VertexFan& fan) : fan_(fan) {}
+  explicit FanDistance(VertexFan& fan) : fan_(fan) {}
 
   Phi at(const Vec3d& x) const { return phi_of(fan_.away_from(x)); }
   Phi find(const Vec3d& x) const { return phi_of(fan_.find_away_from(x)); }
@@ -54,9 +54,10 @@ class FanField {
 };
 
 /// The same, where it is one of those, or of a few others.
-class FewField {
+class NearDistance {
  public:
-  FewField(const Surface& front, VertexFan& fan, NearTriangles& others) : front_(front), fan_(fan), others_(others) {
+  NearDistance(const Surface& front, VertexFan& fan, NearTriangles& others)
+      : front_(front), fan_(fan), others_(others) {
     if (others.size() > 0) believed_ = static_cast<std::uint32_t>(others.foremost());
   }
 

@@ -40,7 +40,7 @@ bool rises(std::span<const Vec3d> stack, std::size_t layer, const Vec3d& n) {
 
 /// Whether the principal axes of all hexahedra over a quad make a right-handed frame: a bent one may be inside out in
 /// its middle although it is not at any corner.
-bool has_upright_hexahedra(std::span<const std::uint32_t> corners, const Stacks& stacks, int side) {
+bool has_upright_hexahedra(std::span<const std::uint32_t> corners, const VertexStacks& stacks, int side) {
   for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {
     Vec3d middle[4], up(0.0);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -57,14 +57,15 @@ bool has_upright_hexahedra(std::span<const std::uint32_t> corners, const Stacks&
 
 /// The triangles of two columns in a layer, and their normals.
 struct TwoTriangles {
-  TwoTriangles(const std::array<std::span<const std::uint32_t>, 2>& base, const Stacks& stacks, std::size_t layer) {
+  TwoTriangles(const std::array<std::span<const std::uint32_t>, 2>& base, const VertexStacks& stacks,
+               std::size_t layer) {
     for (std::size_t k = 0; k < 3; ++k) corner[k] = both(stacks.of(base[0][k])[layer], stacks.of(base[1][k])[layer]);
     normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     square = normal.dot(normal);
   }
-  std::array<Way<Pair>, 3> corner;
-  Way<Pair> normal;
-  Pair square;  // of the normal
+  std::array<Vec3Of<double2>, 3> corner;
+  Vec3Of<double2> normal;
+  double2 square;  // of the normal
 };
 
 /// The corners of two triangles in the order of their places' numbers, and on which side of them so their normals lie.
@@ -78,22 +79,22 @@ struct TwoOrders {
       if (place[p] > place[q]) std::swap(p, q), sign[i] = -sign[i];
     }
   }
-  Way<Pair> at(const Stacks& stacks, std::size_t k, std::size_t layer) const {
+  Vec3Of<double2> at(const VertexStacks& stacks, std::size_t k, std::size_t layer) const {
     return both(stacks.of(by_number[0][k])[layer], stacks.of(by_number[1][k])[layer]);
   }
   std::array<std::array<std::uint32_t, 3>, 2> by_number;
-  Pair sign{1, 1};
+  double2 sign{1, 1};
 };
 
 /// Whether prisms have volumes above 0 if their sides are split in two triangles as cell_volume() does it: from the
 /// lower corner of the lower number to the upper one of the higher. Of the three tetrahedra, two stand on the
 /// triangles.
-PairMask have_volume(const TwoOrders& order, const Stacks& stacks, std::size_t layer, const Pair& sign,
-                     const Way<Pair>& below, const Way<Pair>& above) {
-  const Way<Pair> p = order.at(stacks, 0, layer), upper_p = order.at(stacks, 0, layer + 1);
-  const Way<Pair> r = order.at(stacks, 2, layer), upper_r = order.at(stacks, 2, layer + 1);
-  const Way<Pair> q = order.at(stacks, 1, layer) - p, upper_q = order.at(stacks, 1, layer + 1) - p;
-  const Pair on_triangles = below.dot(upper_r - r) + above.dot(upper_p - p);
+PairMask have_volume(const TwoOrders& order, const VertexStacks& stacks, std::size_t layer, const double2& sign,
+                     const Vec3Of<double2>& below, const Vec3Of<double2>& above) {
+  const Vec3Of<double2> p = order.at(stacks, 0, layer), upper_p = order.at(stacks, 0, layer + 1);
+  const Vec3Of<double2> r = order.at(stacks, 2, layer), upper_r = order.at(stacks, 2, layer + 1);
+  const Vec3Of<double2> q = order.at(stacks, 1, layer) - p, upper_q = order.at(stacks, 1, layer + 1) - p;
+  const double2 on_triangles = below.dot(upper_r - r) + above.dot(upper_p - p);
   return sign * on_triangles + sign * order.sign * q.cross(upper_r - p).dot(upper_q) > 0.0;
 }
 
@@ -101,23 +102,23 @@ PairMask have_volume(const TwoOrders& order, const Stacks& stacks, std::size_t l
 /// both triangles' normals, as leans(), and between, at height t, the Jacobian is above 0 as well. On the way up from
 /// a corner it is a (1 - t)^2 + (a + c - d) t (1 - t) + c t^2, where a and c are the way's products with the normals,
 /// and d is the triple product of all three ways.
-std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const Stacks& stacks,
+std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const VertexStacks& stacks,
                                 std::span<const std::uint32_t> place, int side) {
-  const Pair sign = Pair{} + static_cast<double>(side);
+  const double2 sign = double2{} + static_cast<double>(side);
   const TwoOrders order(base, place);
   PairMask upright{-1, -1};
   TwoTriangles below(base, stacks, 0);
   for (std::size_t layer = 0; layer < stacks.layers() && (upright[0] != 0 || upright[1] != 0); ++layer) {
     const TwoTriangles above(base, stacks, layer + 1);
-    const Way<Pair> up[] = {above.corner[0] - below.corner[0], above.corner[1] - below.corner[1],
-                            above.corner[2] - below.corner[2]};
-    const Pair triple = up[0].cross(up[1]).dot(up[2]) * sign;
-    for (const Way<Pair>& way : up) {
-      const Pair square = way.dot(way);
-      const Pair a = below.normal.dot(way) * sign, c = above.normal.dot(way) * sign;
+    const Vec3Of<double2> up[] = {above.corner[0] - below.corner[0], above.corner[1] - below.corner[1],
+                                  above.corner[2] - below.corner[2]};
+    const double2 triple = up[0].cross(up[1]).dot(up[2]) * sign;
+    for (const Vec3Of<double2>& way : up) {
+      const double2 square = way.dot(way);
+      const double2 a = below.normal.dot(way) * sign, c = above.normal.dot(way) * sign;
       upright &= (a > 0.0) & (a * a > kLeastLean * kLeastLean * below.square * square);
       upright &= (c > 0.0) & (c * c > kLeastLean * kLeastLean * above.square * square);
-      const Pair over = triple - a - c;
+      const double2 over = triple - a - c;
       upright &= (over <= 0.0) | (over * over < 4.0 * a * c);
     }
     upright &= have_volume(order, stacks, layer, sign, below.normal, above.normal);
@@ -152,18 +153,19 @@ std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
 
 }  // namespace
 
-CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source, CellRules rules)
-    : rules_(rules), place_(body.surface.vertices.size(), kNone) {
-  for (auto v = static_cast<std::uint32_t>(body.surface.welded.size()); v-- > 0;)
-    if (body.surface.welded[v] != kNone) place_[body.surface.welded[v]] = v;
-  if (take_all(mesh, body, source)) return;
-  const Surface& surface = body.surface;
+GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
+                             CellRules rules)
+    : rules_(rules), place_(constrained.surface.vertices.size(), kNone) {
+  for (auto v = static_cast<std::uint32_t>(constrained.surface.welded.size()); v-- > 0;)
+    if (constrained.surface.welded[v] != kNone) place_[constrained.surface.welded[v]] = v;
+  if (take_all(mesh, constrained, source)) return;
+  const Surface& surface = constrained.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
   std::vector<std::uint8_t> seen(mesh.face_count(), 0);
   corners_.reserve(mesh.corners.size());
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const std::uint32_t face = surface.face[t];
-    if (!body.is_front(t) || seen[face] == kCarries) continue;
+    if (!constrained.is_front(t) || seen[face] == kCarries) continue;
     const auto& [a, b, c] = surface.triangles[t];
     seen[face] = (source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0 ? kCarries : kWithoutArea;
     if (seen[face] == kCarries) add(mesh, surface, t, source);
@@ -179,9 +181,9 @@ CellColumns::CellColumns(PolygonView mesh, const Body& body, std::span<const Vec
 }
 
 /// The usual case: the surface's triangles are the columns.
-bool CellColumns::take_all(PolygonView mesh, const Body& body, std::span<const Vec3d> source) {
-  const Surface& surface = body.surface;
-  if (!body.off_front.empty() || mesh.corners.size() != 3 * mesh.face_count()) return false;
+bool GrowthColumns::take_all(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source) {
+  const Surface& surface = constrained.surface;
+  if (!constrained.off_front.empty() || mesh.corners.size() != 3 * mesh.face_count()) return false;
   std::atomic<bool> all = true;
   corners_.resize(3 * surface.triangles.size());
   begin_.resize(surface.triangles.size() + 1);
@@ -201,7 +203,8 @@ bool CellColumns::take_all(PolygonView mesh, const Body& body, std::span<const V
   return true;
 }
 
-void CellColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source) {
+void GrowthColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle,
+                        std::span<const Vec3d> source) {
   const auto& [a, b, c] = surface.triangles[triangle];
   std::vector<std::uint32_t> polygon;
   for (const auto v : mesh.face(surface.face[triangle])) {
@@ -226,7 +229,7 @@ void CellColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t tr
   split_quads_.push_back({surface.face[triangle], static_cast<std::uint32_t>(*split)});
 }
 
-Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const {
+Vec3d GrowthColumns::normal(std::size_t column, std::size_t k, const VertexStacks& stacks, std::size_t layer) const {
   const auto corners = base(column);
   const std::size_t count = corners.size();
   const auto at = [&](std::size_t i) { return stacks.of(corners[i % count])[layer]; };
@@ -236,7 +239,7 @@ Vec3d CellColumns::normal(std::size_t column, std::size_t k, const Stacks& stack
   return sum;
 }
 
-bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) const {
+bool GrowthColumns::is_valid(std::size_t column, const VertexStacks& stacks, int side) const {
   if (is_of_prisms(column, stacks))
     return are_upright({base(column), base(column)}, stacks, place_, side)[0] &&
            (rules_ != CellRules::OpenFoam || has_valid_cells(column, stacks, side));
@@ -244,7 +247,7 @@ bool CellColumns::is_valid(std::size_t column, const Stacks& stacks, int side) c
 }
 
 /// Whether the ways up from each corner lean towards the normals of the faces that it has below and above.
-bool CellColumns::rises_everywhere(std::size_t column, const Stacks& stacks, int side) const {
+bool GrowthColumns::rises_everywhere(std::size_t column, const VertexStacks& stacks, int side) const {
   const auto corners = base(column);
   const std::size_t count = corners.size();
   const bool has_flat = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
@@ -265,7 +268,7 @@ bool CellColumns::rises_everywhere(std::size_t column, const Stacks& stacks, int
 }
 
 /// Whether cells are told to be valid once they are made.
-bool CellColumns::has_valid_cells(std::size_t column, const Stacks& stacks, int side) const {
+bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const {
   thread_local ColumnMesh cells;
   thread_local std::vector<std::uint32_t> ring, numbers;
   ring.assign(base(column).begin(), base(column).end());
@@ -285,14 +288,14 @@ bool CellColumns::has_valid_cells(std::size_t column, const Stacks& stacks, int 
   return true;
 }
 
-bool CellColumns::is_of_prisms(std::size_t column, const Stacks& stacks) const {
+bool GrowthColumns::is_of_prisms(std::size_t column, const VertexStacks& stacks) const {
   const auto corners = base(column);
   return corners.size() == 3 &&
          std::none_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
 }
 
-std::array<bool, 2> CellColumns::are_valid(std::size_t column, std::size_t other, const Stacks& stacks,
-                                           int side) const {
+std::array<bool, 2> GrowthColumns::are_valid(std::size_t column, std::size_t other, const VertexStacks& stacks,
+                                             int side) const {
   if (rules_ == CellRules::OpenFoam || !is_of_prisms(column, stacks) || !is_of_prisms(other, stacks))
     return {is_valid(column, stacks, side), is_valid(other, stacks, side)};
   return are_upright({base(column), base(other)}, stacks, place_, side);

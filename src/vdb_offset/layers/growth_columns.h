@@ -17,11 +17,11 @@ namespace vdb_offset {
 /// A column's base runs as its face's triangles do in the surface, seen from where they face. Faces that the surface
 /// leaves out, as repeated ones, and those without area carry none. A quad with a corner that is straight or turns
 /// inwards carries two columns of prisms.
-class CellColumns {
+class GrowthColumns {
  public:
   /// `mesh` is the one that the body's surface was built from.
-  CellColumns(PolygonView mesh, const Body& body, std::span<const Vec3d> source,
-              CellRules rules = CellRules::AnySolver);
+  GrowthColumns(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
+                CellRules rules = CellRules::AnySolver);
 
   std::size_t size() const { return begin_.size() - 1; }
   std::span<const std::uint32_t> base(std::size_t column) const {
@@ -41,22 +41,22 @@ class CellColumns {
 
   /// The normal of a column's base in one layer as its corner k sees it: of the two sides there, for five corners or
   /// more of the whole. Not normalised.
-  Vec3d normal(std::size_t column, std::size_t k, const Stacks& stacks, std::size_t layer) const;
+  Vec3d normal(std::size_t column, std::size_t k, const VertexStacks& stacks, std::size_t layer) const;
 
   /// Whether every cell of a column has a positive volume, and is inside out nowhere: at every corner that is not flat
   /// the way up, to `side` (1 or -1) of the base, makes less than a right angle with the normals of both its faces, and
   /// the cell's scaled Jacobian is above 0 (cell_quality.h). Prisms must not be inside out between their corners,
   /// hexahedra not in their middle either, and quads with flat corners are also seen as the triangles that they are
   /// split into.
-  bool is_valid(std::size_t column, const Stacks& stacks, int side) const;
+  bool is_valid(std::size_t column, const VertexStacks& stacks, int side) const;
   /// The same of two columns, in half the time where both are of prisms.
-  std::array<bool, 2> are_valid(std::size_t column, std::size_t other, const Stacks& stacks, int side) const;
+  std::array<bool, 2> are_valid(std::size_t column, std::size_t other, const VertexStacks& stacks, int side) const;
 
  private:
-  bool rises_everywhere(std::size_t column, const Stacks& stacks, int side) const;
-  bool has_valid_cells(std::size_t column, const Stacks& stacks, int side) const;
-  bool is_of_prisms(std::size_t column, const Stacks& stacks) const;
-  bool take_all(PolygonView mesh, const Body& body, std::span<const Vec3d> source);
+  bool rises_everywhere(std::size_t column, const VertexStacks& stacks, int side) const;
+  bool has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const;
+  bool is_of_prisms(std::size_t column, const VertexStacks& stacks) const;
+  bool take_all(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source);
   void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source);
 
   std::vector<std::uint32_t> corners_, begin_{0}, without_area_;

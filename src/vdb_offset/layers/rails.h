@@ -34,9 +34,9 @@ inline Phi phi_of(const Vec3d& away) { return {away.length(), away}; }
 /// Distances along a vertex's rail, of points in the front's frame. The closest triangle to one point is likely to be
 /// that of the next: find() looks for it, at() believes it and is never too small.
 template <class Query>
-class CareField {
+class QueryDistance {
  public:
-  CareField(const Query& front, std::uint32_t hint) : front_(front), triangle_(hint) {}
+  QueryDistance(const Query& front, std::uint32_t hint) : front_(front), triangle_(hint) {}
 
   Phi at(const Vec3d& x) const { return phi_of(front_.surface().closest_on(triangle_, x), x); }
   Phi find(const Vec3d& x) {

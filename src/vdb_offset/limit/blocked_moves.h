@@ -11,9 +11,9 @@ namespace vdb_offset {
 
 /// What vertices have met by themselves when they were let out: they would meet the same again for as long as none of
 /// the corners of that has moved. Memory: 24 bytes a vertex.
-class Refusals {
+class BlockedMoves {
  public:
-  explicit Refusals(const Surface& surface) : surface_(surface), of_(surface.vertices.size()) {}
+  explicit BlockedMoves(const Surface& surface) : surface_(surface), of_(surface.vertices.size()) {}
 
   /// Whether a vertex that is let out to a share of its way would meet what it has met there before.
   bool expects(std::uint32_t v, double share) const {

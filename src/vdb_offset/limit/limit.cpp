@@ -13,9 +13,9 @@
 
 #include "vdb_offset/base/hash_mix.h"
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/limit/area_short.h"
 #include "vdb_offset/limit/blocked_moves.h"
 #include "vdb_offset/limit/limit_schedule.h"
+#include "vdb_offset/limit/live_area.h"
 #include "vdb_offset/limit/untangle.h"
 #include "vdb_offset/limit/vertex_patches.h"
 #include "vdb_offset/validity/fault_finder.h"
@@ -73,18 +73,18 @@ constexpr std::size_t kExpectedRounds = 32;
 
 class Limiter {
  public:
-  Limiter(const Body& body, std::span<const Vec3d> source, const Distances& distances, Paths& paths,
-          FaultFinder& faults, const Precedent* followed = nullptr)
-      : body_(body),
-        surface_(body.surface),
+  Limiter(const ConstrainedSurface& constrained, std::span<const Vec3d> source, const Distances& distances,
+          Paths& paths, FaultFinder& faults, const WarmStart* followed = nullptr)
+      : constrained_(constrained),
+        surface_(constrained.surface),
         source_(source),
         distances_(distances),
         paths_(paths),
         whole_way_(paths.displacement),
         share_(source.size(), 1.0),
-        patches_(body.surface),
+        patches_(constrained.surface),
         gathered_(source.size()),
-        stakes_(body, distances),
+        stakes_(constrained, distances),
         faults_(faults),
         followed_(followed) {
     statistics_.source_crossings = faults_.source_crossings().count();
@@ -95,7 +95,7 @@ class Limiter {
   void untangle(Progress& progress) {
     if (followed_) follow();
     // What a precedent and the first way leave, the others hardly free.
-    for (const Attempt& attempt : kAttempts)
+    for (const UntangleSetting& attempt : kSchedule)
       if (!untangle_with(attempt, progress) || followed_) break;
     free_collided(progress);
   }
@@ -103,7 +103,7 @@ class Limiter {
   void pull_back_and_let_out(Progress& progress) {
     while (pull_back()) progress.advance(1);
     leap(progress);
-    for (const Stakes::Lines lines : {Stakes::Lines::KeepBorder, Stakes::Lines::All})
+    for (const LiveArea::Lines lines : {LiveArea::Lines::KeepBorder, LiveArea::Lines::All})
       if (settle(lines)) leap(progress);
     for (int i = 0; i < kEasings; ++i) ease();
     while (pull_back()) progress.advance(1);  // should what was put back be judged otherwise than before
@@ -111,13 +111,13 @@ class Limiter {
   }
 
   /// Tells the paths what has become of them, and who may follow.
-  LimitStatistics finish(Precedent* set = nullptr) {
+  LimitStatistics finish(WarmStart* set = nullptr) {
     std::vector<std::uint8_t> mended(set ? source_.size() : 0, 0);
     double lost = 0;
     std::size_t moving = 0;
     for (std::uint32_t v = 0; v < share_.size(); ++v) {
       const double target = std::abs(distances_[v]);
-      if (target == 0 || !body_.on_front(v)) continue;
+      if (target == 0 || !constrained_.on_front(v)) continue;
       ++moving;
       const bool stayed = paths_.displacement[v] == way(v);
       paths_.displacement[v] = way(v);
@@ -185,7 +185,7 @@ class Limiter {
     Vec3d& whole = whole_way_[v];
     const double distance = std::abs(distances_[v]);
     if (followed_->achieved[v] >= distance * (1 - kReachedTolerance) - faults_.rounding(v))
-      whole = way_to_distance(body_, v, way, distance);
+      whole = way_to_distance(constrained_, v, way, distance);
     else if (followed_->held[v] && whole.lengthSqr() > 0)
       share_[v] = std::clamp(way.length() / whole.length(), kLastShare, 1.0);
     else if (paths_.state[v] == VertexState::Collision) whole = way;
@@ -203,7 +203,7 @@ class Limiter {
   /// Patches of ever more rings, for as long as something is wrong and more rings make another patch. Where much is
   /// wrong, fronts have run through each other, and large patches take long for little. False if it is not worth
   /// while to try another way.
-  bool untangle_with(const Attempt& attempt, Progress& progress) {
+  bool untangle_with(const UntangleSetting& attempt, Progress& progress) {
     const std::size_t before = fault_count();
     Indices last;
     for (const Growth& growth : attempt.growths) {
@@ -250,9 +250,9 @@ class Limiter {
     const Vec3d& whole = whole_way_[v];
     if (share == 1) return whole;
     const auto vertex = static_cast<std::uint32_t>(v);
-    if (share >= kBent || share == 0 || body_.is_bound(vertex)) return whole * share;
-    const std::uint32_t on_front = body_.front_vertex.empty() ? vertex : body_.front_vertex[vertex];
-    const Vec3d start = start_direction(body_.front.surface(), on_front) * (distances_[v] < 0 ? -1.0 : 1.0);
+    if (share >= kBent || share == 0 || constrained_.is_bound(vertex)) return whole * share;
+    const std::uint32_t on_front = constrained_.front_vertex.empty() ? vertex : constrained_.front_vertex[vertex];
+    const Vec3d start = start_direction(constrained_.front.surface(), on_front) * (distances_[v] < 0 ? -1.0 : 1.0);
     if (!(start.lengthSqr() > 0)) return whole * share;
     const double u = share / kBent;
     return (whole * (u * u) + start * (whole.length() * u * (1 - u))) * kBent;
@@ -297,7 +297,7 @@ class Limiter {
   bool may_slide(std::uint32_t v) const {
     const bool there =
         paths_.state[v] == VertexState::Reached || (paths_.state[v] == VertexState::Collision && has_sides(v));
-    return there && distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v);
+    return there && distances_[v] != 0 && constrained_.on_front(v) && !constrained_.is_bound(v);
   }
 
   /// Lines have none, nor do the vertices that only they hold.
@@ -353,7 +353,7 @@ class Limiter {
                 double least_contrast = 0) {
     patches_.split(chosen);
     leave_out(growth, least_contrast);
-    const Untangler untangler(body_, distances_, options);
+    const Untangler untangler(constrained_, distances_, options);
     try_out([&](const Indices& patch) { untangler(patch, whole_way_); }, least_contrast > 0);
   }
 
@@ -387,7 +387,7 @@ class Limiter {
 
   /// Whether a vertex has any of its way left to go back.
   bool may_go_back(std::uint32_t v) const {
-    return v != pinned_ && share_[v] != 0 && body_.on_front(v) && whole_way_[v] != Vec3d(0.0);
+    return v != pinned_ && share_[v] != 0 && constrained_.on_front(v) && whole_way_[v] != Vec3d(0.0);
   }
 
   /// Of each fault's corners those that are to go back: with which little is lost, and which have gone far back
@@ -476,16 +476,16 @@ class Limiter {
 
   /// What may be put somewhere else than its way leads; not what an obstacle may have stopped.
   bool may_leave_its_way(std::uint32_t v) const {
-    if (body_.obstacles && paths_.state[v] == VertexState::Collision) return false;
-    return distances_[v] != 0 && body_.on_front(v) && !body_.is_bound(v);
+    if (constrained_.obstacles && paths_.state[v] == VertexState::Collision) return false;
+    return distances_[v] != 0 && constrained_.on_front(v) && !constrained_.is_bound(v);
   }
   bool may_settle(std::uint32_t v) const { return may_leave_its_way(v) && is_short(v); }
 
   std::uint32_t vertex_of_front(std::uint32_t v) const {
-    return body_.front_vertex.empty() ? v : body_.front_vertex[v];
+    return constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
   }
   /// Whether a vertex, which is on the front, has to stay in planes.
-  bool is_held(std::uint32_t v) const { return body_.front.surface().is_held(vertex_of_front(v)); }
+  bool is_held(std::uint32_t v) const { return constrained_.front.surface().is_held(vertex_of_front(v)); }
 
   /// The short vertices with which most is lost, first those with the most.
   std::vector<std::uint32_t> vertices_to_settle() {
@@ -507,14 +507,14 @@ class Limiter {
 
   /// Puts short vertices, one by one, where live points around them go; there is room for these, and what is in the way
   /// of their faces goes back or aside, if less is lost with that. False if none has found a place.
-  bool settle(Stakes::Lines lines) {
+  bool settle(LiveArea::Lines lines) {
     if (faults_.any()) return false;
     std::size_t trials = 0;
     bool any = false;
     for (const auto v : vertices_to_settle()) {
       if (trials >= kMostTrials) break;
       if (!is_short(v)) continue;
-      if (lines == Stakes::Lines::All && is_held(v)) continue;
+      if (lines == LiveArea::Lines::All && is_held(v)) continue;
       any |= settle(v, lines, trials);
     }
     return any;
@@ -527,7 +527,7 @@ class Limiter {
 
   /// In the first of its places that it can be put in; else, in the first, with its neighbours, with the small feature
   /// that it is part of, or while what is in the way slides.
-  bool settle(std::uint32_t v, Stakes::Lines lines, std::size_t& trials) {
+  bool settle(std::uint32_t v, LiveArea::Lines lines, std::size_t& trials) {
     const auto try_at = [&](const std::vector<Move>& moves, const Aside* aside) {
       ++trials;
       return settle_at(moves, aside);
@@ -549,13 +549,13 @@ class Limiter {
   }
 
   /// And where the short vertices next to it have their distances; not where there are many.
-  std::vector<Move> with_short_neighbours(const Move& move, Stakes::Lines lines) {
+  std::vector<Move> with_short_neighbours(const Move& move, LiveArea::Lines lines) {
     std::vector<Move> moves{move};
     gathered_.add(move.vertex);
     const Indices around = with_rings(gathered_.take(), 1);
     if (around.size() > kMostAside) return moves;
     for (const auto w : around) {
-      if (w == move.vertex || !may_settle(w) || (lines == Stakes::Lines::All && is_held(w))) continue;
+      if (w == move.vertex || !may_settle(w) || (lines == LiveArea::Lines::All && is_held(w))) continue;
       if (const std::vector<Vec3d> places = stakes_.places(w, lines); !places.empty())
         moves.push_back({w, places.front()});
     }
@@ -611,7 +611,7 @@ class Limiter {
       old.push_back(old_of(v));
       moved.push_back(v);
       Vec3d whole_way = place - surface_.vertices[v];
-      if (is_held(v)) whole_way = body_.front.surface().along_border(vertex_of_front(v), whole_way);
+      if (is_held(v)) whole_way = constrained_.front.surface().along_border(vertex_of_front(v), whole_way);
       whole_way_[v] = round_way(whole_way, std::abs(distances_[v]));
       share_[v] = 1;
     }
@@ -660,7 +660,7 @@ class Limiter {
       if (!holds(old, v)) old.push_back(old_of(v));
       share_[v] = 1;
     }
-    Untangler(body_, distances_, aside.options)(sliding, whole_way_);
+    Untangler(constrained_, distances_, aside.options)(sliding, whole_way_);
     look(sliding);
     return true;
   }
@@ -687,7 +687,7 @@ class Limiter {
       if (share_[v] == 0) continue;
       for (const auto t : surface_.triangles_around(v))
         for (const auto w : surface_.triangles[t]) {
-          if (distances_[w] == 0 || !body_.on_front(w)) continue;
+          if (distances_[w] == 0 || !constrained_.on_front(w)) continue;
           const double most = share_[v] + steepest_change(w, v);
           if (!(share_[w] > most) || !is_short(w) || stakes_.area(w) > kMuchMoreArea * stakes_.area(v)) continue;
           share_[w] = most;
@@ -732,39 +732,40 @@ class Limiter {
     return wrong;
   }
 
-  Body body_;
+  ConstrainedSurface constrained_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
   const Distances& distances_;
   Paths& paths_;
   std::vector<Vec3d> whole_way_;
-  std::vector<double> share_;         // of the way that a vertex goes
-  std::optional<Refusals> refusals_;  // if any was pulled back
-  std::uint64_t turn_ = 0;            // of letting out
-  std::uint32_t pinned_ = kNone;      // does not go back
-  Indices pulled_;                    // vertices that have been pulled back at some time
-  Patches patches_;                   // that are being untangled
-  IndexGatherer gathered_;            // vertices
-  Stakes stakes_;
+  std::vector<double> share_;             // of the way that a vertex goes
+  std::optional<BlockedMoves> refusals_;  // if any was pulled back
+  std::uint64_t turn_ = 0;                // of letting out
+  std::uint32_t pinned_ = kNone;          // does not go back
+  Indices pulled_;                        // vertices that have been pulled back at some time
+  Patches patches_;                       // that are being untangled
+  IndexGatherer gathered_;                // vertices
+  LiveArea stakes_;
   FaultFinder& faults_;  // as things stand
-  const Precedent* followed_;
+  const WarmStart* followed_;
   LimitStatistics statistics_;
 };
 
 }  // namespace
 
-LimitStatistics untangle(FaultFinder& faults, const Body& body, std::span<const Vec3d> source,
+LimitStatistics untangle(FaultFinder& faults, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
                          const Distances& distances, Paths& paths, const ProgressCallback& callback) {
   Progress progress(callback, Stage::Limit, kExpectedRounds);
-  Limiter limiter(body, source, distances, paths, faults);
+  Limiter limiter(constrained, source, distances, paths, faults);
   limiter.untangle(progress);
   return limiter.finish();
 }
 
-LimitStatistics limit(FaultFinder& faults, const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                      Paths& paths, const ProgressCallback& callback, const Precedent* followed, Precedent* set) {
+LimitStatistics limit(FaultFinder& faults, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
+                      const Distances& distances, Paths& paths, const ProgressCallback& callback,
+                      const WarmStart* followed, WarmStart* set) {
   Progress progress(callback, Stage::Limit, kExpectedRounds);
-  Limiter limiter(body, source, distances, paths, faults, followed);
+  Limiter limiter(constrained, source, distances, paths, faults, followed);
   limiter.untangle(progress);
   limiter.pull_back_and_let_out(progress);
   return limiter.finish(set);

@@ -24,7 +24,7 @@ struct Growth {
   int rings;
   std::size_t most_vertices, most_collided = kAnyNumber;
 };
-struct Attempt {
+struct UntangleSetting {
   Untangler::Options options;
   std::span<const Growth> growths;
   /// Only patches in which one vertex has so many times as much area around it as another, and which this frees of all
@@ -40,20 +40,20 @@ inline constexpr Growth kHopefulGrowths[] = {{1, 1000, 20}, {2, 1000, 20}};
 inline constexpr Growth kSmoothGrowths[] = {{1, 1000, 20}, {2, 1000, 20}, {4, 1000, 3}, {6, 1000, 3}};
 inline constexpr Growth kSliverGrowths[] = {{1, 300}, {2, 300}, {3, 300}, {4, 300}, {6, 300}};
 inline constexpr double kContrast = 30;
-inline constexpr Attempt kAttempts[] = {{{1, 4, true, true}, kFarGrowths},
-                                        {{0.1, 10, true}, kNearGrowths},
-                                        {{1, 30, false}, kLessGrowths},
-                                        {{0.01, 10, false}, kNearestGrowths},
-                                        {{1, 60, false}, kSmoothGrowths},
-                                        {{1, 10, true}, kHopefulGrowths},
-                                        {{0.3, 2, true}, kHopefulGrowths},
-                                        {{3, 4, true}, kHopefulGrowths},
-                                        {{0.03, 30, true}, kHopefulGrowths},
-                                        {{1, 2, true}, kHopefulGrowths},
-                                        {{0.1, 4, false}, kHopefulGrowths},
-                                        {{1, 4, true, true, 0.5}, kSliverGrowths, kContrast},
-                                        {{1, 4, true, true, 1}, kSliverGrowths, kContrast},
-                                        {{1, 30, false, true, 0.5}, kSliverGrowths, kContrast}};
+inline constexpr UntangleSetting kSchedule[] = {{{1, 4, true, true}, kFarGrowths},
+                                                {{0.1, 10, true}, kNearGrowths},
+                                                {{1, 30, false}, kLessGrowths},
+                                                {{0.01, 10, false}, kNearestGrowths},
+                                                {{1, 60, false}, kSmoothGrowths},
+                                                {{1, 10, true}, kHopefulGrowths},
+                                                {{0.3, 2, true}, kHopefulGrowths},
+                                                {{3, 4, true}, kHopefulGrowths},
+                                                {{0.03, 30, true}, kHopefulGrowths},
+                                                {{1, 2, true}, kHopefulGrowths},
+                                                {{0.1, 4, false}, kHopefulGrowths},
+                                                {{1, 4, true, true, 0.5}, kSliverGrowths, kContrast},
+                                                {{1, 4, true, true, 1}, kSliverGrowths, kContrast},
+                                                {{1, 30, false, true, 0.5}, kSliverGrowths, kContrast}};
 
 // Then what has collided is tried in these, with so many rings around. If it is much, and one of them leaves more than
 // this share of it where it is, fronts have met, and there is no way out.

@@ -55,7 +55,7 @@ class QuasiNewton {
  public:
   void remember(std::span<const double> x, std::span<const double> next_x, std::span<const double> g,
                 std::span<const double> next_g) {
-    Pair pair{std::vector<double>(x.size()), std::vector<double>(x.size()), 0};
+    double2 pair{std::vector<double>(x.size()), std::vector<double>(x.size()), 0};
     for (std::size_t k = 0; k < x.size(); ++k) {
       pair.s[k] = next_x[k] - x[k];
       pair.y[k] = next_g[k] - g[k];
@@ -83,7 +83,7 @@ class QuasiNewton {
   }
 
  private:
-  struct Pair {
+  struct double2 {
     std::vector<double> s, y;  // of places and of gradients
     double rho;
   };
@@ -91,16 +91,16 @@ class QuasiNewton {
     for (std::size_t k = 0; k < a.size(); ++k) sum[k] += factor * a[k];
   }
 
-  std::deque<Pair> pairs_;
+  std::deque<double2> pairs_;
 };
 
 class Patch {
  public:
-  Patch(const Body& body, const Distances& distances, const Untangler::Options& options,
+  Patch(const ConstrainedSurface& constrained, const Distances& distances, const Untangler::Options& options,
         std::span<const std::uint32_t> vertices, std::span<Vec3d> way)
-      : body_(body),
-        surface_(body.surface),
-        front_(body.front.surface()),
+      : constrained_(constrained),
+        surface_(constrained.surface),
+        front_(constrained.front.surface()),
         distances_(distances),
         options_(options),
         free_(vertices.size()) {
@@ -155,7 +155,7 @@ class Patch {
 
   void add_point(std::uint32_t v, std::span<const Vec3d> way) {
     const double d = distances_[v];
-    points_.push_back({v, body_.hint(v), std::abs(d), d < 0 ? -1 : 1, 0, surface_.vertices[v] + way[v], {}, {}});
+    points_.push_back({v, constrained_.hint(v), std::abs(d), d < 0 ? -1 : 1, 0, surface_.vertices[v] + way[v], {}, {}});
   }
 
   std::uint32_t index_of(std::uint32_t v, std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
@@ -249,7 +249,7 @@ class Patch {
   /// in any case: in one of them, on the line between two, or not at all.
   void keep_borders() {
     for (Point& p : points_) {
-      const std::uint32_t v = body_.front_vertex.empty() ? p.vertex : body_.front_vertex[p.vertex];
+      const std::uint32_t v = constrained_.front_vertex.empty() ? p.vertex : constrained_.front_vertex[p.vertex];
       if (v == kNone) continue;
       const bool held = front_.is_held(v);
       const Vec3d& c = front_.conormals[v];
@@ -397,7 +397,7 @@ class Patch {
       TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
       double distance = std::sqrt(nearest.squared_distance);
       if (std::abs(distance - p.target) <= kSettled * p.target) {
-        const Closest closest = body_.front(p.x, p.hint);
+        const Closest closest = constrained_.front(p.x, p.hint);
         if (std::abs(closest.distance - p.target) <= kSettled * p.target) return;
         p.hint = closest.triangle;
         distance = closest.distance;
@@ -415,7 +415,7 @@ class Patch {
     p.x = before;
   }
 
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Surface& surface_;
   const Surface& front_;
   const Distances& distances_;
@@ -431,7 +431,7 @@ class Patch {
 }  // namespace
 
 void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const {
-  Patch work(body_, distances_, options_, patch, way);
+  Patch work(constrained_, distances_, options_, patch, way);
   work.untangle();
   work.store(way);
 }

@@ -30,8 +30,8 @@ class Untangler {
   };
 
   /// Keeps references to the body and the distances of its vertices.
-  Untangler(const Body& body, const Distances& distances, const Options& options)
-      : body_(body), distances_(distances), options_(options) {}
+  Untangler(const ConstrainedSurface& constrained, const Distances& distances, const Options& options)
+      : constrained_(constrained), distances_(distances), options_(options) {}
 
   /// Moves the patch's vertices, which are on the front and not at distance 0: `way` leads from each of the body's
   /// vertices to its place, at its distance for those of the patch, which are sorted. Reads the ways of the vertices
@@ -39,7 +39,7 @@ class Untangler {
   void operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const;
 
  private:
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Distances& distances_;
   Options options_;
 };

@@ -43,22 +43,22 @@ std::vector<std::size_t> find_precedents(std::span<const Distances> distances) {
 /// vertex, then around the last answer, are asked first, as they are no nearer than the closest: mostly all that is
 /// left to ask is whether they are the closest there. Where that does not settle, the straight line from the closest
 /// point to the end of the way is as good: along it the distance is its length.
-Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, double distance) {
+Vec3d way_to_distance(const ConstrainedSurface& constrained, std::uint32_t vertex, const Vec3d& way, double distance) {
   constexpr double kSettled = 1e-9;
-  const Vec3d& start = body.surface.vertices[vertex];
-  std::uint32_t hint = body.hint(vertex);
+  const Vec3d& start = constrained.surface.vertices[vertex];
+  std::uint32_t hint = constrained.hint(vertex);
   const auto beside = [&](const Vec3d& x) {
-    const TrianglePoint nearest = body.front.near(x, hint);
+    const TrianglePoint nearest = constrained.front.near(x, hint);
     return sample_at(x, hint, nearest);
   };
   const auto exactly = [&](const Vec3d& x) {
-    const Closest closest = body.front(x, hint);
+    const Closest closest = constrained.front(x, hint);
     hint = closest.triangle;
     return sample_at(x, closest);
   };
   const auto settled = [&](const Sample& at) { return std::abs(at.phi - distance) <= kSettled * distance; };
   const auto cut = [&](const Sample& near, const Sample& far, const auto& measure) {
-    return cut_at_distance(body.front.surface(), near, far, distance, measure, settled);
+    return cut_at_distance(constrained.front.surface(), near, far, distance, measure, settled);
   };
   const Sample first = beside(start + way * std::min(1.0, distance / way.length())), last = beside(start + way);
   if (!(last.phi > distance)) return way;
@@ -67,8 +67,8 @@ Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, 
     const Sample end = exactly(start + way);
     if (!(end.phi > distance)) return way;
     at = cut(at, end, exactly);
-    const Surface& front = body.front.surface();
-    const std::uint32_t on_front = body.front_vertex.empty() ? vertex : body.front_vertex[vertex];
+    const Surface& front = constrained.front.surface();
+    const std::uint32_t on_front = constrained.front_vertex.empty() ? vertex : constrained.front_vertex[vertex];
     if (!settled(at) && !front.is_held(on_front))
       return round_way(end.x - end.away * (1 - distance / end.phi) - start, distance);
   }

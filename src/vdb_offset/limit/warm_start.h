@@ -11,7 +11,7 @@ namespace vdb_offset {
 
 /// What became of an offset that goes farther than another of the same surface, to the same side. Where the nearer one
 /// folds or meets itself, that does so, too, and much of what has been found to free the one frees the other.
-struct Precedent {
+struct WarmStart {
   Distances distances;               ///< Of the body's vertices, as is all that follows.
   std::vector<Vec3d> way;            ///< To where each has ended up; world units.
   std::vector<double> achieved;      ///< The distance there.
@@ -29,6 +29,6 @@ std::vector<std::size_t> find_precedents(std::span<const Distances> distances);
 /// (world units, > 0) from the front; all of it if it ends no farther than that, unless such a place is found before.
 /// Should that place not be found, one at the distance on the line from the front to the end. What lies on the way is
 /// not looked at.
-Vec3d way_to_distance(const Body& body, std::uint32_t vertex, const Vec3d& way, double distance);
+Vec3d way_to_distance(const ConstrainedSurface& constrained, std::uint32_t vertex, const Vec3d& way, double distance);
 
 }  // namespace vdb_offset

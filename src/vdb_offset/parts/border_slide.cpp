@@ -18,21 +18,21 @@ constexpr double kSlideStep = 0.125;
 constexpr double kSlideTolerance = 1e-9;
 
 /// How a border vertex sets out: a unit vector, and whether it leads over the faces that stay.
-struct Track {
+struct SlideDirection {
   Vec3d direction;
   bool on_surface;
 };
 
 class BorderVertex {
  public:
-  BorderVertex(const Workpiece& work, const ClosestQuery& front, const ClosestQuery& rest, std::uint32_t vertex,
+  BorderVertex(const MeshParts& parts, const ClosestQuery& front, const ClosestQuery& rest, std::uint32_t vertex,
                double distance)
-      : whole_(*work.whole),
-        off_front_(work.off_front),
+      : whole_(*parts.whole),
+        off_front_(parts.off_front),
         front_(front),
         rest_(rest),
         vertex_(vertex),
-        on_front_(work.front_vertex[vertex]),
+        on_front_(parts.front_vertex[vertex]),
         hint_(front.surface().triangles_around(on_front_).front()),
         origin_(whole_.vertices[vertex]),
         target_(std::abs(distance)),
@@ -41,7 +41,7 @@ class BorderVertex {
 
   /// Where it comes to a stop: at its distance, if it gets there.
   Vec3d slide() {
-    const std::optional<Track> track = find_track();
+    const std::optional<SlideDirection> track = find_track();
     if (!track) return origin_;
     Vec3d here = origin_, direction = track->direction;
     double phi = 0, gone = 0;
@@ -123,7 +123,7 @@ class BorderVertex {
     return sum;
   }
 
-  std::optional<Track> find_track() const {
+  std::optional<SlideDirection> find_track() const {
     Vec3d mean(0.0), first(0.0), crease(0.0);
     for (const auto t : whole_.triangles_around(vertex_)) {
       const Vec3d& n = whole_.triangle_normals[t];
@@ -148,7 +148,7 @@ class BorderVertex {
     if (!(away.lengthSqr() > 0) || !(part_normal_.lengthSqr() > 0)) return std::nullopt;
     away.normalize();
     const bool turns_away = away.dot(part_normal_.unit()) < kTurnsAway;
-    return Track{turns_away ? -away : away, !turns_away};
+    return SlideDirection{turns_away ? -away : away, !turns_away};
   }
 
   const Surface& whole_;
@@ -164,35 +164,35 @@ class BorderVertex {
 
 }  // namespace
 
-BorderSlides::BorderSlides(const Workpiece& work, const ClosestQuery& front)
-    : work_(work), front_(front), rest_(*work.rest) {}
+BorderSlides::BorderSlides(const MeshParts& parts, const ClosestQuery& front)
+    : parts_(parts), front_(front), rest_(*parts.rest) {}
 
 Vec3d BorderSlides::operator()(std::uint32_t vertex, double distance) const {
-  return BorderVertex(work_, front_, rest_, vertex, distance).slide();
+  return BorderVertex(parts_, front_, rest_, vertex, distance).slide();
 }
 
 bool BorderSlides::lead(std::uint32_t vertex) const {
   constexpr double kInPlane = 1e-6;  // of a normal's cosine
   const Surface& front = front_.surface();
-  const std::uint32_t on_front = work_.front_vertex[vertex];
+  const std::uint32_t on_front = parts_.front_vertex[vertex];
   if (!front.is_held(on_front)) return true;
-  const auto around = work_.whole->triangles_around(vertex);
+  const auto around = parts_.whole->triangles_around(vertex);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
-    const Vec3d& n = work_.whole->triangle_normals[t];
-    return work_.off_front[t] && n.lengthSqr() > 0 && std::abs(n.dot(front.conormals[on_front])) < 1 - kInPlane;
+    const Vec3d& n = parts_.whole->triangle_normals[t];
+    return parts_.off_front[t] && n.lengthSqr() > 0 && std::abs(n.dot(front.conormals[on_front])) < 1 - kInPlane;
   });
 }
 
-void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
+void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
                    Paths& paths) {
   std::vector<std::uint32_t> border;
-  for (std::uint32_t v = 0; v < work.at_border.size(); ++v)
-    if (work.at_border[v] && distances[work.front_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
-  work.bound.assign(work.at_border.begin(), work.at_border.end());
+  for (std::uint32_t v = 0; v < parts.at_border.size(); ++v)
+    if (parts.at_border[v] && distances[parts.front_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
+  parts.bound.assign(parts.at_border.begin(), parts.at_border.end());
   const auto move = [&](std::size_t i) {
-    const std::uint32_t v = border[i], f = work.front_vertex[v];
+    const std::uint32_t v = border[i], f = parts.front_vertex[v];
     const double target = std::abs(distances[f]);
-    paths.displacement[f] = round_way(slides(v, distances[f]) - work.whole->vertices[v], target);
+    paths.displacement[f] = round_way(slides(v, distances[f]) - parts.whole->vertices[v], target);
     const Vec3d place = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
     const Closest closest = front(place - front.surface().origin, front.surface().triangles_around(f).front());
     if (!paths.trace.empty()) paths.trace[f].clear();

@@ -17,7 +17,7 @@ namespace vdb_offset {
 class BorderSlides {
  public:
   /// Keeps references to both. \pre something of the mesh stays.
-  BorderSlides(const Workpiece& work, const ClosestQuery& front);
+  BorderSlides(const MeshParts& parts, const ClosestQuery& front);
 
   /// Where a vertex of the whole mesh, on the border, is at this distance from the part, negative inward; or as near to
   /// that as it gets. In the front's frame.
@@ -26,14 +26,14 @@ class BorderSlides {
   bool lead(std::uint32_t vertex) const;
 
  private:
-  const Workpiece& work_;
+  const MeshParts& parts_;
   const ClosestQuery& front_;
   ClosestQuery rest_;
 };
 
 /// Gives the border vertices new paths, to their distances. They are bound to these from then on. Distances and paths
 /// are those of the front's vertices. The result does not depend on the number of threads.
-void slide_borders(Workpiece& work, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
+void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
                    Paths& paths);
 
 }  // namespace vdb_offset

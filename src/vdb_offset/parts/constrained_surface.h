@@ -30,7 +30,7 @@ struct FileFrame {
 ///
 /// The surface holds what moves and what is in its way: the whole mesh where only a part of it is offset, and obstacles
 /// behind it. It stands in the front's frame. Spans are empty where the surface is the front itself.
-struct Body {
+struct ConstrainedSurface {
   const ClosestQuery& front;
   const Surface& surface;
   std::span<const std::uint32_t> front_vertex;  ///< Of each vertex; kNone where it is not on the front.

@@ -26,23 +26,23 @@ struct SomeFaces {
 };
 
 /// Tells the whole's vertices and triangles where they are on the front, and which lie at its border.
-void relate(PolygonView mesh, std::span<const std::uint8_t> only, Workpiece& work) {
-  const Surface& whole = *work.whole;
-  work.front_vertex.assign(whole.vertices.size(), kNone);
+void relate(PolygonView mesh, std::span<const std::uint8_t> only, MeshParts& parts) {
+  const Surface& whole = *parts.whole;
+  parts.front_vertex.assign(whole.vertices.size(), kNone);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    if (work.front.welded[v] != kNone) work.front_vertex[whole.welded[v]] = work.front.welded[v];
-  work.off_front.assign(whole.triangles.size(), 0);
-  work.at_border.assign(whole.vertices.size(), 0);
+    if (parts.front.welded[v] != kNone) parts.front_vertex[whole.welded[v]] = parts.front.welded[v];
+  parts.off_front.assign(whole.triangles.size(), 0);
+  parts.at_border.assign(whole.vertices.size(), 0);
   for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
     if (only.empty() || only[whole.face[t]]) continue;
-    work.off_front[t] = 1;
-    for (const auto v : whole.triangles[t]) work.at_border[v] = work.front_vertex[v] != kNone;
+    parts.off_front[t] = 1;
+    for (const auto v : whole.triangles[t]) parts.at_border[v] = parts.front_vertex[v] != kNone;
   }
 }
 
 }  // namespace
 
-std::vector<Vec3d> Workpiece::source(PolygonView mesh) const {
+std::vector<Vec3d> MeshParts::source(PolygonView mesh) const {
   std::vector<Vec3d> positions;
   positions.reserve(surface().vertices.size());
   for (const auto v : surface().representative)
@@ -52,14 +52,14 @@ std::vector<Vec3d> Workpiece::source(PolygonView mesh) const {
   return positions;
 }
 
-Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options) {
-  const bool parts = !options.only.empty();
-  if (parts && options.only.size() != mesh.face_count())
+MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
+  const bool of_parts = !options.only.empty();
+  if (of_parts && options.only.size() != mesh.face_count())
     throw InvalidInput("part: expected a mark for each of " + std::to_string(mesh.face_count()) + " faces, got " +
                        std::to_string(options.only.size()));
-  Workpiece work;
-  if (!parts) {
-    work.front = build_surface(mesh, options.weld, options.orient);
+  MeshParts parts;
+  if (!of_parts) {
+    parts.front = build_surface(mesh, options.weld, options.orient);
   } else {
     const SomeFaces chosen(mesh, options.only, 1), left(mesh, options.only, 0);
     if (chosen.empty()) throw InvalidInput("part: expected at least one face, got none");
@@ -68,35 +68,36 @@ Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options) {
     const auto build = [&](PolygonView faces) {
       return build_welded(faces, restricted(welding, faces), options.orient);
     };
-    work.front = build(chosen.of(mesh));
-    work.whole = build_welded(mesh, welding, options.orient);
-    if (!left.empty()) work.rest = build(left.of(mesh));
+    parts.front = build(chosen.of(mesh));
+    parts.whole = build_welded(mesh, welding, options.orient);
+    if (!left.empty()) parts.rest = build(left.of(mesh));
   }
   if (options.obstacles.face_count() > 0) {
-    if (!work.whole) work.whole = work.front;
-    work.obstacle_mesh = options.obstacles;
-    work.obstacles = build_surface(options.obstacles, {});
+    if (!parts.whole) parts.whole = parts.front;
+    parts.obstacle_mesh = options.obstacles;
+    parts.obstacles = build_surface(options.obstacles, {});
   }
-  if (work.whole) relate(mesh, options.only, work);
-  return work;
+  if (parts.whole) relate(mesh, options.only, parts);
+  return parts;
 }
 
-void place(Workpiece& work, double voxel_size, const SymmetryOptions& symmetry, double reach) {
-  place(work.front, voxel_size);
-  hold_in_planes(work.front, symmetry, reach);
-  for (std::optional<Surface>* other : {&work.whole, &work.rest, &work.obstacles})
-    if (*other) place_in_frame(**other, work.front.origin);
-  if (!work.obstacles) return;
-  append(*work.whole, *work.obstacles);
-  work.front_vertex.resize(work.whole->vertices.size(), kNone);
-  work.at_border.resize(work.whole->vertices.size(), 0);
-  work.off_front.resize(work.whole->triangles.size(), 1);
+void place(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
+  place(parts.front, voxel_size);
+  hold_in_planes(parts.front, symmetry, reach);
+  for (std::optional<Surface>* other : {&parts.whole, &parts.rest, &parts.obstacles})
+    if (*other) place_in_frame(**other, parts.front.origin);
+  if (!parts.obstacles) return;
+  append(*parts.whole, *parts.obstacles);
+  parts.front_vertex.resize(parts.whole->vertices.size(), kNone);
+  parts.at_border.resize(parts.whole->vertices.size(), 0);
+  parts.off_front.resize(parts.whole->triangles.size(), 1);
 }
 
-Distances distances_on_body(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing) {
-  const bool all_move = work.front_vertex.empty();
+Distances distances_on_body(const MeshParts& parts, Border border, const Distances& of_input,
+                            std::size_t& disagreeing) {
+  const bool all_move = parts.front_vertex.empty();
   if (of_input.uniform() && all_move) return of_input;
-  const Surface& surface = work.surface();
+  const Surface& surface = parts.surface();
   const std::size_t count = surface.vertices.size();
   std::vector<double> sum(count, 0.0);
   std::vector<std::uint32_t> copies(count, 0), apart(count, 0);
@@ -109,7 +110,7 @@ Distances distances_on_body(const Workpiece& work, Border border, const Distance
   }
   for (std::size_t w = 0; w < count; ++w) {
     disagreeing += apart[w];
-    const bool stays = !all_move && (work.front_vertex[w] == kNone || (border == Border::Fixed && work.at_border[w]));
+    const bool stays = !all_move && (parts.front_vertex[w] == kNone || (border == Border::Fixed && parts.at_border[w]));
     if (stays) sum[w] = 0;
     else sum[w] = apart[w] ? sum[w] / copies[w] : of_input[surface.representative[w]];  // not rounded where all agree
   }

@@ -13,7 +13,7 @@
 
 namespace vdb_offset {
 
-struct WorkpieceOptions {
+struct MeshPartsOptions {
   std::span<const std::uint8_t> only;  ///< Of each face: 1 if it is part of the front. Empty: all are.
   PolygonView obstacles;               ///< Without faces: none.
   WeldOptions weld;
@@ -21,7 +21,7 @@ struct WorkpieceOptions {
 };
 
 /// A mesh, sorted into what distances are measured from, what stays, and what is in the way.
-struct Workpiece {
+struct MeshParts {
   Surface front;                 ///< What is offset.
   std::optional<Surface> whole;  ///< All of the mesh, then the obstacles; empty if that is the front alone.
   std::optional<Surface> rest;   ///< What stays of the mesh; empty if nothing does.
@@ -33,8 +33,8 @@ struct Workpiece {
   std::vector<std::uint8_t> at_border;  ///< Of each vertex of the whole: 1 if both the front and the rest have it.
 
   const Surface& surface() const { return whole ? *whole : front; }
-  Body body(const ClosestQuery& query, const Obstacles* keep_away, bool off_source,
-            std::size_t resting_faces = 0) const {
+  ConstrainedSurface constrained(const ClosestQuery& query, const Obstacles* keep_away, bool off_source,
+                                 std::size_t resting_faces = 0) const {
     return {query, surface(), front_vertex, off_front, bound, keep_away, off_source, resting_faces};
   }
   /// Where the vertices of surface() stand in the input, to the last bit.
@@ -42,16 +42,16 @@ struct Workpiece {
 };
 
 /// \throw InvalidInput as build_surface(), and if `only` is not one a face or holds no face.
-Workpiece build_workpiece(PolygonView mesh, const WorkpieceOptions& options);
+MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options);
 
 /// Puts all of it into the front's frame (see place()), and tells which vertices of the front stay in planes, none of
 /// which goes farther than `reach`.
 /// \throw InvalidInput as hold_in_planes()
-void place(Workpiece& workpiece, double voxel_size, const SymmetryOptions& symmetry, double reach);
+void place(MeshParts& workpiece, double voxel_size, const SymmetryOptions& symmetry, double reach);
 
 /// The distances of the body's vertices: the mean of those of the input's vertices at one place, which go as one; 0 for
 /// what stays. `disagreeing` grows by how many of them are asked for another than the first there. \pre placed
-Distances distances_on_body(const Workpiece& work, Border border, const Distances& of_input, std::size_t& disagreeing);
+Distances distances_on_body(const MeshParts& parts, Border border, const Distances& of_input, std::size_t& disagreeing);
 
 /// Hands the distances of a surface's vertices back to the input's.
 Distances distances_of_input(const Surface& surface, const Distances& distances);

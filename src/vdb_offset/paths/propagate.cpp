@@ -68,7 +68,8 @@ class Marches {
     DirectionSampler sampler(directions_);
     std::vector<Stop> stops;
     std::vector<End> ends;
-    for (const auto attempt : {Attempt::InHaste, Attempt::FromThere, Attempt::FromThere, Attempt::Anew}) {
+    for (const auto attempt :
+         {UntangleSetting::InHaste, UntangleSetting::FromThere, UntangleSetting::FromThere, UntangleSetting::Anew}) {
       ends.clear();
       for (std::size_t v = begin_of(block); v < end_of(block); ++v)
         for (const int side : {1, -1}) {
@@ -84,7 +85,7 @@ class Marches {
   // Vertices are moved in blocks of so many.
   static constexpr std::size_t kBlock = 128;
 
-  enum class Attempt { InHaste, FromThere, Anew };
+  enum class UntangleSetting { InHaste, FromThere, Anew };
   enum class Look { Near, Everywhere };
   /// Where a vertex ended up on its way to a stop.
   struct End {
@@ -154,7 +155,7 @@ class Marches {
     std::erase_if(sets, [&](std::size_t set) {
       std::vector<StraightTry> tries;
       for (const auto v : vertices) add_try(set, v, tries);
-      return StraightWays<Query>(query_, tries).may_all_end();
+      return StraightPaths<Query>(query_, tries).may_all_end();
     });
     return sets;
   }
@@ -168,7 +169,7 @@ class Marches {
         add_try(set, v, tries);
         set_of.resize(tries.size(), set);
       }
-    const auto ends = StraightWays<Query>(query_, tries)();
+    const auto ends = StraightPaths<Query>(query_, tries)();
     std::vector<std::size_t> without;
     for (std::size_t i = 0; i < tries.size(); ++i)
       if (ends[i]) arrival_[set_of[i]][tries[i].vertex] = *ends[i];
@@ -192,8 +193,8 @@ class Marches {
       auto& flag = found[surface_.component[v]];
       const double distance = distances_[set][v];
       if (!flag.load(std::memory_order_relaxed) || distance == 0) continue;
-      Traveller<Query> traveller(query_, directions_, sampler, distance < 0 ? -1 : 1, static_cast<std::uint32_t>(v),
-                                 Pace::Careful);
+      VertexMarch<Query> traveller(query_, directions_, sampler, distance < 0 ? -1 : 1, static_cast<std::uint32_t>(v),
+                                   Pace::Careful);
       if (options_.traces == Traces::Keep) traveller.keep_trace({});
       const auto end = traveller.go_along_ridges(std::abs(distance), roughness_);
       if (options_.traces == Traces::Keep) paths_[set].trace[v] = traveller.trace();
@@ -203,9 +204,9 @@ class Marches {
   }
 
   /// Where vertex v has to march to for one set, if it goes to this side at all and has not arrived.
-  void add_stop(std::size_t set, std::size_t v, int side, Attempt attempt, std::vector<Stop>& stops,
+  void add_stop(std::size_t set, std::size_t v, int side, UntangleSetting attempt, std::vector<Stop>& stops,
                 std::vector<End>& ends) const {
-    const bool again = attempt != Attempt::InHaste;
+    const bool again = attempt != UntangleSetting::InHaste;
     const double distance = distances_[set][v];
     const Stop stop{std::abs(distance), set};
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
@@ -241,18 +242,18 @@ class Marches {
     return true;
   }
 
-  void march(DirectionSampler& sampler, std::size_t v, int side, Attempt attempt, std::vector<Stop>& stops,
+  void march(DirectionSampler& sampler, std::size_t v, int side, UntangleSetting attempt, std::vector<Stop>& stops,
              std::vector<End>& ends) const {
     std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
     const auto vertex = static_cast<std::uint32_t>(v);
-    const auto pace = attempt == Attempt::Anew ? Pace::Careful : Pace::Hasty;
-    Traveller<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
+    const auto pace = attempt == UntangleSetting::Anew ? Pace::Careful : Pace::Hasty;
+    VertexMarch<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
     const bool keep = options_.traces == Traces::Keep;
     const auto tell = [&](const Stop& stop, const Arrival& end) {
       ends.push_back({vertex, stop, end});
       if (keep) paths_[stop.set].trace[v] = traveller.trace();
     };
-    if (attempt != Attempt::FromThere) {
+    if (attempt != UntangleSetting::FromThere) {
       if (keep) traveller.keep_trace({});
       traveller.march(stops, tell);
       return;

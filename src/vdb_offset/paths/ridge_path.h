@@ -15,7 +15,7 @@
 namespace vdb_offset {
 
 /// A way's corners, the last where it ends, and what is closest there.
-struct RidgeWay {
+struct RidgePath {
   static constexpr std::size_t kMostCorners = 6;
   bool found = false;
   std::array<Vec3d, kMostCorners> corners;
@@ -113,14 +113,14 @@ class RidgeFollower {
       : query_(query), target_(target), tolerance_(tolerance), end_tolerance_(end_tolerance) {}
 
   /// From x, what is closest to which is known, and not at x itself.
-  RidgeWay operator()(const Vec3d& x, const Closest& closest) const {
+  RidgePath operator()(const Vec3d& x, const Closest& closest) const {
     using Rise = detail::Ridge::Rise;
-    RidgeWay way;
+    RidgePath way;
     way.end = closest;
     Vec3d from = x;
     detail::Ridge ridge((x - closest.point) / closest.distance);
-    for (int turn = 0; turn < kMostTurns && way.count < RidgeWay::kMostCorners; ++turn) {
-      Leg leg = next_leg(from, way.end, ridge);
+    for (int turn = 0; turn < kMostTurns && way.count < RidgePath::kMostCorners; ++turn) {
+      RidgeSegment leg = next_leg(from, way.end, ridge);
       if (leg.ends == Ends::AtTarget) settle(from, ridge, leg);
       if (leg.ends == Ends::Nowhere) break;
       from += ridge.way() * leg.length;
@@ -142,7 +142,7 @@ class RidgeFollower {
 
   /// AtOther: where something else is as near.
   enum class Ends : std::uint8_t { Nowhere, OnTheWay, AtOther, AtTarget };
-  struct Leg {
+  struct RidgeSegment {
     Ends ends = Ends::Nowhere;
     double length = 0;
     Closest end;
@@ -150,9 +150,9 @@ class RidgeFollower {
     Vec3d away_from_other;
   };
 
-  Leg next_leg(const Vec3d& from, const Closest& here, const detail::Ridge& ridge) const {
+  RidgeSegment next_leg(const Vec3d& from, const Closest& here, const detail::Ridge& ridge) const {
     constexpr int kMostParts = 16;
-    Leg leg{Ends::AtTarget, (target_ - here.distance) / ridge.slope(), {}, 0, Vec3d(0.0)};
+    RidgeSegment leg{Ends::AtTarget, (target_ - here.distance) / ridge.slope(), {}, 0, Vec3d(0.0)};
     for (int part = 0; part < kMostParts; ++part) {
       const Vec3d end = from + ridge.way() * leg.length;
       leg.end = query_(end, here.triangle);
@@ -160,7 +160,7 @@ class RidgeFollower {
       if (!(leg.end.distance > 0)) return {};
       if (std::abs(short_by) <= tolerance_) {
         const bool found = is_free(from, here, ridge, leg) && (leg.ends != Ends::AtOther || is_plane(from, ridge, leg));
-        return found ? leg : Leg{};
+        return found ? leg : RidgeSegment{};
       }
       leg.other_at = leg.length;
       leg.away_from_other = (end - leg.end.point) / leg.end.distance;
@@ -178,7 +178,7 @@ class RidgeFollower {
   }
 
   /// To the target itself, where planes are not quite what they should be; or to what is in the way just there.
-  void settle(const Vec3d& from, const detail::Ridge& ridge, Leg& leg) const {
+  void settle(const Vec3d& from, const detail::Ridge& ridge, RidgeSegment& leg) const {
     constexpr int kMostSteps = 5;
     double left = target_ - leg.end.distance;
     for (int i = 0; i < kMostSteps && std::abs(left) > end_tolerance_; ++i) {
@@ -193,7 +193,7 @@ class RidgeFollower {
   }
 
   /// Whether the other is as near at the leg's end as it would be if it were a plane: just beyond, where it is nearest.
-  bool is_plane(const Vec3d& from, const detail::Ridge& ridge, Leg& leg) const {
+  bool is_plane(const Vec3d& from, const detail::Ridge& ridge, RidgeSegment& leg) const {
     constexpr double kBeyond = 0.1, kRougher = 4;  // where several others are about as near
     const double beyond = kBeyond * (leg.other_at - leg.length);
     const Vec3d x = from + ridge.way() * (leg.length + beyond);
@@ -205,7 +205,7 @@ class RidgeFollower {
   }
 
   /// Covers the leg, from its end, with balls that hold nothing.
-  bool is_free(const Vec3d& from, const Closest& here, const detail::Ridge& ridge, const Leg& leg) const {
+  bool is_free(const Vec3d& from, const Closest& here, const detail::Ridge& ridge, const RidgeSegment& leg) const {
     double at = leg.length - leg.end.distance;
     while (at > here.distance) {
       const double distance = query_(from + ridge.way() * at, here.triangle).distance;

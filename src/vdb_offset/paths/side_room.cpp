@@ -20,7 +20,7 @@ SideRoom look(const Query& front, const Distances& distances) {
   std::size_t asked = 0, here = 0, there = 0;
   for (std::size_t i = 0; i < count; i += step) {
     const auto v = static_cast<std::uint32_t>(i);
-    const Start start = start_of(surface, v);
+    const StartDirection start = start_of(surface, v);
     const double distance = distances[v];
     if (distance == 0 || surface.triangles_around(v).empty() || !(start.slope > kLeastSlopeSeen)) continue;
     const auto has_room = [&](double way) {

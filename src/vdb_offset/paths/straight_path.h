@@ -38,14 +38,14 @@ struct StraightTry {
 /// that those faces make. All are answered together, in rounds. Of a Surface, by its ClosestQuery, and of a Polyline,
 /// by its CurveQuery, alike.
 template <class Query>
-class StraightWays {
+class StraightPaths {
  public:
   /// Tries are best of vertices near each other, with those of one vertex and side next to each other. The ends depend
   /// only on the tries together.
-  StraightWays(const Query& query, std::span<const StraightTry> tries) : query_(query), tries_(tries) {
+  StraightPaths(const Query& query, std::span<const StraightTry> tries) : query_(query), tries_(tries) {
     const auto& surface = query.surface();
     for (const StraightTry& one : tries) {
-      const Start start = start_of(surface, one.vertex);
+      const StartDirection start = start_of(surface, one.vertex);
       lines_.push_back({surface.vertices[one.vertex], start.direction * one.side, start.slope});
       hints_.push_back(surface.triangles_around(one.vertex).front());
     }

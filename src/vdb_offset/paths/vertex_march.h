@@ -42,11 +42,11 @@ using ShapeOf = std::remove_cvref_t<decltype(std::declval<const Query&>().surfac
 
 /// One vertex on its way.
 template <class Query>
-class Traveller {
+class VertexMarch {
  public:
   /// `side` is 1 on the way outward, -1 inward.
-  Traveller(const Query& query, const DirectionField& field, DirectionSampler& sampler, int side, std::uint32_t vertex,
-            Pace pace, const Obstacles* obstacles = nullptr)
+  VertexMarch(const Query& query, const DirectionField& field, DirectionSampler& sampler, int side,
+              std::uint32_t vertex, Pace pace, const Obstacles* obstacles = nullptr)
       : query_(query),
         sampler_(sampler),
         surface_(query.surface()),
@@ -57,7 +57,7 @@ class Traveller {
         origin_(surface_.vertices[vertex]),
         hint_(surface_.triangles_around(vertex).front()),
         pace_(pace) {
-    const Start start = start_of(surface_, vertex);
+    const StartDirection start = start_of(surface_, vertex);
     normal_ = start.direction * side_;
     slope_ = start.slope;
     if (obstacles) guard_.emplace(*obstacles, origin_, side);
@@ -70,7 +70,7 @@ class Traveller {
     const double tolerance = std::clamp(roughness, kStopTolerance * target, kRoughest * target);
     const auto first = leave_along_ridge(tolerance);
     if (!first) return std::nullopt;
-    const RidgeWay way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
+    const RidgePath way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
         first->x, {first->phi, first->triangle, first->feature, false, first->x - first->away});
     if (!way.found) return std::nullopt;
     if (trace_) {

@@ -59,12 +59,12 @@ std::size_t count_torn(const Surface& surface, PolygonView source, std::span<con
 }
 
 /// The median distance of the front's vertices, with the sign of the side that most of them lie on.
-double find_distance(const Body& body, std::span<const Vec3d> places) {
-  const Surface& front = body.front.surface();
+double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3d> places) {
+  const Surface& front = constrained.front.surface();
   std::vector<Vec3d> points;
   for (std::uint32_t v = 0; v < places.size(); ++v)
-    if (body.on_front(v)) points.push_back(places[v] - front.origin);
-  const std::vector<Closest> closest = closest_points(body.front, points);
+    if (constrained.on_front(v)) points.push_back(places[v] - front.origin);
+  const std::vector<Closest> closest = closest_points(constrained.front, points);
   std::vector<double> distance;
   distance.reserve(closest.size());
   std::ptrdiff_t outside = 0;
@@ -96,26 +96,27 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Dis
 
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
   const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
-  Workpiece work = build_workpiece(space.view(), {options.only, options.obstacles, options.weld, options.orient});
-  result.facts = options.metric.even() ? work.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
-  place(work, work.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
-  const Surface& surface = work.surface();
-  const ClosestQuery query(work.front);
-  const std::vector<Vec3d> source = work.source(space.view()),
-                           places = places_of(surface, source, moved.view().positions), in_file = work.source(mesh),
+  MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
+  result.facts =
+      options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
+  place(parts, parts.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
+  const Surface& surface = parts.surface();
+  const ClosestQuery query(parts.front);
+  const std::vector<Vec3d> source = parts.source(space.view()),
+                           places = places_of(surface, source, moved.view().positions), in_file = parts.source(mesh),
                            placed_in_file = places_of(surface, in_file, positions);
   std::optional<Surroundings> surroundings;
-  if (work.obstacles) {
-    surroundings.emplace(work, source, options.clearance);
+  if (parts.obstacles) {
+    surroundings.emplace(parts, source, options.clearance);
     result.obstacles = surroundings->facts(places);
   }
-  Body body = work.body(query, surroundings ? &surroundings->obstacles() : nullptr, false);
+  ConstrainedSurface constrained = parts.constrained(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, placed_in_file};
-  if (!options.metric.even()) body.file = &file;
+  if (!options.metric.even()) constrained.file = &file;
   result.torn = count_torn(surface, mesh, positions, options.precision);
-  result.distances = options.distance ? *options.distance : Distances(find_distance(body, places));
+  result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, places));
   std::size_t disagreeing = 0;
-  const Distances distances = distances_on_body(work, options.border, result.distances, disagreeing);
+  const Distances distances = distances_on_body(parts, options.border, result.distances, disagreeing);
   result.distances = distances_of_input(surface, distances);
   result.distance = result.distances.farthest();
   if (result.distance == 0) {
@@ -125,14 +126,14 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   }
   std::optional<SelfCrossings> source_crossings;
   if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
-  FaultFinder finder(body, source, distances, options.precision, std::move(source_crossings));
+  FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));
   finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
   result.crossings_near_source = finder.crossings_near_source();
   result.more_source_crossings = finder.source_crossings().has_more();
   judge_vertices(surface, finder, distances, options.precision, result);
-  result.interior = measure_interior(body, places, distances);
+  result.interior = measure_interior(constrained, places, distances);
 }
 
 }  // namespace

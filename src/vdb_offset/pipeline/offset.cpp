@@ -26,7 +26,7 @@
 #include "vdb_offset/field/sweep.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/layers/growth_columns.h"
-#include "vdb_offset/layers/surface_stacker.h"
+#include "vdb_offset/layers/surface_layer_grower.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/limit/warm_start.h"
 #include "vdb_offset/mesh/layer_heights.h"
@@ -75,23 +75,23 @@ OffsetResult unmoved(PolygonView mesh) {
 }
 
 /// Those of the front's vertices among the body's.
-Distances distances_on_front(const Workpiece& work, const Distances& of_body) {
-  if (work.front_vertex.empty() || of_body.uniform()) return of_body;
-  std::vector<double> each(work.front.vertices.size(), 0.0);
-  for (std::size_t w = 0; w < work.front_vertex.size(); ++w)
-    if (work.front_vertex[w] != kNone) each[work.front_vertex[w]] = of_body[w];
+Distances distances_on_front(const MeshParts& parts, const Distances& of_body) {
+  if (parts.front_vertex.empty() || of_body.uniform()) return of_body;
+  std::vector<double> each(parts.front.vertices.size(), 0.0);
+  for (std::size_t w = 0; w < parts.front_vertex.size(); ++w)
+    if (parts.front_vertex[w] != kNone) each[parts.front_vertex[w]] = of_body[w];
   return Distances(std::move(each));
 }
 
 /// The front's paths as those of the body's vertices; who is not on the front stays, as was asked.
-Paths paths_of_body(const Workpiece& work, Paths of_front) {
-  if (work.front_vertex.empty()) return of_front;
-  const std::size_t count = work.front_vertex.size();
+Paths paths_of_body(const MeshParts& parts, Paths of_front) {
+  if (parts.front_vertex.empty()) return of_front;
+  const std::size_t count = parts.front_vertex.size();
   Paths paths{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<double>(count, 0.0),
               std::vector<VertexState>(count, VertexState::Reached), std::vector<std::uint32_t>(count, kNone),
               of_front.straight};
   for (std::size_t w = 0; w < count; ++w) {
-    const auto f = work.front_vertex[w];
+    const auto f = parts.front_vertex[w];
     if (f == kNone) continue;
     paths.displacement[w] = of_front.displacement[f];
     paths.achieved[w] = of_front.achieved[f];
@@ -101,7 +101,7 @@ Paths paths_of_body(const Workpiece& work, Paths of_front) {
   if (of_front.trace.empty()) return paths;
   paths.trace.resize(count);
   for (std::size_t w = 0; w < count; ++w)
-    if (work.front_vertex[w] != kNone) paths.trace[w] = std::move(of_front.trace[work.front_vertex[w]]);
+    if (parts.front_vertex[w] != kNone) paths.trace[w] = std::move(of_front.trace[parts.front_vertex[w]]);
   return paths;
 }
 
@@ -144,14 +144,14 @@ struct Yield {
   std::size_t results = 1, layers = 0;
 };
 
-GridPlan plan(const Workpiece& work, PolygonView mesh, const Reach& farthest, const OffsetOptions& options, int threads,
-              const Yield& yield) {
+GridPlan plan(const MeshParts& parts, PolygonView mesh, const Reach& farthest, const OffsetOptions& options,
+              int threads, const Yield& yield) {
   std::size_t beside = layers_bytes(mesh, yield.layers) + results_bytes(mesh, yield.results);
-  for (const auto* surface : {&work.whole, &work.rest, &work.obstacles})
+  for (const auto* surface : {&parts.whole, &parts.rest, &parts.obstacles})
     if (*surface) beside += surface_bytes(**surface);
   if (options.collision == Collision::Limit) beside += kLimitBytes * mesh.positions.size();
   if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
-  return plan_grid(work.front, farthest, options.grid, options.max_memory, threads, {beside});
+  return plan_grid(parts.front, farthest, options.grid, options.max_memory, threads, {beside});
 }
 
 bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthest.outside > 0; }
@@ -166,7 +166,7 @@ class Pipeline {
     const Reach farthest = farthest_of(wanted);
     prepare(farthest, {.results = wanted.size()});
     // The body is complete by now, obstacles and all.
-    if (options_.off_source) junctions_ = find_junctions(work_.front, mesh_, options_.only);
+    if (options_.off_source) junctions_ = find_junctions(parts_.front, mesh_, options_.only);
     std::vector<std::size_t> disagreeing(wanted.size(), 0);
     for (std::size_t i = 0; i < wanted.size(); ++i) asked_.push_back(on_body(wanted[i], disagreeing[i]));
     for (const Distances& asked : asked_) distances_.push_back(without_junctions(asked));
@@ -175,7 +175,8 @@ class Pipeline {
       make(results);
       if (options_.keep_field) results.front().field = std::make_shared<DistanceField>(std::move(field_));
     } else {
-      if (work_.obstacles) place(work_, std::max(work_.front.facts.diagonal, kLeastSize) / 256, options_.symmetry, 0);
+      if (parts_.obstacles)
+        place(parts_, std::max(parts_.front.facts.diagonal, kLeastSize) / 256, options_.symmetry, 0);
       look_around();
       for (std::size_t i = 0; i < results.size(); ++i) results[i] = stay(distances_[i]);
     }
@@ -196,27 +197,28 @@ class Pipeline {
     std::vector<Paths> paths = march(Ridges::Smooth);
     const std::vector<double> marched = paths.front().achieved;
     OffsetStatistics statistics = shared_;
-    const Body body = work_.body(*query_, keep_away(), true, slides_ ? mesh_.face_count() : 0);
-    const std::vector<Vec3d> source = work_.source(mesh_);
+    const ConstrainedSurface constrained =
+        parts_.constrained(*query_, keep_away(), true, slides_ ? mesh_.face_count() : 0);
+    const std::vector<Vec3d> source = parts_.source(mesh_);
     std::optional<FaultFinder> faults;
     {
       const StageTimer timer(statistics.seconds, Stage::Limit);
-      faults.emplace(body, source, distances_.front(), options_.precision, source_crossings_);
+      faults.emplace(constrained, source, distances_.front(), options_.precision, source_crossings_);
       faults->look_at_ends(paths.front());
-      statistics.limit = untangle(*faults, body, source, distances_.front(), paths.front(), options_.progress);
+      statistics.limit = untangle(*faults, constrained, source, distances_.front(), paths.front(), options_.progress);
     }
-    std::optional<CellColumns> columns;
+    std::optional<GrowthColumns> columns;
     LayerStack stack;
     {
       const StageTimer timer(statistics.seconds, Stage::Layers);
-      columns.emplace(mesh_, body, source, rules);
-      stack = stack_layers(body, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, *faults, paths.front(),
-                           options_.progress);
+      columns.emplace(mesh_, constrained, source, rules);
+      stack = stack_layers(constrained, slides_ ? &*slides_ : nullptr, *columns, source, on_vertices, *faults,
+                           paths.front(), options_.progress);
       round_layers(
-          source, options_.precision, [&](std::uint32_t v) { return work_.surface().representative[v] != kNone; },
+          source, options_.precision, [&](std::uint32_t v) { return parts_.surface().representative[v] != kNone; },
           [&](std::uint32_t v, const Vec3d& place) -> std::optional<double> {
-            if (!body.on_front(v)) return std::nullopt;
-            return body.front(place - body.front.surface().origin, body.hint(v)).distance;
+            if (!constrained.on_front(v)) return std::nullopt;
+            return constrained.front(place - constrained.front.surface().origin, constrained.hint(v)).distance;
           },
           stack, paths.front());
     }
@@ -236,28 +238,28 @@ class Pipeline {
   void prepare(const Reach& farthest, const Yield& yield) {
     {
       const StageTimer timer(shared_.seconds, Stage::Rasterise);
-      work_ = build_workpiece(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
+      parts_ = build_mesh_parts(mesh_, {options_.only, options_.obstacles, options_.weld, options_.orient});
     }
-    shared_.facts = work_.surface().facts;
+    shared_.facts = parts_.surface().facts;
     shared_.threads = threads_;
     if (goes_anywhere(farthest)) make_field(farthest, yield);
   }
 
   Distances on_body(const Distances& of_input, std::size_t& disagreeing) const {
     disagreeing = 0;
-    return distances_on_body(work_, options_.border, of_input, disagreeing);
+    return distances_on_body(parts_, options_.border, of_input, disagreeing);
   }
 
   bool is_junction(std::size_t vertex) const {
     if (junctions_.empty()) return false;
-    const std::size_t on_front = work_.front_vertex.empty() ? vertex : work_.front_vertex[vertex];
+    const std::size_t on_front = parts_.front_vertex.empty() ? vertex : parts_.front_vertex[vertex];
     return on_front < junctions_.size() && junctions_[on_front];
   }
 
   /// Vertices at junctions stay.
   Distances without_junctions(const Distances& of_body) const {
     if (junctions_.empty()) return of_body;
-    std::vector<double> each(work_.surface().vertices.size());
+    std::vector<double> each(parts_.surface().vertices.size());
     for (std::size_t w = 0; w < each.size(); ++w) each[w] = is_junction(w) ? 0 : of_body[w];
     return Distances(std::move(each));
   }
@@ -266,7 +268,7 @@ class Pipeline {
   void tell_of_junctions(OffsetResult& result) const {
     if (junctions_.empty()) return;
     for (std::size_t v = 0; v < result.states.size(); ++v) {
-      const auto w = work_.surface().welded[v];
+      const auto w = parts_.surface().welded[v];
       if (w != kNone && is_junction(w) && result.distances[v] != 0) result.states[v] = VertexState::Limited;
     }
   }
@@ -275,17 +277,17 @@ class Pipeline {
     Front front;
     {
       const StageTimer timer(shared_.seconds, Stage::Rasterise);
-      shared_.plan = plan(work_, mesh_, farthest, options_, threads_, yield);
-      place(work_, shared_.plan.voxel_size, options_.symmetry, std::max(farthest.inside, farthest.outside));
-      front = rasterise(work_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
+      shared_.plan = plan(parts_, mesh_, farthest, options_, threads_, yield);
+      place(parts_, shared_.plan.voxel_size, options_.symmetry, std::max(farthest.inside, farthest.outside));
+      front = rasterise(parts_.front, {shared_.plan.voxel_size, shared_.plan.band}, options_.progress);
     }
     const StageTimer timer(shared_.seconds, Stage::Sweep);
-    field_ = sweep(std::move(front), work_.front, {options_.solver, shared_.plan.reach}, options_.progress);
+    field_ = sweep(std::move(front), parts_.front, {options_.solver, shared_.plan.reach}, options_.progress);
   }
 
   DirectionField find_directions() {
     const StageTimer timer(shared_.seconds, Stage::Gradient);
-    const MeshFacts& facts = work_.front.facts;
+    const MeshFacts& facts = parts_.front.facts;
     DirectionField directions = make_directions(field_, !facts.closed() || !facts.oriented());
     describe_field(field_, directions, shared_);
     return directions;
@@ -295,17 +297,17 @@ class Pipeline {
   std::vector<Paths> march(Ridges ridges) {
     const DirectionField directions = find_directions();
     const StageTimer timer(shared_.seconds, Stage::Propagate);
-    query_.emplace(work_.front);
+    query_.emplace(parts_.front);
     look_around();
     std::vector<Distances> on_front;
-    for (const Distances& distances : distances_) on_front.push_back(distances_on_front(work_, distances));
+    for (const Distances& distances : distances_) on_front.push_back(distances_on_front(parts_, distances));
     std::vector<Paths> paths = propagate(*query_, directions, on_front, keep_away(), options_.progress,
                                          {options_.keep_paths ? Traces::Keep : Traces::Drop, ridges});
-    if (options_.border == Border::Slide && work_.rest) slides_.emplace(work_, *query_);
+    if (options_.border == Border::Slide && parts_.rest) slides_.emplace(parts_, *query_);
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      if (slides_) slide_borders(work_, *slides_, *query_, on_front[i], paths[i]);
-      paths[i] = paths_of_body(work_, std::move(paths[i]));
-      if (surroundings_) surroundings_->hold(paths[i], distances_[i], work_.bound);
+      if (slides_) slide_borders(parts_, *slides_, *query_, on_front[i], paths[i]);
+      paths[i] = paths_of_body(parts_, std::move(paths[i]));
+      if (surroundings_) surroundings_->hold(paths[i], distances_[i], parts_.bound);
       end_traces(paths[i]);
     }
     return paths;
@@ -313,34 +315,34 @@ class Pipeline {
 
   /// How the input stands to obstacles.
   void look_around() {
-    if (!work_.obstacles) return;
-    source_ = work_.source(mesh_);
-    surroundings_.emplace(work_, source_, options_.clearance);
+    if (!parts_.obstacles) return;
+    source_ = parts_.source(mesh_);
+    surroundings_.emplace(parts_, source_, options_.clearance);
     source_crossings_ = SelfCrossings{surroundings_->source_crossings(), false, {}};
   }
 
   /// One of the results in the making.
   struct Draft {
-    Body body;
+    ConstrainedSurface constrained;
     const Distances& distances;
     const Distances& asked;
     Paths& paths;
     OffsetStatistics statistics;
     std::optional<FaultFinder> faults;  // if it has to be valid
-    Precedent precedent;                // if others follow it
+    WarmStart precedent;                // if others follow it
   };
 
   /// A few at a time; those that others follow go first.
   void make(std::vector<OffsetResult>& results) {
     std::vector<Paths> paths = march(options_.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth);
-    source_ = work_.source(mesh_);
+    source_ = parts_.source(mesh_);
     if (!space_.metric().even()) {
-      file_source_ = work_.source(space_.file());
+      file_source_ = parts_.source(space_.file());
       file_.emplace(FileFrame{space_, file_source_, {}});
     }
     const bool to_be_valid = options_.collision == Collision::Limit;
     if (results.size() > 1 && to_be_valid && !source_crossings_)
-      source_crossings_ = CrossingFinder(work_.surface(), file_ ? file_source_ : source_).listed();
+      source_crossings_ = CrossingFinder(parts_.surface(), file_ ? file_source_ : source_).listed();
     std::deque<Draft> drafts;
     for (std::size_t i = 0; i < results.size(); ++i)
       drafts.push_back({body_of_results(), distances_[i], asked_[i], paths[i], shared_, {}, {}});
@@ -350,14 +352,14 @@ class Pipeline {
       make_valid(drafts[outer], options_.progress, nullptr, nullptr);
       results[outer] = finish(drafts[outer]);
       keep_as_inner_skin(results[outer]);
-      for (Draft& draft : drafts) draft.body.other_skin = inner_skin_;
+      for (Draft& draft : drafts) draft.constrained.other_skin = inner_skin_;
     }
     std::vector<std::size_t> order(outer);
     std::iota(order.begin(), order.end(), std::size_t{0});
     const std::vector<std::size_t> followed = to_be_valid ? find_precedents(std::span(distances_).first(outer)) : order;
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return followed[i] == i; });
     JointProgress progress(options_.progress, outer);
-    const auto complete = [&](std::size_t i, const Precedent* precedent) {
+    const auto complete = [&](std::size_t i, const WarmStart* precedent) {
       const bool sets_one = std::count(followed.begin(), followed.end(), i) > 1;
       make_valid(drafts[i], progress.of(i), precedent, sets_one ? &drafts[i].precedent : nullptr);
       results[i] = finish(drafts[i]);
@@ -377,18 +379,18 @@ class Pipeline {
   }
 
   template <class Work>
-  static void do_together(std::span<const std::size_t> results, Work&& work) {
+  static void do_together(std::span<const std::size_t> results, Work&& parts) {
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
       // Who waits for work on one result is not to begin another meanwhile.
-      tbb::this_task_arena::isolate([&] { work(results[i]); });
+      tbb::this_task_arena::isolate([&] { parts(results[i]); });
     });
   }
 
-  Body body_of_results() const {
-    Body body = work_.body(*query_, keep_away(), options_.off_source);
-    body.with_rim = options_.off_source;
-    body.file = file_ ? &*file_ : nullptr;
-    return body;
+  ConstrainedSurface body_of_results() const {
+    ConstrainedSurface constrained = parts_.constrained(*query_, keep_away(), options_.off_source);
+    constrained.with_rim = options_.off_source;
+    constrained.file = file_ ? &*file_ : nullptr;
+    return constrained;
   }
 
   /// What is wrong with a result, if it has to be valid.
@@ -396,7 +398,7 @@ class Pipeline {
     if (options_.collision != Collision::Limit) return;
     const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
-    draft.faults.emplace(draft.body, source_, draft.distances, options_.precision, source_crossings_);
+    draft.faults.emplace(draft.constrained, source_, draft.distances, options_.precision, source_crossings_);
     draft.faults->look_at_ends(draft.paths);
   }
 
@@ -406,11 +408,11 @@ class Pipeline {
            (draft.faults->any() || std::find(states.begin(), states.end(), VertexState::Collision) != states.end());
   }
 
-  void make_valid(Draft& draft, const ProgressCallback& progress, const Precedent* followed, Precedent* set) const {
+  void make_valid(Draft& draft, const ProgressCallback& progress, const WarmStart* followed, WarmStart* set) const {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit =
-        limit(*draft.faults, draft.body, source_, draft.distances, draft.paths, progress, followed, set);
+        limit(*draft.faults, draft.constrained, source_, draft.distances, draft.paths, progress, followed, set);
     if (surroundings_) draft.statistics.limit.source_crossings -= surroundings_->crossing();
     draft.faults.reset();
   }
@@ -419,7 +421,7 @@ class Pipeline {
   OffsetResult finish(Draft& draft) const {
     OffsetResult result = unmoved(mesh_);
     result.statistics = draft.statistics;
-    const Surface& surface = work_.surface();
+    const Surface& surface = parts_.surface();
     move_vertices(mesh_, surface, draft.paths, result);
     if (options_.keep_paths) hand_out_paths(surface, source_, draft.paths, result);
     result.statistics.borders = borders(draft.paths);
@@ -431,28 +433,28 @@ class Pipeline {
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
       if (surroundings_) result.statistics.obstacles = surroundings_->facts(as_written(draft.paths));
-      result.statistics.interior = measure_interior(draft.body, places, draft.distances, kInteriorTriangles);
+      result.statistics.interior = measure_interior(draft.constrained, places, draft.distances, kInteriorTriangles);
     }
     return result;
   }
 
   /// Of what is open, where much falls short.
   SideRoom room(const Paths& of_body, const Distances& distances) const {
-    if (work_.front.facts.closed() || !falls_short(of_body.state)) return {};
-    return room_on_sides(*query_, distances_on_front(work_, distances));
+    if (parts_.front.facts.closed() || !falls_short(of_body.state)) return {};
+    return room_on_sides(*query_, distances_on_front(parts_, distances));
   }
 
   BorderFacts borders(const Paths& of_body) const {
-    if (work_.front_vertex.empty()) return border_facts(work_.front, of_body.displacement, {});
-    std::vector<Vec3d> way(work_.front.vertices.size(), Vec3d(0.0));
+    if (parts_.front_vertex.empty()) return border_facts(parts_.front, of_body.displacement, {});
+    std::vector<Vec3d> way(parts_.front.vertices.size(), Vec3d(0.0));
     std::vector<std::uint8_t> sliding(way.size(), 0);
-    for (std::size_t w = 0; w < work_.front_vertex.size(); ++w) {
-      const auto f = work_.front_vertex[w];
+    for (std::size_t w = 0; w < parts_.front_vertex.size(); ++w) {
+      const auto f = parts_.front_vertex[w];
       if (f == kNone) continue;
       way[f] = of_body.displacement[w];
-      sliding[f] = slides_ && work_.at_border[w];
+      sliding[f] = slides_ && parts_.at_border[w];
     }
-    return border_facts(work_.front, way, sliding);
+    return border_facts(parts_.front, way, sliding);
   }
 
   /// Positions and paths are the file's; so are the facts of the mesh.
@@ -474,7 +476,7 @@ class Pipeline {
 
   std::vector<Vec3d> as_written(const Paths& paths) const {
     std::vector<Vec3d> places = source_;
-    const auto& of_mesh = work_.surface().representative;
+    const auto& of_mesh = parts_.surface().representative;
     for (std::size_t w = 0; w < places.size(); ++w)
       if (w < of_mesh.size() && of_mesh[w] != kNone)
         places[w] = Rounding(options_.precision)(places[w], places[w] + paths.displacement[w]);
@@ -483,7 +485,7 @@ class Pipeline {
 
   /// As it will be written.
   void keep_as_inner_skin(const OffsetResult& result) {
-    const Surface& surface = work_.surface();
+    const Surface& surface = parts_.surface();
     inner_skin_ = source_;
     for (std::size_t w = 0; w < inner_skin_.size(); ++w) {
       const auto v = surface.representative[w];
@@ -493,13 +495,13 @@ class Pipeline {
 
   /// Vertices share the stacks of the surface's, but for those that stand elsewhere: what no face uses, or has been
   /// welded with a tolerance, which keeps its place on the wall, and in all layers if it is flat.
-  SharedStacks stacks_of_input(Stacks of_surface) const {
-    std::vector<std::uint32_t> stack = work_.surface().welded, elsewhere;
+  SharedStacks stacks_of_input(VertexStacks of_surface) const {
+    std::vector<std::uint32_t> stack = parts_.surface().welded, elsewhere;
     for (std::uint32_t v = 0; v < stack.size(); ++v)
       if (stack[v] == kNone || of_surface.of(stack[v])[0] != mesh_.positions[v]) elsewhere.push_back(v);
     if (elsewhere.empty()) return {std::move(of_surface), std::move(stack)};
     const std::size_t of_the_surface = of_surface.vertices();
-    Stacks all(of_the_surface + elsewhere.size(), of_surface.layers());
+    VertexStacks all(of_the_surface + elsewhere.size(), of_surface.layers());
     for_each_index(of_the_surface, [&](std::size_t w) {
       std::copy(of_surface.of(w).begin(), of_surface.of(w).end(), all.of(w).begin());
     });
@@ -515,9 +517,9 @@ class Pipeline {
   }
 
   /// Layers as those of the input's vertices and faces.
-  LayersResult hand_over(OffsetStatistics statistics, const CellColumns& columns, const Paths& paths, LayerStack stack,
-                         std::span<const Distances> heights) const {
-    const Surface& surface = work_.surface();
+  LayersResult hand_over(OffsetStatistics statistics, const GrowthColumns& columns, const Paths& paths,
+                         LayerStack stack, std::span<const Distances> heights) const {
+    const Surface& surface = parts_.surface();
     const std::size_t count = mesh_.positions.size();
     LayersResult result;
     result.statistics = std::move(statistics);
@@ -544,7 +546,7 @@ class Pipeline {
     return result;
   }
 
-  static std::vector<Vec3d> outermost(const Stacks& stacks) {
+  static std::vector<Vec3d> outermost(const VertexStacks& stacks) {
     std::vector<Vec3d> places;
     places.reserve(stacks.vertices());
     for (std::size_t w = 0; w < stacks.vertices(); ++w) places.push_back(stacks.of(w).back());
@@ -556,9 +558,9 @@ class Pipeline {
     OffsetResult result = unmoved(mesh_);
     result.statistics = shared_;
     if (surroundings_) result.statistics.obstacles = surroundings_->facts(source_);
-    result.distances = distances_of_input(work_.surface(), distances);
+    result.distances = distances_of_input(parts_.surface(), distances);
     for (std::size_t v = 0; v < result.states.size(); ++v)
-      if (work_.surface().welded[v] != kNone) result.states[v] = VertexState::Reached;
+      if (parts_.surface().welded[v] != kNone) result.states[v] = VertexState::Reached;
     if (options_.keep_paths)
       for (const Vec3d& position : result.positions) result.paths.push_back({position});
     return result;
@@ -571,7 +573,7 @@ class Pipeline {
   const OffsetOptions& options_;
   int threads_;
   OffsetStatistics shared_;  // by all results
-  Workpiece work_;
+  MeshParts parts_;
   std::vector<std::uint8_t> junctions_;  // of the front's vertices, for shells; empty if there is none
   std::vector<Distances> asked_,
       distances_;  // of the body's vertices, one set for each result; 0 at junctions in these
@@ -632,12 +634,12 @@ OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> dista
   OffsetStatistics statistics;
   statistics.threads = thread_count(options.threads);
   const InMetric in_metric(mesh, options.metric);
-  const Workpiece work =
-      build_workpiece(in_metric.view(), {options.only, options.obstacles, options.weld, options.orient});
-  statistics.facts = work.surface().facts;
+  const MeshParts parts =
+      build_mesh_parts(in_metric.view(), {options.only, options.obstacles, options.weld, options.orient});
+  statistics.facts = parts.surface().facts;
   const Reach farthest = farthest_of(distances);
   if (goes_anywhere(farthest))
-    statistics.plan = plan(work, in_metric.view(), farthest, options, statistics.threads, {distances.size(), layers});
+    statistics.plan = plan(parts, in_metric.view(), farthest, options, statistics.threads, {distances.size(), layers});
   return statistics;
 }
 

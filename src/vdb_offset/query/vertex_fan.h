@@ -63,8 +63,8 @@ class VertexFan {
   };
   /// Two triangles, by their edges b and c from the vertex, the third one e, and products of these.
   struct Couple {
-    Way<Pair> b, c;
-    Pair bb, cc, ee, bc, over_bb, over_cc, over_ee, over_area;
+    Vec3Of<double2> b, c;
+    double2 bb, cc, ee, bc, over_bb, over_cc, over_ee, over_area;
     std::uint32_t triangle[2];
 
     Vec3d at(const Place& place) const {
@@ -100,28 +100,28 @@ class VertexFan {
   }
 
   static Place closest_of(const Couple& of, const Vec3d& y) {
-    constexpr Pair kZero{}, kOne{1, 1};
-    const Way<Pair> way = both(y, y);
-    const Pair by = of.b.dot(way), cy = of.c.dot(way);
+    constexpr double2 kZero{}, kOne{1, 1};
+    const Vec3Of<double2> way = both(y, y);
+    const double2 by = of.b.dot(way), cy = of.c.dot(way);
     // No place on the side that both edges turn away from gains anything.
     if (!(std::max({by[0], by[1], cy[0], cy[1]}) > 0)) return {};
-    const Pair foot_b = (by * of.cc - cy * of.bc) * of.over_area, foot_c = (cy * of.bb - by * of.bc) * of.over_area;
+    const double2 foot_b = (by * of.cc - cy * of.bc) * of.over_area, foot_c = (cy * of.bb - by * of.bc) * of.over_area;
     const auto inside = (foot_b > kZero) & (foot_c > kZero) & (foot_b + foot_c < kOne);
-    const Pair on_b = clamped(by * of.over_bb), on_c = clamped(cy * of.over_cc);
-    const Pair gain_b = on_b * (by + by - on_b * of.bb), gain_c = on_c * (cy + cy - on_c * of.cc);
+    const double2 on_b = clamped(by * of.over_bb), on_c = clamped(cy * of.over_cc);
+    const double2 gain_b = on_b * (by + by - on_b * of.bb), gain_c = on_c * (cy + cy - on_c * of.cc);
     const auto from_b = gain_b > gain_c;
-    const Pair gain_bc = greater(gain_b, gain_c);
+    const double2 gain_bc = greater(gain_b, gain_c);
     // On e from b's end, which gains 2 b.y - b.b itself.
-    const Pair ey = cy - by - of.bc + of.bb, on_e = clamped(ey * of.over_ee);
-    const Pair gain_e = by + by - of.bb + on_e * (ey + ey - on_e * of.ee);
+    const double2 ey = cy - by - of.bc + of.bb, on_e = clamped(ey * of.over_ee);
+    const double2 gain_e = by + by - of.bb + on_e * (ey + ey - on_e * of.ee);
     const auto from_e = gain_e > gain_bc;
-    const Pair gain = inside ? foot_b * by + foot_c * cy : greater(gain_e, gain_bc);
-    const Pair along_b = inside ? foot_b : (from_e ? kOne - on_e : (from_b ? on_b : kZero));
-    const Pair along_c = inside ? foot_c : (from_e ? on_e : (from_b ? kZero : on_c));
+    const double2 gain = inside ? foot_b * by + foot_c * cy : greater(gain_e, gain_bc);
+    const double2 along_b = inside ? foot_b : (from_e ? kOne - on_e : (from_b ? on_b : kZero));
+    const double2 along_c = inside ? foot_c : (from_e ? on_e : (from_b ? kZero : on_c));
     const std::size_t lane = gain[1] > gain[0] ? 1 : 0;
     return {gain[lane], along_b[lane], along_c[lane], lane};
   }
-  static Pair clamped(const Pair& share) { return lesser(Pair{1, 1}, greater(Pair{}, share)); }
+  static double2 clamped(const double2& share) { return lesser(double2{1, 1}, greater(double2{}, share)); }
 
   Vec3d corner_{0.0};
   std::size_t size_ = 0, believed_ = 0;

@@ -134,7 +134,7 @@ Json achieved_json(const AchievedSummary& achieved) {
           {"worst_reached_error", achieved.worst_reached_error}};
 }
 
-Json interior_json(const InteriorError& error) {
+Json interior_json(const FaceInteriorError& error) {
   return {{"samples", error.samples}, {"mean", error.mean}, {"quantile_99", error.quantile_99}, {"worst", error.worst}};
 }
 
@@ -237,7 +237,7 @@ Json options_json(const RunFacts& run) {
   return options;
 }
 
-Json surface_json(const CaptureStatistics& found) {
+Json surface_json(const IsoStatistics& found) {
   const MendStatistics& mending = found.mending;
   const auto faults = [](const MeshFaults& counts) {
     return Json{{"crossings", counts.crossings}, {"without_area", counts.needles}};
@@ -363,9 +363,9 @@ std::string report_json(const LayersResult& result, const RunFacts& run) {
   return report_of(result.statistics, thickness.farthest(), summarise(result.states, result.achieved, thickness), run);
 }
 
-std::string report_json(const CaptureStatistics& statistics, const RunFacts& run) {
+std::string report_json(const IsoStatistics& statistics, const RunFacts& run) {
   Json seconds = Json::object();
-  for (const Stage stage : kCaptureStages) seconds[name(stage)] = statistics.seconds[static_cast<std::size_t>(stage)];
+  for (const Stage stage : kIsoStages) seconds[name(stage)] = statistics.seconds[static_cast<std::size_t>(stage)];
   seconds["total"] = run.total_seconds;
   Json report = {{"version", version()},
                  {"input", run.input},

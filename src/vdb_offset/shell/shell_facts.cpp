@@ -89,7 +89,7 @@ std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const
 
 std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld) {
   const Surface surface = build_surface(mesh, weld);
-  const NearCrossings crossings(surface, CrossingFinder(surface, surface.vertices).listed());
+  const SourceCrossings crossings(surface, CrossingFinder(surface, surface.vertices).listed());
   std::vector<std::uint8_t> near(mesh.positions.size(), 0);
   for (std::size_t v = 0; v < near.size(); ++v)
     near[v] = surface.welded[v] != kNone && crossings.is_vertex_near(surface.welded[v]);

@@ -18,15 +18,15 @@ Vec3d twice_area(const Surface& surface, std::uint32_t t) {
 }
 
 /// Triangles that hang together over edges with two faces, and which of them agree with the first.
-struct OrientablePatch {
+struct OrientableSheet {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint8_t> agrees;
   bool orientable = true;
 };
 
 /// The patch around a triangle that no patch holds yet. `state`: 0 not seen, 1 agrees with the seed, 2 does not.
-OrientablePatch collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
-  OrientablePatch patch;
+OrientableSheet collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
+  OrientableSheet patch;
   patch.triangles.push_back(seed);
   state[seed] = 1;
   for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
@@ -221,7 +221,7 @@ void settle_orientation(Surface& surface) {
   std::vector<std::uint8_t> state(count, 0), turned(count, 0);
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     if (state[seed] != 0) continue;
-    const OrientablePatch patch = collect_patch(surface, seed, state);
+    const OrientableSheet patch = collect_patch(surface, seed, state);
     if (!patch.orientable) continue;
     double area[2] = {0, 0};
     for (std::size_t i = 0; i < patch.triangles.size(); ++i)

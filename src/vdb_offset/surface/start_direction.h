@@ -8,7 +8,7 @@
 namespace vdb_offset {
 
 /// Where a vertex starts to: unit direction, and the least cosine between it and the normals of its faces.
-struct Start {
+struct StartDirection {
   Vec3d direction;
   double slope;
 };
@@ -31,7 +31,7 @@ double least_cosine(const Shape& surface, std::uint32_t vertex, const Vec3d& n, 
 /// more of them face (the most visible one, found by leaning towards the worst face in ever smaller steps); where faces
 /// cancel, the first face's normal; none if a plane holds the vertex that this leads out of.
 template <class Shape>
-Start start_of(const Shape& surface, std::uint32_t vertex) {
+StartDirection start_of(const Shape& surface, std::uint32_t vertex) {
   Vec3d n = surface.along_border(vertex, surface.vertex_normals[vertex]);
   if (!(n.lengthSqr() > 1e-12)) {
     for (const auto t : surface.triangles_around(vertex))
@@ -40,7 +40,7 @@ Start start_of(const Shape& surface, std::uint32_t vertex) {
     return {Vec3d(0.0), 0};
   }
   n.normalize();
-  Start best{n, least_cosine(surface, vertex, n)};
+  StartDirection best{n, least_cosine(surface, vertex, n)};
   constexpr double kWellSeen = 0.3;
   for (int i = 0; i < 40 && best.slope < kWellSeen; ++i) {
     std::uint32_t worst = kNone;

@@ -7,10 +7,10 @@
 
 namespace vdb_offset {
 
-InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, const Distances& distances,
-                               std::size_t most) {
-  const Surface& surface = body.surface;
-  const Vec3d origin = body.front.surface().origin;
+FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> places,
+                                   const Distances& distances, std::size_t most) {
+  const Surface& surface = constrained.surface;
+  const Vec3d origin = constrained.front.surface().origin;
   const std::size_t all = surface.triangles.size(), count = most == 0 ? all : std::min(all, most);
   constexpr std::size_t kSamples = 4;
   constexpr double kLeftOut = -1;
@@ -18,7 +18,7 @@ InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, 
   std::vector<double> error(kSamples * count, kLeftOut);
   const auto look = [&](std::size_t i) {
     const auto t = static_cast<std::uint32_t>(i * all / count);
-    if (!body.is_front(t)) return;
+    if (!constrained.is_front(t)) return;
     const auto& [a, b, c] = surface.triangles[t];
     const double da = distances[a], db = distances[b], dc = distances[c];
     const Vec3d samples[kSamples] = {(places[a] + places[b] + places[c]) / 3.0 - origin,
@@ -26,9 +26,9 @@ InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, 
                                      (places[c] + places[a]) / 2.0 - origin};
     const double wanted[kSamples] = {std::abs(da + db + dc) / 3, std::abs(da + db) / 2, std::abs(db + dc) / 2,
                                      std::abs(dc + da) / 2};
-    const std::uint32_t hint = body.hint_of_triangle(t), hints[kSamples] = {hint, hint, hint, hint};
+    const std::uint32_t hint = constrained.hint_of_triangle(t), hints[kSamples] = {hint, hint, hint, hint};
     Closest closest[kSamples];
-    body.front.answer_together(samples, hints, closest);
+    constrained.front.answer_together(samples, hints, closest);
     for (std::size_t k = 0; k < kSamples; ++k)
       if (wanted[k] > least_target) error[kSamples * i + k] = std::abs(closest[k].distance - wanted[k]) / wanted[k];
   };
@@ -37,9 +37,9 @@ InteriorError measure_interior(const Body& body, std::span<const Vec3d> places, 
   return sum_up_errors(std::move(error));
 }
 
-InteriorError sum_up_errors(std::vector<double> errors) {
+FaceInteriorError sum_up_errors(std::vector<double> errors) {
   if (errors.empty()) return {};
-  InteriorError result;
+  FaceInteriorError result;
   result.samples = errors.size();
   for (const double e : errors) {
     result.mean += e / static_cast<double>(errors.size());

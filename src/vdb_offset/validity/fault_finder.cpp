@@ -22,33 +22,35 @@ void replace(Indices& wrong, const Indices& some, Wrong&& is_wrong) {
 }
 
 /// Empty where what has not moved keeps its bytes.
-std::vector<Vec3d> rewrite(const Body& body, std::span<const Vec3d> source, const Rounding& precision) {
+std::vector<Vec3d> rewrite(const ConstrainedSurface& constrained, std::span<const Vec3d> source,
+                           const Rounding& precision) {
   std::vector<Vec3d> places;
-  if (!precision.rounds_all || body.file) return places;
+  if (!precision.rounds_all || constrained.file) return places;
   places.assign(source.begin(), source.end());
   for (std::uint32_t v = 0; v < places.size(); ++v)
-    if (!body.is_of_obstacle(v)) places[v] = precision(places[v]);
+    if (!constrained.is_of_obstacle(v)) places[v] = precision(places[v]);
   return places;
 }
 
 }  // namespace
 
-FaultFinder::FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances,
-                         Rounding precision, std::optional<SelfCrossings> source_crossings)
-    : body_(body),
-      surface_(body.surface),
+FaultFinder::FaultFinder(const ConstrainedSurface& constrained, std::span<const Vec3d> source,
+                         const Distances& distances, Rounding precision, std::optional<SelfCrossings> source_crossings)
+    : constrained_(constrained),
+      surface_(constrained.surface),
       source_(source),
-      rewritten_(rewrite(body, source, precision)),
+      rewritten_(rewrite(constrained, source, precision)),
       staying_(rewritten_.empty() ? source : rewritten_),
-      stands_(body, source, distances, precision),
+      stands_(constrained, source, distances, precision),
       fault_(surface_.triangles.size(), Fault::None),
       touched_(surface_.triangles.size()),
       wrong_(source.size()),
       position_(source.size(), Position::AsBefore) {
-  if (body.off_source) source_finder_.emplace(surface_, staying_);
-  if (body.obstacles) clearance_.emplace(*body.obstacles);
-  if (!body.other_skin.empty()) other_skin_finder_.emplace(surface_, body.other_skin);
-  if (body.with_rim) rim_.emplace(body, body.other_skin.empty() ? staying_ : body.other_skin, places(), distances);
+  if (constrained.off_source) source_finder_.emplace(surface_, staying_);
+  if (constrained.obstacles) clearance_.emplace(*constrained.obstacles);
+  if (!constrained.other_skin.empty()) other_skin_finder_.emplace(surface_, constrained.other_skin);
+  if (constrained.with_rim)
+    rim_.emplace(constrained, constrained.other_skin.empty() ? staying_ : constrained.other_skin, places(), distances);
   if (!source_crossings) {
     finder_.emplace(surface_, in_file());
     source_crossings = finder_->listed();
@@ -60,8 +62,8 @@ void FaultFinder::find_folded() {
   folded_.assign(source_.size(), 0);
   for_each_index(source_.size(), [&](std::size_t v) {
     const auto vertex = static_cast<std::uint32_t>(v);
-    const std::uint32_t on_front = body_.front_vertex.empty() ? vertex : body_.front_vertex[vertex];
-    folded_[v] = on_front != kNone && is_folded(body_.front.surface(), on_front);
+    const std::uint32_t on_front = constrained_.front_vertex.empty() ? vertex : constrained_.front_vertex[vertex];
+    folded_[v] = on_front != kNone && is_folded(constrained_.front.surface(), on_front);
   });
 }
 
@@ -85,8 +87,9 @@ bool FaultFinder::is_fault(const TrianglePair& pair) const {
 
 /// Whether a face that met an obstacle from the start does no more than touch one.
 bool FaultFinder::still_touches(const TrianglePair& pair) const {
-  return body_.is_obstacle(pair.second) && body_.obstacles->start && !body_.is_obstacle(pair.first) &&
-         body_.obstacles->start->touches[pair.first] && !finder_->go_through(pair);
+  return constrained_.is_obstacle(pair.second) && constrained_.obstacles->start &&
+         !constrained_.is_obstacle(pair.first) && constrained_.obstacles->start->touches[pair.first] &&
+         !finder_->go_through(pair);
 }
 
 /// Not what is near where sheets of the source cross, which has to slide.
@@ -135,31 +138,31 @@ void FaultFinder::look_at_rim(const Indices& moved, const Indices& touched) {
 
 bool FaultFinder::has_bound(std::uint32_t t) const {
   const auto& corners = surface_.triangles[t];
-  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return body_.is_bound(v); });
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return constrained_.is_bound(v); });
 }
 
 /// Whether a face that rests is met by one that has to: whose edge goes along such faces; or is not where it seems to
 /// be, as the edge that it shares has gone.
 bool FaultFinder::goes_along(std::uint32_t resting, std::uint32_t other) const {
-  return body_.rests(resting) && (has_bound(resting) || has_bound(other));
+  return constrained_.rests(resting) && (has_bound(resting) || has_bound(other));
 }
 
 /// Faces that have not moved may be anywhere, obstacles themselves above all.
 FaultFinder::Fault FaultFinder::judge(std::uint32_t t) const {
   constexpr double kCollapsed = 1e-6;
-  if (body_.rests(t) || !stands_.has_moved_corner(t)) return Fault::None;
+  if (constrained_.rests(t) || !stands_.has_moved_corner(t)) return Fault::None;
   const Vec3d before = stands_.twice_area(t, source_), now = stands_.twice_area(t, places());
   if (!(before.lengthSqr() > 0)) return Fault::None;
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
-  const bool against = body_.is_front(t) ? stands_.faces_against_front(t) : now.dot(before) < 0;
+  const bool against = constrained_.is_front(t) ? stands_.faces_against_front(t) : now.dot(before) < 0;
   if (against) return Fault::Inverted;
   return is_crowded(t) ? Fault::Crowded : Fault::None;
 }
 
 bool FaultFinder::is_crowded(std::uint32_t t) const {
   if (!clearance_ && !source_finder_) return false;
-  if (source_finder_ && body_.is_front(t) && meets_source(t)) return true;
-  if (other_skin_finder_ && body_.is_front(t) && meets_other_skin(t)) return true;
+  if (source_finder_ && constrained_.is_front(t) && meets_source(t)) return true;
+  if (other_skin_finder_ && constrained_.is_front(t) && meets_other_skin(t)) return true;
   return clearance_ && is_near_obstacle(t);
 }
 
@@ -167,8 +170,8 @@ bool FaultFinder::is_crowded(std::uint32_t t) const {
 bool FaultFinder::is_near_obstacle(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   const Vec3d& origin = surface_.origin;
-  const double clearance = body_.obstacles->clearance,
-               bound = body_.obstacles->start ? body_.obstacles->start->bound[t] : clearance,
+  const double clearance = constrained_.obstacles->clearance,
+               bound = constrained_.obstacles->start ? constrained_.obstacles->start->bound[t] : clearance,
                slack = bound < clearance ? std::max({rounding(a), rounding(b), rounding(c)}) : 0;
   return clearance_->is_crowded({stands_.place(a) - origin, stands_.place(b) - origin, stands_.place(c) - origin},
                                 bound, slack);
@@ -180,22 +183,23 @@ bool FaultFinder::meets_source(std::uint32_t t) const {
   // The ball around a corner, as large as its distance, holds nothing of the front; often it holds the whole face.
   const auto& corners = surface_.triangles[t];
   for (const auto v : corners) {
-    if (body_.resting_faces > 0) break;
+    if (constrained_.resting_faces > 0) break;
     double farthest = 0;
     for (const auto w : corners) farthest = std::max(farthest, (stands_.place(w) - stands_.place(v)).length());
     if (stands_.distance(v) * kFreeShare > farthest) return false;
   }
   const Indices met = source_finder_->met_by(t, places());
   return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
-    if (body_.rests(s) && has_bound(s)) return !has_bound(t);
-    return body_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));
+    if (constrained_.rests(s) && has_bound(s)) return !has_bound(t);
+    return constrained_.is_front(s) && (s == t || !source_crossings_->sheets_cross(s, t));
   });
 }
 
 bool FaultFinder::meets_other_skin(std::uint32_t t) const {
   const Indices met = other_skin_finder_->met_by(t, places());
-  return std::any_of(met.begin(), met.end(),
-                     [&](std::uint32_t s) { return body_.is_front(s) && !source_crossings_->sheets_cross(s, t); });
+  return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
+    return constrained_.is_front(s) && !source_crossings_->sheets_cross(s, t);
+  });
 }
 
 Indices FaultFinder::caught() {
@@ -335,9 +339,9 @@ void FaultFinder::take_back_crossings(const Indices& touched) {
 bool FaultFinder::is_misplaced(std::uint32_t v) const { return is_beyond_wall(v) || stands_.is_misplaced(v); }
 
 bool FaultFinder::is_beyond_wall(std::uint32_t v) const {
-  const Surface& front = body_.front.surface();
-  if (front.walls.empty() || !body_.on_front(v) || !stands_.has_moved(v)) return false;
-  const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
+  const Surface& front = constrained_.front.surface();
+  if (front.walls.empty() || !constrained_.on_front(v) || !stands_.has_moved(v)) return false;
+  const std::uint32_t on_front = constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
   return vdb_offset::is_beyond_wall(front, on_front, stands_.place(v) - front.origin, rounding(v));
 }
 

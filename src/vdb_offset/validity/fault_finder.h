@@ -25,21 +25,21 @@ struct Paths;
 /// What is wrong with an offset of a surface, as its vertices are moved about.
 ///
 /// A face is inverted if it faces against the direction away from the front at its centre and at each corner (there,
-/// its distance has folded over; see Stands) or, being no part of the front, against its own source; collapsed if its
-/// area is below 1e-6 of the source's, crowded if it is too near to an obstacle
-/// or meets the source where it must not: anywhere but where sheets of the source cross (see source_crossings.h).
-/// Of a shell, the other skin must not be met either, and the rim is judged as well (see rim_crossings.h).
-/// Crossings are found with exact predicates. All is judged on coordinates as they will be written, by these alone,
-/// whatever way led there: another look at the same places finds the same. Only what is around what has moved is judged
-/// anew. The result does not depend on the number of threads.
+/// its distance has folded over; see VertexPositions) or, being no part of the front, against its own source; collapsed
+/// if its area is below 1e-6 of the source's, crowded if it is too near to an obstacle or meets the source where it
+/// must not: anywhere but where sheets of the source cross (see source_crossings.h). Of a shell, the other skin must
+/// not be met either, and the rim is judged as well (see rim_crossings.h). Crossings are found with exact predicates.
+/// All is judged on coordinates as they will be written, by these alone, whatever way led there: another look at the
+/// same places finds the same. Only what is around what has moved is judged anew. The result does not depend on the
+/// number of threads.
 class FaultFinder {
  public:
   /// `source` holds where the body's vertices stand in the input, world coordinates; they begin there. `distances` are
   /// theirs; those that are not on the front do not matter. Places are rounded to `precision`.
   /// Keeps references to all but the last.
   /// `source_crossings`, if they are known of the same source already, need not be looked for again.
-  FaultFinder(const Body& body, std::span<const Vec3d> source, const Distances& distances, Rounding precision,
-              std::optional<SelfCrossings> source_crossings = {});
+  FaultFinder(const ConstrainedSurface& constrained, std::span<const Vec3d> source, const Distances& distances,
+              Rounding precision, std::optional<SelfCrossings> source_crossings = {});
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel, and finds what is wrong around
   /// them. Where they stand at the ends of paths, what is known of those need not be found again.
@@ -93,7 +93,7 @@ class FaultFinder {
   bool on_right_side(std::uint32_t vertex) const { return stands_.on_right_side(vertex); }
   /// World coordinates, as they will be written.
   std::span<const Vec3d> places() const { return stands_.places(); }
-  const NearCrossings& source_crossings() const { return *source_crossings_; }
+  const SourceCrossings& source_crossings() const { return *source_crossings_; }
   /// New pairs within two rings of one of those, which has to slide: as things stand. Looks for them, unless there are
   /// more crossings of the source than are listed.
   std::size_t crossings_near_source();
@@ -104,7 +104,7 @@ class FaultFinder {
   /// How things were before vertices were moved. Sorted, as are the triangles around them.
   struct Before {
     Indices vertices, triangles;
-    std::vector<Stands::Stand> stands;
+    std::vector<VertexPositions::VertexPosition> stands;
     std::vector<Fault> faults;
     std::vector<TrianglePair> crossings;  // all
   };
@@ -141,12 +141,12 @@ class FaultFinder {
   void take_back_crossings(const Indices& touched);
   void look_for_crossings(const Indices& moved, const Indices& touched, Crossings crossings);
 
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
   std::vector<Vec3d> rewritten_;    // the source as it is written, if that is another than it is
   std::span<const Vec3d> staying_;  // where what does not move stands: either
-  Stands stands_;
+  VertexPositions stands_;
   std::vector<std::uint8_t> folded_;  // of each vertex; empty until something may be caught
   std::vector<Fault> fault_;          // of each triangle
   IndexGatherer touched_;             // triangles
@@ -156,7 +156,7 @@ class FaultFinder {
   Before before_;
   std::vector<Position> position_;        // of each vertex, beside what was before
   std::optional<CrossingFinder> finder_;  // from the first look on
-  std::optional<NearCrossings> source_crossings_;
+  std::optional<SourceCrossings> source_crossings_;
   std::optional<CrossingFinder> source_finder_;      // where what has moved must not meet the source
   std::optional<CrossingFinder> other_skin_finder_;  // where a shell's other skin is not the source
   std::optional<RimCrossings> rim_;

@@ -2,9 +2,9 @@
 
 namespace vdb_offset {
 
-Surroundings::Surroundings(const Workpiece& work, std::span<const Vec3d> source, double clearance)
-    : surface_(work.surface()),
-      query_(*work.obstacles),
+Surroundings::Surroundings(const MeshParts& parts, std::span<const Vec3d> source, double clearance)
+    : surface_(parts.surface()),
+      query_(*parts.obstacles),
       obstacles_{query_, clearance},
       source_crossings_(CrossingFinder(surface_, source).all()),
       start_(find_starting_gaps(surface_, source, obstacles_, source_crossings_)) {

@@ -17,7 +17,7 @@ class Surroundings {
  public:
   /// `source` holds where the vertices of the workpiece's surface stand, world coordinates. Keeps a reference to the
   /// workpiece. \pre it is placed, and has obstacles
-  Surroundings(const Workpiece& work, std::span<const Vec3d> source, double clearance);
+  Surroundings(const MeshParts& parts, std::span<const Vec3d> source, double clearance);
   Surroundings(const Surroundings&) = delete;
   Surroundings& operator=(const Surroundings&) = delete;
 

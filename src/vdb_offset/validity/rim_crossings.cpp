@@ -6,23 +6,28 @@ namespace vdb_offset {
 namespace {
 
 /// Whether no other face of the front lies at a half-edge's edge.
-bool ends_front(const Body& body, std::uint32_t half_edge) {
-  const auto& next = body.surface.next_around_edge;
+bool ends_front(const ConstrainedSurface& constrained, std::uint32_t half_edge) {
+  const auto& next = constrained.surface.next_around_edge;
   for (std::uint32_t h = next[half_edge]; h != half_edge; h = next[h])
-    if (body.is_front(h / 3)) return false;
+    if (constrained.is_front(h / 3)) return false;
   return true;
 }
 
 /// Whether a triangle is of what stays of the mesh, which a shell of its part does not have.
-bool is_left_out(const Body& body, std::uint32_t triangle) {
-  return !body.is_front(triangle) && body.surface.representative[body.surface.triangles[triangle][0]] != kNone;
+bool is_left_out(const ConstrainedSurface& constrained, std::uint32_t triangle) {
+  return !constrained.is_front(triangle) &&
+         constrained.surface.representative[constrained.surface.triangles[triangle][0]] != kNone;
 }
 
 }  // namespace
 
-RimCrossings::RimCrossings(const Body& body, std::span<const Vec3d> other_skin, std::span<const Vec3d> places,
-                           const Distances& distances)
-    : body_(body), surface_(body.surface), other_skin_(other_skin), places_(places), distances_(distances) {
+RimCrossings::RimCrossings(const ConstrainedSurface& constrained, std::span<const Vec3d> other_skin,
+                           std::span<const Vec3d> places, const Distances& distances)
+    : constrained_(constrained),
+      surface_(constrained.surface),
+      other_skin_(other_skin),
+      places_(places),
+      distances_(distances) {
   find_edges();
   if (edges_.empty()) return;
   list_vertices();
@@ -33,7 +38,7 @@ RimCrossings::RimCrossings(const Body& body, std::span<const Vec3d> other_skin, 
 void RimCrossings::find_edges() {
   const auto half_edges = static_cast<std::uint32_t>(surface_.next_around_edge.size());
   for (std::uint32_t h = 0; h < half_edges; ++h) {
-    if (!body_.is_front(h / 3) || !ends_front(body_, h)) continue;
+    if (!constrained_.is_front(h / 3) || !ends_front(constrained_, h)) continue;
     Edge edge{surface_.from(h), surface_.to(h), h / 3};
     if (surface_.is_turned(edge.triangle)) std::swap(edge.from, edge.to);
     edges_.push_back(edge);
@@ -80,7 +85,7 @@ std::array<Vec3d, 3> RimCrossings::corners(std::uint32_t rim_triangle) const {
 
 void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched,
                         const CrossingFinder& skin, const CrossingFinder& other_skin,
-                        const NearCrossings& source_crossings) {
+                        const SourceCrossings& source_crossings) {
   if (edges_.empty()) return;
   for (std::uint32_t i = 0; i < vertices_.size(); ++i)
     if (std::binary_search(moved.begin(), moved.end(), vertices_[i])) put(i);
@@ -101,14 +106,14 @@ void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const st
   std::erase_if(with_skin_,
                 [&](const auto& pair) { return rim_has_moved(pair.first) || skin.is_updated(pair.second); });
   for (const auto& [r, t] : skin.met_by(rim, rim_corners))
-    if (!is_left_out(body_, t) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
+    if (!is_left_out(constrained_, t) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
   for (const auto& [t, r] : finder_->met_by(touched, skin_corners))
-    if (!is_left_out(body_, t) && !rim_has_moved(r) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
+    if (!is_left_out(constrained_, t) && !rim_has_moved(r) && !may_meet(r, t)) with_skin_.emplace_back(r, t);
   std::sort(with_skin_.begin(), with_skin_.end());
 
   std::erase_if(with_other_, [&](const auto& pair) { return rim_has_moved(pair.first); });
   for (const auto& [r, t] : other_skin.met_by(rim, rim_corners))
-    if (body_.is_front(t) && !may_meet(r, t)) with_other_.emplace_back(r, t);
+    if (constrained_.is_front(t) && !may_meet(r, t)) with_other_.emplace_back(r, t);
 
   std::erase_if(with_rim_, [&](const auto& pair) { return rim_has_moved(pair.first) || rim_has_moved(pair.second); });
   for (const auto& [r, s] : finder_->of_updated())

@@ -21,13 +21,13 @@ class RimCrossings {
  public:
   /// `places` are where the body's vertices stand, `other_skin` where the rim leads, `distances` theirs: the sign tells
   /// which skin is the outer one. Keeps references to all.
-  RimCrossings(const Body& body, std::span<const Vec3d> other_skin, std::span<const Vec3d> places,
+  RimCrossings(const ConstrainedSurface& constrained, std::span<const Vec3d> other_skin, std::span<const Vec3d> places,
                const Distances& distances);
 
   /// Judges anew what has moved: vertices, and the triangles around them; sorted, no two the same. The finders are of
   /// both skins, and up to date.
   void look(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched, const CrossingFinder& skin,
-            const CrossingFinder& other_skin, const NearCrossings& source_crossings);
+            const CrossingFinder& other_skin, const SourceCrossings& source_crossings);
 
   std::size_t count() const { return with_skin_.size() + with_other_.size() + with_rim_.size(); }
 
@@ -52,7 +52,7 @@ class RimCrossings {
   const Edge& edge(std::uint32_t rim_triangle) const { return edges_[rim_triangle / 2]; }
   std::array<Vec3d, 3> corners(std::uint32_t rim_triangle) const;
 
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Surface& surface_;
   std::span<const Vec3d> other_skin_, places_;
   const Distances& distances_;

@@ -10,7 +10,7 @@ constexpr int kNearRings = 2;
 
 }  // namespace
 
-NearCrossings::NearCrossings(const Surface& surface, SelfCrossings crossings)
+SourceCrossings::SourceCrossings(const Surface& surface, SelfCrossings crossings)
     : surface_(surface), crossings_(std::move(crossings)), near_begin_(surface.vertices.size() + 1, 0) {
   if (count() == 0) return;
   if (!has_more()) pair_up();
@@ -19,7 +19,7 @@ NearCrossings::NearCrossings(const Surface& surface, SelfCrossings crossings)
   look_around();
 }
 
-void NearCrossings::pair_up() {
+void SourceCrossings::pair_up() {
   std::vector<TrianglePair> both_ways = pairs();
   for (const auto& [s, t] : pairs()) both_ways.emplace_back(t, s);
   std::sort(both_ways.begin(), both_ways.end());
@@ -34,7 +34,7 @@ void NearCrossings::pair_up() {
                                                   crossing_.begin()));
 }
 
-void NearCrossings::look_around() {
+void SourceCrossings::look_around() {
   std::vector<std::vector<std::uint32_t>> beside;
   beside.reserve(crossing_.size());
   for (const auto triangle : crossing_) {
@@ -53,7 +53,7 @@ void NearCrossings::look_around() {
 }
 
 /// Those of the triangle, and within two rings of it; sorted.
-std::vector<std::uint32_t> NearCrossings::vertices_beside(std::uint32_t triangle) const {
+std::vector<std::uint32_t> SourceCrossings::vertices_beside(std::uint32_t triangle) const {
   std::vector<std::uint32_t> vertices(surface_.triangles[triangle].begin(), surface_.triangles[triangle].end());
   for (int ring = 0; ring < kNearRings; ++ring) {
     for (std::size_t i = 0, inner = vertices.size(); i < inner; ++i)
@@ -65,7 +65,7 @@ std::vector<std::uint32_t> NearCrossings::vertices_beside(std::uint32_t triangle
   return vertices;
 }
 
-bool NearCrossings::sheets_cross(std::uint32_t s, std::uint32_t t) const {
+bool SourceCrossings::sheets_cross(std::uint32_t s, std::uint32_t t) const {
   const auto is_near_t = [&](std::uint32_t crossing) {
     const auto& corners = surface_.triangles[t];
     return std::any_of(corners.begin(), corners.end(),

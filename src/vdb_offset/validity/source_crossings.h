@@ -9,10 +9,10 @@
 namespace vdb_offset {
 
 /// Where a surface crosses itself, and what is near: as the surface moves, its crossings slide, but not far.
-class NearCrossings {
+class SourceCrossings {
  public:
   /// Keeps a reference to the surface.
-  NearCrossings(const Surface& surface, SelfCrossings crossings);
+  SourceCrossings(const Surface& surface, SelfCrossings crossings);
 
   /// Sorted; empty if there are more than are listed.
   const std::vector<TrianglePair>& pairs() const { return crossings_.pairs; }

@@ -19,10 +19,10 @@ struct Paths;
 /// All is told of places as they will be written, and by these alone: neither what was known of other places nor the
 /// order of a search has a say. A place may be as near to several points of the front, as on the middle sheet of a
 /// wall; what a face is to look away from there is each of them.
-class Stands {
+class VertexPositions {
  public:
   /// What is known of a vertex.
-  struct Stand {
+  struct VertexPosition {
     Vec3d place, written,
         away;  ///< `away` is the way there from the closest point; `written` only in a metric's space.
     double distance;
@@ -31,7 +31,8 @@ class Stands {
   };
 
   /// The vertices stand at `source`, world coordinates. Keeps references to all but the last.
-  Stands(const Body& body, std::span<const Vec3d> source, const Distances& distances, Rounding precision);
+  VertexPositions(const ConstrainedSurface& constrained, std::span<const Vec3d> source, const Distances& distances,
+                  Rounding precision);
 
   /// Moves vertices to place_of(vertex), world coordinates, which is called in parallel. Where they stand at the ends
   /// of paths, what is closest there is taken from those; where another point of the front may be as near, that is
@@ -40,12 +41,12 @@ class Stands {
   /// Has at least one corner of each of these triangles know all that is near: mostly that is enough.
   void look_around(const Indices& triangles);
 
-  Stand operator[](std::uint32_t vertex) const;
-  void put_back(std::uint32_t vertex, const Stand& stand);
+  VertexPosition operator[](std::uint32_t vertex) const;
+  void put_back(std::uint32_t vertex, const VertexPosition& stand);
 
   std::span<const Vec3d> places() const { return place_; }
   /// The same in the file, where that is another space.
-  std::span<const Vec3d> in_file() const { return body_.file ? written_ : place_; }
+  std::span<const Vec3d> in_file() const { return constrained_.file ? written_ : place_; }
   const Vec3d& place(std::uint32_t vertex) const { return place_[vertex]; }
   /// Whether a vertex stands elsewhere than where it stood, and than that is in a coarser format.
   bool has_moved(std::uint32_t vertex) const;
@@ -75,12 +76,12 @@ class Stands {
   void look_closely(std::span<const std::uint32_t> vertices);
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest, Nearness nearness);
-  Vec3d in_frame(std::uint32_t vertex) const { return place_[vertex] - body_.front.surface().origin; }
+  Vec3d in_frame(std::uint32_t vertex) const { return place_[vertex] - constrained_.front.surface().origin; }
   int side(std::uint32_t triangle) const;
   bool looks_away(const Vec3d& outward, const Vec3d& x, const Vec3d& away, double distance, bool tied) const;
   bool looks_away(const Vec3d& outward, std::uint32_t vertex) const;
 
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Surface& surface_;
   std::span<const Vec3d> source_;
   const Distances& distances_;

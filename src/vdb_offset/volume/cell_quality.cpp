@@ -52,7 +52,7 @@ struct EdgeLengths {
   double ratio() const { return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity(); }
 };
 
-Way<double> way_to(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+Vec3Of<double> way_to(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
 CellQuality prism_quality(const CellPoints& x) {
   const PrismLevel<double> below({way_to(x[0]), way_to(x[1]), way_to(x[2])}),
@@ -60,16 +60,16 @@ CellQuality prism_quality(const CellPoints& x) {
   return prism_quality_of(prism_squares(below, above));
 }
 
-Way<Pair> ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
-  return {Pair{to[0] - from[0], other_to[0] - other_from[0]}, Pair{to[1] - from[1], other_to[1] - other_from[1]},
-          Pair{to[2] - from[2], other_to[2] - other_from[2]}};
+Vec3Of<double2> ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
+  return {double2{to[0] - from[0], other_to[0] - other_from[0]}, double2{to[1] - from[1], other_to[1] - other_from[1]},
+          double2{to[2] - from[2], other_to[2] - other_from[2]}};
 }
 
 /// Of the base and of the top at once.
 CellQuality hexahedron_quality(const CellPoints& x) {
   EdgeLengths lengths;
-  Way<Pair> along[4], up[4];
-  Pair along2[4], up2[4];
+  Vec3Of<double2> along[4], up[4];
+  double2 along2[4], up2[4];
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t next = (k + 1) % 4;
     along[k] = ways(x[k], x[next], x[4 + k], x[4 + next]);
@@ -81,7 +81,8 @@ CellQuality hexahedron_quality(const CellPoints& x) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t previous = (k + 3) % 4;
-    const Pair square = unit_square(along[previous].cross(along[k]).dot(up[k]), along2[previous] * along2[k] * up2[k]);
+    const double2 square =
+        unit_square(along[previous].cross(along[k]).dot(up[k]), along2[previous] * along2[k] * up2[k]);
     least = std::min({least, square[0], square[1]});
   }
   const Vec3d u = (x[1] - x[0]) + (x[2] - x[3]) + (x[5] - x[4]) + (x[6] - x[7]);
@@ -197,7 +198,7 @@ std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
 double enclosed_volume(const VolumeMesh& mesh) {
   constexpr std::size_t kBlock = 4096;  // of faces that are summed in order
   double sum = 0;
-  for (const VolumePatch& patch : mesh.patches) {
+  for (const BoundaryPatch& patch : mesh.patches) {
     std::vector<double> sums((patch.face_count() + kBlock - 1) / kBlock, 0);
     for_each_index(
         sums.size(),

@@ -108,7 +108,7 @@ class FoamMeasurer {
 
   FoamQuality measure() const {
     Sums all = sum_up(mesh_.cell_count(), [&](std::size_t c, Sums& sums) { add_inner_faces(c, sums); });
-    for (const VolumePatch& patch : mesh_.patches)
+    for (const BoundaryPatch& patch : mesh_.patches)
       all.add(sum_up(patch.face_count(), [&](std::size_t f, Sums& sums) { add_boundary_face(patch, f, sums); }));
     if (all.inner_faces > 0)
       all.quality.mean_non_orthogonality = degrees_of(all.cosines / static_cast<double>(all.inner_faces));
@@ -157,7 +157,7 @@ class FoamMeasurer {
     add_skewness(skewness_of(mesh_, corners, seen, centres_[c], way, 0.2), sums);
   }
 
-  void add_boundary_face(const VolumePatch& patch, std::size_t f, Sums& sums) const {
+  void add_boundary_face(const BoundaryPatch& patch, std::size_t f, Sums& sums) const {
     const FoamFace seen = foam_face(mesh_, patch.face(f));
     const Vec3d& centre = centres_[patch.cell[f]];
     sums.quality.wrong_faces += !is_seen_from_inside(seen, centre);

@@ -42,10 +42,10 @@ QualityOf<Real> quality_of(const QualitySquares<Real>& squares) {
 template <class Real>
 struct PrismLevel {
   PrismLevel() = default;
-  explicit PrismLevel(const std::array<Way<Real>, 3>& corners) : corner(corners) { measure(); }
+  explicit PrismLevel(const std::array<Vec3Of<Real>, 3>& corners) : corner(corners) { measure(); }
   /// To be called when the corners are others.
   void measure() {
-    Way<Real> side[3];
+    Vec3Of<Real> side[3];
     for (std::size_t k = 0; k < 3; ++k) {
       side[k] = corner[(k + 1) % 3] - corner[k];
       square[k] = side[k].dot(side[k]);
@@ -56,9 +56,9 @@ struct PrismLevel {
     longest = greater(greater(square[0], square[1]), square[2]);
   }
 
-  std::array<Way<Real>, 3> corner;
+  std::array<Vec3Of<Real>, 3> corner;
   Real square[3], product[3];  // of sides, and of the two at a corner
-  Way<Real> normal;            // the cross product of the sides at each corner
+  Vec3Of<Real> normal;         // the cross product of the sides at each corner
   Real shortest, longest;
 };
 
@@ -68,7 +68,7 @@ QualitySquares<Real> prism_squares(const PrismLevel<Real>& below, const PrismLev
   QualitySquares<Real> found{Real{} + std::numeric_limits<double>::infinity(), lesser(below.shortest, above.shortest),
                              greater(below.longest, above.longest)};
   for (std::size_t k = 0; k < 3; ++k) {
-    const Way<Real> up = above.corner[k] - below.corner[k];
+    const Vec3Of<Real> up = above.corner[k] - below.corner[k];
     const Real square = up.dot(up);
     found.shortest = lesser(found.shortest, square);
     found.longest = greater(found.longest, square);

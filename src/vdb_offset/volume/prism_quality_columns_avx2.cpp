@@ -4,9 +4,9 @@
 
 namespace vdb_offset {
 
-SixVolumes measure_prism_quads(const PrismColumns& columns) {
+SixVolumes measure_prism_quads(const PrismQualityColumns& columns) {
   SixVolumes six_volumes{};
-  PrismLanes<Quad>(columns, 0).measure(six_volumes.data());
+  PrismLanes<double4>(columns, 0).measure(six_volumes.data());
   return six_volumes;
 }
 

@@ -30,7 +30,7 @@ Real degrees_between(const Real& along, const Real& across) {
 template <class Real>
 class PrismLanes {
  public:
-  PrismLanes(const PrismColumns& columns, std::size_t first) : columns_(columns), first_(first) {
+  PrismLanes(const PrismQualityColumns& columns, std::size_t first) : columns_(columns), first_(first) {
     const double* origin[kLanes];
     for (std::size_t lane = 0; lane < kLanes; ++lane) origin[lane] = columns.origin;
     origin_ = gather(origin, 0);
@@ -56,8 +56,8 @@ class PrismLanes {
  private:
   static constexpr std::size_t kLanes = sizeof(Real) / sizeof(double);
 
-  static Way<Real> gather(const double* const* stacks, std::size_t layer) {
-    Way<Real> way;
+  static Vec3Of<Real> gather(const double* const* stacks, std::size_t layer) {
+    Vec3Of<Real> way;
     for (std::size_t lane = 0; lane < kLanes; ++lane) way.set(lane, stacks[lane] + 3 * layer);
     return way;
   }
@@ -69,16 +69,16 @@ class PrismLanes {
 
   void measure_wall(const PrismLevel<Real>& wall, const PrismLevel<Real>& above) {
     six_volumes_ = wall.normal.dot(origin_ - wall.corner[0]);
-    Way<Real> rise = above.corner[0] - wall.corner[0];
+    Vec3Of<Real> rise = above.corner[0] - wall.corner[0];
     for (std::size_t k = 1; k < 3; ++k) rise = rise + (above.corner[k] - wall.corner[k]);
     const Real along = wall.normal.dot(rise);
-    const Way<Real> across = wall.normal.cross(rise);
+    const Vec3Of<Real> across = wall.normal.cross(rise);
     put(degrees_between(greater(along, -along), root(across.dot(across))), columns_.wall_angle);
   }
 
-  const PrismColumns& columns_;
+  const PrismQualityColumns& columns_;
   std::size_t first_;
-  Way<Real> origin_;
+  Vec3Of<Real> origin_;
   Real six_volumes_;
   PrismLevel<Real> levels_[2];
 };

@@ -156,7 +156,7 @@ void VolumeFaces::require_boundary(const VolumeMesh& mesh) const {
   const auto open = static_cast<std::uint64_t>(std::count(behind_.begin(), behind_.end(), kNone));
   std::vector<std::uint64_t> taken;
   std::vector<std::uint32_t> corners;
-  for (const VolumePatch& patch : mesh.patches)
+  for (const BoundaryPatch& patch : mesh.patches)
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       const std::uint32_t c = patch.cell[f];
       sort_corners(patch.face(f), patch.face(f).size(), corners);

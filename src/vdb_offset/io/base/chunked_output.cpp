@@ -70,7 +70,7 @@ void write_pieces(const std::string& path, const Pieces& pieces) {
 }
 
 void write_pieces_of(const std::string& source, const FileBytes& bytes, const std::string& path, const Pieces& pieces) {
-  Replacements files;
+  OutputFiles files;
   write_pieces(path, pieces);
   bytes.require_unchanged(source);
   files.commit();

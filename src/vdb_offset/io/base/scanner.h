@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "vdb_offset/io/number_positions.h"
+#include "vdb_offset/io/byte_offsets.h"
 #include "vdb_offset/vec.h"
 
 namespace vdb_offset::io {

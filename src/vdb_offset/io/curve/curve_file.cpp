@@ -71,7 +71,7 @@ class TextParser {
     join_airfoil();
     if (file_.polygons.positions.empty())
       Scanner(file_.path, file_.text()).fail("at least one line 'x y'", file_.text().size());
-    file_.position_at = Places(std::move(at_));
+    file_.position_at = ByteOffsets(std::move(at_));
   }
 
  private:
@@ -157,7 +157,7 @@ class LineElementParser {
     for (const auto& [index, at] : ahead_)
       if (index > file_.polygons.positions.size())
         scanner_.fail(fmt::format("a vertex index up to {}", file_.polygons.positions.size()), at);
-    file_.position_at = Places(std::move(at_));
+    file_.position_at = ByteOffsets(std::move(at_));
   }
 
  private:

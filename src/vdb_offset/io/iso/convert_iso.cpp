@@ -14,7 +14,7 @@
 namespace vdb_offset::io {
 namespace {
 
-CornerValues<Vec3d> normals_of(const CaptureResult& captured) {
+CornerValues<Vec3d> normals_of(const IsoResult& captured) {
   const Rounding single{Rounding::Kind::Single};
   CornerValues<Vec3d> normals{captured.normals, {}, true};
   for (Vec3d& normal : normals.value) normal = single(normal);
@@ -65,7 +65,7 @@ std::optional<Vec2d> texture_at(const SourcePoint& point, PolygonView source, co
 }
 
 /// One value for all corners of a vertex that have the same.
-CornerValues<Vec2d> texture_of(const CaptureResult& captured, SourceLookup& lookup, PolygonView source,
+CornerValues<Vec2d> texture_of(const IsoResult& captured, SourceLookup& lookup, PolygonView source,
                                const CornerValues<Vec2d>& texture) {
   lookup.cut_into_charts(number_values(source, texture));
   const std::vector<std::uint32_t>& corners = captured.polygons.corners;
@@ -143,7 +143,7 @@ Pieces keep_alive(Pieces pieces, std::shared_ptr<const Polygons> mesh) {
 
 }  // namespace
 
-Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const CaptureResult& captured,
+Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const IsoResult& captured,
                WriteResult& result) {
   const PolygonView mesh = source.polygons.view();
   // Positions are what is written already.
@@ -174,7 +174,7 @@ Pieces convert(Format target, const Hollow& hollow, WriteResult& result) {
   return encode(target, std::make_shared<Content>(Content{hollow.polygons.view(), {}, {}, parts_of(hollow), {}}));
 }
 
-Pieces convert(const MeshFile& source, Format target, const CaptureResult& captured, const Transported& transported,
+Pieces convert(const MeshFile& source, Format target, const IsoResult& captured, const Transported& transported,
                const Rounding& precision, WriteResult& result) {
   const PolygonView from = source.polygons.view();
   const Attributes& of_source = transported.attributes;
@@ -197,7 +197,7 @@ Pieces convert(const MeshFile& source, Format target, const CaptureResult& captu
   return keep_alive(encode(target, content), mesh);
 }
 
-Pieces convert(Format target, const CaptureResult& captured, const Rounding& precision) {
+Pieces convert(Format target, const IsoResult& captured, const Rounding& precision) {
   const auto content = std::make_shared<Content>(Content{captured.polygons.view(), precision, {}, {}, {}});
   if (target != Format::Stl) content->with.normals = normals_of(captured);
   return encode(target, content);

@@ -31,28 +31,28 @@ Transported read_transported(const MeshFile& source, const TransportRequest& req
   return transported;
 }
 
-Precision precision_of_captured(const std::string& path, const WriteOptions& options) {
+Precision precision_of_iso(const std::string& path, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   if (format == Format::Stl) return {Rounding::Kind::Single};
   if (format != Format::Ply && options.digits > 0) return {Rounding::Kind::Digits, options.digits};
   return {};
 }
 
-WriteResult write_captured(const std::string& path, const MeshFile& source, const Transported& transported,
-                           const CaptureResult& captured, const WriteOptions& options) {
+WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
+                              const IsoResult& captured, const WriteOptions& options) {
   WriteResult result;
   const Pieces pieces = convert(source, require_format(path, options.format), captured, transported,
-                                precision_of_captured(path, options), result);
+                                precision_of_iso(path, options), result);
   write_pieces_of(source.path, source.bytes, path, pieces);
   return result;
 }
 
-void write_captured(const std::string& path, const CaptureResult& captured, const WriteOptions& options) {
-  write_pieces(path, convert(require_format(path, options.format), captured, precision_of_captured(path, options)));
+void write_iso_surface(const std::string& path, const IsoResult& captured, const WriteOptions& options) {
+  write_pieces(path, convert(require_format(path, options.format), captured, precision_of_iso(path, options)));
 }
 
 WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
-                         const CaptureResult& captured, const WriteOptions& options) {
+                         const IsoResult& captured, const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;

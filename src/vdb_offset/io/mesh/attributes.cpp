@@ -99,7 +99,7 @@ bool take_texture(const Columns& columns, std::size_t first, Attributes& attribu
 /// vertices have different numbers of them, or more than there is a meaning for.
 std::optional<Columns> read_tails(const MeshFile& source) {
   constexpr std::size_t kMost = 6;
-  const Places& last =
+  const ByteOffsets& last =
       source.format == Format::Off && !source.normal_at.empty() ? source.normal_at : source.position_at;
   const auto tail = [&](std::size_t v) {
     Scanner scanner = scanner_at(source, last[v].at[2]);
@@ -233,7 +233,7 @@ using Names = std::vector<std::string>;
 Columns read_columns(const MeshFile& source, const ply::Header& header, const ply::Element& wanted,
                      const Names& names) {
   Columns columns{names.size(), std::vector<double>(names.size() * wanted.count)};
-  ply::Body body(source, header);
+  ply::ConstrainedSurface body(source, header);
   body.skip_to(wanted, header);
   std::uint64_t ignored = 0;
   for (std::size_t row = 0; row < wanted.count; ++row)
@@ -311,7 +311,7 @@ void read_ply_texture_lists(const MeshFile& source, const ply::Header& header, A
   if (std::count_if(faces.properties.begin(), faces.properties.end(), is_texture) != 1) return;
   CornerValues<Vec2d> texture;
   TextureIndex index_of(texture.value);
-  ply::Body body(source, header);
+  ply::ConstrainedSurface body(source, header);
   body.skip_to(faces, header);
   std::uint64_t ignored = 0;
   for (std::size_t f = 0; f < faces.count; ++f)

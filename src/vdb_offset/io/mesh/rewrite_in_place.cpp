@@ -64,7 +64,7 @@ class Patcher {
   /// coordinates first, in the file's order, then normals.
   template <class Visit>
   void for_each_number(std::uint64_t begin, std::uint64_t end, Visit&& visit) const {
-    const auto each = [&](const Places& places, bool of_normals, auto&& value_of) {
+    const auto each = [&](const ByteOffsets& places, bool of_normals, auto&& value_of) {
       for (std::size_t i = places.first_from(begin); i < places.size(); ++i) {
         const NumberTriple place = places[i];
         if (first_of(place) >= end) return;

@@ -280,7 +280,7 @@ std::vector<double> vertex_property(const MeshFile& source, const std::string& n
   if (!vertices || vertices->count != count)
     throw InvalidInput(fmt::format("{}, header: expected {} vertices, as before", source.path, count));
   const ply::Property& wanted = find_scalar(source, *vertices, name);
-  ply::Body body(source, header);
+  ply::ConstrainedSurface body(source, header);
   body.skip_to(*vertices, header);
   std::vector<double> numbers(count);
   for (std::size_t v = 0; v < count; ++v)

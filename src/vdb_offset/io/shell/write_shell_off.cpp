@@ -135,7 +135,7 @@ class OffShellWriter {
 
   std::size_t first_of_vertex(std::size_t v) const { return source_.position_at[v].at[0]; }
   std::size_t end_of_numbers(std::size_t v) const {
-    const Places& last = source_.normal_at.empty() ? source_.position_at : source_.normal_at;
+    const ByteOffsets& last = source_.normal_at.empty() ? source_.position_at : source_.normal_at;
     Scanner scanner(source_.path, source_.text(), last[v].at[2], false, '#');
     scanner.token();
     return scanner.position();

@@ -67,7 +67,7 @@ void require_consistent(const std::string& path, const VolumeMesh& mesh) {
   const auto of_planes = std::count_if(mesh.cell_types.begin(), mesh.cell_types.end(), is_of_a_plane);
   require(of_planes == (mesh.plane() ? static_cast<std::ptrdiff_t>(mesh.cell_count()) : 0), path,
           "triangles and quadrilaterals in a plane mesh, and in no other");
-  for (const VolumePatch& patch : mesh.patches) {
+  for (const BoundaryPatch& patch : mesh.patches) {
     require(patch.cell.size() == patch.face_count() && patch.face_begin.back() == patch.corners.size(), path,
             "a cell behind each face of a patch");
     require(are_points(mesh, patch.corners), path, "patches' corners that are points of the mesh");
@@ -107,7 +107,7 @@ void require_standard_cells(const std::string& path, const VolumeMesh& mesh, con
         fmt::format("{}: expected cells of up to eight corners, got polyhedra: .{} has none (write .vtu, "
                     ".cgns or polyMesh)",
                     path, ending));
-  for (const VolumePatch& patch : mesh.patches)
+  for (const BoundaryPatch& patch : mesh.patches)
     for (std::size_t f = 0; f < patch.face_count(); ++f)
       if (patch.face(f).size() != 3 && patch.face(f).size() != 4)
         throw InvalidInput(fmt::format("{}: patch {}: expected triangles and quadrilaterals, got a face of {} corners",
@@ -130,7 +130,7 @@ std::vector<std::string> distinct_words(std::span<const std::string> words, std:
 
 std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest) {
   std::vector<std::string> words;
-  for (const VolumePatch& patch : mesh.patches) words.push_back(as_word(patch.name));
+  for (const BoundaryPatch& patch : mesh.patches) words.push_back(as_word(patch.name));
   return distinct_words(words, longest);
 }
 
@@ -143,7 +143,7 @@ VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh) {
           "a name that ends in .vtu or .su2, as the cells lie in a plane");
   // To the names of a .vtu's patches its cells refer.
   if (*format != VolumeFormat::Vtu)
-    std::erase_if(mesh.patches, [](const VolumePatch& patch) { return patch.face_count() == 0; });
+    std::erase_if(mesh.patches, [](const BoundaryPatch& patch) { return patch.face_count() == 0; });
   VolumeWriteResult result;
   switch (*format) {
     case VolumeFormat::Vtu:

@@ -49,7 +49,7 @@ class CgnsFile {
 /// No less than the file will take.
 std::size_t most_bytes(const VolumeMesh& mesh) {
   std::size_t corners = mesh.corners.size(), values = 0;
-  for (const VolumePatch& patch : mesh.patches) corners += patch.corners.size();
+  for (const BoundaryPatch& patch : mesh.patches) corners += patch.corners.size();
   for (const auto* fields : {&mesh.point_fields, &mesh.cell_fields})
     for (const VolumeField& field : *fields) values += field.values.size();
   // Faces of polyhedra have their own numbers, and those of prisms three times the corners.
@@ -91,7 +91,7 @@ class CgnsZone {
     }
     const auto words = patch_words(mesh_, kLongestName - std::string_view("_triangles").size());
     for (std::size_t i = 0; i < words.size(); ++i) {
-      const VolumePatch& patch = mesh_.patches[i];
+      const BoundaryPatch& patch = mesh_.patches[i];
       const cgsize_t first = next_;
       for (const std::size_t corners : {3, 4}) {
         std::vector<std::uint32_t> faces;
@@ -208,7 +208,7 @@ class CgnsZone {
     write_poly_section("faces", CGNS_ENUMV(NGON_n), section);
   }
 
-  void write_patch_faces(const std::string& name, const VolumePatch& patch, const VolumeFaces& faces,
+  void write_patch_faces(const std::string& name, const BoundaryPatch& patch, const VolumeFaces& faces,
                          std::vector<cgsize_t>& face_of_side) {
     PolySection section;
     std::vector<std::uint32_t> corners;
@@ -223,10 +223,10 @@ class CgnsZone {
   }
 
   /// Of the elements from `first` to the last one written.
-  void write_condition(const std::string& name, VolumePatch::Kind kind, cgsize_t first) {
+  void write_condition(const std::string& name, BoundaryPatch::Kind kind, cgsize_t first) {
     if (first == next_) return;
     const cgsize_t range[2] = {first, next_ - 1};
-    const auto type = kind == VolumePatch::Kind::Wall ? CGNS_ENUMV(BCWall) : CGNS_ENUMV(BCGeneral);
+    const auto type = kind == BoundaryPatch::Kind::Wall ? CGNS_ENUMV(BCWall) : CGNS_ENUMV(BCGeneral);
     int condition = 0;
     require(cg_boco_write(file_, base_, zone_, name.c_str(), type, CGNS_ENUMV(PointRange), 2, range, &condition));
     require(cg_boco_gridlocation_write(file_, base_, zone_, condition, CGNS_ENUMV(FaceCenter)));

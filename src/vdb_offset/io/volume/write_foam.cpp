@@ -53,7 +53,7 @@ void append_foam_face(std::string& text, const Face& face, std::size_t size) {
 class FoamWriter {
  public:
   explicit FoamWriter(const VolumeMesh& mesh) : mesh_(mesh), faces_(mesh), names_(patch_words(mesh)) {
-    for (const VolumePatch& patch : mesh.patches) boundary_ += patch.face_count();
+    for (const BoundaryPatch& patch : mesh.patches) boundary_ += patch.face_count();
     inner_ = (faces_.side_count() - boundary_) / 2;
   }
 
@@ -82,7 +82,7 @@ class FoamWriter {
       const CellFace known = face(mesh_, c, side.local);
       append_foam_face(text, known, known.size);
     })};
-    for (const VolumePatch& patch : mesh_.patches)
+    for (const BoundaryPatch& patch : mesh_.patches)
       sections.push_back({patch.face_count(), [&patch](std::string& text, std::size_t f) {
                             append_foam_face(text, patch.face(f), patch.face(f).size());
                           }});
@@ -94,7 +94,7 @@ class FoamWriter {
       append_integer(text, c);
       text += '\n';
     })};
-    for (const VolumePatch& patch : mesh_.patches)
+    for (const BoundaryPatch& patch : mesh_.patches)
       sections.push_back({patch.face_count(), [&patch](std::string& text, std::size_t f) {
                             append_integer(text, patch.cell[f]);
                             text += '\n';
@@ -114,11 +114,11 @@ class FoamWriter {
     std::string text = foam_header("polyBoundaryMesh", "boundary") + fmt::format("{}\n(\n", mesh_.patches.size());
     std::size_t start = inner_;
     for (std::size_t i = 0; i < mesh_.patches.size(); ++i) {
-      const VolumePatch& patch = mesh_.patches[i];
+      const BoundaryPatch& patch = mesh_.patches[i];
       text += fmt::format(
           "    {}\n    {{\n        type            {};\n        nFaces          {};\n"
           "        startFace       {};\n    }}\n",
-          names_[i], patch.kind == VolumePatch::Kind::Wall ? "wall" : "patch", patch.face_count(), start);
+          names_[i], patch.kind == BoundaryPatch::Kind::Wall ? "wall" : "patch", patch.face_count(), start);
       start += patch.face_count();
     }
     return text + ")\n";
@@ -141,7 +141,7 @@ FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh) {
   std::filesystem::path folder = std::filesystem::path(path).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   const FoamWriter writer(mesh);
-  Replacements files;
+  OutputFiles files;
   files.add_folders(folder);
   for (const FoamFile& file : writer.files()) write_pieces((folder / file.name).string(), file.pieces);
   files.commit();

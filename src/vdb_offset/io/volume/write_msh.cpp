@@ -39,7 +39,7 @@ struct MshBlock {
 };
 using MshBlocks = std::vector<MshBlock>;
 
-void add_patch(const VolumePatch& patch, int tag, MshBlocks& blocks) {
+void add_patch(const BoundaryPatch& patch, int tag, MshBlocks& blocks) {
   std::array<std::vector<std::uint32_t>, 2> faces;
   for (std::uint32_t f = 0; f < patch.face_count(); ++f) faces[patch.face(f).size() - 3].push_back(f);
   for (const int type : {kTriangle, kQuadrilateral}) {

@@ -39,7 +39,7 @@ Pieces su2_points(const VolumeMesh& mesh) {
                        }}});
 }
 
-Pieces su2_marker(const VolumePatch& patch, const std::string& tag) {
+Pieces su2_marker(const BoundaryPatch& patch, const std::string& tag) {
   return in_sections(fmt::format("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", tag, patch.face_count()),
                      {{patch.face_count(), [&patch](std::string& text, std::size_t f) {
                          const auto face = patch.face(f);

@@ -107,7 +107,7 @@ void add_patches(vtkFieldData& data, const VolumeMesh& mesh) {
   const auto faces = vtkSmartPointer<vtkIntArray>::New();
   names->SetName("patch_names");
   faces->SetName("patch_faces");
-  for (const VolumePatch& patch : mesh.patches) {
+  for (const BoundaryPatch& patch : mesh.patches) {
     names->InsertNextValue(patch.name);
     faces->InsertNextValue(static_cast<int>(patch.face_count()));
   }

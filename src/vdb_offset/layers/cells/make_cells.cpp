@@ -56,7 +56,7 @@ void place_points(const LayersResult& layers, const LayerCells& cells, VolumeMes
                  1);
 }
 
-void fill_cells(const LayerPoints& points, const LayerColumns& columns, const WallNames& names, std::size_t layers,
+void fill_cells(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, std::size_t layers,
                 VolumeMesh& volume) {
   const std::size_t cells = columns.cells.back();
   const std::uint64_t size = columns.size.back();
@@ -86,27 +86,27 @@ void fill_cells(const LayerPoints& points, const LayerColumns& columns, const Wa
   volume.cell_begin.back() = size * layers;
 }
 
-void add_face(std::span<const Index> face, std::size_t cell, VolumePatch& patch) {
+void add_face(std::span<const Index> face, std::size_t cell, BoundaryPatch& patch) {
   patch.corners.insert(patch.corners.end(), face.begin(), face.end());
   patch.face_begin.push_back(static_cast<Index>(patch.corners.size()));
   patch.cell.push_back(static_cast<Index>(cell));
 }
 
-void add_walls(const LayerPoints& points, const LayerColumns& columns, const WallNames& names, VolumeMesh& volume) {
+void add_walls(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, VolumeMesh& volume) {
   for (const std::string& name : patch_names(names)) volume.patches.emplace_back().name = name;
   std::vector<Index> scratch;
   for (std::size_t c = 0; c < columns.count(); ++c) {
-    VolumePatch& patch = volume.patches[names.of_face.empty() ? 0 : names.of_face[columns.face[c]]];
+    BoundaryPatch& patch = volume.patches[names.of_face.empty() ? 0 : names.of_face[columns.face[c]]];
     CellStack(points, columns.ring(c), 0).visit_below(scratch, [&](std::span<const Index> face, Index cell) {
       add_face(face, columns.cells[c] + cell, patch);
     });
   }
 }
 
-void add_outer(const LayerPoints& points, const LayerColumns& columns, std::size_t layers, VolumeMesh& volume) {
-  VolumePatch& patch = volume.patches.emplace_back();
+void add_outer(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers, VolumeMesh& volume) {
+  BoundaryPatch& patch = volume.patches.emplace_back();
   patch.name = "outer";
-  patch.kind = VolumePatch::Kind::Outer;
+  patch.kind = BoundaryPatch::Kind::Outer;
   patch.corners.reserve(columns.corners.size());
   patch.face_begin.reserve(columns.cells.back() + 1);
   patch.cell.reserve(columns.cells.back());
@@ -127,7 +127,7 @@ struct OpenSide {
 
 /// The sides on the boundary, and to which opening of the surface each belongs: those of one hang together at their
 /// points. Openings are numbered in the order of columns. Returns how many there are.
-std::size_t find_openings(const LayerPoints& points, const LayerColumns& columns, std::vector<OpenSide>& sides) {
+std::size_t find_openings(const LayerPoints& points, const NumberedColumns& columns, std::vector<OpenSide>& sides) {
   std::vector<Index> first(points.wall());
   std::iota(first.begin(), first.end(), 0);
   const auto find = [&](Index p) {
@@ -172,16 +172,16 @@ std::string side_name(std::size_t openings, std::set<std::string>& taken) {
     if (std::string name = "sides_" + std::to_string(n); taken.insert(name).second) return name;
 }
 
-void add_sides(const LayerPoints& points, const LayerColumns& columns, std::size_t layers, VolumeMesh& volume) {
+void add_sides(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers, VolumeMesh& volume) {
   std::vector<OpenSide> sides;
   const std::size_t openings = keep_largest(find_openings(points, columns, sides), sides);
   std::set<std::string> taken;
-  for (const VolumePatch& patch : volume.patches) taken.insert(patch.name);
+  for (const BoundaryPatch& patch : volume.patches) taken.insert(patch.name);
   const std::size_t first = volume.patches.size();
   for (std::size_t i = 0; i < openings; ++i) {
-    VolumePatch& patch = volume.patches.emplace_back();
+    BoundaryPatch& patch = volume.patches.emplace_back();
     patch.name = side_name(openings, taken);
-    patch.kind = VolumePatch::Kind::Side;
+    patch.kind = BoundaryPatch::Kind::Side;
   }
   for (std::size_t layer = 0; layer < layers; ++layer)
     for (const auto& [c, k, opening] : sides) {
@@ -193,7 +193,7 @@ void add_sides(const LayerPoints& points, const LayerColumns& columns, std::size
     }
 }
 
-void add_patches(const LayerPoints& points, const LayerColumns& columns, const WallNames& names, std::size_t layers,
+void add_patches(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, std::size_t layers,
                  VolumeMesh& volume) {
   add_walls(points, columns, names, volume);
   add_outer(points, columns, layers, volume);

@@ -51,7 +51,7 @@ class CellMeasurer {
   double measure_columns(std::size_t begin, std::size_t end, ColumnMesh& column) {
     double six_volumes = 0;
     while (begin < end) {
-      const std::size_t prisms = begin + PrismColumns::kCount;
+      const std::size_t prisms = begin + PrismQualityColumns::kCount;
       if (prisms <= end && are_of_prisms(begin, prisms)) {
         six_volumes += measure_prisms(begin);
         begin = prisms;
@@ -74,14 +74,14 @@ class CellMeasurer {
 
   double measure_prisms(std::size_t begin) {
     const std::size_t first = cells_.columns.cells[begin];
-    PrismColumns columns{.layers = cells_.layers,
-                         .in_layer = cells_.in_layer(),
-                         .scaled_jacobian = result_.scaled_jacobian.data() + first,
-                         .aspect_ratio = result_.aspect_ratio.data() + first,
-                         .wall_angle = result_.wall_angle.data() + first,
-                         .origin = origin_.asPointer()};
+    PrismQualityColumns columns{.layers = cells_.layers,
+                                .in_layer = cells_.in_layer(),
+                                .scaled_jacobian = result_.scaled_jacobian.data() + first,
+                                .aspect_ratio = result_.aspect_ratio.data() + first,
+                                .wall_angle = result_.wall_angle.data() + first,
+                                .origin = origin_.asPointer()};
     double sides = 0;
-    for (std::size_t i = 0; i < PrismColumns::kCount; ++i) {
+    for (std::size_t i = 0; i < PrismQualityColumns::kCount; ++i) {
       const auto ring = cells_.columns.ring(begin + i);
       for (std::size_t k = 0; k < 3; ++k) columns.stack[k][i] = stack(ring[k])->asPointer();
       result_.types[first + i] = CellType::Prism;

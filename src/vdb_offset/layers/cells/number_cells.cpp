@@ -53,7 +53,7 @@ Index split_from(const LayersResult& layers, std::size_t f, std::size_t corners)
 }
 
 /// Faces that are polygons; facts know what became of the others.
-LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCellFacts& facts) {
+NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCellFacts& facts) {
   // Of each face how many columns and how many corners it has, and so what is before it.
   std::vector<Index> columns_before(mesh.face_count() + 1, 0), corners_before(mesh.face_count() + 1, 0);
   const auto visit_rings = [&](auto&& visit) {
@@ -73,7 +73,7 @@ LayerColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCe
   });
   std::partial_sum(columns_before.begin(), columns_before.end(), columns_before.begin());
   std::partial_sum(corners_before.begin(), corners_before.end(), corners_before.begin());
-  LayerColumns columns;
+  NumberedColumns columns;
   columns.corners.resize(corners_before.back());
   columns.begin.assign(columns_before.back() + std::size_t{1}, 0);
   columns.face.resize(columns_before.back());
@@ -112,7 +112,7 @@ struct ColumnRole {
   bool turned;
 };
 std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const std::uint8_t> flat, bool inward,
-                                   const LayerColumns& columns) {
+                                   const NumberedColumns& columns) {
   constexpr std::size_t kAhead = 8;  // columns whose stacks, far apart in memory, are asked for before their turn
   std::vector<std::uint8_t> repeated(columns.count(), 0);
   if (!knows_sides(layers.statistics.facts)) repeated = find_repeated_faces(columns.corners, columns.begin);
@@ -139,7 +139,7 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
 }
 
 /// Leaves out what gives no cell, and turns what lies on the other side. False if any column is turned.
-bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, LayerColumns& columns,
+bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, NumberedColumns& columns,
                   LayerCellFacts& facts) {
   const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
   const std::vector<ColumnRole> roles = find_roles(layers, flat, inward, columns);
@@ -214,7 +214,7 @@ void pair_sides(std::span<const EdgeSide> sides, std::span<const Index> corners,
 /// Finds the sides on the boundary, and the places that have a side too many.
 class SideMatch {
  public:
-  SideMatch(std::size_t vertices, std::span<const std::uint8_t> flat, LayerColumns& columns, LayerCellFacts& facts)
+  SideMatch(std::size_t vertices, std::span<const std::uint8_t> flat, NumberedColumns& columns, LayerCellFacts& facts)
       : columns_(columns),
         flat_(flat),
         edges_({{}, columns.corners, columns.begin}, numbers_below(vertices)),
@@ -291,7 +291,7 @@ class SideMatch {
     return columns_.next(static_cast<std::size_t>(column - columns_.begin.begin()), corner);
   }
 
-  LayerColumns& columns_;
+  NumberedColumns& columns_;
   std::span<const std::uint8_t> flat_;
   EdgeSides edges_;
   std::vector<std::uint8_t> crowded_;
@@ -300,9 +300,9 @@ class SideMatch {
 /// The faces over which layers rise, on the side where they do, with the first vertex at each corner's place; facts
 /// know what became of the others. `flat` tells of each vertex whether it rises in no layer. `all_paired` becomes
 /// true if each side that rises is known to have one partner. (Faces that are flat have none that does.)
-LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
-                          LayerCellFacts& facts, bool& all_paired) {
-  LayerColumns columns = find_polygons(mesh, layers, facts);
+NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
+                             LayerCellFacts& facts, bool& all_paired) {
+  NumberedColumns columns = find_polygons(mesh, layers, facts);
   const bool none_turned = keep_columns(layers, flat, columns, facts);
   all_paired = none_turned && knows_sides(layers.statistics.facts) &&
                std::none_of(facts.role.begin(), facts.role.end(),
@@ -312,7 +312,7 @@ LayerColumns find_columns(PolygonView mesh, const LayersResult& layers, std::spa
 
 /// Numbers the points, and replaces the columns' places by those of the wall, where sides that have no partner get
 /// points of their own. Tells the columns which of their sides are open.
-LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, LayerColumns& columns,
+LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, NumberedColumns& columns,
                           LayerCellFacts& facts) {
   columns.open.assign(columns.corners.size(), 0);
   std::optional<SideMatch> sides;
@@ -366,7 +366,7 @@ std::vector<std::uint8_t> find_flat(const SharedStacks& stacks) {
 }
 
 /// Counts what a layer has, and so where each column's cells are.
-void count_cells(const LayerPoints& points, LayerColumns& columns, LayerCellFacts& facts) {
+void count_cells(const LayerPoints& points, NumberedColumns& columns, LayerCellFacts& facts) {
   columns.cells.assign(columns.count() + 1, 0);
   columns.size.assign(columns.count() + 1, 0);
   for_each_index(columns.count(), [&](std::size_t c) {
@@ -379,7 +379,7 @@ void count_cells(const LayerPoints& points, LayerColumns& columns, LayerCellFact
   std::partial_sum(columns.size.begin(), columns.size.end(), columns.size.begin());
 }
 
-void require_countable(const LayerPoints& points, const LayerColumns& columns, std::size_t layers) {
+void require_countable(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers) {
   const std::uint64_t all_points = points.wall() + std::uint64_t{points.risen()} * layers;
   const std::uint64_t all_cells = std::uint64_t{columns.cells.back()} * layers;
   if (all_points >= kNone || all_cells >= kNone)

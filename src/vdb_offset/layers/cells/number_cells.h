@@ -13,7 +13,7 @@
 namespace vdb_offset {
 
 /// The faces that carry cells, which run so that their normals point into the layers.
-struct LayerColumns {
+struct NumberedColumns {
   std::vector<std::uint32_t> corners;  ///< Points of the wall.
   std::vector<std::uint32_t> begin{0};
   std::vector<std::uint32_t> face;      ///< Of the input.
@@ -33,7 +33,7 @@ struct LayerColumns {
 /// The cells over the faces of a mesh, numbered: each follows from its column and its layer.
 struct LayerCells {
   std::size_t layers = 0;
-  LayerColumns columns;
+  NumberedColumns columns;
   LayerPoints points;
   LayerCellFacts facts;
 

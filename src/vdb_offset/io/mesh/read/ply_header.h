@@ -84,9 +84,9 @@ inline double as_declared(Type type, double value) {
 }
 
 /// Takes numbers of either kind off the body, one after the other. Refers to `file`.
-class Body {
+class ConstrainedSurface {
  public:
-  Body(const MeshFile& file, const Header& header)
+  ConstrainedSurface(const MeshFile& file, const Header& header)
       : file_(file), text_(file.path, file.text(), header.end), at_(header.end), encoding_(header.encoding) {}
 
   /// `at` receives the number's first byte. Numbers above 2^53 do not occur in what is used.

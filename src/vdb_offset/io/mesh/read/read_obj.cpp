@@ -358,8 +358,8 @@ void parse_obj(MeshFile& file) {
   for (const auto& exception : failed)
     if (exception) std::rethrow_exception(exception);
   if (all.faces == 0) Scanner(file.path, file.text()).fail("at least one face ('f' line)", file.text().size());
-  file.position_at = Places(std::move(arrays.position_at));
-  file.normal_at = Places(std::move(arrays.normal_at));
+  file.position_at = ByteOffsets(std::move(arrays.position_at));
+  file.normal_at = ByteOffsets(std::move(arrays.normal_at));
   unsigned held = 0;
   for (const unsigned extra : extras) held |= extra;
   for (std::size_t i = 0; i < std::size(kExtraNames); ++i)

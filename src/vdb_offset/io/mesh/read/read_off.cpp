@@ -63,10 +63,10 @@ class BinaryOffParser {
   void read_vertices(std::size_t count, const off::Layout& layout) {
     const std::size_t size = 4 * layout.width;
     if (count > left() / size) fail(fmt::format("{} vertices of {} bytes", count, size), "the end of the file", at_);
-    file_.position_at = Places(count, at_, size, {0, 4, 8});
+    file_.position_at = ByteOffsets(count, at_, size, {0, 4, 8});
     if (layout.normal) {
       file_.normal_bytes = 4;
-      file_.normal_at = Places(count, at_ + 4 * layout.normal, size, {0, 4, 8});
+      file_.normal_at = ByteOffsets(count, at_ + 4 * layout.normal, size, {0, 4, 8});
     }
     file_.polygons.positions.resize(count);
     for (std::size_t v = 0; v < count; ++v)
@@ -163,8 +163,8 @@ void parse_off(MeshFile& file) {
     scanner.next_line();
   }
   if (faces == 0) scanner.fail("at least one face");
-  file.position_at = Places(std::move(position_at));
-  file.normal_at = Places(std::move(normal_at));
+  file.position_at = ByteOffsets(std::move(position_at));
+  file.normal_at = ByteOffsets(std::move(normal_at));
 }
 
 }  // namespace vdb_offset::io

@@ -102,7 +102,7 @@ class PlyParser {
     }
     const std::size_t begin = body_.position(), count = element.count;
     if (count > (file_.text().size() - begin) / size) return false;
-    const Places places(count, begin, size, offset[0]);
+    const ByteOffsets places(count, begin, size, offset[0]);
     const Type type{'f', file_.position_bytes};
     std::atomic<bool> finite = true;
     require_memory(count * sizeof(Vec3d), file_.path);
@@ -114,7 +114,7 @@ class PlyParser {
       if (!p.isFinite()) finite = false;
     });
     file_.position_at = places;
-    if (layout.normals) file_.normal_at = Places(count, begin, size, offset[1]);
+    if (layout.normals) file_.normal_at = ByteOffsets(count, begin, size, offset[1]);
     if (finite) body_.go_to(begin + count * size);
     return finite;
   }
@@ -142,8 +142,8 @@ class PlyParser {
       return file_.polygons.positions[v].isFinite();
     });
     if (!plain) return false;
-    file_.position_at = Places(std::move(at[0]));
-    file_.normal_at = Places(std::move(at[1]));
+    file_.position_at = ByteOffsets(std::move(at[0]));
+    file_.normal_at = ByteOffsets(std::move(at[1]));
     body_.go_to(lines.end());
     return true;
   }
@@ -175,8 +175,8 @@ class PlyParser {
       position_at.push_back(at[0]);
       if (layout.normals) normal_at.push_back(at[1]);
     }
-    file_.position_at = Places(std::move(position_at));
-    file_.normal_at = Places(std::move(normal_at));
+    file_.position_at = ByteOffsets(std::move(position_at));
+    file_.normal_at = ByteOffsets(std::move(normal_at));
   }
 
   /// Reads the first list of corners that each row has, and skips the rest.
@@ -348,7 +348,7 @@ class PlyParser {
 
   MeshFile& file_;
   Header header_;
-  Body body_;
+  ConstrainedSurface body_;
 };
 
 }  // namespace

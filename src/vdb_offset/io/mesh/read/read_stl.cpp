@@ -25,8 +25,8 @@ class AsciiStlParser {
   void run() {
     while (!scanner_.at_text_end()) solid();
     if (file_.polygons.face_count() == 0) scanner_.fail("at least one facet");
-    file_.position_at = Places(std::move(position_at_));
-    file_.normal_at = Places(std::move(normal_at_));
+    file_.position_at = ByteOffsets(std::move(position_at_));
+    file_.normal_at = ByteOffsets(std::move(normal_at_));
   }
 
  private:
@@ -95,8 +95,8 @@ void parse_binary(MeshFile& file) {
   if (3 * facets > kMostVertices)
     throw InvalidInput(
         fmt::format("{}, byte 80: expected at most {} facets, got {}", file.path, kMostVertices / 3, facets));
-  file.normal_at = Places(facets, kHeaderBytes, kFacetBytes, {0, 4, 8});
-  file.position_at = Places(3 * facets, kHeaderBytes + 12, kFacetBytes, {0, 4, 8}, 3, 12);
+  file.normal_at = ByteOffsets(facets, kHeaderBytes, kFacetBytes, {0, 4, 8});
+  file.position_at = ByteOffsets(3 * facets, kHeaderBytes + 12, kFacetBytes, {0, 4, 8}, 3, 12);
   Polygons& polygons = file.polygons;
   require_memory(facets * (3 * sizeof(Vec3d) + 4 * sizeof(std::uint32_t)), file.path);
   polygons.positions.resize(3 * facets);

@@ -10,24 +10,25 @@
 
 #include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/layers/rails.h"
-#include "vdb_offset/layers/surface_stacker.h"
+#include "vdb_offset/layers/surface_layer_grower.h"
 
 namespace vdb_offset {
 
 /// What stack_layers() and stack_curves() have in common: the rounds that thin layers and let them out again until all
 /// cells are valid. What is told of columns of cells, of faces around vertices and of faults differs.
-class Stacker {
+class LayerGrower {
  public:
-  Stacker(const Stacker&) = delete;
-  Stacker& operator=(const Stacker&) = delete;
+  LayerGrower(const LayerGrower&) = delete;
+  LayerGrower& operator=(const LayerGrower&) = delete;
 
   LayerStack run(Progress& progress);
 
  protected:
   /// Keeps references to what stands behind spans, and to `paths`. \pre `source` less `front_origin` is in the frame of
   /// the queries that fields of put_down() ask.
-  Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::span<const Distances> heights, Paths& paths);
-  ~Stacker() = default;
+  LayerGrower(std::span<const Vec3d> source, const Vec3d& front_origin, std::span<const Distances> heights,
+              Paths& paths);
+  ~LayerGrower() = default;
 
   virtual bool moves(std::uint32_t vertex) const = 0;
   /// Whether a vertex's layers have to stand on a straight line.

@@ -1,4 +1,4 @@
-#include "vdb_offset/layers/stacker.h"
+#include "vdb_offset/layers/layer_grower.h"
 
 #include "vdb_offset/base/progress_count.h"
 
@@ -23,8 +23,8 @@ constexpr double kThicknessSlope = 0.5;
 
 }  // namespace
 
-Stacker::Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::span<const Distances> heights,
-                 Paths& paths)
+LayerGrower::LayerGrower(std::span<const Vec3d> source, const Vec3d& front_origin, std::span<const Distances> heights,
+                         Paths& paths)
     : source_(source),
       front_origin_(front_origin),
       heights_(heights),
@@ -34,11 +34,11 @@ Stacker::Stacker(std::span<const Vec3d> source, const Vec3d& front_origin, std::
       stood_(source.size()),
       bend_(source.size(), Vec3d(0.0)),
       thinned_(source.size(), 0) {
-  stack_.stacks = Stacks(source.size(), heights.size());
+  stack_.stacks = VertexStacks(source.size(), heights.size());
   stack_.first_achieved.assign(source.size(), 0.0);
 }
 
-LayerStack Stacker::run(Progress& progress) {
+LayerStack LayerGrower::run(Progress& progress) {
   for_each_index(source_.size(), [&](std::size_t v) { most_[v] = share_at_end(static_cast<std::uint32_t>(v)); });
   stack_.share = most_;
   Indices all(source_.size());
@@ -59,7 +59,7 @@ LayerStack Stacker::run(Progress& progress) {
 
 /// What a vertex could keep of its heights for where its path ended; nothing where no way up has all of the faces
 /// around it in view.
-double Stacker::share_at_end(std::uint32_t v) {
+double LayerGrower::share_at_end(std::uint32_t v) {
   if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
   const Vec3d& whole = paths_.displacement[v];
   const Vec3d start = direction_of(v) * (side_ * whole.length());
@@ -72,7 +72,7 @@ double Stacker::share_at_end(std::uint32_t v) {
 
 /// Calls visit(neighbour, length of the edge) for each that moves: twice, where two columns share the edge.
 template <class Visit>
-void Stacker::for_each_neighbour(std::uint32_t v, Visit&& visit) const {
+void LayerGrower::for_each_neighbour(std::uint32_t v, Visit&& visit) const {
   for (const auto column : columns_around(v)) {
     const auto ring = base(column);
     const auto k = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
@@ -82,7 +82,7 @@ void Stacker::for_each_neighbour(std::uint32_t v, Visit&& visit) const {
 }
 
 /// False if a vertex's thickness is no more than what a neighbour allows.
-bool Stacker::lower(std::uint32_t v, double most) {
+bool LayerGrower::lower(std::uint32_t v, double most) {
   if (!(stack_.share[v] * asked(v) > most * (1 + 1e-9))) return false;
   stack_.share[v] = most / asked(v) < kLeastShare ? 0 : most / asked(v);
   return true;
@@ -90,7 +90,7 @@ bool Stacker::lower(std::uint32_t v, double most) {
 
 /// Lowers shares of these vertices and their neighbours until thickness is even enough: for each what the lowest
 /// allow. Returns all vertices that it lowered.
-Indices Stacker::smooth(Indices changed) {
+Indices LayerGrower::smooth(Indices changed) {
   Indices lowered;
   for (std::size_t i = 0; i < changed.size(); ++i) {
     const std::uint32_t v = changed[i];
@@ -107,7 +107,7 @@ Indices Stacker::smooth(Indices changed) {
 }
 
 /// As smooth(), where only these vertices, which have been let out, may be too high. Returns whom else it lowered.
-Indices Stacker::smooth_back(const Indices& vertices) {
+Indices LayerGrower::smooth_back(const Indices& vertices) {
   std::vector<double> most(vertices.size(), std::numeric_limits<double>::infinity());
   for_each_index(vertices.size(), [&](std::size_t i) {
     for_each_neighbour(vertices[i], [&](std::uint32_t w, double length) {
@@ -122,7 +122,7 @@ Indices Stacker::smooth_back(const Indices& vertices) {
 
 /// Looks whether columns column(0 .. count - 1) are valid, two at a time.
 template <class Column>
-void Stacker::judge(std::size_t count, Column&& column) {
+void LayerGrower::judge(std::size_t count, Column&& column) {
   for_each_index((count + 1) / 2,
                  [&](std::size_t i) {
                    const std::size_t c = column(2 * i), other = column(std::min(2 * i + 1, count - 1));
@@ -133,14 +133,14 @@ void Stacker::judge(std::size_t count, Column&& column) {
                  32);
 }
 
-void Stacker::check_all_columns() {
+void LayerGrower::check_all_columns() {
   wrong_column_.assign(column_count(), 0);
   judge(column_count(), [](std::size_t c) { return c; });
   for (std::uint32_t c = 0; c < column_count(); ++c)
     if (wrong_column_[c]) wrong_columns_.push_back(c);
 }
 
-void Stacker::check_columns(const Indices& moved) {
+void LayerGrower::check_columns(const Indices& moved) {
   Indices columns;
   for (const auto v : moved) columns.insert(columns.end(), columns_around(v).begin(), columns_around(v).end());
   sort_unique(columns);
@@ -151,7 +151,7 @@ void Stacker::check_columns(const Indices& moved) {
   sort_unique(wrong_columns_);
 }
 
-Stacker::Snapshot Stacker::snapshot(const Indices& vertices) const {
+LayerGrower::Snapshot LayerGrower::snapshot(const Indices& vertices) const {
   Snapshot taken{vertices, {}, {}, {}};
   taken.places.reserve(vertices.size() * (heights_.size() + 1));
   taken.first_achieved.reserve(vertices.size());
@@ -166,7 +166,7 @@ Stacker::Snapshot Stacker::snapshot(const Indices& vertices) const {
 }
 
 /// False if v is none of the snapshot's.
-bool Stacker::restore(const Snapshot& snapshot, std::uint32_t v) {
+bool LayerGrower::restore(const Snapshot& snapshot, std::uint32_t v) {
   const auto found = std::lower_bound(snapshot.vertices.begin(), snapshot.vertices.end(), v);
   if (found == snapshot.vertices.end() || *found != v) return false;
   const auto i = static_cast<std::size_t>(found - snapshot.vertices.begin());
@@ -177,25 +177,25 @@ bool Stacker::restore(const Snapshot& snapshot, std::uint32_t v) {
   return true;
 }
 
-void Stacker::move(const Indices& vertices) {
+void LayerGrower::move(const Indices& vertices) {
   put(vertices);
   judge_moved(vertices);
 }
 
-void Stacker::judge_moved(const Indices& vertices) {
+void LayerGrower::judge_moved(const Indices& vertices) {
   look(vertices);
   check_columns(vertices);
   ++stack_.statistics.rounds;
 }
 
-Indices Stacker::corners_of_wrong_columns() const {
+Indices LayerGrower::corners_of_wrong_columns() const {
   Indices corners;
   for (const auto c : wrong_columns_) corners.insert(corners.end(), base(c).begin(), base(c).end());
   sort_unique(corners);
   return corners;
 }
 
-Indices Stacker::wrong_vertices() const {
+Indices LayerGrower::wrong_vertices() const {
   Indices wrong = faulty_vertices();
   const Indices corners = corners_of_wrong_columns();
   wrong.insert(wrong.end(), corners.begin(), corners.end());
@@ -203,9 +203,9 @@ Indices Stacker::wrong_vertices() const {
   return wrong;
 }
 
-/// Stands the layers of wrong cells' vertices on straight lines, where these see all faces around. False if none is
-/// left that could be.
-bool Stacker::straighten() {
+/// VertexPositions the layers of wrong cells' vertices on straight lines, where these see all faces around. False if
+/// none is left that could be.
+bool LayerGrower::straighten() {
   Indices corners = corners_of_wrong_columns();
   std::erase_if(corners, [&](std::uint32_t v) {
     return bend_[v] == Vec3d(0.0) || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
@@ -221,7 +221,7 @@ bool Stacker::straighten() {
 }
 
 /// Thins the layers of the vertices that something is wrong with. False if none of them has any height left.
-bool Stacker::thin() {
+bool LayerGrower::thin() {
   Indices wrong = wrong_vertices();
   std::erase_if(wrong, [&](std::uint32_t v) { return stack_.share[v] == 0; });
   if (wrong.empty()) return false;
@@ -238,7 +238,7 @@ bool Stacker::thin() {
 }
 
 /// Lets all that is thinned out again, step by step, each vertex until it cannot go on.
-void Stacker::let_all_out(Progress& progress) {
+void LayerGrower::let_all_out(Progress& progress) {
   Indices thinned;
   for (std::uint32_t v = 0; v < source_.size(); ++v)
     if (stack_.share[v] > 0 && stack_.share[v] < most_[v]) thinned.push_back(v);
@@ -252,7 +252,7 @@ void Stacker::let_all_out(Progress& progress) {
 /// Lets these vertices out by one step, as far as thickness stays even, and takes those back that something is then
 /// wrong with. Keeps in `thinned` who has been let out, and is not at its end yet; `before`, the shares that there are,
 /// keeps up with them.
-void Stacker::let_out(Indices& thinned, std::vector<double>& before) {
+void LayerGrower::let_out(Indices& thinned, std::vector<double>& before) {
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
   for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kLetOutFrom);
   Indices changed = thinned;
@@ -270,7 +270,7 @@ void Stacker::let_out(Indices& thinned, std::vector<double>& before) {
 /// Takes vertices that something is wrong with, and who hinders their thickness from being even, back to where all was
 /// well. Those with the share they had are put back themselves: on its rail, a vertex may find that share's height at
 /// several places. Returns all of them.
-Indices Stacker::take_back(const std::vector<double>& before, const Snapshot& snapshot) {
+Indices LayerGrower::take_back(const std::vector<double>& before, const Snapshot& snapshot) {
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
   Indices taken;
   while (true) {
@@ -290,7 +290,7 @@ Indices Stacker::take_back(const std::vector<double>& before, const Snapshot& sn
   }
 }
 
-void Stacker::finish() {
+void LayerGrower::finish() {
   for (const auto v : straightened_) stack_.statistics.straightened += stack_.share[v] > 0;
   for (std::uint32_t v = 0; v < source_.size(); ++v) {
     if (!moves(v)) continue;

@@ -12,7 +12,7 @@
 namespace vdb_offset {
 
 /// The mesh, in the local frame, what is inside of it, and what distances are measured to.
-struct CaptureSource {
+struct IsoSource {
   Surface surface;  ///< All of the mesh.
   Inside inside;
   std::optional<Boundary> boundary;  ///< Of what is inside, if that is not all of the mesh and no more.
@@ -20,9 +20,9 @@ struct CaptureSource {
 
   /// `solidity` tells of a mesh that is not plainly closed; holes as wide as `distance` (world units, below 0 inward),
   /// which a ball of this radius fits into, are filled for distances, too.
-  CaptureSource(Surface placed, const std::optional<Solidity>& solidity, double distance, Orient orient);
-  CaptureSource(const CaptureSource&) = delete;
-  CaptureSource& operator=(const CaptureSource&) = delete;
+  IsoSource(Surface placed, const std::optional<Solidity>& solidity, double distance, Orient orient);
+  IsoSource(const IsoSource&) = delete;
+  IsoSource& operator=(const IsoSource&) = delete;
 
   /// The mesh's triangle that one of those asked is part of.
   std::uint32_t given(std::uint32_t triangle) const { return boundary ? boundary->given[triangle] : triangle; }

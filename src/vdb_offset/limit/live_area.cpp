@@ -1,4 +1,4 @@
-#include "vdb_offset/limit/area_short.h"
+#include "vdb_offset/limit/live_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,28 +25,33 @@ constexpr std::size_t kMostPlaces = 8;
 
 }  // namespace
 
-Stakes::Stakes(const Body& body, const Distances& distances)
-    : body_(body), surface_(body.surface), distances_(distances), stake_(body.surface.vertices.size(), -1.0) {
+LiveArea::LiveArea(const ConstrainedSurface& constrained, const Distances& distances)
+    : constrained_(constrained),
+      surface_(constrained.surface),
+      distances_(distances),
+      stake_(constrained.surface.vertices.size(), -1.0) {
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
     if (counts(t)) whole_area_ += area_of(t);
 }
 
-bool Stakes::counts(std::uint32_t t) const { return body_.is_front(t) && surface_.triangle_normals[t].lengthSqr() > 0; }
+bool LiveArea::counts(std::uint32_t t) const {
+  return constrained_.is_front(t) && surface_.triangle_normals[t].lengthSqr() > 0;
+}
 
-double Stakes::area_of(std::uint32_t t) const {
+double LiveArea::area_of(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   const auto& x = surface_.vertices;
   return (x[b] - x[a]).cross(x[c] - x[a]).length() / 2;
 }
 
-double Stakes::area(std::uint32_t v) const {
+double LiveArea::area(std::uint32_t v) const {
   double area = 0;
   for (const auto t : surface_.triangles_around(v))
     if (counts(t)) area += area_of(t) / 3;
   return area;
 }
 
-void Stakes::measure(const Indices& vertices) {
+void LiveArea::measure(const Indices& vertices) {
   for_each_index(
       vertices.size(),
       [&](std::size_t i) {
@@ -56,10 +61,10 @@ void Stakes::measure(const Indices& vertices) {
       16);
 }
 
-double Stakes::find(std::uint32_t v) const {
-  if (!body_.on_front(v) || distances_[v] == 0) return 0;
+double LiveArea::find(std::uint32_t v) const {
+  if (!constrained_.on_front(v) || distances_[v] == 0) return 0;
   double stake = 0;
-  std::uint32_t hint = body_.hint(v);
+  std::uint32_t hint = constrained_.hint(v);
   for (const auto t : surface_.triangles_around(v))
     if (counts(t)) {
       const Vec3d inward = (centre(t) - surface_.vertices[v]) * kInThird;
@@ -68,27 +73,27 @@ double Stakes::find(std::uint32_t v) const {
   return stake;
 }
 
-Vec3d Stakes::centre(std::uint32_t t) const {
+Vec3d LiveArea::centre(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   return (surface_.vertices[a] + surface_.vertices[b] + surface_.vertices[c]) / 3.0;
 }
 
 /// Of the point of a triangle that is so far from a vertex.
-Stakes::Image Stakes::image(std::uint32_t v, std::uint32_t t, const Vec3d& way, std::uint32_t& hint) const {
+LiveArea::Image LiveArea::image(std::uint32_t v, std::uint32_t t, const Vec3d& way, std::uint32_t& hint) const {
   const Vec3d place = surface_.vertices[v] + way + surface_.triangle_normals[t] * distances_[v];
-  const Closest closest = body_.front(place, hint);
+  const Closest closest = constrained_.front(place, hint);
   hint = closest.triangle;
   return {place, closest.distance >= std::abs(distances_[v]) * kLive};
 }
 
-bool Stakes::is_at_border(std::uint32_t v) const {
-  const auto& conormals = body_.front.surface().conormals;
-  const std::uint32_t on_front = body_.front_vertex.empty() ? v : body_.front_vertex[v];
+bool LiveArea::is_at_border(std::uint32_t v) const {
+  const auto& conormals = constrained_.front.surface().conormals;
+  const std::uint32_t on_front = constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
   return !conormals.empty() && conormals[on_front] != Vec3d(0.0);
 }
 
 /// As many run along each edge to one side as to the other, borders aside.
-bool Stakes::faces_agree(std::uint32_t v) const {
+bool LiveArea::faces_agree(std::uint32_t v) const {
   std::vector<std::pair<std::uint32_t, int>> ends;
   for (const auto t : surface_.triangles_around(v))
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -105,7 +110,7 @@ bool Stakes::faces_agree(std::uint32_t v) const {
   return true;
 }
 
-std::vector<Vec3d> Stakes::ends_of_lines(std::uint32_t v, std::uint32_t t, Lines lines) const {
+std::vector<Vec3d> LiveArea::ends_of_lines(std::uint32_t v, std::uint32_t t, Lines lines) const {
   if (lines == Lines::All || !is_at_border(v)) return {centre(t)};
   std::vector<Vec3d> ends;
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -116,7 +121,8 @@ std::vector<Vec3d> Stakes::ends_of_lines(std::uint32_t v, std::uint32_t t, Lines
   return ends;
 }
 
-std::optional<Vec3d> Stakes::first_live(std::uint32_t v, std::uint32_t t, const Vec3d& way, std::uint32_t& hint) const {
+std::optional<Vec3d> LiveArea::first_live(std::uint32_t v, std::uint32_t t, const Vec3d& way,
+                                          std::uint32_t& hint) const {
   Image found = image(v, t, way * kInThird, hint);
   if (!found.live) return std::nullopt;
   if (const Image at_vertex = image(v, t, Vec3d(0.0), hint); at_vertex.live) return at_vertex.place;
@@ -130,14 +136,14 @@ std::optional<Vec3d> Stakes::first_live(std::uint32_t v, std::uint32_t t, const 
   return found.place;
 }
 
-std::vector<Vec3d> Stakes::places(std::uint32_t v, Lines lines) const {
+std::vector<Vec3d> LiveArea::places(std::uint32_t v, Lines lines) const {
   std::vector<Vec3d> places;
   if (!faces_agree(v)) return places;
   std::vector<std::pair<double, std::uint32_t>> faces;
   for (const auto t : surface_.triangles_around(v))
     if (counts(t)) faces.emplace_back(-area_of(t), t);
   std::sort(faces.begin(), faces.end());
-  std::uint32_t hint = body_.hint(v);
+  std::uint32_t hint = constrained_.hint(v);
   for (const auto& [area, t] : faces)
     for (const Vec3d& end : ends_of_lines(v, t, lines)) {
       if (places.size() == kMostPlaces) return places;

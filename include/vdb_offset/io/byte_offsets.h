@@ -14,15 +14,15 @@ struct NumberTriple {
 };
 
 /// Where many of them stand, in ascending order: one by one in a text, at equal distances in a binary file.
-class Places {
+class ByteOffsets {
  public:
-  Places() = default;
+  ByteOffsets() = default;
   /// Record r starts at first + r * stride and holds `per_record` triples, `step` bytes apart; `offset` is where the
   /// three numbers of a triple lie from its start.
-  Places(std::size_t count, std::uint64_t first, std::uint64_t stride, std::array<std::uint64_t, 3> offset,
-         std::size_t per_record = 1, std::uint64_t step = 0)
+  ByteOffsets(std::size_t count, std::uint64_t first, std::uint64_t stride, std::array<std::uint64_t, 3> offset,
+              std::size_t per_record = 1, std::uint64_t step = 0)
       : count_(count), first_(first), stride_(stride), offset_(offset), per_record_(per_record), step_(step) {}
-  explicit Places(std::vector<NumberTriple> triples) : count_(triples.size()), triples_(std::move(triples)) {}
+  explicit ByteOffsets(std::vector<NumberTriple> triples) : count_(triples.size()), triples_(std::move(triples)) {}
 
   std::size_t size() const { return count_; }
   bool empty() const { return count_ == 0; }

@@ -1,4 +1,4 @@
-#include "vdb_offset/layers/surface_stacker.h"
+#include "vdb_offset/layers/surface_layer_grower.h"
 
 #include "vdb_offset/base/progress_count.h"
 
@@ -8,7 +8,7 @@
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/layers/fan_field.h"
-#include "vdb_offset/layers/stacker.h"
+#include "vdb_offset/layers/layer_grower.h"
 
 namespace vdb_offset {
 namespace {
@@ -24,26 +24,27 @@ constexpr double kBallRoom = 1.02;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where nothing nearer can lie farther from a vertex than this share of its distance, it is looked for there alone.
 constexpr double kFanShare = 0.5;
-class SurfaceStacker final : public Stacker {
+class SurfaceLayerGrower final : public LayerGrower {
  public:
-  SurfaceStacker(const Body& body, const BorderSlides* slides, const CellColumns& columns,
-                 std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults, Paths& paths)
-      : Stacker(source, body.front.surface().origin, heights, paths),
-        body_(body),
-        front_(body.front.surface()),
+  SurfaceLayerGrower(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
+                     std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
+                     Paths& paths)
+      : LayerGrower(source, constrained.front.surface().origin, heights, paths),
+        constrained_(constrained),
+        front_(constrained.front.surface()),
         slides_(slides),
         columns_(columns),
         faults_(faults) {}
 
  private:
-  bool moves(std::uint32_t v) const override { return body_.on_front(v) && heights_.back()[v] != 0; }
-  bool is_bound(std::uint32_t v) const override { return body_.is_bound(v); }
+  bool moves(std::uint32_t v) const override { return constrained_.on_front(v) && heights_.back()[v] != 0; }
+  bool is_bound(std::uint32_t v) const override { return constrained_.is_bound(v); }
 
   bool sees_all_faces(std::uint32_t v, const Vec3d& way) const override {
     const double length = way.length();
-    for (const auto t : body_.surface.triangles_around(v)) {
-      const auto& [a, b, c] = body_.surface.triangles[t];
-      if (!body_.is_front(t)) continue;
+    for (const auto t : constrained_.surface.triangles_around(v)) {
+      const auto& [a, b, c] = constrained_.surface.triangles[t];
+      if (!constrained_.is_front(t)) continue;
       const Vec3d n = (source_[b] - source_[a]).cross(source_[c] - source_[a]);
       if (n.lengthSqr() > 0 && !(side_ * n.dot(way) > kLeastSlope * n.length() * length)) return false;
     }
@@ -102,17 +103,17 @@ class SurfaceStacker final : public Stacker {
     std::vector<double> distances;
     for (const auto v : vertices) {
       std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
-      if (!(stack_.share[v] > 0) || (slides_ && body_.is_bound(v) && put_along_border(v))) continue;
+      if (!(stack_.share[v] > 0) || (slides_ && constrained_.is_bound(v) && put_along_border(v))) continue;
       const double top = top_of(v), radius = put_on_fan(v, top, fan, distances);
       if (radius < kInfinity) by_fan.add(v, top, {source_[v] - front_.origin, radius});
       else by_ball.add(v, top, ball_of_rail(v, top));
     }
-    body_.front.collect_together(by_fan.balls, [&](std::size_t i, NearTriangles& near) {
+    constrained_.front.collect_together(by_fan.balls, [&](std::size_t i, NearTriangles& near) {
       const std::uint32_t v = by_fan.vertices[i];
       const auto of_layers = std::span(distances).subspan(i * heights_.size(), heights_.size());
       if (!is_on_fan(v, of_layers, near)) by_ball.add(v, by_fan.tops[i], ball_of_rail(v, by_fan.tops[i]));
     });
-    body_.front.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
+    constrained_.front.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
       const std::uint32_t v = by_ball.vertices[i];
       if (!put_among_few(v, by_ball.tops[i], by_ball.balls[i], fan, near)) put_with_care(v);
     });
@@ -136,15 +137,17 @@ class SurfaceStacker final : public Stacker {
       const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
       const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
       const Vec3d way =
-          at_end ? paths_.displacement[v] : round_way((*slides_)(v, height) - body_.surface.vertices[v], target);
+          at_end ? paths_.displacement[v] : round_way((*slides_)(v, height) - constrained_.surface.vertices[v], target);
       stack[k + 1] = source_[v] + way;
-      stack_.first_achieved[v] = body_.front(stack[k + 1] - front_.origin, body_.hint(v)).distance;
+      stack_.first_achieved[v] = constrained_.front(stack[k + 1] - front_.origin, constrained_.hint(v)).distance;
       if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
     }
     return true;
   }
 
-  std::uint32_t on_front(std::uint32_t v) const { return body_.front_vertex.empty() ? v : body_.front_vertex[v]; }
+  std::uint32_t on_front(std::uint32_t v) const {
+    return constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
+  }
 
   /// Puts layers where the triangles around the vertex have their distances. What is nearer to some of them lies within
   /// the radius around the vertex that this returns, as the ball around the end of its path holds nothing. It is
@@ -157,7 +160,7 @@ class SurfaceStacker final : public Stacker {
     SpaceBesideBall beside(source_[v], source_[v] + paths_.displacement[v], free);
     const std::size_t before = distances.size();
     distances.resize(before + heights_.size());
-    const bool there = put_down(v, top, FanField(fan), [&](std::size_t k, double phi) {
+    const bool there = put_down(v, top, FanDistance(fan), [&](std::size_t k, double phi) {
       distances[before + k] = phi;
       if (!is_at_height(v, k, phi)) return false;
       // How far a path's end is, is known.
@@ -196,7 +199,7 @@ class SurfaceStacker final : public Stacker {
     fan.begin(front_, on_front(v));
     near.remove_if([&](std::uint32_t t) { return fan.has(t); });
     const Vec3d centre = ball.centre + front_.origin;
-    return put_down(v, top, FewField(front_, fan, near), [&](std::size_t k, double phi) {
+    return put_down(v, top, NearDistance(front_, fan, near), [&](std::size_t k, double phi) {
       return is_at_height(v, k, phi) && (stack[k + 1] - centre).length() + phi <= ball.radius;
     });
   }
@@ -207,24 +210,25 @@ class SurfaceStacker final : public Stacker {
   }
 
   void put_with_care(std::uint32_t v) {
-    put_down(v, 1, CareField<ClosestQuery>(body_.front, body_.hint(v)), [](std::size_t, double) { return true; });
+    put_down(v, 1, QueryDistance<ClosestQuery>(constrained_.front, constrained_.hint(v)),
+             [](std::size_t, double) { return true; });
   }
 
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Surface& front_;
   const BorderSlides* slides_;
-  const CellColumns& columns_;
+  const GrowthColumns& columns_;
   FaultFinder& faults_;
 };
 
 }  // namespace
 
-LayerStack stack_layers(const Body& body, const BorderSlides* slides, const CellColumns& columns,
+LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& callback) {
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
-  return SurfaceStacker(body, slides, columns, source, heights, faults, paths).run(progress);
+  return SurfaceLayerGrower(constrained, slides, columns, source, heights, faults, paths).run(progress);
 }
 
 void round_layers(std::span<const Vec3d> source, const Rounding& precision,

@@ -18,23 +18,23 @@ namespace vdb_offset {
 
 /// Layers over a body's vertices.
 struct LayerStack {
-  Stacks stacks;
+  VertexStacks stacks;
   std::vector<double> share;           ///< Of its heights that each vertex keeps, 0 .. 1.
   std::vector<double> first_achieved;  ///< Exact distance of the first layer's vertices, world units.
   LayerStatistics statistics;
 };
 
-/// Stacks layers between a body's vertices and where these ended up, of which `paths` tells; what is still wrong
+/// VertexStacks layers between a body's vertices and where these ended up, of which `paths` tells; what is still wrong
 /// with the outermost surface, `faults` does. `heights` are those of the body's vertices, one set for each layer.
 ///
 /// The layers of a vertex lie on a curve that leaves the surface in the vertex's own direction, as nearly at right
 /// angles as validity allows, and bends towards its end; there, where the exact distance is what was asked for. Those
 /// of a bound vertex lie where `slides`, if there are any, lead it. Layers
-/// are thinned by one share for all layers of a vertex until every cell is valid (CellColumns) and nothing is wrong
+/// are thinned by one share for all layers of a vertex until every cell is valid (GrowthColumns) and nothing is wrong
 /// with the outermost surface; so are neighbours, so that no thickness differs by more than half the length of the edge
 /// between them. Then they are let out again as far as all stays so. `paths` receives what became of the outermost
 /// surface. The result does not depend on the number of threads.
-LayerStack stack_layers(const Body& body, const BorderSlides* slides, const CellColumns& columns,
+LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& progress = {});
 

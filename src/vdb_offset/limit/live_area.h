@@ -15,10 +15,10 @@ namespace vdb_offset {
 /// A point of a face is live if it is the closest one of its image, which is as far along the face's normal as it is to
 /// go: then nothing is in its way. What is at stake with a vertex is its third of the faces around it, as far as that
 /// is live; of the rest, which fronts meet over, next to nothing. Faces that are no part of the front do not count.
-class Stakes {
+class LiveArea {
  public:
   /// Keeps references to the body and the distances of its vertices.
-  Stakes(const Body& body, const Distances& distances);
+  LiveArea(const ConstrainedSurface& constrained, const Distances& distances);
 
   /// Of the front's faces.
   double whole_area() const { return whole_area_; }
@@ -55,7 +55,7 @@ class Stakes {
   std::optional<Vec3d> first_live(std::uint32_t vertex, std::uint32_t triangle, const Vec3d& way,
                                   std::uint32_t& hint) const;
 
-  const Body& body_;
+  const ConstrainedSurface& constrained_;
   const Surface& surface_;
   const Distances& distances_;
   double whole_area_ = 0;
