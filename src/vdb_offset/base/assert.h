@@ -1,0 +1,24 @@
+#pragma once
+
+/// Checks what must hold whatever the input: an invariant, or what a caller has promised (\pre). A failure is a defect
+/// of this library, never of its input, and ends the process with the place and the condition. On in builds with
+/// VDB_OFFSET_ASSERTIONS (Debug, sanitizers); else the condition is not evaluated, and may be as costly as it needs to
+/// be.
+#ifdef VDB_OFFSET_ASSERTIONS
+
+#include <cstdio>
+#include <cstdlib>
+
+#define VDB_OFFSET_ASSERT(...)                                                                         \
+  do {                                                                                                 \
+    if (!(__VA_ARGS__)) {                                                                              \
+      std::fprintf(stderr, "vdb_offset: %s:%d: %s does not hold\n", __FILE__, __LINE__, #__VA_ARGS__); \
+      std::abort();                                                                                    \
+    }                                                                                                  \
+  } while (false)
+
+#else
+
+#define VDB_OFFSET_ASSERT(...) static_cast<void>(sizeof((__VA_ARGS__) ? 1 : 0))
+
+#endif
