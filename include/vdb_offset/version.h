@@ -1,8 +1,14 @@
 #pragma once
 
+// Of these headers; the build reads them, too.
+#define VDB_OFFSET_VERSION_MAJOR 0
+#define VDB_OFFSET_VERSION_MINOR 2
+#define VDB_OFFSET_VERSION_PATCH 0
+#define VDB_OFFSET_VERSION "0.2.0"
+
 namespace vdb_offset {
 
-/// The library's version, "major.minor.patch".
+/// The version of the library that is linked, "major.minor.patch".
 const char* version();
 
 }  // namespace vdb_offset

@@ -1,6 +1,4 @@
-#include <vdb_offset/pipeline/offset.h>
-#include "vdb_offset/polygons.h"
-#include "vdb_offset/vertex_state.h"
+#include <vdb_offset/offset.h>
 
 int main() {
   vdb_offset::Polygons tetrahedron;

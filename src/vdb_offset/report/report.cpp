@@ -313,8 +313,6 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
 
 }  // namespace
 
-const char* version() { return VDB_OFFSET_VERSION; }
-
 AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> all_achieved,
                           const Distances& distances) {
   AchievedSummary summary;

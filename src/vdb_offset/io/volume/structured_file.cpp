@@ -1,27 +1,14 @@
 #include <fmt/format.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkStructuredGrid.h>
-#include <vtkXMLStructuredGridWriter.h>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/base/scanner.h"
-#include "vdb_offset/io/volume/vtk_write.h"
+#include "vdb_offset/io/volume/volume_writers.h"
 #include "vdb_offset/io/volume_file.h"
 
 namespace vdb_offset::io {
 namespace {
-
-void write_vts(const std::string& path, const StructuredBlock& block) {
-  const auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
-  grid->SetDimensions(static_cast<int>(block.ni), static_cast<int>(block.nj), static_cast<int>(block.nk));
-  grid->SetPoints(vtk_points(block.points));
-  add_fields(*grid->GetPointData(), block.point_fields);
-  const auto writer = vtkSmartPointer<vtkXMLStructuredGridWriter>::New();
-  write_vtk(*writer, *grid, path);
-}
 
 void write_plot3d(const std::string& path, const StructuredBlock& block) {
   const auto all_of = [&block](int k) {

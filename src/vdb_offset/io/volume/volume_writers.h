@@ -15,6 +15,7 @@ void write_vtu(const std::string& path, VolumeMesh& mesh);
 void write_msh(const std::string& path, const VolumeMesh& mesh);
 void write_cgns(const std::string& path, const VolumeMesh& mesh);
 void write_su2(const std::string& path, const VolumeMesh& mesh);
+void write_vts(const std::string& path, const StructuredBlock& block);
 FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh);
 
 bool has_polyhedra(const VolumeMesh& mesh);

@@ -1,0 +1,56 @@
+# The packages that the components need, for the library's own build and for those who link it.
+#
+# vdb_offset_find_dependencies(COMPONENT): by VDB_OFFSET_EXPRESSIONS, VDB_OFFSET_VTK and VDB_OFFSET_CGNS; a shared library
+# has its own with it.
+
+# A library without a package of its own as a target, so that no path of this machine goes into what is installed.
+function(vdb_offset_find_library target header library)
+  if(TARGET ${target})
+    return()
+  endif()
+  string(TOUPPER ${target} name)
+  find_path(${name}_HEADERS ${header} REQUIRED)
+  find_library(${name}_LIBRARY ${library} REQUIRED)
+  mark_as_advanced(${name}_HEADERS ${name}_LIBRARY)
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} INTERFACE ${${name}_HEADERS})
+  target_link_libraries(${target} INTERFACE ${${name}_LIBRARY})
+endfunction()
+
+macro(vdb_offset_find_dependencies component)
+  if(${component} STREQUAL core)
+    # Before OpenVDB, whose module for TBB makes targets that VTK's own would trip over.
+    if(VDB_OFFSET_VTK AND NOT vdb_offset_shared)
+      find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel CommonMisc IOXML ${vdb_offset_vtk_for_tests})
+    endif()
+    find_package(TBB 2021 REQUIRED)
+    # Debian keeps OpenVDB's find module beside its other files, not on CMake's module path.
+    find_path(OPENVDB_MODULE_DIR FindOpenVDB.cmake PATH_SUFFIXES cmake/OpenVDB lib/cmake/OpenVDB
+              PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE} /usr/local)
+    mark_as_advanced(OPENVDB_MODULE_DIR)
+    if(OPENVDB_MODULE_DIR)
+      list(APPEND CMAKE_MODULE_PATH ${OPENVDB_MODULE_DIR})
+    endif()
+    find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
+    if(NOT vdb_offset_shared)
+      find_package(fmt REQUIRED)
+      # CGAL is headers alone; its exact numbers need these two.
+      vdb_offset_find_library(vdb_offset_gmp gmp.h gmp)
+      vdb_offset_find_library(vdb_offset_mpfr mpfr.h mpfr)
+      if(VDB_OFFSET_EXPRESSIONS)
+        find_package(muparser 2.3 REQUIRED)
+      endif()
+    endif()
+  elseif(${component} STREQUAL io AND NOT vdb_offset_shared)
+    # For compressed files and drawings.
+    find_package(ZLIB REQUIRED)
+    find_package(EXPAT REQUIRED)
+    vdb_offset_find_library(vdb_offset_zstd zstd.h zstd)
+  elseif(${component} STREQUAL volume AND NOT vdb_offset_shared)
+    if(VDB_OFFSET_CGNS)
+      vdb_offset_find_library(vdb_offset_cgns cgnslib.h cgns)
+    endif()
+  elseif(${component} STREQUAL openmesh)
+    find_package(OpenMesh REQUIRED)
+  endif()
+endmacro()

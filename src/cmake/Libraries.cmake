@@ -1,0 +1,155 @@
+# From objects to libraries, and what is installed of them.
+
+# Of the objects that CMake lists, precompiled headers are none.
+function(vdb_offset_objects component result)
+  set(${result} $<FILTER:$<TARGET_OBJECTS:vdb_offset_${component}_objects>,INCLUDE,[.]o$> PARENT_SCOPE)
+endfunction()
+
+# vdb_offset_inside: all objects and their headers, for the tests and benchmarks.
+add_library(vdb_offset_inside INTERFACE)
+foreach(component IN LISTS components)
+  target_link_libraries(vdb_offset_inside INTERFACE vdb_offset_${component}_objects)
+  vdb_offset_objects(${component} objects)
+  target_sources(vdb_offset_inside INTERFACE ${objects})
+endforeach()
+
+# An archive's inline functions, and those of the headers that it was compiled with, are weak: a program that has compiled
+# one of them with flags of its own, as -mfma, would put its own in their place, and results would have other bits. So the
+# objects become one, in which they are local. Sanitizers need them as they are.
+find_program(VDB_OFFSET_OBJCOPY NAMES ${CMAKE_OBJCOPY} objcopy)
+set(is_sealed OFF)
+if(NOT BUILD_SHARED_LIBS AND NOT VDB_OFFSET_SANITIZE AND NOT VDB_OFFSET_FUZZ AND VDB_OFFSET_OBJCOPY AND CMAKE_NM
+   AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  set(is_sealed ON)
+endif()
+
+function(vdb_offset_archive component)
+  vdb_offset_objects(${component} objects)
+  if(is_sealed)
+    set(sealed ${CMAKE_CURRENT_BINARY_DIR}/sealed/vdb_offset_${component}.o)
+    file(GENERATE OUTPUT ${sealed}.objects CONTENT "$<JOIN:${objects},\n>")
+    add_custom_command(OUTPUT ${sealed}
+      COMMAND ${CMAKE_COMMAND} -DLINKER=${CMAKE_LINKER} -DNM=${CMAKE_NM} -DOBJCOPY=${VDB_OFFSET_OBJCOPY} -DOUTPUT=${sealed}
+              -P ${CMAKE_CURRENT_SOURCE_DIR}/src/cmake/seal.cmake
+      DEPENDS ${objects} src/cmake/seal.cmake VERBATIM COMMENT "Sealing ${component}")
+    set(objects ${sealed})
+    set_source_files_properties(${sealed} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  endif()
+  add_library(vdb_offset_${component} STATIC ${objects})
+  set_target_properties(vdb_offset_${component} PROPERTIES LINKER_LANGUAGE CXX)
+endfunction()
+
+# What is linked along with a component, for those who link it.
+set(core_public OpenVDB::openvdb TBB::tbb)
+set(io_public vdb_offset_core)
+set(volume_public vdb_offset_core)
+set(scene_public vdb_offset_io)
+set(openmesh_public vdb_offset_core OpenMeshCore)
+
+if(BUILD_SHARED_LIBS)
+  add_library(vdb_offset SHARED)
+  foreach(component IN LISTS components)
+    vdb_offset_objects(${component} objects)
+    target_sources(vdb_offset PRIVATE ${objects})
+    target_link_libraries(vdb_offset PRIVATE ${${component}_needs})
+    add_library(vdb_offset_${component} INTERFACE)
+    target_link_libraries(vdb_offset_${component} INTERFACE vdb_offset)
+  endforeach()
+  target_link_libraries(vdb_offset PUBLIC ${core_public})
+  if(VDB_OFFSET_OPENMESH)
+    target_link_libraries(vdb_offset_openmesh INTERFACE OpenMeshCore)
+    target_link_libraries(vdb_offset PRIVATE OpenMeshCore)
+  endif()
+  # What the standard library's headers compile in is not hidden; calls of it stay inside as well.
+  target_link_options(vdb_offset PRIVATE -Wl,-Bsymbolic-functions)
+  set_target_properties(vdb_offset PROPERTIES LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+else()
+  add_library(vdb_offset INTERFACE)
+  foreach(component IN LISTS components)
+    vdb_offset_archive(${component})
+    target_link_libraries(vdb_offset_${component} PUBLIC ${${component}_public} PRIVATE ${${component}_needs})
+    if(NOT component STREQUAL openmesh)
+      target_link_libraries(vdb_offset INTERFACE vdb_offset_${component})
+    endif()
+  endforeach()
+endif()
+foreach(target IN LISTS components)
+  add_library(vdb_offset::${target} ALIAS vdb_offset_${target})
+  set_target_properties(vdb_offset_${target} PROPERTIES EXPORT_NAME ${target})
+endforeach()
+add_library(vdb_offset::vdb_offset ALIAS vdb_offset)
+
+# The public headers: what is not named here is not installed.
+set(public_headers
+  check.h curve_cells.h curve_check.h curve_offset.h curves.h decimal.h distance_expression.h distance_field.h
+  distances.h error.h fit.h foam_quality.h grid.h hollow.h iso_surface.h layer_cells.h layer_facts.h layer_report.h
+  layers.h memory_limit.h mesh_facts.h mesh_measures.h metric.h offset.h options.h output_files.h patch_names.h
+  polygons.h precision.h progress.h report.h result.h scene.h shapes.h shell.h spread.h statistics.h
+  structured_block.h symmetry.h vec.h version.h vertex_stacks.h vertex_state.h volume_mesh.h io/attributes.h
+  io/byte_offsets.h io/curve_file.h io/file_bytes.h io/iso_file.h io/mesh_file.h io/selection.h io/shell_file.h
+  io/states_file.h io/triangle_positions.h io/vertex_numbers.h io/volume_file.h io/wall_names.h)
+if(VDB_OFFSET_OPENMESH)
+  list(APPEND public_headers openmesh.h)
+endif()
+foreach(header IN LISTS public_headers)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES include/vdb_offset/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vdb_offset/${folder})
+endforeach()
+if(BUILD_SHARED_LIBS)
+  target_compile_features(vdb_offset PUBLIC cxx_std_20)
+  target_include_directories(vdb_offset PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+else()
+  foreach(component IN LISTS components)
+    target_compile_features(vdb_offset_${component} PUBLIC cxx_std_20)
+    target_include_directories(vdb_offset_${component} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  endforeach()
+endif()
+
+# The package: a set of targets for each component, so that a user of one needs no packages of the others.
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vdb_offset)
+if(BUILD_SHARED_LIBS)
+  install(TARGETS vdb_offset EXPORT vdb_offset_core_targets)
+endif()
+foreach(component IN LISTS components)
+  install(TARGETS vdb_offset_${component} EXPORT vdb_offset_${component}_targets)
+endforeach()
+if(NOT BUILD_SHARED_LIBS)
+  # In a set of its own, as it refers to all others.
+  install(TARGETS vdb_offset EXPORT vdb_offset_all_targets)
+  install(EXPORT vdb_offset_all_targets NAMESPACE vdb_offset:: DESTINATION ${package_dir})
+endif()
+foreach(component IN LISTS components)
+  install(EXPORT vdb_offset_${component}_targets NAMESPACE vdb_offset:: DESTINATION ${package_dir})
+endforeach()
+configure_package_config_file(src/cmake/vdb_offset-config.cmake.in vdb_offset-config.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(vdb_offset-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config-version.cmake src/cmake/Dependencies.cmake
+        DESTINATION ${package_dir})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# For builds without CMake, if all packages lie where the system keeps them: pkg-config --cflags --libs vdb_offset.
+if(BUILD_SHARED_LIBS)
+  set(pc_libraries "-lvdb_offset")
+  set(pc_requires "Imath")
+else()
+  # Static, a program needs all that the library does.
+  set(pc_libraries "-lvdb_offset_scene -lvdb_offset_volume -lvdb_offset_io -lvdb_offset_core -lmpfr -lgmp")
+  set(pc_requires "Imath fmt expat zlib libzstd")
+  if(VDB_OFFSET_EXPRESSIONS)
+    string(APPEND pc_requires " muparser")
+  endif()
+  if(VDB_OFFSET_VTK)
+    foreach(library CommonMisc IOXML IOXMLParser CommonDataModel CommonExecutionModel CommonCore)
+      string(APPEND pc_libraries " -lvtk${library}-${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
+    endforeach()
+  endif()
+  if(VDB_OFFSET_CGNS)
+    string(APPEND pc_libraries " -lcgns")
+  endif()
+endif()
+configure_file(src/cmake/vdb_offset.pc.in vdb_offset.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

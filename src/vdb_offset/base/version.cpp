@@ -1,0 +1,7 @@
+#include "vdb_offset/version.h"
+
+namespace vdb_offset {
+
+const char* version() { return VDB_OFFSET_VERSION; }
+
+}  // namespace vdb_offset

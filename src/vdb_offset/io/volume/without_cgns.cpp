@@ -1,0 +1,11 @@
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/volume/volume_writers.h"
+
+/// In the place of the writer of .cgns, where the library is built without CGNS.
+namespace vdb_offset::io {
+
+void write_cgns(const std::string& path, const VolumeMesh&) {
+  throw InvalidOption(path + ": expected another format than .cgns, as this build is without CGNS (VDB_OFFSET_CGNS)");
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,18 @@
+#include "vdb_offset/distance_expression.h"
+#include "vdb_offset/error.h"
+
+/// In the place of expressions, where the library is built without muParser.
+namespace vdb_offset {
+
+DistanceExpression::DistanceExpression(std::string text) {
+  throw InvalidExpression("distance '" + text +
+                          "': expected a number, as this build is without expressions (VDB_OFFSET_EXPRESSIONS)");
+}
+
+bool DistanceExpression::uses(std::string_view) const { return false; }
+
+std::vector<double> DistanceExpression::operator()(const VertexVariables& at) const {
+  return std::vector<double>(at.positions.size());
+}
+
+}  // namespace vdb_offset
