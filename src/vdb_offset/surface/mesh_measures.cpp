@@ -1,6 +1,7 @@
 #include "vdb_offset/mesh_measures.h"
 
-#include <algorithm>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/surface/surface.h"
