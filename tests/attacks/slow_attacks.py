@@ -47,12 +47,29 @@ def joined_lines(place):
 
 @attack
 def curves_from_one_point(place):
-    count = part(place, 5000)
+    count = part(place, 15000)
     spokes = range(count)
     place.file('hub.obj', 'v 0 0 0\n' + ''.join(
         f'v {math.cos(2 * math.pi * i / count):.9g} {math.sin(2 * math.pi * i / count):.9g} 0\n' for i in spokes) +
         ''.join(f'l 1 {i + 2}\n' for i in spokes))
     place.ended_well(place.run('hub.obj', 'out.obj', '-d', '1%'), 0)
+
+
+@attack_each({'level': 0, 'tilted': 0.37})
+def points_on_one_line(place, slope):
+    """Each place is on a third of the segments."""
+    numbers = random.Random(1)
+    at = [numbers.random() for _ in range(part(place, 6250))]
+    place.file('line.txt', ''.join(f'{x!r} {slope * x!r}\n' for x in at))
+    place.ended_well(place.run('line.txt', 'out.txt', '-d', '1%'), 0)
+
+
+@attack
+def teeth_out_of_order(place):
+    """Boxes around segments in a row hold a third of the others."""
+    count = part(place, 6000)
+    place.file('zigzag.txt', ''.join(f'{i * 4943 % count / count * 10:.9g} {i % 2 * 10}\n' for i in range(count)))
+    place.ended_well(place.run('zigzag.txt', 'out.txt', '-d', '1%'), 0)
 
 
 @attack

@@ -32,8 +32,7 @@ static double use_of_headers() {
 static void print(const char* what, const std::vector<Vec3d>& positions) {
   std::uint64_t hash = 14695981039346656037u;  // FNV-1a
   for (const Vec3d& p : positions)
-    for (int k = 0; k < 3; ++k)
-      hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 1099511628211u;
+    for (int k = 0; k < 3; ++k) hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 1099511628211u;
   std::printf("%s %016llx\n", what, static_cast<unsigned long long>(hash));
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -86,7 +87,8 @@ void check_moved(const io::MeshFile& file, const std::vector<Vec3d>& positions) 
   require_same_topology(file, back);
 
   for (std::size_t v = 0; v < positions.size(); ++v)
-    require(back.polygons.positions[v] == file.precision(positions[v]), "positions are those that were written");
+    require(back.polygons.positions[v] == Rounding(file.precision)(positions[v]),
+            "positions are those that were written");
   require(io::patched_bytes(back, back.polygons.positions) == bytes, "what was written is written again as it is");
 
   // Numbers of other lengths than the first time, normals that were computed before.

@@ -55,6 +55,9 @@ class BoxTree {
   /// The same until one is what is looked for; whether one is.
   template <class IsIt>
   bool any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level = 0) const;
+  /// The same of the boxes given, without begin .. end - 1.
+  template <class IsIt>
+  bool any_overlap_beside(std::size_t begin, std::size_t end, const FloatBox& box, IsIt&& is_it) const;
 
   /// Which of eight siblings meet a box, as bits.
   static unsigned overlaps(const Siblings& siblings, const FloatBox& box);
@@ -62,6 +65,9 @@ class BoxTree {
   static FloatBox around(const Siblings& siblings);
 
  private:
+  template <class Counts, class IsIt>
+  bool any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&& counts, IsIt&& is_it) const;
+
   std::vector<std::vector<Siblings>> levels_;
 };
 
@@ -95,6 +101,22 @@ void BoxTree::for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t o
 
 template <class IsIt>
 bool BoxTree::any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level) const {
+  return any_overlap_of(
+      box, of_level, [](std::size_t, std::size_t) { return true; }, is_it);
+}
+
+template <class IsIt>
+bool BoxTree::any_overlap_beside(std::size_t begin, std::size_t end, const FloatBox& box, IsIt&& is_it) const {
+  // What a child of a level holds are 8^level boxes in a row.
+  const auto counts = [&](std::size_t level, std::size_t child) {
+    return child << 3 * level < begin || (child + 1) << 3 * level > end;
+  };
+  return any_overlap_of(box, 0, counts, is_it);
+}
+
+/// counts(level, child): whether to look at it at all.
+template <class Counts, class IsIt>
+bool BoxTree::any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&& counts, IsIt&& is_it) const {
   struct Node {
     std::uint32_t level, node;
   };
@@ -105,6 +127,7 @@ bool BoxTree::any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_leve
     const auto [level, node] = stack[--depth];
     for (unsigned meets = overlaps(levels_[level][node], box); meets != 0; meets &= meets - 1) {
       const std::uint32_t child = node * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
+      if (!counts(level, child)) continue;
       if (level != of_level) stack[depth++] = {level - 1, child};
       else if (is_it(std::size_t{child})) return true;
     }

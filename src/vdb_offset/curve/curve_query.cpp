@@ -13,6 +13,10 @@ namespace {
 // Squared distances to boxes of floats, in floats, are right to far less than this share.
 constexpr float kBoxRounding = 1 - 0x1p-20f;
 
+// Segments that are looked at to tell whether curves are crowded, and as many lowest boxes around a place as make them
+// so: where there are fewer, those are the faster, and no usual curve has a fifth of them.
+constexpr std::size_t kCrowdSamples = 256, kCrowd = 32;
+
 /// Which of eight boxes lie nearer to (x, y) than `limit`, squared, as bits; and how far each of them is, at least.
 unsigned nearer_boxes(const BoxTree::Siblings& box, float x, float y, float limit, float* squared) {
   unsigned near = 0;
@@ -31,19 +35,27 @@ unsigned nearer_boxes(const BoxTree::Siblings& box, float x, float y, float limi
   return near;
 }
 
-/// Whether the whole line through a and b is clearly farther off: boxes around long tilted segments hold much else, and
-/// to find the closest point takes several times as long.
-bool is_farther(const Vec3d& a, const Vec3d& b, const Vec3d& x, double squared_distance) {
-  constexpr double kRounding = 1e-14, kShare = 1 + 1e-12;
-  const double dx = b[0] - a[0], dy = b[1] - a[1], left = dx * (x[1] - a[1]), right = dy * (x[0] - a[0]);
-  const double off = std::abs(left - right) - kRounding * (std::abs(left) + std::abs(right));
-  return off > 0 && off * off > kShare * squared_distance * (dx * dx + dy * dy);
-}
-
 }  // namespace
 
 CurveQuery::CurveQuery(const Polyline& line) : line_(line), distinct_(distinct_segments(line.segments)) {
   tree_.build((distinct_.size() + kLeafSize - 1) / kLeafSize, [&](std::size_t leaf) { return box_of(leaf); });
+  if (is_crowded()) sheaves_.emplace(line, distinct_);
+}
+
+bool CurveQuery::is_crowded() const {
+  if (distinct_.size() < kCrowd * kLeafSize) return false;
+  const std::size_t step = (distinct_.size() + kCrowdSamples - 1) / kCrowdSamples;
+  std::size_t samples = 0, around = 0;
+  for (std::size_t i = step / 2; i < distinct_.size(); i += step, ++samples) {
+    const auto [a, b] = line_.segments[distinct_[i]];
+    const Vec3d middle = (line_.vertices[a] + line_.vertices[b]) * 0.5;
+    FloatBox place;
+    for (std::size_t k = 0; k < 2; ++k)
+      place.lower[k] = place.upper[k] = static_cast<float>(middle[static_cast<int>(k)]);
+    place.lower[2] = place.upper[2] = 0;
+    tree_.for_each_overlap(place, [&](std::size_t) { ++around; });
+  }
+  return around > samples * kCrowd;
 }
 
 /// Rounded outwards, a query point's rounding to float included.
@@ -68,6 +80,7 @@ Closest CurveQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
 }
 
 TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {
+  if (sheaves_) return sheaves_->near(x, segment);
   struct Node {
     std::uint32_t level, node;
     float squared;
@@ -101,8 +114,7 @@ TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {
       if (!(stack[depth - 1].squared < best.squared_distance)) continue;
       const std::size_t begin = stack[depth - 1].node * kLeafSize, end = std::min(distinct_.size(), begin + kLeafSize);
       for (std::size_t s = begin; s < end; ++s) {
-        const auto [a, b] = line_.segments[distinct_[s]];
-        if (is_farther(line_.vertices[a], line_.vertices[b], x, best.squared_distance)) continue;
+        if (line_.is_farther(distinct_[s], x, best.squared_distance)) continue;
         const TrianglePoint other = line_.closest_on(distinct_[s], x);
         if (!(other.squared_distance < best.squared_distance)) continue;
         best = other;

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "vdb_offset/base/box_tree.h"
 #include "vdb_offset/curve/polyline.h"
+#include "vdb_offset/curve/sheaves.h"
 #include "vdb_offset/query/closest_query.h"
 
 namespace vdb_offset {
@@ -12,7 +15,8 @@ namespace vdb_offset {
 /// Exact distance to plane curves: what ClosestQuery is to a surface, with segments for triangles. z does not count.
 ///
 /// Segments lie along their curves, four in a row to a box of an implicit tree. A query cannot miss: the hint only
-/// bounds the search. Memory: about 10 bytes a segment. Safe from any number of threads.
+/// bounds the search. Where the curves are so crowded that boxes hold more than a hundred segments of others at once,
+/// they are in sheaves instead. Memory: about 10 bytes a segment, 40 if crowded. Safe from any number of threads.
 class CurveQuery {
  public:
   /// Keeps a reference. \pre the curves have a segment
@@ -38,10 +42,12 @@ class CurveQuery {
   static constexpr std::size_t kLeafSize = 4;  // segments in a lowest box
 
   FloatBox box_of(std::size_t leaf) const;
+  bool is_crowded() const;
 
   const Polyline& line_;
   std::vector<std::uint32_t> distinct_;  // those that the tree holds: what is there several times, once
   BoxTree tree_;
+  std::optional<Sheaves> sheaves_;  // if the curves are crowded
 };
 
 }  // namespace vdb_offset

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,6 +38,15 @@ struct Polyline {
   /// See Surface::is_held.
   bool is_held(std::uint32_t) const { return false; }
   TrianglePoint closest_on(std::uint32_t segment, const Vec3d& x) const;
+  /// Whether the whole line of a segment is clearly farther off: boxes around long tilted segments hold much else, and
+  /// to find the closest point takes several times as long.
+  bool is_farther(std::uint32_t segment, const Vec3d& x, double squared_distance) const {
+    constexpr double kRounding = 1e-14, kShare = 1 + 1e-12;
+    const Vec3d &a = vertices[segments[segment][0]], &b = vertices[segments[segment][1]];
+    const double dx = b[0] - a[0], dy = b[1] - a[1], left = dx * (x[1] - a[1]), right = dy * (x[0] - a[0]);
+    const double off = std::abs(left - right) - kRounding * (std::abs(left) + std::abs(right));
+    return off > 0 && off * off > kShare * squared_distance * (dx * dx + dy * dy);
+  }
   /// See Surface::across.
   Vec3d across(std::uint32_t segment, Feature feature, const Vec3d& away, const Vec3d& way) const;
   /// See Surface::pseudonormal.

@@ -1,7 +1,5 @@
-// Compiled with -frounding-math, which CGAL's interval arithmetic needs.
 #include "vdb_offset/curve/segment_crossings.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -13,20 +11,10 @@
 #include <numeric>
 
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/curve/plane_side.h"
 
 namespace vdb_offset {
 namespace {
-
-int side_of(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-  // What rounding cannot have turned is decided here (Shewchuk, Adaptive Rounding Floating-Point Arithmetic and Fast
-  // Robust Geometric Predicates, 1997); CGAL is right in any case, and slower.
-  constexpr double kRounding = (3 + 16 * 0x1p-53) * 0x1p-53, kUnderflow = 1e-280;
-  const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]), difference = left - right,
-               sum = std::abs(left) + std::abs(right);
-  if (sum > kUnderflow && std::abs(difference) > kRounding * sum) return difference > 0 ? 1 : -1;
-  using Point2 = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
-  return CGAL::orientation(Point2(a[0], a[1]), Point2(b[0], b[1]), Point2(c[0], c[1]));
-}
 
 /// Of segments on one line: whether their boxes meet.
 bool boxes_meet(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
@@ -74,7 +62,11 @@ std::vector<std::uint32_t> distinct_segments(std::span<const Segment> segments) 
 }
 
 SegmentCrossings::SegmentCrossings(std::span<const Segment> segments, std::span<const Vec2d> places)
-    : segments_(segments), places_(places), distinct_(distinct_segments(segments)), leaf_of_(segments.size(), kNone) {
+    : segments_(segments),
+      places_(places),
+      distinct_(distinct_segments(segments)),
+      fans_(segments, places, distinct_),
+      leaf_of_(segments.size(), kNone) {
   for (std::uint32_t leaf = 0; leaf < distinct_.size(); ++leaf) leaf_of_[distinct_[leaf]] = leaf;
   tree_.build(distinct_.size(), [&](std::size_t leaf) { return box_of(distinct_[leaf]); });
 }
@@ -84,6 +76,9 @@ void SegmentCrossings::update(std::span<const std::uint32_t> segments) {
   leaves.reserve(segments.size());
   for (const auto s : segments)
     if (!is_repeated(s)) leaves.push_back(leaf_of_[s]);
+  // The leaves of fans stand behind the others.
+  if (!fans_.empty()) std::sort(leaves.begin(), leaves.end());
+  fans_.update(segments);
   if (!leaves.empty()) tree_.refit(leaves, [&](std::size_t leaf) { return box_of(distinct_[leaf]); });
 }
 
@@ -115,6 +110,19 @@ bool SegmentCrossings::meet(std::uint32_t s, std::uint32_t t) const {
   return side_of(r, u, p) * side_of(r, u, q) <= 0;
 }
 
+/// Those of its own fan, whose boxes all meet, are no matter for the tree.
+template <class IsIt>
+bool SegmentCrossings::any_met(std::uint32_t s, std::uint32_t least, IsIt&& is_it) const {
+  const auto look_at = [&](std::size_t leaf) {
+    const std::uint32_t t = distinct_[leaf];
+    return t != s && t >= least && meet(std::min(s, t), std::max(s, t)) && is_it(t);
+  };
+  if (fans_.empty()) return tree_.any_overlap(box_of(s), look_at);
+  const SegmentFans::Row row = fans_.row(s);
+  return tree_.any_overlap_beside(row.begin, row.end, box_of(s), look_at) ||
+         fans_.any_along(s, [&](std::uint32_t t) { return t >= least && is_it(t); });
+}
+
 std::optional<std::vector<SegmentPair>> SegmentCrossings::all(std::size_t most) const {
   Found found;
   std::atomic<std::size_t> count = 0;
@@ -122,9 +130,7 @@ std::optional<std::vector<SegmentPair>> SegmentCrossings::all(std::size_t most) 
     auto& mine = found.local();
     for (std::size_t i = range.begin(); i != range.end() && count <= most; ++i) {
       const std::uint32_t s = distinct_[i];
-      tree_.any_overlap(box_of(s), [&](std::size_t leaf) {
-        const std::uint32_t t = distinct_[leaf];
-        if (t <= s || !meet(s, t)) return false;
+      any_met(s, s + 1, [&](std::uint32_t t) {
         mine.emplace_back(s, t);
         return ++count > most;
       });
@@ -139,10 +145,7 @@ std::vector<std::uint8_t> SegmentCrossings::crossed() const {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, distinct_.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const std::uint32_t s = distinct_[i];
-      crossed[s] = tree_.any_overlap(box_of(s), [&](std::size_t leaf) {
-        const std::uint32_t t = distinct_[leaf];
-        return t != s && meet(std::min(s, t), std::max(s, t));
-      });
+      crossed[s] = any_met(s, 0, [](std::uint32_t) { return true; });
     }
   });
   return crossed;
@@ -156,10 +159,10 @@ std::vector<SegmentPair> SegmentCrossings::of(std::span<const std::uint32_t> seg
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const std::uint32_t s = segments[i];
       if (is_repeated(s)) continue;
-      tree_.for_each_overlap(box_of(s), [&](std::size_t leaf) {
-        const std::uint32_t t = distinct_[leaf];
+      any_met(s, 0, [&](std::uint32_t t) {
         const SegmentPair pair = std::minmax(s, t);
-        if (t != s && meet(pair.first, pair.second) && counts(pair)) append_within_limit(mine, pair, kCrossings);
+        if (counts(pair)) append_within_limit(mine, pair, kCrossings);
+        return false;
       });
     }
   });

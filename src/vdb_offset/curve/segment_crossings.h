@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_offset/base/box_tree.h"
+#include "vdb_offset/curve/fans.h"
 #include "vdb_offset/curve/ribbon.h"
 #include "vdb_offset/surface/surface.h"
 
@@ -24,7 +25,8 @@ inline constexpr std::size_t kMostListedCrossings = 1000000;
 
 /// Finds the pairs of segments of plane curves that meet elsewhere than in the points they share: decided with exact
 /// predicates (CGAL's kernel), without a tolerance. Neighbours meet if one is folded back onto the other. Segments
-/// without length meet nothing; of those that are there several times, the first counts. Memory: 32 bytes a segment.
+/// without length meet nothing; of those that are there several times, the first counts. Memory: 32 bytes a segment,
+/// and what fans take.
 class SegmentCrossings {
  public:
   /// `places` of the points may lie anywhere. Keeps references to both.
@@ -45,11 +47,15 @@ class SegmentCrossings {
   FloatBox box_of(std::size_t segment) const;
   bool is_repeated(std::uint32_t segment) const { return leaf_of_[segment] == kNone; }
   bool meet(std::uint32_t s, std::uint32_t t) const;
+  /// Calls is_it(t) for those that s meets, of number `least` or more, until one is what is looked for; whether one is.
+  template <class IsIt>
+  bool any_met(std::uint32_t s, std::uint32_t least, IsIt&& is_it) const;
 
   std::span<const Segment> segments_;
   std::span<const Vec2d> places_;
   std::vector<std::uint32_t> distinct_;  // what the tree's leaves are
-  std::vector<std::uint32_t> leaf_of_;   // of each segment; kNone of one that is there already
+  SegmentFans fans_;
+  std::vector<std::uint32_t> leaf_of_;  // of each segment; kNone of one that is there already
   BoxTree tree_;
 };
 

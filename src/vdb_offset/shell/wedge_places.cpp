@@ -163,8 +163,8 @@ class WedgePlacer {
 
   /// How far it is to the nearest of some, in thicknesses; no farther than matters.
   std::vector<double> measure_ways(const std::vector<std::uint8_t>& starts) const {
-    constexpr double kFar = 1e300;
-    std::vector<double> ways(sides_.wedges, kFar);
+    constexpr double kUnreached = 1e300;
+    std::vector<double> ways(sides_.wedges, kUnreached);
     using Entry = std::pair<double, std::uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) {

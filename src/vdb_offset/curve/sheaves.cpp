@@ -1,0 +1,161 @@
+#include "vdb_offset/curve/sheaves.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdb_offset {
+namespace {
+
+// Of a coordinate's rounding, what two ways to measure one distance may differ by.
+constexpr double kTieRounding = 16 * 0x1p-53;
+// Nodes of a tree with fewer of them are not worth another task.
+constexpr std::size_t kSmallSheaf = 4096;
+
+Vec2d turned(const Vec2d& along, const Vec2d& x) {
+  return {along[0] * x[0] + along[1] * x[1], along[0] * x[1] - along[1] * x[0]};
+}
+
+/// How far along, how far across and how much turned against a sheaf's way a segment is.
+using Traits = std::array<double, 3>;
+
+Traits traits_of(const Vec2d& along, const Vec2d& a, const Vec2d& b) {
+  const Vec2d middle = turned(along, (a + b) * 0.5), way = turned(along, b - a);
+  return {middle[0], middle[1], way[0] < 0 ? -way[1] / way.length() : way[1] / way.length()};
+}
+
+}  // namespace
+
+Sheaves::Sheaves(const Polyline& line, std::vector<std::uint32_t> segments)
+    : line_(line), segments_(std::move(segments)) {
+  while (segments_.size() >> levels_ > 2 * kLeafSize - 1) ++levels_;
+  boxes_.resize(std::size_t{2} << levels_);
+  build(0, 1);
+  for (int k = 0; k < 2; ++k) {
+    double largest = 0;
+    for (const Vec3d& x : line.vertices) largest = std::max(largest, std::abs(x[k]));
+    extent_ += largest;
+  }
+}
+
+void Sheaves::build(std::size_t level, std::size_t node) {
+  const auto [begin, end] = range(level, node);
+  const std::span some = std::span(segments_).subspan(begin, end - begin);
+  const Vec2d along = mean_way(some);
+  boxes_[node] = box_of(some, along);
+  if (level == levels_) return;
+  halve(some, range(level + 1, 2 * node).end - begin, along);
+  const auto first = [&] { build(level + 1, 2 * node); };
+  const auto second = [&] { build(level + 1, 2 * node + 1); };
+  if (some.size() < kSmallSheaf) first(), second();
+  else tbb::parallel_invoke(first, second);
+}
+
+/// Whichever way along it each of them runs: angles are doubled.
+Vec2d Sheaves::mean_way(std::span<const std::uint32_t> segments) const {
+  Vec2d sum(0.0);
+  for (const auto s : segments) {
+    const Vec2d way = end_of(s, 1) - end_of(s, 0);
+    const double length = way.length();
+    if (length > 0) sum += Vec2d((way[0] - way[1]) * (way[0] + way[1]), 2 * way[0] * way[1]) / length;
+  }
+  const double angle = std::atan2(sum[1], sum[0]) / 2;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Sheaves::Box Sheaves::box_of(std::span<const std::uint32_t> segments, const Vec2d& along) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box box{along, Vec2d(kInfinity), Vec2d(-kInfinity)};
+  for (const auto s : segments)
+    for (const int end : {0, 1}) {
+      const Vec2d x = turned(along, end_of(s, end));
+      for (int k = 0; k < 2; ++k) {
+        box.lower[k] = std::min(box.lower[k], x[k]);
+        box.upper[k] = std::max(box.upper[k], x[k]);
+      }
+    }
+  return box;
+}
+
+/// By what makes their box the widest: that they lie apart, across or along by more than they are long, or run
+/// different ways.
+void Sheaves::halve(std::span<std::uint32_t> segments, std::size_t middle, const Vec2d& along) const {
+  Traits lower, upper;
+  lower.fill(std::numeric_limits<double>::infinity());
+  upper.fill(-lower[0]);
+  double length = 0, longest = 0;
+  for (const auto s : segments) {
+    const Vec2d a = end_of(s, 0), b = end_of(s, 1);
+    const Traits traits = traits_of(along, a, b);
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], traits[k]);
+      upper[k] = std::max(upper[k], traits[k]);
+    }
+    const double mine = (b - a).length();
+    length += mine / static_cast<double>(segments.size());
+    longest = std::max(longest, mine);
+  }
+  const Traits widths{upper[0] - lower[0] - length, upper[1] - lower[1], (upper[2] - lower[2]) * longest / 2};
+  const auto widest = static_cast<std::size_t>(std::max_element(widths.begin(), widths.end()) - widths.begin());
+  std::vector<std::pair<double, std::uint32_t>> order;
+  order.reserve(segments.size());
+  for (const auto s : segments) order.emplace_back(traits_of(along, end_of(s, 0), end_of(s, 1))[widest], s);
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end());
+  std::transform(order.begin(), order.end(), segments.begin(), [](const auto& each) { return each.second; });
+}
+
+double Sheaves::squared_to(std::size_t node, const Vec2d& x) const {
+  const Box& box = boxes_[node];
+  const Vec2d local = turned(box.along, x);
+  double sum = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double off = std::max({box.lower[k] - local[k], local[k] - box.upper[k], 0.0});
+    sum += off * off;
+  }
+  return sum;
+}
+
+TrianglePoint Sheaves::near(const Vec3d& x, std::uint32_t& segment) const {
+  struct Node {
+    std::size_t level, node;
+    double squared;
+  };
+  const Vec2d at(x[0], x[1]);
+  const double rounding = kTieRounding * (extent_ + std::abs(x[0]) + std::abs(x[1]));
+  const auto limit_of = [&](double squared) {
+    const double least = std::max(0.0, std::sqrt(squared) - rounding);
+    return least * least;
+  };
+  TrianglePoint best = line_.closest_on(segment, x);
+  double limit = limit_of(best.squared_distance);
+  std::array<Node, 2 * 64> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {0, 1, squared_to(1, at)};
+  while (depth > 0) {
+    const Node here = stack[--depth];
+    if (!(here.squared < limit)) continue;
+    if (here.level < levels_) {
+      Node first{here.level + 1, 2 * here.node, squared_to(2 * here.node, at)};
+      Node second{here.level + 1, 2 * here.node + 1, squared_to(2 * here.node + 1, at)};
+      if (second.squared < first.squared) std::swap(first, second);
+      stack[depth++] = second;
+      stack[depth++] = first;
+      continue;
+    }
+    const auto [begin, end] = range(here.level, here.node);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (line_.is_farther(segments_[i], x, best.squared_distance)) continue;
+      const TrianglePoint other = line_.closest_on(segments_[i], x);
+      if (!(other.squared_distance < best.squared_distance)) continue;
+      best = other;
+      segment = segments_[i];
+      limit = limit_of(best.squared_distance);
+    }
+  }
+  return best;
+}
+
+}  // namespace vdb_offset
