@@ -21,26 +21,26 @@ Distances each(std::vector<double> numbers) { return Distances(std::move(numbers
 
 TEST_CASE("precedent: the farthest on one's own side, within four times, that follows none", "[precedent]") {
   using Numbers = std::vector<std::size_t>;
-  CHECK(find_precedents(std::vector<Distances>{}) == Numbers{});
-  CHECK(find_precedents(std::vector<Distances>{0.5}) == Numbers{0});
-  CHECK(find_precedents(std::vector<Distances>{0.25, 0.5, 0.375}) == Numbers{1, 1, 1});
-  CHECK(find_precedents(std::vector<Distances>{0.3, -0.1, 0.2, -0.2}) == Numbers{0, 3, 0, 3});
-  CHECK(find_precedents(std::vector<Distances>{0.25, 1, 0.249}) == Numbers{1, 1, 2});  // 1 is too far for the last
-  CHECK(find_precedents(std::vector<Distances>{0.1, 1, 0.2}) == Numbers{2, 1, 2});
-  CHECK(find_precedents(std::vector<Distances>{0.5, 0.5}) == Numbers{0, 0});
-  CHECK(find_precedents(std::vector<Distances>{0, 0.5}) == Numbers{0, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{}) == Numbers{});
+  CHECK(find_warm_starts(std::vector<Distances>{0.5}) == Numbers{0});
+  CHECK(find_warm_starts(std::vector<Distances>{0.25, 0.5, 0.375}) == Numbers{1, 1, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{0.3, -0.1, 0.2, -0.2}) == Numbers{0, 3, 0, 3});
+  CHECK(find_warm_starts(std::vector<Distances>{0.25, 1, 0.249}) == Numbers{1, 1, 2});  // 1 is too far for the last
+  CHECK(find_warm_starts(std::vector<Distances>{0.1, 1, 0.2}) == Numbers{2, 1, 2});
+  CHECK(find_warm_starts(std::vector<Distances>{0.5, 0.5}) == Numbers{0, 0});
+  CHECK(find_warm_starts(std::vector<Distances>{0, 0.5}) == Numbers{0, 1});
 }
 
 TEST_CASE("precedent: uneven distances follow what is nowhere nearer or on another side", "[precedent]") {
   using Numbers = std::vector<std::size_t>;
   const Distances far = each({0.4, -0.4, 0.2}), nearer = each({0.2, -0.1, 0.2}), crosses = each({0.2, -0.1, 0.3}),
                   turned = each({0.2, 0.1, 0.2}), still = each({0.2, 0, 0.1});
-  CHECK(find_precedents(std::vector<Distances>{nearer, far}) == Numbers{1, 1});
-  CHECK(find_precedents(std::vector<Distances>{still, far}) == Numbers{1, 1});
-  CHECK(find_precedents(std::vector<Distances>{crosses, far}) == Numbers{0, 1});
-  CHECK(find_precedents(std::vector<Distances>{turned, far}) == Numbers{0, 1});
-  CHECK(find_precedents(std::vector<Distances>{0.4, far}) == Numbers{0, 1});
-  CHECK(find_precedents(std::vector<Distances>{each({0.2, 0.1, 0.1}), 0.3}) == Numbers{1, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{nearer, far}) == Numbers{1, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{still, far}) == Numbers{1, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{crosses, far}) == Numbers{0, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{turned, far}) == Numbers{0, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{0.4, far}) == Numbers{0, 1});
+  CHECK(find_warm_starts(std::vector<Distances>{each({0.2, 0.1, 0.1}), 0.3}) == Numbers{1, 1});
 }
 
 TEST_CASE("precedent: a way to a distance ends there exactly, on the straight way", "[precedent][oracle]") {
@@ -56,7 +56,7 @@ TEST_CASE("precedent: a way to a distance ends there exactly, on the straight wa
     const Vec3d from = mesh.positions[surface.representative[v]];
     const double far = test::brute_force_distance(mesh.view(), from + way);
     for (const double distance : {0.02, 0.1, 0.2}) {
-      const Vec3d part = way_to_distance(constrained, v, way, distance);
+      const Vec3d part = displacement_to_distance(constrained, v, way, distance);
       if (part == way) {
         CHECK(far <= distance);
         continue;

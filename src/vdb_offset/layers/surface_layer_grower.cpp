@@ -71,7 +71,7 @@ class SurfaceLayerGrower final : public LayerGrower {
     std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || is_at_end(v); });
     look(back);
   }
-  Indices faulty_vertices() const override { return faults_.wrong_vertices(); }
+  Indices faulty_vertices() const override { return faults_.faulty_vertices(); }
   double distance_of(std::uint32_t v) const override { return faults_.distance_of(v); }
 
   void put(const Indices& vertices) override {

@@ -9,19 +9,22 @@
 namespace vdb_offset {
 namespace {
 
-// Of the way from a corner to the centre of its face, or to another corner: what stands for the corner's third.
+// Share of the line from a corner to the centre of its face, or to another corner: the point there stands for the
+// corner's third of the face. Not measured.
 constexpr double kInThird = 0.6;
 
-// Of area that is not live, but may well reach its distance by sliding.
+// Share of area that is not live which counts all the same, as it may well reach its distance by sliding. Not measured.
 constexpr double kOfDead = 0.01;
 
-// Nothing of the front is nearer to an image than this share of the distance.
+// A point is live if nothing of the moving part is nearer to its image than this share of the distance. Reasoned: 1,
+// but for rounding.
 constexpr double kLive = 1 - 1e-9;
 
-// Where on such a way the live part begins is found to a small part of it.
-constexpr int kStakeHalvings = 12;
+// Halvings that find where on a line the live part begins, to 1 / 4096 of the line. Reasoned.
+constexpr int kLineHalvings = 12;
 
-constexpr std::size_t kMostPlaces = 8;
+// Most positions that are tried for a vertex. Not measured.
+constexpr std::size_t kMostPositions = 8;
 
 }  // namespace
 
@@ -29,7 +32,7 @@ LiveArea::LiveArea(const ConstrainedSurface& constrained, const Distances& dista
     : constrained_(constrained),
       surface_(constrained.surface),
       distances_(distances),
-      stake_(constrained.surface.vertices.size(), -1.0) {
+      live_(constrained.surface.vertices.size(), -1.0) {
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
     if (counts(t)) whole_area_ += area_of(t);
 }
@@ -51,26 +54,26 @@ double LiveArea::area(std::uint32_t v) const {
   return area;
 }
 
-void LiveArea::measure(const Indices& vertices) {
+void LiveArea::measure(const std::vector<std::uint32_t>& vertices) {
   for_each_index(
       vertices.size(),
       [&](std::size_t i) {
-        double& stake = stake_[vertices[i]];
-        if (stake < 0) stake = find(vertices[i]);
+        double& live = live_[vertices[i]];
+        if (live < 0) live = find(vertices[i]);
       },
       16);
 }
 
 double LiveArea::find(std::uint32_t v) const {
   if (!constrained_.on_front(v) || distances_[v] == 0) return 0;
-  double stake = 0;
+  double live = 0;
   std::uint32_t hint = constrained_.hint(v);
   for (const auto t : surface_.triangles_around(v))
     if (counts(t)) {
       const Vec3d inward = (centre(t) - surface_.vertices[v]) * kInThird;
-      stake += area_of(t) / 3 * (image(v, t, inward, hint).live ? 1 : kOfDead);
+      live += area_of(t) / 3 * (image(v, t, inward, hint).live ? 1 : kOfDead);
     }
-  return stake;
+  return live;
 }
 
 Vec3d LiveArea::centre(std::uint32_t t) const {
@@ -78,21 +81,21 @@ Vec3d LiveArea::centre(std::uint32_t t) const {
   return (surface_.vertices[a] + surface_.vertices[b] + surface_.vertices[c]) / 3.0;
 }
 
-/// Of the point of a triangle that is so far from a vertex.
-LiveArea::Image LiveArea::image(std::uint32_t v, std::uint32_t t, const Vec3d& way, std::uint32_t& hint) const {
-  const Vec3d place = surface_.vertices[v] + way + surface_.triangle_normals[t] * distances_[v];
-  const Closest closest = constrained_.front(place, hint);
+/// The image of the point of a triangle that lies `along` from a vertex.
+LiveArea::Image LiveArea::image(std::uint32_t v, std::uint32_t t, const Vec3d& along, std::uint32_t& hint) const {
+  const Vec3d position = surface_.vertices[v] + along + surface_.triangle_normals[t] * distances_[v];
+  const Closest closest = constrained_.front(position, hint);
   hint = closest.triangle;
-  return {place, closest.distance >= std::abs(distances_[v]) * kLive};
+  return {position, closest.distance >= std::abs(distances_[v]) * kLive};
 }
 
 bool LiveArea::is_at_border(std::uint32_t v) const {
   const auto& conormals = constrained_.front.surface().conormals;
-  const std::uint32_t on_front = constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
-  return !conormals.empty() && conormals[on_front] != Vec3d(0.0);
+  return !conormals.empty() && conormals[constrained_.front_vertex_of(v)] != Vec3d(0.0);
 }
 
-/// As many run along each edge to one side as to the other, borders aside.
+/// Whether the faces around a vertex agree about the outside: along each edge as many run one way as the other, borders
+/// aside.
 bool LiveArea::faces_agree(std::uint32_t v) const {
   std::vector<std::pair<std::uint32_t, int>> ends;
   for (const auto t : surface_.triangles_around(v))
@@ -121,24 +124,25 @@ std::vector<Vec3d> LiveArea::ends_of_lines(std::uint32_t v, std::uint32_t t, Lin
   return ends;
 }
 
-std::optional<Vec3d> LiveArea::first_live(std::uint32_t v, std::uint32_t t, const Vec3d& way,
+/// The image of the live point on a line from a vertex that is nearest to it, if the point at kInThird is live.
+std::optional<Vec3d> LiveArea::first_live(std::uint32_t v, std::uint32_t t, const Vec3d& line,
                                           std::uint32_t& hint) const {
-  Image found = image(v, t, way * kInThird, hint);
+  Image found = image(v, t, line * kInThird, hint);
   if (!found.live) return std::nullopt;
-  if (const Image at_vertex = image(v, t, Vec3d(0.0), hint); at_vertex.live) return at_vertex.place;
+  if (const Image at_vertex = image(v, t, Vec3d(0.0), hint); at_vertex.live) return at_vertex.position;
   double dead = 0, live = kInThird;
-  for (int i = 0; i < kStakeHalvings; ++i) {
+  for (int i = 0; i < kLineHalvings; ++i) {
     const double middle = (dead + live) / 2;
-    const Image there = image(v, t, way * middle, hint);
+    const Image there = image(v, t, line * middle, hint);
     (there.live ? live : dead) = middle;
     if (there.live) found = there;
   }
-  return found.place;
+  return found.position;
 }
 
-std::vector<Vec3d> LiveArea::places(std::uint32_t v, Lines lines) const {
-  std::vector<Vec3d> places;
-  if (!faces_agree(v)) return places;
+std::vector<Vec3d> LiveArea::positions_with_room(std::uint32_t v, Lines lines) const {
+  std::vector<Vec3d> positions;
+  if (!faces_agree(v)) return positions;
   std::vector<std::pair<double, std::uint32_t>> faces;
   for (const auto t : surface_.triangles_around(v))
     if (counts(t)) faces.emplace_back(-area_of(t), t);
@@ -146,10 +150,10 @@ std::vector<Vec3d> LiveArea::places(std::uint32_t v, Lines lines) const {
   std::uint32_t hint = constrained_.hint(v);
   for (const auto& [area, t] : faces)
     for (const Vec3d& end : ends_of_lines(v, t, lines)) {
-      if (places.size() == kMostPlaces) return places;
-      if (const auto place = first_live(v, t, end - surface_.vertices[v], hint)) places.push_back(*place);
+      if (positions.size() == kMostPositions) return positions;
+      if (const auto position = first_live(v, t, end - surface_.vertices[v], hint)) positions.push_back(*position);
     }
-  return places;
+  return positions;
 }
 
 }  // namespace vdb_offset

@@ -12,36 +12,38 @@ namespace vdb_offset {
 
 /// How much of a surface's area falls short of its distance with each of its vertices.
 ///
-/// A point of a face is live if it is the closest one of its image, which is as far along the face's normal as it is to
-/// go: then nothing is in its way. What is at stake with a vertex is its third of the faces around it, as far as that
-/// is live; of the rest, which fronts meet over, next to nothing. Faces that are no part of the front do not count.
+/// The image of a point of a face is the point straight above it, along the face's normal, at the distance. A point is
+/// live if it is the closest one to its image: then nothing is in its way. The live area of a vertex is its third of
+/// the faces around it, as far as that is live, and next to nothing of the rest, which fronts meet over. Faces that are
+/// not on the moving part do not count.
 class LiveArea {
  public:
-  /// Keeps references to the body and the distances of its vertices.
+  /// Keeps references to the constrained surface and the distances of its vertices.
   LiveArea(const ConstrainedSurface& constrained, const Distances& distances);
 
-  /// Of the front's faces.
+  /// Area of the moving part's faces.
   double whole_area() const { return whole_area_; }
-  /// A third of the faces around a vertex, live or not.
+  /// A third of the area of the faces around a vertex, live or not.
   double area(std::uint32_t vertex) const;
 
-  /// Finds out about vertices of which that is not known yet.
-  void measure(const Indices& vertices);
-  /// What is at stake with a vertex that was measured.
-  double operator[](std::uint32_t vertex) const { return stake_[vertex]; }
+  /// Measures the vertices whose live area is not known yet. \pre each once
+  void measure(const std::vector<std::uint32_t>& vertices);
+  /// The live area of a vertex; -1 if it was not measured.
+  double operator[](std::uint32_t vertex) const { return live_[vertex]; }
 
-  /// Lines that places are looked for on, across a vertex's faces: only along the border, for one on it, which then
-  /// stays in the plane across that; or to the faces' centres.
+  /// Lines across a vertex's faces that live points are looked for on. KeepBorder: for a vertex at a border, along the
+  /// border alone, so that the vertex stays in the plane across it. All: to the faces' centres, as for all other
+  /// vertices.
   enum class Lines { KeepBorder, All };
 
-  /// The images of live points around a vertex, at its distance from the front, which has room for it there: of each of
-  /// the faces, the largest first, that of the point nearest to the vertex on such a line. In the surface's frame. None
-  /// where faces around the vertex do not agree about the outside.
-  std::vector<Vec3d> places(std::uint32_t vertex, Lines lines) const;
+  /// Positions at its distance that have room for a vertex: of each line, the larger faces' first, the image of the
+  /// live point that is nearest to the vertex. In the surface's frame. None where faces around the vertex do not agree
+  /// about the outside.
+  std::vector<Vec3d> positions_with_room(std::uint32_t vertex, Lines lines) const;
 
  private:
   struct Image {
-    Vec3d place;
+    Vec3d position;
     bool live;
   };
   bool counts(std::uint32_t triangle) const;
@@ -51,15 +53,15 @@ class LiveArea {
   bool is_at_border(std::uint32_t vertex) const;
   bool faces_agree(std::uint32_t vertex) const;
   std::vector<Vec3d> ends_of_lines(std::uint32_t vertex, std::uint32_t triangle, Lines lines) const;
-  Image image(std::uint32_t vertex, std::uint32_t triangle, const Vec3d& way, std::uint32_t& hint) const;
-  std::optional<Vec3d> first_live(std::uint32_t vertex, std::uint32_t triangle, const Vec3d& way,
+  Image image(std::uint32_t vertex, std::uint32_t triangle, const Vec3d& along, std::uint32_t& hint) const;
+  std::optional<Vec3d> first_live(std::uint32_t vertex, std::uint32_t triangle, const Vec3d& line,
                                   std::uint32_t& hint) const;
 
   const ConstrainedSurface& constrained_;
   const Surface& surface_;
   const Distances& distances_;
   double whole_area_ = 0;
-  std::vector<double> stake_;  // of each vertex; negative if it is not known
+  std::vector<double> live_;  // of each vertex; negative if it is not known
 };
 
 }  // namespace vdb_offset

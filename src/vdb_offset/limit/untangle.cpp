@@ -3,30 +3,41 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
-#include <optional>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/limit/quasi_newton.h"
 #include "vdb_offset/paths/propagate.h"
 
 namespace vdb_offset {
 namespace {
 
-// Planes are renewed this often; each time L-BFGS makes at most so many steps, with so many of them remembered.
+// Planes are renewed this often; each time the energy falls by at most so many steps. Not measured.
 constexpr int kRenewals = 6, kSteps = 20;
-constexpr std::size_t kMemory = 8;
 
-// Who has no fewer faces folded so many times on end will hardly have, and small patches cost little.
+// A patch is given up after this many renewals without fewer folded faces: it will hardly have fewer later. Small
+// patches, of up to kSmall vertices, get one more, as they cost little. Not measured.
 constexpr int kFruitless = 2, kFruitlessIfSmall = 3;
 constexpr std::size_t kSmall = 100;
 
-// A step is halved this often until it gains enough; when all of it gains less than this share, the slide ends. Once
-// nothing is folded in the planes that share is larger: in new ones the least energy is elsewhere.
+// A step is halved at most so often until the energy falls by at least the share kArmijo of what its slope promises
+// (Nocedal and Wright, Numerical Optimization, 2006, 3.1).
 constexpr int kHalvings = 30;
-constexpr double kArmijo = 1e-4, kLeastGain = 1e-6, kLeastGainUnfolded = 0.1;
+constexpr double kArmijo = 1e-4;
 
-// No vertex goes farther than this, in distances, in one step.
+// Share of the energy: when a step gains less, the slide ends. Larger once nothing is folded in the planes: in new
+// planes the least energy is elsewhere. Not measured.
+constexpr double kLeastGain = 1e-6, kLeastGainUnfolded = 0.1;
+
+// No vertex moves farther than this, in distances, in one step. Not measured.
 constexpr double kLongestStep = 0.5;
+
+// chi, by which the energy is divided, is smoothed over this share of the most negative determinant of the faces, and
+// over kLeastSmoothing at least (both squared). Not measured.
+constexpr double kSmoothing2 = 0.04, kLeastSmoothing2 = 1e-12;
+
+// Squared length below which a sum of unit normals has cancelled out, and has no direction. Reasoned: rounding.
+constexpr double kCancelled = 1e-12;
 
 /// Two directions at right angles to n and to each other.
 std::array<Vec3d, 2> plane_of(const Vec3d& n) {
@@ -38,66 +49,11 @@ std::array<Vec3d, 2> plane_of(const Vec3d& n) {
   return {u, n.cross(u)};
 }
 
-/// Four sums at a time: one would wait for each addition before the next.
-double dot(std::span<const double> a, std::span<const double> b) {
-  constexpr std::size_t kSums = 4;
-  std::array<double, kSums> sum{};
-  std::size_t i = 0;
-  for (; i + kSums <= a.size(); i += kSums)
-    for (std::size_t k = 0; k < kSums; ++k) sum[k] += a[i + k] * b[i + k];
-  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
-/// L-BFGS: what the last steps tell of the energy's curvature (Nocedal and Wright, Numerical Optimization, 2006,
-/// algorithm 7.4).
-class QuasiNewton {
+/// The vertices of a patch and those around it, and the faces of the patch's vertices.
+class UntangledPatch {
  public:
-  void remember(std::span<const double> x, std::span<const double> next_x, std::span<const double> g,
-                std::span<const double> next_g) {
-    double2 pair{std::vector<double>(x.size()), std::vector<double>(x.size()), 0};
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      pair.s[k] = next_x[k] - x[k];
-      pair.y[k] = next_g[k] - g[k];
-    }
-    const double curvature = dot(pair.s, pair.y);
-    if (!(curvature > 1e-12 * std::sqrt(dot(pair.s, pair.s) * dot(pair.y, pair.y)))) return;
-    pair.rho = 1 / curvature;
-    pairs_.push_back(std::move(pair));
-    if (pairs_.size() > kMemory) pairs_.pop_front();
-  }
-
-  /// The step to where the gradient g would vanish.
-  void descend(std::span<const double> g, std::span<double> step) const {
-    for (std::size_t k = 0; k < g.size(); ++k) step[k] = -g[k];
-    std::array<double, kMemory> alpha{};
-    for (std::size_t p = pairs_.size(); p-- > 0;) {
-      alpha[p] = pairs_[p].rho * dot(pairs_[p].s, step);
-      add(-alpha[p], pairs_[p].y, step);
-    }
-    if (pairs_.empty()) return;
-    const double scale = 1 / (pairs_.back().rho * dot(pairs_.back().y, pairs_.back().y));
-    for (double& s : step) s *= scale;
-    for (std::size_t p = 0; p < pairs_.size(); ++p)
-      add(alpha[p] - pairs_[p].rho * dot(pairs_[p].y, step), pairs_[p].s, step);
-  }
-
- private:
-  struct double2 {
-    std::vector<double> s, y;  // of places and of gradients
-    double rho;
-  };
-  static void add(double factor, std::span<const double> a, std::span<double> sum) {
-    for (std::size_t k = 0; k < a.size(); ++k) sum[k] += factor * a[k];
-  }
-
-  std::deque<double2> pairs_;
-};
-
-class Patch {
- public:
-  Patch(const ConstrainedSurface& constrained, const Distances& distances, const Untangler::Options& options,
-        std::span<const std::uint32_t> vertices, std::span<Vec3d> way)
+  UntangledPatch(const ConstrainedSurface& constrained, const Distances& distances, const Untangler::Options& options,
+                 std::span<const std::uint32_t> vertices, std::span<Vec3d> displacement)
       : constrained_(constrained),
         surface_(constrained.surface),
         front_(constrained.front.surface()),
@@ -105,19 +61,19 @@ class Patch {
         options_(options),
         free_(vertices.size()) {
     for (const auto v : vertices) {
-      add_point(v, way);
+      add_point(v, displacement);
       scale_ = std::max(scale_, points_.back().target);
     }
-    collect_faces(vertices, way);
+    collect_faces(vertices, displacement);
   }
 
   void untangle() {
     renew_planes();
-    std::vector<Vec3d> best = places();
+    std::vector<Vec3d> best = positions();
     const int most_fruitless = options_.thorough ? kRenewals : free_ > kSmall ? kFruitless : kFruitlessIfSmall;
     int fewest = folded_, fruitless = 0;
     for (int i = 0; i < kRenewals && (i == 0 || fewest > 0) && fruitless < most_fruitless; ++i) {
-      const std::vector<Vec3d> before = places();
+      const std::vector<Vec3d> before = positions();
       slide();
       for (std::size_t k = 0; k < free_; ++k)
         if (!points_[k].stuck) return_to_distance(points_[k], before[k]);
@@ -125,50 +81,53 @@ class Patch {
       fruitless = folded_ < fewest ? 0 : fruitless + 1;
       if (i > 0 && folded_ > fewest) continue;
       fewest = folded_;
-      best = places();
+      best = positions();
     }
     for (std::size_t k = 0; k < free_; ++k) points_[k].x = best[k];
   }
 
-  void store(std::span<Vec3d> way) const {
+  void store(std::span<Vec3d> displacement) const {
     for (std::size_t i = 0; i < free_; ++i)
-      way[points_[i].vertex] = round_way(points_[i].x - surface_.vertices[points_[i].vertex], points_[i].target);
+      displacement[points_[i].vertex] =
+          round_way(points_[i].x - surface_.vertices[points_[i].vertex], points_[i].target);
   }
 
  private:
   struct Point {
     std::uint32_t vertex, hint;
-    double target;                 // distance to the front that is asked for
-    int side;                      // of the front, 1 or -1
-    double distance;               // to the front when planes were renewed
-    Vec3d x, normal;               // local frame; outward from the front, smoothed over the neighbours
-    std::array<Vec3d, 2> tangent;  // at right angles to it
-    bool stuck = false;            // planes leave it no way
+    double target;                 // distance to the moving part that is asked for
+    int side;                      // of the moving part, 1 or -1
+    double distance;               // to the moving part when planes were renewed
+    Vec3d x, normal;               // local frame; outward from the moving part, smoothed over the neighbours
+    std::array<Vec3d, 2> tangent;  // at right angles to the normal
+    bool stuck = false;            // planes that hold it let it move nowhere
   };
   struct Face {
-    std::array<std::uint32_t, 3> point;
-    double inverse[3];  // of the source's edges (a, b; 0, c) in the plane: 1/a, -b/(a c), 1/c
+    std::array<std::uint32_t, 3> point;  // indices in points_
+    double inverse[3];                   // of the source's edges (a, b; 0, c) in the plane: 1/a, -b/(a c), 1/c
     double area;
     double edge[2][2];    // from the first corner to the others, in the face's plane
     double map[3][2][2];  // how a slide of each corner along each of its tangents shows in that plane
   };
 
-  void add_point(std::uint32_t v, std::span<const Vec3d> way) {
+  void add_point(std::uint32_t v, std::span<const Vec3d> displacement) {
     const double d = distances_[v];
-    points_.push_back({v, constrained_.hint(v), std::abs(d), d < 0 ? -1 : 1, 0, surface_.vertices[v] + way[v], {}, {}});
+    points_.push_back(
+        {v, constrained_.hint(v), std::abs(d), d < 0 ? -1 : 1, 0, surface_.vertices[v] + displacement[v], {}, {}});
   }
 
-  std::uint32_t index_of(std::uint32_t v, std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
+  std::uint32_t index_of(std::uint32_t v, std::span<const std::uint32_t> vertices,
+                         std::span<const Vec3d> displacement) {
     const auto at = std::lower_bound(vertices.begin(), vertices.end(), v);
     if (at != vertices.end() && *at == v) return static_cast<std::uint32_t>(at - vertices.begin());
     const auto known = std::find_if(points_.begin() + static_cast<std::ptrdiff_t>(free_), points_.end(),
                                     [&](const Point& p) { return p.vertex == v; });
     if (known != points_.end()) return static_cast<std::uint32_t>(known - points_.begin());
-    add_point(v, way);
+    add_point(v, displacement);
     return static_cast<std::uint32_t>(points_.size() - 1);
   }
 
-  void collect_faces(std::span<const std::uint32_t> vertices, std::span<const Vec3d> way) {
+  void collect_faces(std::span<const std::uint32_t> vertices, std::span<const Vec3d> displacement) {
     std::vector<std::uint32_t> triangles;
     for (const auto v : vertices)
       for (const auto t : surface_.triangles_around(v)) triangles.push_back(t);
@@ -182,19 +141,20 @@ class Patch {
       Face face = options_.least_edge > 0 ? sturdy_face(t)
                                           : face_of(surface_.triangles[t], length, ab.dot(ac) / length,
                                                     twice_area / length, twice_area / 2);
-      for (auto& corner : face.point) corner = index_of(corner, vertices, way);
+      for (auto& corner : face.point) corner = index_of(corner, vertices, displacement);
       faces_.push_back(face);
     }
   }
 
-  /// Its points are vertices yet. The first edge is so long; so far along it and above it is the third corner.
+  /// A face whose points are still vertices, by the length of its first edge, and by how far along that edge and above
+  /// it the third corner is.
   static Face face_of(const std::array<std::uint32_t, 3>& corners, double length, double along, double height,
                       double area) {
     return {corners, {1 / length, -along / (length * height), 1 / height}, area, {}, {}};
   }
 
-  /// A face on its longest edge, not shorter or lower than may be; of an area in the energy by which, however slender
-  /// it is, it resists what changes its height as any other.
+  /// A face on its longest edge, which counts as no shorter, nor its height as lower, than least_edge says; with an
+  /// area by which, however slender the face is, it resists changes of its height as any other face.
   Face sturdy_face(std::uint32_t t) const {
     std::array<std::uint32_t, 3> corners = surface_.triangles[t];
     const auto& x = surface_.vertices;
@@ -216,7 +176,7 @@ class Patch {
     for (Point& p : points_) {
       if (p.x == surface_.vertices[p.vertex]) {
         p.normal = surface_.vertex_normals[p.vertex];
-        if (p.normal.lengthSqr() > 1e-12) p.normal.normalize();
+        if (p.normal.lengthSqr() > kCancelled) p.normal.normalize();
         continue;
       }
       const TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
@@ -231,7 +191,7 @@ class Patch {
     for (Face& face : faces_) {
       Vec3d n(0.0);
       for (const auto i : face.point) n += points_[i].normal;
-      if (!(n.lengthSqr() > 1e-12)) n = points_[face.point[0]].normal;
+      if (!(n.lengthSqr() > kCancelled)) n = points_[face.point[0]].normal;
       const std::array<Vec3d, 2> plane = plane_of(n.unit());
       for (std::size_t row = 0; row < 2; ++row) {
         for (std::size_t k = 0; k < 3; ++k)
@@ -245,8 +205,9 @@ class Patch {
       folded_ += det <= 0;
     }
   }
-  /// Vertices of a border stay in the plane across it: they slide along the border alone. Those that planes hold do so
-  /// in any case: in one of them, on the line between two, or not at all.
+
+  /// Vertices of a border stay in the plane across it: they slide along the border alone. Vertices that planes hold
+  /// stay in these in any case: in one plane, on the line of two, or where they are.
   void keep_borders() {
     for (Point& p : points_) {
       const std::uint32_t v = constrained_.front_vertex.empty() ? p.vertex : constrained_.front_vertex[p.vertex];
@@ -254,15 +215,15 @@ class Patch {
       const bool held = front_.is_held(v);
       const Vec3d& c = front_.conormals[v];
       const Vec3d n = front_.along_border(v, p.normal);
-      p.stuck = held && !(n.lengthSqr() > 1e-12);
+      p.stuck = held && !(n.lengthSqr() > kCancelled);
       if (p.stuck) p.tangent.fill(Vec3d(0.0));
-      if (!(held || options_.keep_borders) || c.lengthSqr() == 0 || !(n.lengthSqr() > 1e-12)) continue;
+      if (!(held || options_.keep_borders) || c.lengthSqr() == 0 || !(n.lengthSqr() > kCancelled)) continue;
       p.normal = n.unit();
       p.tangent = {held ? front_.along_border(v, p.normal.cross(c)) : p.normal.cross(c), Vec3d(0.0)};
     }
   }
 
-  /// Each normal becomes the mean of its own and those across the faces around.
+  /// Each normal becomes the mean of itself and those of the faces around it.
   void smooth_normals() {
     std::vector<Vec3d> sum(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) sum[i] = points_[i].normal;
@@ -271,20 +232,21 @@ class Patch {
       for (const auto i : face.point) sum[i] += n;
     }
     for (std::size_t i = 0; i < points_.size(); ++i)
-      points_[i].normal = sum[i].lengthSqr() > 1e-12 ? sum[i].unit() : Vec3d(0.0, 0.0, 1.0);
+      points_[i].normal = sum[i].lengthSqr() > kCancelled ? sum[i].unit() : Vec3d(0.0, 0.0, 1.0);
   }
 
-  std::vector<Vec3d> places() const {
+  std::vector<Vec3d> positions() const {
     std::vector<Vec3d> x(free_);
     for (std::size_t i = 0; i < free_; ++i) x[i] = points_[i].x;
     return x;
   }
 
-  /// How a face is mapped, by rows (0, 1; 2, 3), where its edges in the plane lead from the first corner to the others.
+  /// The linear map from a face of the source to its image in the plane, by rows (0, 1; 2, 3).
   struct Jacobian {
     double j[4];
     double det() const { return j[0] * j[3] - j[1] * j[2]; }
   };
+  /// \param edge from the image's first corner to the others, in the plane
   static Jacobian jacobian_of(const Face& face, const double (&edge)[2][2]) {
     Jacobian map{};
     for (std::size_t row = 0; row < 2; ++row) {
@@ -298,7 +260,7 @@ class Patch {
     double sum = 0;
     bool folded = false;  // any of the faces
   };
-  /// The energy, and its derivative by the slides, two numbers for each point, which are 0 of those that stand still.
+  /// The energy, and its derivative by the slides: two numbers for each point, 0 for points that are not of the patch.
   /// chi, by which the energy is divided, is about det for det > 0, small and positive below.
   Energy energy(std::span<const double> slide, double epsilon, std::span<double> derivative) const {
     std::fill(derivative.begin(), derivative.end(), 0.0);
@@ -323,16 +285,16 @@ class Patch {
       const double by_det = (2 * lambda * det) * by_chi - e / root, twice = 2 * by_chi;
       const double by_j[4] = {twice * j[0] + by_det * j[3], twice * j[1] - by_det * j[2], twice * j[2] - by_det * j[1],
                               twice * j[3] + by_det * j[0]};
-      double by_place[3][2];
+      double by_position[3][2];
       for (std::size_t row = 0; row < 2; ++row) {
-        by_place[1][row] = (by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1]) * face.area;
-        by_place[2][row] = by_j[2 * row + 1] * face.inverse[2] * face.area;
-        by_place[0][row] = -by_place[1][row] - by_place[2][row];
+        by_position[1][row] = (by_j[2 * row] * face.inverse[0] + by_j[2 * row + 1] * face.inverse[1]) * face.area;
+        by_position[2][row] = by_j[2 * row + 1] * face.inverse[2] * face.area;
+        by_position[0][row] = -by_position[1][row] - by_position[2][row];
       }
       for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t axis = 0; axis < 2; ++axis)
           derivative[2 * face.point[k] + axis] +=
-              face.map[k][axis][0] * by_place[k][0] + face.map[k][axis][1] * by_place[k][1];
+              face.map[k][axis][0] * by_position[k][0] + face.map[k][axis][1] * by_position[k][1];
     }
     std::fill(derivative.begin() + static_cast<std::ptrdiff_t>(2 * free_), derivative.end(), 0.0);
     return all;
@@ -341,7 +303,8 @@ class Patch {
   /// Lets the energy fall, with L-BFGS directions and halved steps, then puts the points where they have slid to.
   void slide() {
     const std::size_t n = 2 * points_.size();
-    const double folded = std::min(least_det_, 0.0), epsilon = std::sqrt(1e-12 + 0.04 * folded * folded);
+    const double folded = std::min(least_det_, 0.0),
+                 epsilon = std::sqrt(kLeastSmoothing2 + kSmoothing2 * folded * folded);
     std::vector<double> x(n, 0.0), g(n), step(n), next(n), next_g(n);
     QuasiNewton model;
     double e = energy(x, epsilon, g).sum;
@@ -367,31 +330,35 @@ class Patch {
     move_points(x);
   }
 
-  /// The share of a step to try first: all of it, if no point goes too far by that.
-  double first_step(std::span<const double> step, bool scaled_by_nothing) const {
+  /// The share of a step to try first: all of it, unless a point would go too far by that. A first step, which no
+  /// earlier step has scaled, goes as far as may be.
+  double first_step(std::span<const double> step, bool is_unscaled) const {
     double longest2 = 0;
     for (std::size_t k = 0; k < step.size(); k += 2)
       longest2 = std::max(longest2, step[k] * step[k] + step[k + 1] * step[k + 1]);
     const double most = kLongestStep * scale_ / std::sqrt(longest2);
-    return scaled_by_nothing ? most : std::min(1.0, most);
+    return is_unscaled ? most : std::min(1.0, most);
   }
 
   void move_points(std::span<const double> slide) {
     for (std::size_t i = 0; i < free_; ++i) {
       Point& p = points_[i];
-      const Vec3d way = p.tangent[0] * slide[2 * i] + p.tangent[1] * slide[2 * i + 1];
-      const double length = way.length(), free = kFreeShare * p.distance;
-      p.x += length > free ? way * (free / length) : way;
+      const Vec3d moved = p.tangent[0] * slide[2 * i] + p.tangent[1] * slide[2 * i + 1];
+      const double length = moved.length(), free = kFreeShare * p.distance;
+      p.x += length > free ? moved * (free / length) : moved;
     }
   }
 
-  /// Along the smoothed normal to the distance. On the way out phi is concave there, as the least of the distances to
-  /// what is near, so that Newton's steps settle; where they do not, the vertex stays where it was. The triangles
-  /// around the last answer are asked what is near, and the exact query only whether that is so. A vertex of a fold,
-  /// which no direction leads away from, may stand on the surface yet: it steps off.
+  /// Moves a point along its smoothed normal to its distance. Outward phi is concave along the normal, as the least of
+  /// the distances to what is near, so that Newton's steps converge; where they do not, the point stays where it was.
+  /// The triangles around the last answer give the distance, and the exact query says whether that is right. A vertex
+  /// of a fold, which no direction leads away from, may still stand on the surface: it steps off.
   void return_to_distance(Point& p, const Vec3d& before) const {
+    // Newton's steps; the share of the distance that the result may be off by (reasoned: far below the promised 1e-6);
+    // the least slope that a step is computed with; the step off the surface and what counts as on it, in distances.
+    // Not measured.
     constexpr int kMostSteps = 40;
-    constexpr double kSettled = 1e-9, kLeastSlope = 0.1, kStepOff = 0.02;
+    constexpr double kSettled = 1e-9, kLeastSlope = 0.1, kStepOff = 0.02, kOnSurface = 1e-3;
     const Vec3d away = p.normal * p.side;
     for (int i = 0; i < kMostSteps; ++i) {
       TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
@@ -403,7 +370,7 @@ class Patch {
         distance = closest.distance;
         nearest.point = closest.point;
       }
-      if (!(distance > 1e-3 * p.target)) {
+      if (!(distance > kOnSurface * p.target)) {
         if (i > 0) break;
         p.x += away * (kStepOff * p.target);
         continue;
@@ -420,20 +387,22 @@ class Patch {
   const Surface& front_;
   const Distances& distances_;
   Untangler::Options options_;
-  std::size_t free_;  // the first points are the patch's, the others stand around it
-  double scale_ = 0;  // the farthest that a point of the patch goes
+  std::size_t free_;  // number of the patch's points, which are the first; the others stand around the patch
+  double scale_ = 0;  // largest distance that is asked of a point of the patch
   std::vector<Point> points_;
   std::vector<Face> faces_;
-  double least_det_ = 1;  // of the faces, as planes were renewed, and how many are folded over
-  int folded_ = 0;
+  double least_det_ = 1;  // of the faces when planes were renewed
+  int folded_ = 0;        // number of faces that were folded over then
 };
 
 }  // namespace
 
-void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> way) const {
-  Patch work(constrained_, distances_, options_, patch, way);
+void Untangler::operator()(std::span<const std::uint32_t> patch, std::span<Vec3d> displacement) const {
+  VDB_OFFSET_ASSERT(displacement.size() == constrained_.surface.vertices.size());
+  VDB_OFFSET_ASSERT(std::is_sorted(patch.begin(), patch.end()));
+  UntangledPatch work(constrained_, distances_, options_, patch, displacement);
   work.untangle();
-  work.store(way);
+  work.store(displacement);
 }
 
 }  // namespace vdb_offset

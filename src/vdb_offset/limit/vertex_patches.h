@@ -3,20 +3,25 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/index_set.h"
 #include "vdb_offset/surface/surface.h"
+#include "vdb_offset/validity/index_checks.h"
 
 namespace vdb_offset {
 
-/// Some of a surface's vertices in patches that share no face.
+/// Some of a surface's vertices, in patches that share no face.
 class Patches {
  public:
+  /// Keeps a reference.
   explicit Patches(const Surface& surface) : surface_(surface), number_(surface.vertices.size(), kNone) {}
 
-  /// Takes these vertices in place of those before.
+  /// Makes patches of these vertices, in place of those before. \pre sorted, each once
   void split(const Indices& vertices) {
+    VDB_OFFSET_ASSERT(is_index_set(vertices, number_.size()));
     clear();
     vertices_ = vertices;
     constexpr std::uint32_t kOpen = kNone - 1;
@@ -37,7 +42,7 @@ class Patches {
     }
   }
 
-  /// Drops the patches of which that is true of the patch and its number, which is the same until all are dropped.
+  /// Drops the patches for which is_dropped(patch, number) is true. Numbers are those before any is dropped.
   template <class Predicate>
   void drop_if(Predicate&& is_dropped) {
     std::uint32_t kept = 0;
@@ -59,10 +64,11 @@ class Patches {
   }
 
   std::size_t count() const { return patches_.size(); }
+  /// The vertices of a patch, sorted.
   const Indices& operator[](std::size_t patch) const { return patches_[patch]; }
   /// The number of the patch that a vertex is in; kNone if it is in none.
   std::uint32_t of(std::uint32_t vertex) const { return number_[vertex]; }
-  /// Of all patches.
+  /// The vertices of all patches, sorted.
   const Indices& vertices() const { return vertices_; }
 
  private:

@@ -4,17 +4,18 @@
 #include <cmath>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/query/cut_at_distance.h"
 
 namespace vdb_offset {
 namespace {
 
-// What goes farther than so many times a distance has other things in its way.
-constexpr double kFarthestFollowed = 4;
+// A warm start is no more than so many times as far: what goes farther has other things in its way. Reasoned.
+constexpr double kFarthestStart = 4;
 
-bool may_follow(const Distances& near, const Distances& far) {
-  if (!(far.scale() <= kFarthestFollowed * near.scale())) return false;
+bool may_start_from(const Distances& near, const Distances& far) {
+  if (!(far.scale() <= kFarthestStart * near.scale())) return false;
   const std::size_t count = std::max<std::size_t>({1, near.count(), far.count()});
   for (std::size_t v = 0; v < count; ++v)
     if (near[v] * far[v] < 0 || std::abs(near[v]) > std::abs(far[v])) return false;
@@ -23,28 +24,31 @@ bool may_follow(const Distances& near, const Distances& far) {
 
 }  // namespace
 
-std::vector<std::size_t> find_precedents(std::span<const Distances> distances) {
+std::vector<std::size_t> find_warm_starts(std::span<const Distances> distances) {
   std::vector<std::size_t> order(distances.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<std::size_t> followed = order;
+  std::vector<std::size_t> start_of = order;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return distances[a].scale() > distances[b].scale(); });
-  std::vector<std::size_t> leaders;
+  std::vector<std::size_t> starts;
   for (const auto i : order) {
-    const auto leader = std::find_if(leaders.begin(), leaders.end(),
-                                     [&](std::size_t l) { return may_follow(distances[i], distances[l]); });
-    if (leader != leaders.end()) followed[i] = *leader;
-    else leaders.push_back(i);
+    const auto start = std::find_if(starts.begin(), starts.end(),
+                                    [&](std::size_t s) { return may_start_from(distances[i], distances[s]); });
+    if (start != starts.end()) start_of[i] = *start;
+    else starts.push_back(i);
   }
-  return followed;
+  return start_of;
 }
 
-/// From where the way is as long as the distance, so that it is no farther, to its end. The triangles around the
-/// vertex, then around the last answer, are asked first, as they are no nearer than the closest: mostly all that is
-/// left to ask is whether they are the closest there. Where that does not settle, the straight line from the closest
-/// point to the end of the way is as good: along it the distance is its length.
-Vec3d way_to_distance(const ConstrainedSurface& constrained, std::uint32_t vertex, const Vec3d& way, double distance) {
+/// Cuts the displacement between the point where it is as long as the distance, so that it is no farther away, and its
+/// end. The triangles around the vertex, then around the last answer, are asked first, as they are no nearer than the
+/// closest: mostly all that is left to ask is whether they are the closest there. Where that finds no position, the
+/// straight line from the closest point to the end serves: along it the distance is its length.
+Vec3d displacement_to_distance(const ConstrainedSurface& constrained, std::uint32_t vertex, const Vec3d& displacement,
+                               double distance) {
+  // Share of the distance that the answer may be off by. Reasoned: far below the promised 1e-6.
   constexpr double kSettled = 1e-9;
+  VDB_OFFSET_ASSERT(distance > 0);
   const Vec3d& start = constrained.surface.vertices[vertex];
   std::uint32_t hint = constrained.hint(vertex);
   const auto beside = [&](const Vec3d& x) {
@@ -60,16 +64,15 @@ Vec3d way_to_distance(const ConstrainedSurface& constrained, std::uint32_t verte
   const auto cut = [&](const Sample& near, const Sample& far, const auto& measure) {
     return cut_at_distance(constrained.front.surface(), near, far, distance, measure, settled);
   };
-  const Sample first = beside(start + way * std::min(1.0, distance / way.length())), last = beside(start + way);
-  if (!(last.phi > distance)) return way;
+  const Sample first = beside(start + displacement * std::min(1.0, distance / displacement.length())),
+               last = beside(start + displacement);
+  if (!(last.phi > distance)) return displacement;
   Sample at = exactly(first.phi < distance ? cut(first, last, beside).x : first.x);
   if (!settled(at)) {
-    const Sample end = exactly(start + way);
-    if (!(end.phi > distance)) return way;
+    const Sample end = exactly(start + displacement);
+    if (!(end.phi > distance)) return displacement;
     at = cut(at, end, exactly);
-    const Surface& front = constrained.front.surface();
-    const std::uint32_t on_front = constrained.front_vertex.empty() ? vertex : constrained.front_vertex[vertex];
-    if (!settled(at) && !front.is_held(on_front))
+    if (!settled(at) && !constrained.front.surface().is_held(constrained.front_vertex_of(vertex)))
       return round_way(end.x - end.away * (1 - distance / end.phi) - start, distance);
   }
   return round_way(at.x - start, distance);

@@ -9,26 +9,29 @@
 
 namespace vdb_offset {
 
-/// What became of an offset that goes farther than another of the same surface, to the same side. Where the nearer one
-/// folds or meets itself, that does so, too, and much of what has been found to free the one frees the other.
+/// What became of a finished offset, for nearer offsets of the same surface to the same side to start from. Where a
+/// nearer one folds or meets itself, the farther one does so, too, and much of what frees the one frees the other.
+/// Each vector has a value for each vertex of the constrained surface.
 struct WarmStart {
-  Distances distances;               ///< Of the body's vertices, as is all that follows.
-  std::vector<Vec3d> way;            ///< To where each has ended up; world units.
-  std::vector<double> achieved;      ///< The distance there.
-  std::vector<std::uint8_t> mended;  ///< 1 if that is not where its path had led.
-  std::vector<std::uint8_t> pulled;  ///< 1 if it was pulled back at some time, as part of what was wrong,
-  std::vector<std::uint8_t> held;    ///< 1 if it does not go its whole way.
-  bool much_wrong = false;           ///< There was too much wrong to try everything.
+  Distances distances;
+  std::vector<Vec3d> displacement;      ///< To where the vertex has ended up; world units.
+  std::vector<double> achieved;         ///< The distance there, world units.
+  std::vector<std::uint8_t> mended;     ///< 1 if that is not where the vertex's path had led.
+  std::vector<std::uint8_t> pulled;     ///< 1 if the vertex was pulled back at some time, as part of a fault.
+  std::vector<std::uint8_t> held_back;  ///< 1 if the vertex does not go its whole displacement.
+  bool many_faults = false;             ///< There were too many faults to try everything (see kManyFaults).
 };
 
-/// For each of several sets of distances the number of the one that it follows: the farthest that is nowhere nearer nor
-/// to another side, and no more than four times as far, of those that follow none. Its own number if there is none.
-std::vector<std::size_t> find_precedents(std::span<const Distances> distances);
+/// For each of several sets of distances, the number of the set that its offset starts from: the farthest set that is
+/// nowhere nearer and nowhere to another side, no more than four times as far, and has no warm start itself. The set's
+/// own number if there is none.
+std::vector<std::size_t> find_warm_starts(std::span<const Distances> distances);
 
-/// The way of one of the body's vertices to where, on its straight way to another place, it has an exact distance
-/// (world units, > 0) from the front; all of it if it ends no farther than that, unless such a place is found before.
-/// Should that place not be found, one at the distance on the line from the front to the end. What lies on the way is
-/// not looked at.
-Vec3d way_to_distance(const ConstrainedSurface& constrained, std::uint32_t vertex, const Vec3d& way, double distance);
+/// Shortens a displacement of a vertex of the constrained surface so that the vertex has an exact distance (world
+/// units, > 0) from the moving part. The whole displacement if it ends no farther away than that, unless such a
+/// position is found before. Should none be found on the displacement, one at the distance on the line from the moving
+/// part to the end. Obstacles and crossings on the way are not looked for.
+Vec3d displacement_to_distance(const ConstrainedSurface& constrained, std::uint32_t vertex, const Vec3d& displacement,
+                               double distance);
 
 }  // namespace vdb_offset

@@ -48,6 +48,10 @@ struct ConstrainedSurface {
 
   const FileFrame* file = nullptr;  ///< If the body's space is not the file's.
 
+  /// The index of a vertex on the front; kNone if it is not there.
+  std::uint32_t front_vertex_of(std::uint32_t vertex) const {
+    return front_vertex.empty() ? vertex : front_vertex[vertex];
+  }
   bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
   bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
   /// Triangles of an obstacle never move.

@@ -205,7 +205,7 @@ class Pipeline {
       const StageTimer timer(statistics.seconds, Stage::Limit);
       faults.emplace(constrained, source, distances_.front(), options_.precision, source_crossings_);
       faults->look_at_ends(paths.front());
-      statistics.limit = untangle(*faults, constrained, source, distances_.front(), paths.front(), options_.progress);
+      statistics.limit = untangle(*faults, {constrained, source, distances_.front(), paths.front()}, options_.progress);
     }
     std::optional<GrowthColumns> columns;
     LayerStack stack;
@@ -356,7 +356,8 @@ class Pipeline {
     }
     std::vector<std::size_t> order(outer);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const std::vector<std::size_t> followed = to_be_valid ? find_precedents(std::span(distances_).first(outer)) : order;
+    const std::vector<std::size_t> followed =
+        to_be_valid ? find_warm_starts(std::span(distances_).first(outer)) : order;
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return followed[i] == i; });
     JointProgress progress(options_.progress, outer);
     const auto complete = [&](std::size_t i, const WarmStart* precedent) {
@@ -412,7 +413,7 @@ class Pipeline {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit =
-        limit(*draft.faults, draft.constrained, source_, draft.distances, draft.paths, progress, followed, set);
+        limit(*draft.faults, {draft.constrained, source_, draft.distances, draft.paths}, progress, followed, set);
     if (surroundings_) draft.statistics.limit.source_crossings -= surroundings_->crossing();
     draft.faults.reset();
   }

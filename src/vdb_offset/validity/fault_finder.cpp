@@ -367,9 +367,9 @@ std::size_t FaultFinder::crossings_near_source() {
       std::count_if(pairs.begin(), pairs.end(), [&](const TrianglePair& pair) { return is_fault(pair); }));
 }
 
-Indices FaultFinder::wrong_vertices() {
+Indices FaultFinder::faulty_vertices() {
   for (const auto v : misplaced_) wrong_.add(v);
-  for_each_wrong_corner([&](std::uint32_t v) { wrong_.add(v); });
+  for_each_faulty_corner([&](std::uint32_t v) { wrong_.add(v); });
   return wrong_.take();
 }
 

@@ -67,10 +67,10 @@ class FaultFinder {
   /// Calls visit(vertex) for each corner of each face that is wrong, and of each that crosses another; not of those
   /// that are left out (triangle), or of which both are, but always of what a rim meets.
   template <class Visit, class LeftOut>
-  void for_each_wrong_corner(Visit&& visit, LeftOut&& is_left_out) const;
+  void for_each_faulty_corner(Visit&& visit, LeftOut&& is_left_out) const;
   template <class Visit>
-  void for_each_wrong_corner(Visit&& visit) const {
-    for_each_wrong_corner(visit, [](std::uint32_t) { return false; });
+  void for_each_faulty_corner(Visit&& visit) const {
+    for_each_faulty_corner(visit, [](std::uint32_t) { return false; });
   }
   /// Calls visit(s, t) for each pair of triangles that cross, and visit(t, t) for each that is wrong by itself; not for
   /// what a rim meets.
@@ -82,7 +82,7 @@ class FaultFinder {
   /// Folded vertices (see is_folded()) whose faces meet the source around them, which only ends where they stay on it.
   Indices caught();
   /// All vertices that something is wrong with.
-  Indices wrong_vertices();
+  Indices faulty_vertices();
 
   /// Exact distance of a vertex as it was last looked at.
   double distance_of(std::uint32_t vertex) const { return stands_.distance(vertex); }
@@ -164,7 +164,7 @@ class FaultFinder {
 };
 
 template <class Visit, class LeftOut>
-void FaultFinder::for_each_wrong_corner(Visit&& visit, LeftOut&& is_left_out) const {
+void FaultFinder::for_each_faulty_corner(Visit&& visit, LeftOut&& is_left_out) const {
   const auto visit_corners = [&](std::uint32_t t) {
     for (const auto v : surface_.triangles[t]) visit(v);
   };

@@ -1,0 +1,77 @@
+#include "vdb_offset/limit/limit_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/limit/limit_schedule.h"
+
+namespace vdb_offset {
+namespace {
+
+// Share of the whole displacement below which a vertex leaves the straight line: the last tenth of the way back is
+// bent. Reasoned: the line may dip through the faces around the vertex only near them.
+constexpr double kBent = 0.1;
+
+}  // namespace
+
+LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, const WarmStart* warm)
+    : constrained(offset.constrained),
+      surface(offset.constrained.surface),
+      source(offset.source),
+      distances(offset.distances),
+      paths(offset.paths),
+      faults(fault_finder),
+      started_from(warm),
+      whole(offset.paths.displacement),
+      share(offset.source.size(), 1.0),
+      live_area(offset.constrained, offset.distances),
+      gathered(offset.source.size()) {
+  VDB_OFFSET_ASSERT(source.size() == surface.vertices.size());
+  VDB_OFFSET_ASSERT(paths.displacement.size() == source.size() && paths.state.size() == source.size());
+  VDB_OFFSET_ASSERT(!warm || warm->displacement.size() == source.size());
+  statistics.source_crossings = faults.source_crossings().count();
+  statistics.more_source_crossings = faults.source_crossings().has_more();
+  statistics.before = faults.count();
+  many_at_first = fault_count() > kManyFaults || (started_from && started_from->many_faults);
+}
+
+bool LimitState::has_many_faults() const {
+  return fault_count() > kManyFaults || (started_from && started_from->many_faults);
+}
+
+Vec3d LimitState::displacement_of(std::uint32_t v) const {
+  const double part = share[v];
+  const Vec3d& all = whole[v];
+  if (part == 1) return all;
+  if (part >= kBent || part == 0 || constrained.is_bound(v)) return all * part;
+  const Vec3d start =
+      start_direction(constrained.front.surface(), constrained.front_vertex_of(v)) * (distances[v] < 0 ? -1.0 : 1.0);
+  if (!(start.lengthSqr() > 0)) return all * part;
+  const double u = part / kBent;
+  return (all * (u * u) + start * (all.length() * u * (1 - u))) * kBent;
+}
+
+Indices LimitState::with_rings(const Indices& vertices, int rings) {
+  for (const auto v : vertices) gathered.add(v);
+  for (std::size_t i = 0; rings > 0; --rings)
+    for (const std::size_t inner = gathered.so_far().size(); i < inner; ++i)
+      for (const auto t : surface.triangles_around(gathered.so_far()[i]))
+        for (const auto v : surface.triangles[t]) gathered.add(v);
+  return gathered.take();
+}
+
+bool LimitState::may_slide(std::uint32_t v) const {
+  const VertexState state = paths.state[v];
+  const bool at_end = state == VertexState::Reached || (state == VertexState::Collision && has_sides(v));
+  return at_end && distances[v] != 0 && constrained.on_front(v) && !constrained.is_bound(v);
+}
+
+/// Whether any face around a vertex has an area. Lines have none, nor do the vertices that only lines hold.
+bool LimitState::has_sides(std::uint32_t v) const {
+  const auto around = surface.triangles_around(v);
+  return std::any_of(around.begin(), around.end(),
+                     [&](std::uint32_t t) { return surface.triangle_normals[t].lengthSqr() > 0; });
+}
+
+}  // namespace vdb_offset

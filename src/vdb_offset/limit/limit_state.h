@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/base/index_set.h"
+#include "vdb_offset/limit/limit.h"
+#include "vdb_offset/limit/live_area.h"
+#include "vdb_offset/limit/warm_start.h"
+
+namespace vdb_offset {
+
+/// The offset that limit() makes valid, as its steps change it: each vertex goes a share of a whole displacement.
+///
+/// The steps (PatchUntangler, pull_back(), LetOut, Settling) change whole displacements and shares, and then move the
+/// vertices by move() or a trial of `faults`, so that `faults` always knows the vertices where they stand.
+struct LimitState {
+  /// `offset` and what it refers to must outlive this. `warm` is null without a warm start.
+  LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, const WarmStart* warm);
+
+  const ConstrainedSurface& constrained;
+  const Surface& surface;
+  std::span<const Vec3d> source;
+  const Distances& distances;
+  Paths& paths;  ///< Keeps states and displacements of the beginning; the result is written by limit().
+  FaultFinder& faults;
+  const WarmStart* started_from;  ///< Null without one.
+
+  std::vector<Vec3d> whole;   ///< Of each vertex: the displacement that it goes a share of.
+  std::vector<double> share;  ///< Of each vertex: 0 .. 1.
+  Indices pulled;             ///< Vertices that have been pulled back at some time.
+  LiveArea live_area;
+  IndexGatherer gathered;  ///< Of vertices; empty between uses.
+  bool many_at_first;      ///< There were more than kManyFaults faults at the beginning, or at that of the warm start.
+  LimitStatistics statistics;
+
+  std::size_t fault_count() const { return faults.count().total(); }
+  /// Whether there are so many faults that as little is tried as kManyFaults says; with a warm start, whether there
+  /// were as many there.
+  bool has_many_faults() const;
+
+  /// Whether a vertex is nearer to the surface than its distance.
+  bool is_short(std::uint32_t v) const {
+    return faults.distance_of(v) < std::abs(distances[v]) * (1 - kReachedTolerance) - faults.rounding(v);
+  }
+  /// Whether a vertex may slide at its distance. A collided one may slide to where there is room; a vertex that stays,
+  /// or is bound to its path, may not.
+  bool may_slide(std::uint32_t v) const;
+
+  /// The share of a vertex's whole displacement that it goes: along the straight line, but the last tenth of it, at the
+  /// surface, on a parabola that meets the surface in the vertex's start direction, as the straight line may dip
+  /// through the faces around the vertex.
+  Vec3d displacement_of(std::uint32_t v) const;
+  /// World coordinates.
+  Vec3d position_of(std::uint32_t v) const { return source[v] + displacement_of(v); }
+
+  /// Moves vertices to position_of() each, and finds the faults around them.
+  void move(const Indices& vertices) {
+    faults.look(vertices, [&](std::uint32_t v) { return position_of(v); });
+  }
+
+  /// Some vertices and those of so many rings around them.
+  Indices with_rings(const Indices& vertices, int rings);
+
+ private:
+  bool has_sides(std::uint32_t v) const;
+};
+
+}  // namespace vdb_offset

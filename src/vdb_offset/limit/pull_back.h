@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+#include "vdb_offset/limit/limit_state.h"
+
+namespace vdb_offset {
+
+/// Share of its whole displacement below which a vertex is pulled back altogether. Reasoned: it is small, as the skins
+/// of a shell touch where a vertex has not moved at all.
+inline constexpr double kLastShare = 1e-4;
+
+/// The second step of limit(), and its last, called until it returns false: pulls vertices of faulty faces a step back
+/// towards their source. False if there is no fault, or none of whose vertices any displacement is left. Ends, as a
+/// surface that is pulled back altogether is the source.
+bool pull_back(LimitState& state);
+
+/// The vertices that pull_back() pulls: of each fault's corners those with which little live area is lost, and those
+/// that have gone far back already. Of faults of a rim, and of misplaced vertices, all. `pinned` is left out; kNone: no
+/// vertex is.
+Indices vertices_to_pull(LimitState& state, std::uint32_t pinned = kNone);
+
+}  // namespace vdb_offset
