@@ -318,7 +318,7 @@ TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way 
       }
       sort_unique(touched);
       now.update(touched);
-      rim.look(moved, touched, now, before, none);
+      rim.find(moved, touched, now, before, none);
       std::vector<Vec3d> outer = mesh.positions;
       for (std::size_t v = 0; v < outer.size(); ++v) outer[v] = places[surface.welded[v]];
       const Shell shell = make_shell(mesh.view(), outer, mesh.positions, {});

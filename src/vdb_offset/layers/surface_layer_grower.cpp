@@ -62,7 +62,7 @@ class SurfaceLayerGrower final : public LayerGrower {
   }
 
   void look(const Indices& vertices) override {
-    faults_.look(
+    faults_.move(
         vertices, [&](std::uint32_t v) { return outermost(v); }, &paths_);
   }
   /// What is wrong where paths end is known.

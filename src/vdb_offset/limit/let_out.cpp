@@ -98,13 +98,14 @@ void LetOut::keep_valid(const OldShares& before) {
   VDB_OFFSET_ASSERT(blocked_.has_value());
   Indices moved;
   for (const auto& [v, share] : before) moved.push_back(v);
-  state_.faults.glance(moved, [&](std::uint32_t v) { return state_.position_of(v); });
+  FaultFinder::Trial trial = state_.faults.try_out(
+      moved, [&](std::uint32_t v) { return state_.position_of(v); }, FaultFinder::Crossings::OneOfEach);
   blocked_->note(
       state_.faults, [&](std::uint32_t v) { return find(before, v) != before.end(); },
       [&](std::uint32_t v) { return state_.share[v]; });
   do {
     moved = restore_faulty(before);
-    state_.faults.take_back(moved);
+    trial.take_back(moved);
     ++state_.statistics.rounds;
   } while (!moved.empty());
   for (const auto& [v, share] : before)

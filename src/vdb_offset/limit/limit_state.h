@@ -59,7 +59,7 @@ struct LimitState {
 
   /// Moves vertices to position_of() each, and finds the faults around them.
   void move(const Indices& vertices) {
-    faults.look(vertices, [&](std::uint32_t v) { return position_of(v); });
+    faults.move(vertices, [&](std::uint32_t v) { return position_of(v); });
   }
 
   /// Some vertices and those of so many rings around them.

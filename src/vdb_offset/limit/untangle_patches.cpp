@@ -190,7 +190,7 @@ std::size_t PatchUntangler::try_out(Move&& move, Keep keep) {
   old.reserve(chosen.size());
   for (const auto v : chosen) old.emplace_back(state_.whole[v], state_.share[v]);
   tbb::parallel_for(std::size_t{0}, patches_.count(), [&](std::size_t i) { move(patches_[i]); });
-  state_.faults.try_out(chosen, [&](std::uint32_t v) { return state_.position_of(v); });
+  FaultFinder::Trial trial = state_.faults.try_out(chosen, [&](std::uint32_t v) { return state_.position_of(v); });
   const std::vector<PatchFaults> after = faults_by_patch();
   Indices undone;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -203,7 +203,7 @@ std::size_t PatchUntangler::try_out(Move&& move, Keep keep) {
   }
   const std::size_t kept = chosen.size() - undone.size();
   patches_.clear();
-  if (!undone.empty()) state_.faults.take_back(undone);
+  if (!undone.empty()) trial.take_back(undone);
   return kept;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -63,14 +65,26 @@ struct ConstrainedSurface {
     return obstacles && vertex >= surface.vertices.size() - obstacles->query.surface().vertices.size();
   }
   bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
+  bool has_bound_corner(std::uint32_t triangle) const {
+    const auto& corners = surface.triangles[triangle];
+    return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_bound(v); });
+  }
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
   /// A triangle of the front to start a search from.
   std::uint32_t hint_of_triangle(std::uint32_t triangle) const {
     return front_vertex.empty() ? triangle : hint(surface.triangles[triangle][0]);
   }
   std::uint32_t hint(std::uint32_t vertex) const {
-    const std::uint32_t v = front_vertex.empty() ? vertex : front_vertex[vertex];
+    const std::uint32_t v = front_vertex_of(vertex);
     return v == kNone ? 0 : front.surface().triangles_around(v).front();
+  }
+  /// Whether sizes and frames agree: for assertions.
+  bool fits() const {
+    const auto fits = [](const auto& some, std::size_t count) { return some.empty() || some.size() == count; };
+    return surface.origin == front.surface().origin && fits(front_vertex, surface.vertices.size()) &&
+           fits(off_front, surface.triangles.size()) && fits(bound, surface.vertices.size()) &&
+           fits(other_skin, surface.vertices.size()) && front_vertex.empty() == off_front.empty() &&
+           (!obstacles || obstacles->query.surface().origin == surface.origin);
   }
 };
 

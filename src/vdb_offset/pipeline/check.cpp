@@ -86,7 +86,7 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Dis
     const std::uint32_t w = surface.welded[v];
     if (w == kNone) continue;
     const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
-                 tolerance = 1e-6 * target + epsilon * finder.places()[w].length();
+                 tolerance = 1e-6 * target + epsilon * finder.positions()[w].length();
     result.achieved[v] = finder.distance_of(w);
     result.states[v] = std::abs(error) <= tolerance ? VertexState::Reached : VertexState::Limited;
     result.beyond += error > tolerance;
@@ -127,7 +127,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   std::optional<SelfCrossings> source_crossings;
   if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
   FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));
-  finder.look_everywhere([&](std::uint32_t v) { return places[v]; });
+  finder.move_all([&](std::uint32_t v) { return places[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
   result.crossings_near_source = finder.crossings_near_source();

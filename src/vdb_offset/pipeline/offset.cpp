@@ -204,7 +204,7 @@ class Pipeline {
     {
       const StageTimer timer(statistics.seconds, Stage::Limit);
       faults.emplace(constrained, source, distances_.front(), options_.precision, source_crossings_);
-      faults->look_at_ends(paths.front());
+      faults->move_to_ends(paths.front());
       statistics.limit = untangle(*faults, {constrained, source, distances_.front(), paths.front()}, options_.progress);
     }
     std::optional<GrowthColumns> columns;
@@ -400,7 +400,7 @@ class Pipeline {
     const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, source_, draft.distances, options_.precision, source_crossings_);
-    draft.faults->look_at_ends(draft.paths);
+    draft.faults->move_to_ends(draft.paths);
   }
 
   static bool has_to_be_mended(const Draft& draft) {

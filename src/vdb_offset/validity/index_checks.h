@@ -10,8 +10,17 @@ namespace vdb_offset {
 
 /// Whether these are indices below `count`, sorted, each once: for assertions.
 inline bool is_index_set(const Indices& indices, std::size_t count) {
-  return std::is_sorted(indices.begin(), indices.end(), std::less_equal<>()) &&
+  return std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>()) == indices.end() &&
          (indices.empty() || indices.back() < count);
+}
+
+/// Replaces the members of `set` that are in `some` by those of `some` that is_member(index) is true of. Both sorted.
+template <class IsMember>
+void replace_members(Indices& set, const Indices& some, IsMember&& is_member) {
+  std::erase_if(set, [&](std::uint32_t i) { return std::binary_search(some.begin(), some.end(), i); });
+  for (const auto i : some)
+    if (is_member(i)) set.push_back(i);
+  std::sort(set.begin(), set.end());
 }
 
 }  // namespace vdb_offset

@@ -83,7 +83,7 @@ std::array<Vec3d, 3> RimCrossings::corners(std::uint32_t rim_triangle) const {
   return {skins_[a], skins_[b], skins_[c]};
 }
 
-void RimCrossings::look(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched,
+void RimCrossings::find(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched,
                         const CrossingFinder& skin, const CrossingFinder& other_skin,
                         const SourceCrossings& source_crossings) {
   if (edges_.empty()) return;

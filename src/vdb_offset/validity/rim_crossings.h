@@ -26,7 +26,7 @@ class RimCrossings {
 
   /// Judges anew what has moved: vertices, and the triangles around them; sorted, no two the same. The finders are of
   /// both skins, and up to date.
-  void look(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched, const CrossingFinder& skin,
+  void find(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched, const CrossingFinder& skin,
             const CrossingFinder& other_skin, const SourceCrossings& source_crossings);
 
   std::size_t count() const { return with_skin_.size() + with_other_.size() + with_rim_.size(); }

@@ -4,13 +4,21 @@
 #include <cmath>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/surface/border_planes.h"
+#include "vdb_offset/validity/index_checks.h"
 
 namespace vdb_offset {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // vertices that are looked at together
+// Vertices that are measured together, as the exact query answers neighbours together. Not measured.
+constexpr std::size_t kBlock = 64;
+
+// Share of the largest distance: a position that is nearer to the moving part says nothing about sides. Reasoned: its
+// direction away is mostly rounding.
+constexpr double kNear = 1e-3;
 
 /// Calls work(some) for runs of vertices, in parallel.
 template <class Work>
@@ -22,9 +30,9 @@ void for_each_block(std::span<const std::uint32_t> vertices, Work&& work) {
                  1);
 }
 
-/// By more than rounding: what stands at a right angle to the way does not.
+/// Whether a direction turns from another by more than a right angle, and more than rounding.
 bool turns_from(const Vec3d& outward, const Vec3d& away) {
-  constexpr double kRightAngle = 1e-9;
+  constexpr double kRightAngle = 1e-9;  // cosine; reasoned: far above rounding
   const double along = outward.dot(away);
   return along < 0 && along * along > kRightAngle * kRightAngle * outward.lengthSqr() * away.lengthSqr();
 }
@@ -37,33 +45,37 @@ VertexPositions::VertexPositions(const ConstrainedSurface& constrained, std::spa
       surface_(constrained.surface),
       source_(source),
       distances_(distances),
-      near_(1e-3 * distances.scale()),
+      near_(kNear * distances.scale()),
       precision_(precision),
-      place_(source.begin(), source.end()),
+      position_(source.begin(), source.end()),
       away_(source.size()),
       distance_(source.size()),
       closest_(source.size(), kNone),
       right_side_(source.size(), 1),
       nearness_(source.size(), Sole) {
+  VDB_OFFSET_ASSERT(source.size() == surface_.vertices.size());
+  VDB_OFFSET_ASSERT(distances.uniform() || distances.count() == source.size());
+  VDB_OFFSET_ASSERT(!constrained.file || constrained.file->source.size() == source.size());
   if (constrained.file) written_.assign(constrained.file->source.begin(), constrained.file->source.end());
 }
 
-void VertexPositions::move(const Indices& vertices, const std::function<Vec3d(std::uint32_t)>& place_of,
+void VertexPositions::move(const Indices& vertices, const std::function<Vec3d(std::uint32_t)>& position_of,
                            const Paths* ends) {
+  VDB_OFFSET_ASSERT(is_index_set(vertices, position_.size()));
   for_each_block(vertices, [&](std::span<const std::uint32_t> some) {
-    for (const auto v : some) put(v, place_of(v));
+    for (const auto v : some) put(v, position_of(v));
     measure(some, ends);
   });
 }
 
-void VertexPositions::put(std::uint32_t v, const Vec3d& place) {
+void VertexPositions::put(std::uint32_t v, const Vec3d& position) {
   if (constrained_.is_of_obstacle(v)) return;
   if (constrained_.file) {
-    written_[v] = constrained_.file->of(v, source_[v], place, precision_);
-    place_[v] =
+    written_[v] = constrained_.file->of(v, source_[v], position, precision_);
+    position_[v] =
         written_[v] == constrained_.file->source[v] ? source_[v] : constrained_.file->space.metric().to(written_[v]);
   } else {
-    place_[v] = precision_(source_[v], place);
+    position_[v] = precision_(source_[v], position);
   }
 }
 
@@ -78,11 +90,13 @@ bool VertexPositions::has_moved_corner(std::uint32_t t) const {
   return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return has_moved(v); });
 }
 
-/// Whether a vertex stands where its path ended, rounded: then the closest point is no nearer, to as much, than the one
-/// around what was closest there, phi being 1-Lipschitz.
+/// Whether a vertex stands where its path ended, but for rounding: then the closest point is no nearer, but for as
+/// much, than the closest one of the triangles around the closest triangle there, phi being 1-Lipschitz.
 bool VertexPositions::is_known(std::uint32_t v, const Vec3d& x, const Paths& ends) const {
-  constexpr double kSamePlace = 1e-11, kLittle = 1e-2, kFar = 2;
-  const double same = kSamePlace * ends.achieved[v] + std::min(2 * rounding(v), kLittle * ends.achieved[v]);
+  // Shares of the distance: what displacements are rounded to, and the most that rounding may be; and how many times
+  // near_ the distance has to be. Reasoned.
+  constexpr double kSamePosition = 1e-11, kLittle = 1e-2, kFar = 2;
+  const double same = kSamePosition * ends.achieved[v] + std::min(2 * rounding(v), kLittle * ends.achieved[v]);
   return ends.closest[v] != kNone && ends.achieved[v] > kFar * near_ &&
          (x - surface_.vertices[v] - ends.displacement[v]).length() <= same;
 }
@@ -91,7 +105,7 @@ void VertexPositions::measure(std::span<const std::uint32_t> vertices, const Pat
   const Surface& front = constrained_.front.surface();
   Indices unknown;
   for (const auto v : vertices) {
-    // What stands where it was is on the front, or no part of it.
+    // A vertex that has not moved is on the moving part, unless it is no vertex of that.
     if (!has_moved(v) || !constrained_.on_front(v)) {
       away_[v] = Vec3d(0.0);
       distance_[v] = 0;
@@ -109,11 +123,11 @@ void VertexPositions::measure(std::span<const std::uint32_t> vertices, const Pat
       unknown.push_back(v);
     }
   }
-  look_closely(unknown);
+  measure_exactly(unknown);
 }
 
-/// At all of the front.
-void VertexPositions::look_closely(std::span<const std::uint32_t> vertices) {
+/// Measures vertices by the exact query.
+void VertexPositions::measure_exactly(std::span<const std::uint32_t> vertices) {
   std::vector<Vec3d> points;
   std::vector<std::uint32_t> hints;
   for (const auto v : vertices) {
@@ -138,8 +152,8 @@ void VertexPositions::take(std::uint32_t v, const Vec3d& x, const Closest& close
     right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
 }
 
-void VertexPositions::look_around(const Indices& triangles) {
-  std::vector<std::uint8_t> chosen(place_.size(), 0);
+void VertexPositions::find_ties_around(const Indices& triangles) {
+  std::vector<std::uint8_t> chosen(position_.size(), 0);
   Indices vertices;
   for (const auto t : triangles) {
     const auto& corners = surface_.triangles[t];
@@ -147,8 +161,8 @@ void VertexPositions::look_around(const Indices& triangles) {
           return chosen[v] || (nearness_[v] != Found && distance_[v] >= near_);
         }))
       continue;
-    // The one that most clearly is the right way round, as far as is known.
-    const Vec3d outward = twice_area(t, place_) * side(t);
+    // The corner where the triangle most clearly is the right way round, as far as is known.
+    const Vec3d outward = twice_area(surface_, t, position_) * side(t);
     std::uint32_t best = kNone;
     double most = 0;
     for (const auto v : corners) {
@@ -161,44 +175,47 @@ void VertexPositions::look_around(const Indices& triangles) {
     vertices.push_back(best);
   }
   std::sort(vertices.begin(), vertices.end());
-  for_each_block(vertices, [&](std::span<const std::uint32_t> some) { look_closely(some); });
+  for_each_block(vertices, [&](std::span<const std::uint32_t> some) { measure_exactly(some); });
 }
 
-VertexPositions::VertexPosition VertexPositions::operator[](std::uint32_t v) const {
-  return {place_[v], in_file()[v], away_[v], distance_[v], closest_[v], right_side_[v], nearness_[v]};
+VertexPositions::Standing VertexPositions::operator[](std::uint32_t v) const {
+  return {position_[v], in_file()[v], away_[v], distance_[v], closest_[v], right_side_[v], nearness_[v]};
 }
 
-void VertexPositions::put_back(std::uint32_t v, const VertexPosition& stand) {
-  place_[v] = stand.place;
-  if (constrained_.file) written_[v] = stand.written;
-  away_[v] = stand.away;
-  distance_[v] = stand.distance;
-  closest_[v] = stand.closest;
-  right_side_[v] = stand.right_side;
-  nearness_[v] = stand.nearness;
+void VertexPositions::put_back(std::uint32_t v, const Standing& standing) {
+  position_[v] = standing.position;
+  if (constrained_.file) written_[v] = standing.written;
+  away_[v] = standing.away;
+  distance_[v] = standing.distance;
+  closest_[v] = standing.closest;
+  right_side_[v] = standing.right_side;
+  nearness_[v] = standing.nearness;
 }
 
 double VertexPositions::rounding(std::uint32_t v) const {
   double size = 0;
-  for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(place_[v][k]));
+  for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(position_[v][k]));
   return size * precision_.epsilon();
 }
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
-  return !right_side_[v] || distance_[v] > std::abs(distances_[v]) * (1 + kReachedTolerance) + rounding(v);
+  return is_beyond_wall(v) || !right_side_[v] ||
+         distance_[v] > std::abs(distances_[v]) * (1 + kReachedTolerance) + rounding(v);
 }
 
-Vec3d VertexPositions::twice_area(std::uint32_t t, std::span<const Vec3d> at) const {
-  const auto& [a, b, c] = surface_.triangles[t];
-  return (at[b] - at[a]).cross(at[c] - at[a]);
+bool VertexPositions::is_beyond_wall(std::uint32_t v) const {
+  const Surface& front = constrained_.front.surface();
+  if (front.walls.empty() || !constrained_.on_front(v) || !has_moved(v)) return false;
+  return vdb_offset::is_beyond_wall(front, constrained_.front_vertex_of(v), position_[v] - front.origin, rounding(v));
 }
 
+/// The side that a triangle goes to: 1 outward, -1 inward.
 int VertexPositions::side(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   return distances_[a] + distances_[b] + distances_[c] < 0 ? -1 : 1;
 }
 
-/// Whether what is turned outward turns from no point of the front that is as near to x as the closest.
+/// Whether a direction turns from no point of the moving part that is as near to x as the closest.
 bool VertexPositions::looks_away(const Vec3d& outward, const Vec3d& x, const Vec3d& away, double distance,
                                  bool tied) const {
   if (turns_from(outward, away)) return false;
@@ -218,20 +235,20 @@ bool VertexPositions::looks_away(const Vec3d& outward, std::uint32_t v) const {
 
 bool VertexPositions::faces_against_front(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
-  const Vec3d now = twice_area(t, place_), outward = now * side(t);
+  const Vec3d now = twice_area(surface_, t, position_), outward = now * side(t);
   bool any = false;
-  // What is known costs next to nothing.
+  // Corners of which ties are known cost next to nothing, and go first.
   for (const bool known : {true, false})
     for (const auto v : {a, b, c}) {
       if (distance_[v] < near_ || (nearness_[v] != Found) != known) continue;
       any = true;
       if (looks_away(outward, v)) return false;
     }
-  const Vec3d centre = (place_[a] + place_[b] + place_[c]) / 3.0 - constrained_.front.surface().origin;
+  const Vec3d centre = (position_[a] + position_[b] + position_[c]) / 3.0 - constrained_.front.surface().origin;
   const Closest closest = constrained_.front(centre, constrained_.hint(a));
   if (closest.distance >= near_)
     return !looks_away(outward, centre, centre - closest.point, closest.distance, closest.tied);
-  return any || now.dot(twice_area(t, source_)) < 0;
+  return any || now.dot(twice_area(surface_, t, source_)) < 0;
 }
 
 }  // namespace vdb_offset
