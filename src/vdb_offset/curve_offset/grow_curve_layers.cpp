@@ -1,101 +1,100 @@
-#include "vdb_offset/curve_offset/grow_curve_layers.h"
-
-#include "vdb_offset/base/progress_count.h"
-
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
-#include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/layer_grower.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/curve_offset.h"
+#include "vdb_offset/curve_offset/curve_layer_grower.h"
+#include "vdb_offset/curve_offset/curve_limit.h"
+#include "vdb_offset/curve_offset/prepared_curves.h"
+#include "vdb_offset/data/count_states.h"
+#include "vdb_offset/mesh/layer_heights.h"
+#include "vdb_offset/pipeline/moved_input.h"
 
 namespace vdb_offset {
 namespace {
 
-/// Whether a to b and a to c turn counterclockwise by more than the least angle, or clockwise where the sign is -1.
-bool turns(const Vec3d& a, const Vec3d& b, const Vec3d& c, double sign) {
-  const Vec3d ab = b - a, ac = c - a;
-  return sign * (ab[0] * ac[1] - ab[1] * ac[0]) > kLeastLean * ab.length() * ac.length();
+/// Hands out the layers as those of the curves' points. `heights` are those of the line's vertices.
+LayersResult hand_over(const PreparedCurves& curves, OffsetStatistics statistics, std::span<const Distances> heights,
+                       const Paths& paths, const LayerStack& stack) {
+  const CurvePoints points = curves.points();
+  OffsetResult outermost = unmoved_result(points);
+  move_vertices(points, paths, outermost);
+  LayersResult result;
+  result.statistics = std::move(statistics);
+  result.layer_statistics = stack.statistics;
+  result.states = std::move(outermost.states);
+  result.achieved = std::move(outermost.achieved);
+  const std::size_t count = points.positions().size();
+  result.share.assign(count, 0.0);
+  result.first_achieved.assign(count, 0.0);
+  VertexStacks stacks(count, heights.size());
+  std::vector<std::vector<double>> asked(heights.size(), std::vector<double>(count, 0.0));
+  for (std::uint32_t p = 0; p < count; ++p) {
+    const auto v = points.shape_vertex(p);
+    const auto to = stacks.of(p);
+    std::fill(to.begin(), to.end(), points.positions()[p]);
+    if (v == kNone) continue;
+    result.share[p] = stack.share[v];
+    result.first_achieved[p] = stack.first_achieved[v];
+    const auto positions = stack.stacks.of(v);
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+      asked[k][p] = heights[k][v];
+      if (!stack.stacks.is_flat(v)) to[k + 1] += points.to_input(positions[k + 1] - positions[0]);
+    }
+  }
+  std::vector<std::uint32_t> own(count);
+  std::iota(own.begin(), own.end(), 0);
+  result.stacks = SharedStacks(std::move(stacks), std::move(own));
+  for (auto& each : asked) result.heights.emplace_back(std::move(each));
+  return result;
 }
 
-/// Columns stand on segments.
-class CurveStacker final : public LayerGrower {
- public:
-  CurveStacker(const PlaneCurves& curves, std::span<const Vec3d> source, std::span<const Distances> heights,
-               CurveFaults& faults, Paths& paths)
-      : LayerGrower(source, curves.line().origin, heights, paths), curves_(curves), faults_(faults) {}
-
- private:
-  bool moves(std::uint32_t p) const override { return heights_.back()[p] != 0; }
-
-  /// None does where curves branch.
-  bool sees_all_faces(std::uint32_t p, const Vec3d& way) const override {
-    const auto around = faults_.around(p);
-    for (const auto s : around)
-      if (!(side_ * curves_.line().triangle_normals[s].dot(way) > kLeastSlope * way.length())) return false;
-    return around.size() <= 2;
+LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights) {
+  const OffsetOptions& options = curves.options();
+  std::vector<Distances> asked;
+  std::size_t most_disagreeing = 0;
+  for (const Distances& each : heights) {
+    std::size_t disagreeing = 0;
+    asked.push_back(curves.distances_of_line(each, disagreeing));
+    most_disagreeing = std::max(most_disagreeing, disagreeing);
   }
-  Vec3d direction_of(std::uint32_t p) const override { return start_direction(curves_.line(), p); }
-
-  std::size_t column_count() const override { return curves_.line().segments.size(); }
-  std::span<const std::uint32_t> base(std::size_t s) const override { return curves_.line().segments[s]; }
-  std::span<const std::uint32_t> columns_around(std::uint32_t p) const override { return faults_.around(p); }
-
-  /// Every cell turns the right way at each corner that is not flat.
-  bool is_valid(std::size_t s) const override {
-    const auto a = stack_.stacks.of(base(s)[0]), b = stack_.stacks.of(base(s)[1]);
-    const bool a_flat = a.front() == a.back(), b_flat = b.front() == b.back();
-    if (a_flat && b_flat) return true;
-    const double sign = -side_;  // outward is to the right
-    for (std::size_t k = 1; k < a.size(); ++k) {
-      if (!a_flat && !(turns(a[k - 1], b[k - 1], a[k], sign) && turns(a[k], a[k - 1], b[k], sign))) return false;
-      if (!b_flat && !(turns(b[k - 1], b[k], a[k - 1], sign) && turns(b[k], a[k], b[k - 1], sign))) return false;
-    }
-    return true;
+  const Distances& outer = asked.back();
+  Paths paths = std::move(curves.march({&outer, 1}, Ridges::Smooth).front());
+  const std::vector<double> marched_distances = paths.achieved;
+  OffsetStatistics statistics = curves.statistics();
+  statistics.disagreeing_distances = most_disagreeing;
+  const PlaneCurves plane{curves.query(), curves.source(), outer, options.precision};
+  {
+    const StageTimer timer(statistics.seconds, Stage::Limit);
+    statistics.limit = limit_curves(plane, paths, options.progress, Spacing::Even);
   }
-
-  void put(const Indices& points) override {
-    for_each_index(
-        points.size(),
-        [&](std::size_t i) {
-          const std::uint32_t p = points[i];
-          std::fill(stack_.stacks.of(p).begin(), stack_.stacks.of(p).end(), source_[p]);
-          if (stack_.share[p] > 0)
-            put_down(p, 1, QueryDistance<CurveQuery>(curves_.front, faults_.around(p).front()),
-                     [](std::size_t, double) { return true; });
-        },
-        64);
+  LayerStack stack;
+  {
+    const StageTimer timer(statistics.seconds, Stage::Layers);
+    CurveFaults faults(plane);
+    stack = stack_curves(plane, asked, faults, paths, options.progress);
+    statistics.limit.left = faults.count();
+    statistics.limit.crossings_near_source = faults.crossings_near_source();
   }
-
-  void look(const Indices& points) override {
-    std::vector<Vec2d> places;
-    places.reserve(points.size());
-    for (const auto p : points) places.emplace_back(outermost(p)[0], outermost(p)[1]);
-    faults_.move(points, places);
-  }
-  Indices faulty_vertices() const override { return faults_.wrong_points(); }
-  double distance_of(std::uint32_t p) const override { return faults_.distance_of(p); }
-
-  const PlaneCurves& curves_;
-  CurveFaults& faults_;
-};
+  count_held_back(paths, outer, marched_distances, statistics.limit);
+  statistics.room = curves.room(paths, outer);
+  return hand_over(curves, std::move(statistics), asked, paths, stack);
+}
 
 }  // namespace
 
-LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, CurveFaults& faults,
-                        Paths& paths, const ProgressCallback& callback) {
-  constexpr std::size_t kExpectedRounds = 32;
-  Progress progress(callback, Stage::Layers, kExpectedRounds);
-  const double z = curves.line().vertices.front()[2] + curves.line().origin[2];
-  std::vector<Vec3d> source;
-  source.reserve(curves.source.size());
-  for (const Vec2d& p : curves.source) source.emplace_back(p[0], p[1], z);
-  LayerStack stack = CurveStacker(curves, source, heights, faults, paths).run(progress);
-  round_layers(
-      source, curves.precision, [](std::uint32_t) { return true; },
-      [&](std::uint32_t p, const Vec3d& place) -> std::optional<double> {
-        return curves.front(curves.in_frame({place[0], place[1]}), faults.around(p).front()).distance;
-      },
-      stack, paths);
-  return stack;
+LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options) {
+  require_one_for_each_point(curves, heights);
+  require_heights(heights, curves.positions.size());
+  LayersResult result = in_arena(options.threads, [&](int threads) {
+    PreparedCurves prepared(
+        curves, options,
+        plan_ribbon(curves, options, threads, farthest_of(heights.last(1)), {.layers = heights.size()}));
+    return grow_on(prepared, heights);
+  });
+  count_states(result.states, result.statistics);
+  return result;
 }
 
 }  // namespace vdb_offset

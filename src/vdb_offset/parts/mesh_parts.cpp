@@ -4,6 +4,7 @@
 #include <string>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/mesh/mean_distances.h"
 #include "vdb_offset/surface/weld.h"
 
 namespace vdb_offset {
@@ -98,23 +99,11 @@ Distances distances_on_body(const MeshParts& parts, Border border, const Distanc
   const bool all_move = parts.front_vertex.empty();
   if (of_input.uniform() && all_move) return of_input;
   const Surface& surface = parts.surface();
-  const std::size_t count = surface.vertices.size();
-  std::vector<double> sum(count, 0.0);
-  std::vector<std::uint32_t> copies(count, 0), apart(count, 0);
-  for (std::size_t v = 0; v < surface.welded.size(); ++v) {
-    const auto w = surface.welded[v];
-    if (w == kNone) continue;
-    sum[w] += of_input[v];
-    ++copies[w];
-    apart[w] += of_input[v] != of_input[surface.representative[w]];
-  }
-  for (std::size_t w = 0; w < count; ++w) {
-    disagreeing += apart[w];
-    const bool stays = !all_move && (parts.front_vertex[w] == kNone || (border == Border::Fixed && parts.at_border[w]));
-    if (stays) sum[w] = 0;
-    else sum[w] = apart[w] ? sum[w] / copies[w] : of_input[surface.representative[w]];  // not rounded where all agree
-  }
-  return Distances(std::move(sum));
+  MeanDistances mean = mean_distances(of_input, surface.welded, surface.representative);
+  disagreeing += mean.disagreeing;
+  for (std::size_t w = 0; w < mean.each.size() && !all_move; ++w)
+    if (parts.front_vertex[w] == kNone || (border == Border::Fixed && parts.at_border[w])) mean.each[w] = 0;
+  return Distances(std::move(mean.each));
 }
 
 Distances distances_of_input(const Surface& surface, const Distances& distances) {

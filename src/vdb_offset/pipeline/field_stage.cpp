@@ -1,0 +1,50 @@
+#include "vdb_offset/pipeline/field_stage.h"
+
+#include <algorithm>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/field/describe_field.h"
+#include "vdb_offset/field/rasterise.h"
+#include "vdb_offset/field/sweep.h"
+
+namespace vdb_offset {
+
+Reach farthest_of(std::span<const Distances> distances) {
+  Reach farthest{0, 0};
+  for (const Distances& d : distances)
+    farthest = {std::max(farthest.inside, d.inward()), std::max(farthest.outside, d.outward())};
+  return farthest;
+}
+
+bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthest.outside > 0; }
+
+DistanceField make_field(const Surface& surface, const GridPlan& plan, bool slab, const OffsetOptions& options,
+                         OffsetStatistics& statistics) {
+  VDB_OFFSET_ASSERT(plan.voxel_size > 0 && plan.band > plan.voxel_size);
+  VDB_OFFSET_ASSERT(surface.triangle_normals.size() == surface.triangles.size());
+  Front front;
+  {
+    const StageTimer timer(statistics.seconds, Stage::Rasterise);
+    front = rasterise(surface, {plan.voxel_size, plan.band, slab}, options.progress);
+  }
+  const StageTimer timer(statistics.seconds, Stage::Sweep);
+  return sweep(std::move(front), surface, {options.solver, plan.reach}, options.progress);
+}
+
+DirectionField find_directions(DistanceField& field, bool open, OffsetStatistics& statistics) {
+  const StageTimer timer(statistics.seconds, Stage::Gradient);
+  DirectionField directions = make_directions(field, open);
+  describe_field(field, directions, statistics);
+  return directions;
+}
+
+Ridges ridges_of(const OffsetOptions& options) {
+  return options.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth;
+}
+
+WayOptions march_options(const OffsetOptions& options, Ridges ridges) {
+  return {options.keep_paths ? Traces::Keep : Traces::Drop, ridges};
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,161 @@
+#include "vdb_offset/pipeline/prepared_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/field/grid_plan.h"
+#include "vdb_offset/parts/border_facts.h"
+#include "vdb_offset/pipeline/moved_input.h"
+
+namespace vdb_offset {
+namespace {
+
+// The frame of a mesh that does not move is laid on voxels of its diagonal over this: no field is made of them. Its
+// effect is only where the origin lies. A power of two; not measured.
+constexpr double kFrameVoxels = 256;
+// World units: the diagonal that is taken for a mesh without any size, so that the voxels of its frame have one. Any
+// number above 0 would do; this is far below all coordinates that a format keeps.
+constexpr double kLeastSize = 1e-100;
+
+// Bytes that a vertex takes while a result in which much is held back is made valid; measured: up to 430.
+constexpr std::size_t kLimitBytes = 500;
+
+/// The distances of the front's vertices, picked from those of all vertices.
+Distances distances_on_front(const MeshParts& parts, const Distances& of_all) {
+  if (parts.front_vertex.empty() || of_all.uniform()) return of_all;
+  std::vector<double> each(parts.front.vertices.size(), 0.0);
+  for (std::size_t w = 0; w < parts.front_vertex.size(); ++w)
+    if (parts.front_vertex[w] != kNone) each[parts.front_vertex[w]] = of_all[w];
+  return Distances(std::move(each));
+}
+
+/// The paths of all vertices from those of the front's; vertices that are not on the front stay, as was asked.
+Paths paths_of_all(const MeshParts& parts, Paths of_front) {
+  if (parts.front_vertex.empty()) return of_front;
+  const std::size_t count = parts.front_vertex.size();
+  Paths paths{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<double>(count, 0.0),
+              std::vector<VertexState>(count, VertexState::Reached), std::vector<std::uint32_t>(count, kNone),
+              of_front.straight};
+  for (std::size_t w = 0; w < count; ++w) {
+    const auto f = parts.front_vertex[w];
+    if (f == kNone) continue;
+    paths.displacement[w] = of_front.displacement[f];
+    paths.achieved[w] = of_front.achieved[f];
+    paths.state[w] = of_front.state[f];
+    paths.closest[w] = of_front.closest[f];
+  }
+  if (of_front.trace.empty()) return paths;
+  paths.trace.resize(count);
+  for (std::size_t w = 0; w < count; ++w)
+    if (parts.front_vertex[w] != kNone) paths.trace[w] = std::move(of_front.trace[parts.front_vertex[w]]);
+  return paths;
+}
+
+bool is_open(const MeshFacts& facts) { return !facts.closed() || !facts.oriented(); }
+
+}  // namespace
+
+void require_usable(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options) {
+  for (const Distances& each : distances)
+    if (!each.uniform() && each.count() != mesh.positions.size())
+      throw InvalidInput("offset: expected a distance for each of " + std::to_string(mesh.positions.size()) +
+                         " vertices, got " + std::to_string(each.count()));
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
+    throw InvalidInput("clearance: expected a length >= 0, got " + std::to_string(options.clearance));
+}
+
+GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthest, const OffsetOptions& options,
+                  int threads, const Yield& yield) {
+  std::size_t beside = layers_bytes(mesh, yield.layers) + results_bytes(mesh, yield.results);
+  for (const auto* surface : {&parts.whole, &parts.rest, &parts.obstacles})
+    if (*surface) beside += surface_bytes(**surface);
+  if (options.collision == Collision::Limit) beside += kLimitBytes * mesh.positions.size();
+  if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
+  return plan_grid(parts.front, farthest, options.grid, options.max_memory, threads, {beside});
+}
+
+PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, int threads, const Reach& farthest,
+                           const Yield& yield)
+    : space_(space), mesh_(space.view()), options_(options) {
+  const bool moves = goes_anywhere(farthest);
+  {
+    const StageTimer timer(statistics_.seconds, Stage::Rasterise);
+    parts_ = build_mesh_parts(mesh_, {options.only, options.obstacles, options.weld, options.orient});
+    statistics_.facts = parts_.surface().facts;
+    statistics_.threads = threads;
+    if (moves) {
+      statistics_.plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
+      place(parts_, statistics_.plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
+    } else if (parts_.obstacles) {
+      place(parts_, std::max(parts_.front.facts.diagonal, kLeastSize) / kFrameVoxels, options.symmetry, 0);
+    }
+  }
+  if (moves) field_ = make_field(parts_.front, statistics_.plan, false, options, statistics_);
+  const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
+  if (moves) query_.emplace(parts_.front);
+  if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
+  if (parts_.obstacles) surroundings_.emplace(parts_, source_, options.clearance);
+  if (moves && options.border == Border::Slide && parts_.rest) slides_.emplace(parts_, *query_);
+}
+
+std::optional<SelfCrossings> PreparedMesh::known_crossings() const {
+  if (!surroundings_) return std::nullopt;
+  return SelfCrossings{surroundings_->source_crossings(), false, {}};
+}
+
+Distances PreparedMesh::distances_of_all(const Distances& of_input, std::size_t& disagreeing) const {
+  disagreeing = 0;
+  return distances_on_body(parts_, options_.border, of_input, disagreeing);
+}
+
+std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances> distances, Ridges ridges) {
+  VDB_OFFSET_ASSERT(query_.has_value());
+  const DirectionField directions = find_directions(field_, is_open(parts_.front.facts), statistics_);
+  const StageTimer timer(statistics_.seconds, Stage::Propagate);
+  std::vector<Distances> on_front;
+  for (const Distances& each : distances) on_front.push_back(distances_on_front(parts_, each));
+  std::vector<Paths> of_front =
+      propagate(*query_, directions, on_front, obstacles(), options_.progress, march_options(options_, ridges));
+  VDB_OFFSET_ASSERT(of_front.size() == distances.size());
+  std::vector<Marched> marched;
+  for (std::size_t i = 0; i < of_front.size(); ++i) {
+    if (slides_) slide_borders(parts_, *slides_, *query_, on_front[i], of_front[i]);
+    Paths paths = paths_of_all(parts_, std::move(of_front[i]));
+    if (surroundings_) surroundings_->hold(paths, distances[i], parts_.bound);
+    end_traces(paths);
+    marched.push_back({std::move(paths), {}});
+  }
+  for (Marched& each : marched) each.bound = parts_.bound;
+  return marched;
+}
+
+ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_source, std::size_t resting_faces) const {
+  ConstrainedSurface constrained = parts_.constrained(*query_, obstacles(), off_source, resting_faces);
+  constrained.bound = marched.bound;
+  return constrained;
+}
+
+SideRoom PreparedMesh::room(const Paths& paths, const Distances& distances) const {
+  return room_beside(*query_, parts_.front.facts.closed(), paths.state,
+                     [&] { return distances_on_front(parts_, distances); });
+}
+
+BorderFacts PreparedMesh::borders(const Paths& paths) const {
+  if (parts_.front_vertex.empty()) return border_facts(parts_.front, paths.displacement, {});
+  std::vector<Vec3d> displacement(parts_.front.vertices.size(), Vec3d(0.0));
+  std::vector<std::uint8_t> sliding(displacement.size(), 0);
+  for (std::size_t w = 0; w < parts_.front_vertex.size(); ++w) {
+    const auto f = parts_.front_vertex[w];
+    if (f == kNone) continue;
+    displacement[f] = paths.displacement[w];
+    sliding[f] = slides_ && parts_.at_border[w];
+  }
+  return border_facts(parts_.front, displacement, sliding);
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/distances.h"
+#include "vdb_offset/field/field_grids.h"
+#include "vdb_offset/mesh/in_metric.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/parts/border_slide.h"
+#include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/pipeline/field_stage.h"
+#include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/statistics.h"
+#include "vdb_offset/validity/obstacle_facts.h"
+#include "vdb_offset/validity/triangle_crossings.h"
+
+namespace vdb_offset {
+
+/// A mesh that is ready to be offset: the stages that all results of a run share, and that offset_several() and
+/// grow_layers() have in common. "All vertices" are those of parts().surface(): of the mesh, then of the obstacles.
+class PreparedMesh {
+ public:
+  /// Sorts the mesh into parts, and if any vertex has to move plans the grid and makes the field. Keeps references to
+  /// `space` and `options`.
+  /// \param farthest how far vertices go on each side, world units
+  /// \throw InvalidInput for a mesh or options that cannot be used, OutOfBudget before work that would not fit
+  PreparedMesh(const InMetric& space, const OffsetOptions& options, int threads, const Reach& farthest,
+               const Yield& yield);
+  PreparedMesh(const PreparedMesh&) = delete;
+  PreparedMesh& operator=(const PreparedMesh&) = delete;
+
+  const InMetric& space() const { return space_; }
+  /// The mesh in the space in which distances are measured.
+  PolygonView mesh() const { return mesh_; }
+  const OffsetOptions& options() const { return options_; }
+  const MeshParts& parts() const { return parts_; }
+  const Surface& surface() const { return parts_.surface(); }
+  /// Positions of all vertices, world coordinates. Empty if no vertex moves, and there are no obstacles.
+  const std::vector<Vec3d>& source() const { return source_; }
+  /// \pre some vertex moves
+  const ClosestQuery& query() const { return *query_; }
+  DistanceField& field() { return field_; }
+  /// The mesh beside its obstacles; nullptr without any.
+  const Surroundings* surroundings() const { return surroundings_ ? &*surroundings_ : nullptr; }
+  const Obstacles* obstacles() const { return surroundings_ ? &surroundings_->obstacles() : nullptr; }
+  /// How border vertices slide; nullptr if none does.
+  const BorderSlides* slides() const { return slides_ ? &*slides_ : nullptr; }
+  /// Figures of what has been done so far, which those of each result begin with.
+  const OffsetStatistics& statistics() const { return statistics_; }
+
+  /// Crossings of the source that are known: with obstacles. Else each result finds them.
+  std::optional<SelfCrossings> known_crossings() const;
+  /// The mean distances of all vertices that move together. `disagreeing` is set to how many of the input's vertices
+  /// have another distance than the first of theirs.
+  Distances distances_of_all(const Distances& of_input, std::size_t& disagreeing) const;
+
+  /// Paths of all vertices, and which of these must keep to them.
+  struct Marched {
+    Paths paths;
+    std::vector<std::uint8_t> bound;  ///< Of each vertex; empty if none must.
+  };
+  /// Marches once for several sets of distances of all vertices. \pre some vertex moves
+  std::vector<Marched> march(std::span<const Distances> distances, Ridges ridges);
+
+  /// What must stay valid where vertices have these paths. Refers to this and to `marched`.
+  ConstrainedSurface constrained(const Marched& marched, bool off_source, std::size_t resting_faces = 0) const;
+
+  /// Room on either side of an open part where much falls short. Paths and distances are those of all vertices.
+  SideRoom room(const Paths& paths, const Distances& distances) const;
+  /// What became of borders. Paths are those of all vertices.
+  BorderFacts borders(const Paths& paths) const;
+
+ private:
+  const InMetric& space_;
+  PolygonView mesh_;
+  const OffsetOptions& options_;
+  OffsetStatistics statistics_;
+  MeshParts parts_;
+  DistanceField field_;
+  std::optional<ClosestQuery> query_;
+  std::vector<Vec3d> source_;
+  std::optional<Surroundings> surroundings_;
+  std::optional<BorderSlides> slides_;
+};
+
+/// The vertices of a mesh, as an InputVertices.
+struct MeshVertices {
+  PolygonView mesh;
+  const Surface& surface;
+
+  std::span<const Vec3d> positions() const { return mesh.positions; }
+  std::uint32_t shape_vertex(std::size_t v) const { return surface.welded[v]; }
+  /// Where the vertex stands that it is welded to.
+  Vec3d start(std::size_t v) const { return mesh.positions[surface.representative[surface.welded[v]]]; }
+  Vec3d to_input(const Vec3d& displacement) const { return displacement; }
+};
+
+/// \throw InvalidInput for distances that are not one for each vertex, or a clearance that is no length
+void require_usable(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options);
+
+/// The plan of the grid for parts of a mesh, with the bytes of all else that the run needs. \throw as plan_grid()
+GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthest, const OffsetOptions& options,
+                  int threads, const Yield& yield);
+
+}  // namespace vdb_offset
