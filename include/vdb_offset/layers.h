@@ -25,6 +25,14 @@ struct LayerStatistics {
   std::size_t flat_vertices = 0;     ///< That keep none, although asked to.
 };
 
+/// What growing knows of the mesh's faces. What it does not know is looked for when cells are numbered.
+struct KnownSides {
+  /// Each side of a column of cells has one partner, and no column repeats another.
+  bool paired = false;
+  /// Layers rise from all faces on the side that the heights' sign says.
+  bool none_turned = false;
+};
+
 /// Layers on a mesh: one surface for each height, of the mesh's vertices and faces.
 struct LayersResult {
   SharedStacks stacks;  ///< Of the input's vertices: on the wall, which is the mesh itself, and at each height.
@@ -38,6 +46,7 @@ struct LayersResult {
   /// Of each face of the input: 0 if it is no part of what is offset, or has no area; 1 if it carries layers; 2 or 3 if
   /// it is a quad that does so as two triangles, on both sides of its diagonal from corner 0 or 1. Empty: all carry.
   std::vector<std::uint8_t> carries;
+  KnownSides known;
   OffsetStatistics statistics;
   LayerStatistics layer_statistics;
 

@@ -16,6 +16,8 @@ struct OffsetResult {
   std::vector<VertexState> states;  ///< One per input vertex.
   std::vector<double> achieved;     ///< Exact unsigned distance to the input surface, world units.
   Distances distances;              ///< What was asked of each input vertex, in the end.
+  /// Faces disagree about the outside, and some of their triangles count as turned round (see orientation.h).
+  bool has_turned_faces = false;
   OffsetStatistics statistics;
   std::shared_ptr<DistanceField> field;  ///< Only with keep_field and a distance other than 0.
   /// Only with keep_paths: the places that each input vertex came by on its march, from where it stood to where that

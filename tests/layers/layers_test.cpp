@@ -37,7 +37,7 @@ struct Grown {
 
 /// Cells are the same where nothing is known of the mesh's edges and faces, and all has to be looked for.
 void check_numbered(const Polygons& mesh, LayersResult layers, const LayerCells& cells) {
-  layers.statistics.facts = {};
+  layers.known = {};
   const LayerCells searched = number_cells(mesh.view(), layers);
   CHECK(searched.columns.corners == cells.columns.corners);
   CHECK(searched.columns.open == cells.columns.open);

@@ -138,7 +138,8 @@ class CurveLimiter {
       for (const auto& run : bad_runs(bridge)) {
         progress_.advance(run.size());
         // The one before may have taken it along.
-        if (std::none_of(run.begin(), run.end(), [&](auto p) { return is_short(p) || faults_.any_around({p}); }))
+        if (std::none_of(run.begin(), run.end(),
+                         [&](auto p) { return is_short(p) || faults_.any_around({p}); }))
           continue;
         for (std::size_t more = 1;; more *= 2) {
           const std::vector<std::uint32_t> points = widened(run, more);
@@ -186,9 +187,10 @@ class CurveLimiter {
   }
 
   void pull() {
-    for (; faults_.any() && statistics_.rounds < kMostPulls; ++statistics_.rounds) {
+    for (int round = 0; faults_.any() && round < kMostPulls; ++round) {
       progress_.advance(0);
-      const bool all_the_way = statistics_.rounds + 1 == kMostPulls;
+      ++statistics_.rounds;
+      const bool all_the_way = round + 1 == kMostPulls;
       const Indices wrong = faults_.wrong_points();
       for (const auto p : wrong) share_[p] *= all_the_way ? 0 : kPull;
       place(wrong);

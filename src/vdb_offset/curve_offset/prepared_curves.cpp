@@ -36,22 +36,23 @@ void require_one_for_each_point(CurvesView curves, std::span<const Distances> di
 
 CurvePlan plan_ribbon(CurvesView curves, const OffsetOptions& options, int threads, const Reach& farthest,
                       const Yield& yield) {
-  CurvePlan planned{chains_in_plane(curves), {}, {}};
+  CurvePlan planned{chains_in_plane(curves), {}, {}, {}};
   OffsetStatistics& statistics = planned.statistics;
   statistics.threads = threads;
-  statistics.facts = facts_of(curves, planned.plane);
+  const MeshFacts facts = statistics.facts = facts_of(curves, planned.plane);
   if (!goes_anywhere(farthest)) return planned;
   const StageTimer timer(statistics.seconds, Stage::Rasterise);
-  const VoxelSize chosen = choose_voxel_size(statistics.facts.median_edge, statistics.facts.diagonal,
-                                             std::max(farthest.inside, farthest.outside), options.grid);
+  const VoxelSize chosen =
+      choose_voxel_size(facts.median_edge, facts.diagonal, std::max(farthest.inside, farthest.outside), options.grid);
   const PlaneChains& plane = planned.plane;
   planned.ribbon =
       build_surface(make_ribbon(plane.chains.segments, plane.points, kRibbonVoxels * chosen.size).view(), {});
   GridOptions grid;
   grid.voxel_size = chosen.size;
-  statistics.plan = plan_grid(planned.ribbon, farthest, grid, options.max_memory, threads,
-                              {bytes_beside(plane.points.size(), options.keep_paths, yield), true});
-  statistics.plan.reason = chosen.reason;
+  planned.grid = plan_grid(planned.ribbon, farthest, grid, options.max_memory, threads,
+                           {bytes_beside(plane.points.size(), options.keep_paths, yield), true});
+  planned.grid.reason = chosen.reason;
+  statistics.plan = planned.grid;
   return planned;
 }
 
@@ -61,13 +62,13 @@ PreparedCurves::PreparedCurves(CurvesView curves, const OffsetOptions& options, 
       plane_(std::move(plan.plane)),
       statistics_(std::move(plan.statistics)),
       ribbon_(std::move(plan.ribbon)) {
-  const double voxel_size = statistics_.plan.voxel_size;
+  const double voxel_size = plan.grid.voxel_size;
   VDB_OFFSET_ASSERT(voxel_size > 0);
   {
     const StageTimer timer(statistics_.seconds, Stage::Rasterise);
     place(ribbon_, voxel_size);
   }
-  field_ = make_field(ribbon_, statistics_.plan, true, options, statistics_);
+  field_ = make_field(ribbon_, plan.grid, true, options, statistics_);
   drawn_ = draw_line(plane_, ribbon_.origin, kRibbonVoxels / 2 * voxel_size - ribbon_.origin[2]);
   first_point_.assign(drawn_.source.size(), kNone);
   for (std::uint32_t p = 0; p < plane_.points.size(); ++p)

@@ -24,6 +24,7 @@ namespace vdb_offset {
 struct CurvePlan {
   PlaneChains plane;
   Surface ribbon;               ///< Not placed. Empty if no point moves.
+  GridPlan grid;                ///< Of the ribbon's field, then.
   OffsetStatistics statistics;  ///< Facts, threads, and the plan of the grid if any point moves.
 };
 /// \param farthest how far points go on each side, world units

@@ -40,25 +40,28 @@ Lattice lattice_of(std::size_t attempt, double voxel_size) {
           Vec3d(part(0.41421356237309515), part(0.7320508075688772), part(0.23606797749978969)) * -voxel_size};
 }
 
-class Capture {
+class IsoSurfaceMaker {
  public:
-  Capture(PolygonView mesh, const IsoOptions& options, int threads) : mesh_(mesh), options_(options) {
+  IsoSurfaceMaker(PolygonView mesh, const IsoOptions& options, int threads) : mesh_(mesh), options_(options) {
     result_.statistics.threads = threads;
     result_.statistics.distance = options.distance;
   }
 
   IsoResult run() {
     prepare();
-    IsoStatistics& statistics = result_.statistics;
     Surface written;
-    do {
-      statistics.dropped_specks = statistics.merged_vertices = 0;  // those of another lattice are gone with it
-      Surface mesh = extract(lattice_of(statistics.attempts, h_));
-      mend_on_surface(mesh);
-      if (!options_.adaptivity && statistics.mending.left.total() == 0) merge_where_flat(mesh);
+    bool valid = false;
+    for (std::size_t attempt = 0; attempt < kLattices && !valid; ++attempt) {
+      Surface mesh = extract(lattice_of(attempt, h_));
+      const MeshFaults left = mend_on_surface(mesh);
+      result_.statistics.merged_vertices = 0;  // those on another lattice are gone with it
+      if (!options_.adaptivity && left.total() == 0) merge_where_flat(mesh);
       hand_over(mesh);
-      written = check_topology();
-    } while (++statistics.attempts < kLattices && !statistics.valid());
+      Topology topology = check_topology(left);
+      written = std::move(topology.written);
+      valid = topology.valid;
+      result_.statistics.attempts = attempt + 1;
+    }
     measure_vertices();
     measure_faces(written);
     return std::move(result_);
@@ -70,13 +73,18 @@ class Capture {
 
   void prepare();
   Surface extract(const Lattice& lattice);
-  void mend_on_surface(Surface& mesh);
+  MeshFaults mend_on_surface(Surface& mesh);
   void merge_where_flat(Surface& mesh);
   std::optional<Vec3d> onto(const Vec3d& wish);
   Vec3d as_written(const Vec3d& local) const { return Rounding(options_.precision)(source().origin + local); }
   void hand_over(const Surface& mesh);
-  Surface check_topology();
-  void tell_topology(const Surface& in_file);
+  /// The new mesh as the file has it.
+  struct Topology {
+    Surface written;
+    bool valid;
+  };
+  Topology check_topology(const MeshFaults& left);
+  bool is_valid(const Surface& in_file, const MeshFaults& left);
   void measure_vertices();
   void measure_faces(const Surface& written);
 
@@ -88,24 +96,30 @@ class Capture {
   IsoResult result_;
 };
 
-/// What there is to say of a mesh that is not plainly closed.
-std::optional<Solidity> look_at_solids(const Surface& surface, const IsoOptions& options, IsoStatistics& statistics) {
-  const MeshFacts& facts = statistics.source = surface.facts;
-  SolidFacts& solid = statistics.solid;
-  solid.parts = facts.components;
-  std::optional<Solidity> solidity;
-  statistics.is_signed = facts.closed() && facts.oriented();
-  if (!statistics.is_signed && options.use_winding) {
-    solidity = find_solid_parts(surface);
-    solid.parts = solidity->is_solid.size();
-    solid.open_parts = solid.parts - solidity->solid_parts();
-    solid.holes = solidity->hole_count();
-    solid.hole_share = solidity->area > 0 ? solidity->hole_area() / solidity->area : 0;
-    statistics.is_signed = solid.open_parts < solid.parts;
-  } else if (!statistics.is_signed) {
+/// What of a mesh is solid.
+struct Solids {
+  std::optional<Solidity> solidity;  // looked for where the mesh is not plainly closed
+  bool has_inside;
+};
+/// Looks for solid parts, and notes down what they are.
+Solids find_solids(const Surface& surface, const IsoOptions& options, IsoStatistics& statistics) {
+  const MeshFacts& facts = surface.facts;
+  Solids solids{{}, facts.closed() && facts.oriented()};
+  SolidFacts solid{.parts = facts.components};
+  if (!solids.has_inside && options.use_winding) {
+    const Solidity& found = solids.solidity.emplace(find_solid_parts(surface));
+    solid.parts = found.is_solid.size();
+    solid.open_parts = solid.parts - found.solid_parts();
+    solid.holes = found.hole_count();
+    solid.hole_share = found.area > 0 ? found.hole_area() / found.area : 0;
+    solids.has_inside = solid.open_parts < solid.parts;
+  } else if (!solids.has_inside) {
     solid.open_parts = solid.parts;
   }
-  return solidity;
+  statistics.source = facts;
+  statistics.solid = solid;
+  statistics.is_signed = solids.has_inside;
+  return solids;
 }
 
 double level_of(const Inside& inside, double distance) {
@@ -127,15 +141,17 @@ void require_usable(const IsoOptions& options) {
     throw InvalidInput(fmt::format("capture: expected an adaptivity from 0 to 1, got {}", *options.adaptivity));
 }
 
-void Capture::prepare() {
+void IsoSurfaceMaker::prepare() {
   const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
   IsoStatistics& statistics = result_.statistics;
   Surface surface = build_surface(mesh_, options_.weld, options_.orient);
-  const std::optional<Solidity> solidity = look_at_solids(surface, options_, statistics);
-  statistics.plan = plan_voxels(surface, options_, statistics.is_signed);
-  h_ = statistics.plan.voxel_size;
+  const Solids solids = find_solids(surface, options_, statistics);
+  const IsoPlan plan = plan_voxels(surface, options_, solids.has_inside);
+  statistics.plan = plan;
+  h_ = plan.voxel_size;
   place(surface, h_);
-  result_.source = std::make_shared<const IsoSource>(std::move(surface), solidity, options_.distance, options_.orient);
+  result_.source =
+      std::make_shared<const IsoSource>(std::move(surface), solids.solidity, options_.distance, options_.orient);
   if (const auto& boundary = result_.source->boundary) {
     statistics.solid.buried = boundary->buried;
     statistics.solid.cut = boundary->cut;
@@ -143,7 +159,7 @@ void Capture::prepare() {
   level_.emplace(result_.source->query, inside(), level_of(inside(), options_.distance), h_);
 }
 
-Surface Capture::extract(const Lattice& lattice) {
+Surface IsoSurfaceMaker::extract(const Lattice& lattice) {
   std::size_t most_leaves = std::numeric_limits<std::size_t>::max();
   if (options_.max_memory > 0) most_leaves = options_.max_memory / static_cast<std::size_t>(kCaptureLeafBytes);
   IsoGrid grid;
@@ -162,22 +178,26 @@ Surface Capture::extract(const Lattice& lattice) {
                     options_.distance, h_));
   for_each_index(mesh.positions.size(), [&](std::size_t v) { mesh.positions[v] = as_written(mesh.positions[v]); });
   Surface surface = build_surface(mesh.view(), {.enabled = false});
-  if (options_.keep_specks || surface.facts.components == 1) return surface;
-  result_.statistics.dropped_specks = drop_specks(mesh, h_ * h_ * h_);
-  return result_.statistics.dropped_specks == 0 ? surface : build_surface(mesh.view(), {.enabled = false});
+  const std::size_t dropped =
+      options_.keep_specks || surface.facts.components == 1 ? 0 : drop_specks(mesh, h_ * h_ * h_);
+  result_.statistics.dropped_specks = dropped;
+  return dropped == 0 ? surface : build_surface(mesh.view(), {.enabled = false});
 }
 
-void Capture::mend_on_surface(Surface& mesh) {
+/// Returns the faults that are left.
+MeshFaults IsoSurfaceMaker::mend_on_surface(Surface& mesh) {
   const StageTimer timer(result_.statistics.seconds, Stage::Limit);
   Progress progress(options_.progress, Stage::Limit, 1);
-  result_.statistics.mending = mend(mesh, [&](const Vec3d& wish) {
+  const MendStatistics mending = mend(mesh, [&](const Vec3d& wish) {
     progress.advance(0);
     return onto(wish);
   });
+  result_.statistics.mending = mending;
+  return mending.left;
 }
 
 /// Nothing crosses before, and nothing does after: flat parts stay what they are, but for rounding.
-void Capture::merge_where_flat(Surface& mesh) {
+void IsoSurfaceMaker::merge_where_flat(Surface& mesh) {
   constexpr double kShareOfDistance = 1e-7;
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   double farthest = 0;
@@ -186,13 +206,13 @@ void Capture::merge_where_flat(Surface& mesh) {
   result_.statistics.merged_vertices = merge_flats_soundly(mesh, tolerance);
 }
 
-std::optional<Vec3d> Capture::onto(const Vec3d& wish) {
+std::optional<Vec3d> IsoSurfaceMaker::onto(const Vec3d& wish) {
   const Vec3d local = wish - source().origin;
   const auto place = level_->follow(local, hint_, [&](const Vec3d& x) { return (x - local).length() <= h_; });
   return place ? std::optional(as_written(*place)) : std::nullopt;
 }
 
-void Capture::hand_over(const Surface& mesh) {
+void IsoSurfaceMaker::hand_over(const Surface& mesh) {
   Polygons& polygons = result_.polygons = {};
   polygons.positions = mesh.vertices;
   polygons.corners.reserve(3 * mesh.triangles.size());
@@ -221,35 +241,40 @@ std::size_t count_pinched(const Surface& mesh) {
   return pinched;
 }
 
-/// As whoever reads the file will find it.
-Surface Capture::check_topology() {
+/// Looks at the new mesh as the file will have it. `left` are the faults that mending has left.
+IsoSurfaceMaker::Topology IsoSurfaceMaker::check_topology(const MeshFaults& left) {
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   Surface mesh = build_surface(result_.polygons.view(), {});
   if (options_.precision.scale == Vec3d(1.0)) {
-    tell_topology(mesh);
-    return mesh;
+    const bool valid = is_valid(mesh, left);
+    return {std::move(mesh), valid};
   }
   // Rounding on the way to the file's own coordinates may decide otherwise.
   Polygons file = result_.polygons;
   for (Vec3d& p : file.positions) p = Rounding(options_.precision).in_file(p);
   const Surface in_file = build_surface(file.view(), {});
-  tell_topology(in_file);
-  result_.statistics.mending.left = find_faults(in_file);
-  return mesh;
+  const MeshFaults left_in_file = find_faults(in_file);
+  result_.statistics.mending.left = left_in_file;
+  return {std::move(mesh), is_valid(in_file, left_in_file)};
 }
 
-void Capture::tell_topology(const Surface& in_file) {
+/// Whether a mesh with these faults is closed, manifold and free of them. Notes down what it is made of.
+bool IsoSurfaceMaker::is_valid(const Surface& in_file, const MeshFaults& left) {
+  const MeshFacts& facts = in_file.facts;
+  const std::size_t pinched = count_pinched(in_file);
   IsoStatistics& statistics = result_.statistics;
   statistics.vertices = in_file.vertices.size();
   statistics.triangles = result_.polygons.face_count();
-  statistics.components = in_file.facts.components;
-  statistics.border_edges = in_file.facts.boundary_edges;
-  statistics.non_manifold_edges = in_file.facts.non_manifold_edges;
-  statistics.turned_edges = in_file.facts.orientation_conflicts;
-  statistics.pinched_vertices = count_pinched(in_file);
+  statistics.components = facts.components;
+  statistics.border_edges = facts.boundary_edges;
+  statistics.non_manifold_edges = facts.non_manifold_edges;
+  statistics.turned_edges = facts.orientation_conflicts;
+  statistics.pinched_vertices = pinched;
+  return facts.boundary_edges == 0 && facts.non_manifold_edges == 0 && facts.orientation_conflicts == 0 &&
+         pinched == 0 && left.total() == 0;
 }
 
-void Capture::measure_faces(const Surface& written) {
+void IsoSurfaceMaker::measure_faces(const Surface& written) {
   constexpr std::size_t kInteriorSamples = 10000;
   const std::vector<std::uint32_t> none(written.vertices.size(), kNone);  // of its vertices is one of the source's
   const ConstrainedSurface constrained{result_.source->query, written, none, {}, {}};
@@ -259,7 +284,7 @@ void Capture::measure_faces(const Surface& written) {
 }
 
 /// Distances, and all else that closest points tell.
-void Capture::measure_vertices() {
+void IsoSurfaceMaker::measure_vertices() {
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   const std::size_t count = result_.polygons.positions.size();
   std::vector<Vec3d> local(count);
@@ -295,7 +320,7 @@ IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options) {
   const int threads = thread_count(options.threads);
   IsoResult result;
   tbb::task_arena arena(threads);
-  arena.execute([&] { result = Capture(mesh, options, threads).run(); });
+  arena.execute([&] { result = IsoSurfaceMaker(mesh, options, threads).run(); });
   return result;
 }
 
@@ -304,8 +329,8 @@ IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options) {
   IsoStatistics statistics;
   statistics.threads = thread_count(options.threads);
   const Surface surface = build_surface(mesh, options.weld, options.orient);
-  look_at_solids(surface, options, statistics);
-  statistics.plan = plan_voxels(surface, options, statistics.is_signed);
+  const Solids solids = find_solids(surface, options, statistics);
+  statistics.plan = plan_voxels(surface, options, solids.has_inside);
   return statistics;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <unordered_map>
 
 #include "vdb_offset/validity/triangle_crossings.h"
@@ -281,17 +282,19 @@ std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std:
 
 MendStatistics mend(Surface& mesh, const Onto& onto) {
   MendStatistics statistics, kept;
-  std::vector<Vec3d> places;  // of the mesh that had the fewest faults
+  std::optional<std::size_t> fewest;  // faults of any mesh so far
+  std::vector<Vec3d> places;          // of the mesh that had the fewest faults
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (int fruitless = 0; fruitless < kFruitlessRounds;) {
     TriangleList wrong;
     {
       MendingRound round(mesh, onto, statistics);
-      const bool first = statistics.rounds++ == 0;
-      if (first) statistics.before = round.faults();
+      if (!fewest) statistics.before = round.faults();
+      ++statistics.rounds;
       round.move_and_flip();
       wrong = round.wrong_triangles();
-      if (first || round.faults().total() < statistics.left.total()) {
+      if (!fewest || round.faults().total() < *fewest) {
+        fewest = round.faults().total();
         statistics.left = round.faults();
         kept = statistics;
         places = mesh.vertices;

@@ -88,6 +88,15 @@ std::vector<std::uint8_t> carries(const PreparedMesh& mesh, const GrowthColumns&
   return carries;
 }
 
+/// What the surface knows of its sides. It is triangles that it knows of: polygons may repeat each other, or be split
+/// otherwise. Layers rise from each of its triangles on the side of the heights, as cells are valid: only faces that
+/// are turned round in it may do otherwise.
+KnownSides known_sides(const MeshFacts& facts) {
+  const bool paired =
+      facts.two_sided() && facts.faces_by_corners.size() == 1 && facts.faces_by_corners.begin()->first == 3;
+  return {paired, paired && facts.turned_triangles == 0 && facts.inside_out_components == 0};
+}
+
 /// The layers as those of the input's vertices and faces.
 LayersResult hand_over(const PreparedMesh& mesh, OffsetStatistics statistics, const GrowthColumns& columns,
                        const Paths& paths, LayerStack stack, std::span<const Distances> heights) {
@@ -112,6 +121,7 @@ LayersResult hand_over(const PreparedMesh& mesh, OffsetStatistics statistics, co
   result.place = first_at_place(surface);
   for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
   result.carries = carries(mesh, columns);
+  result.known = known_sides(surface.facts);
   return result;
 }
 

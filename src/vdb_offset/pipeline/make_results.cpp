@@ -168,6 +168,7 @@ class ResultMaker {
     const MeshVertices vertices{mesh_.mesh(), mesh_.surface()};
     OffsetResult result = unmoved_result(vertices);
     result.statistics = draft.statistics;
+    result.has_turned_faces = mesh_.has_turned_faces();
     result.statistics.disagreeing_distances = distances_.disagreeing[number];
     result.statistics.straight_vertices = draft.paths.straight;
     move_vertices(vertices, draft.paths, result);

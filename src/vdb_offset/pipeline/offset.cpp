@@ -30,6 +30,7 @@ std::vector<OffsetResult> results_at_source(const PreparedMesh& mesh, const Aske
     results.push_back(result_at_source(MeshVertices{mesh.mesh(), mesh.surface()},
                                        distances_of_input(mesh.surface(), distances.moved[i]),
                                        mesh.options().keep_paths, std::move(statistics)));
+    results.back().has_turned_faces = mesh.has_turned_faces();
   }
   return results;
 }

@@ -83,19 +83,21 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
                            const Yield& yield)
     : space_(space), mesh_(space.view()), options_(options) {
   const bool moves = goes_anywhere(farthest);
+  GridPlan plan;
   {
     const StageTimer timer(statistics_.seconds, Stage::Rasterise);
     parts_ = build_mesh_parts(mesh_, {options.only, options.obstacles, options.weld, options.orient});
     statistics_.facts = parts_.surface().facts;
     statistics_.threads = threads;
     if (moves) {
-      statistics_.plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
-      place(parts_, statistics_.plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
+      plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
+      place(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
     } else if (parts_.obstacles) {
       place(parts_, std::max(parts_.front.facts.diagonal, kLeastSize) / kFrameVoxels, options.symmetry, 0);
     }
   }
-  if (moves) field_ = make_field(parts_.front, statistics_.plan, false, options, statistics_);
+  statistics_.plan = plan;
+  if (moves) field_ = make_field(parts_.front, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
   if (moves) query_.emplace(parts_.front);
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
@@ -125,12 +127,12 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   std::vector<Marched> marched;
   for (std::size_t i = 0; i < of_front.size(); ++i) {
     if (slides_) slide_borders(parts_, *slides_, *query_, on_front[i], of_front[i]);
-    Paths paths = paths_of_all(parts_, std::move(of_front[i]));
-    if (surroundings_) surroundings_->hold(paths, distances[i], parts_.bound);
-    end_traces(paths);
-    marched.push_back({std::move(paths), {}});
+    Marched& each = marched.emplace_back();
+    each.paths = paths_of_all(parts_, std::move(of_front[i]));
+    each.bound = std::exchange(parts_.bound, {});  // what is bound at one distance may be free at another
+    if (surroundings_) surroundings_->hold(each.paths, distances[i], each.bound);
+    end_traces(each.paths);
   }
-  for (Marched& each : marched) each.bound = parts_.bound;
   return marched;
 }
 

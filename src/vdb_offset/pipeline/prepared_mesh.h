@@ -40,6 +40,7 @@ class PreparedMesh {
   const OffsetOptions& options() const { return options_; }
   const MeshParts& parts() const { return parts_; }
   const Surface& surface() const { return parts_.surface(); }
+  bool has_turned_faces() const { return surface().facts.turned_triangles > 0; }
   /// Positions of all vertices, world coordinates. Empty if no vertex moves, and there are no obstacles.
   const std::vector<Vec3d>& source() const { return source_; }
   /// \pre some vertex moves

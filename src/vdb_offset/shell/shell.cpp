@@ -181,10 +181,10 @@ bool needs_sides(const OffsetResult& result, const TakenFaces& taken) {
   const auto any = [](const std::vector<std::uint8_t>& marks) {
     return std::find(marks.begin(), marks.end(), 1) != marks.end();
   };
-  return any(taken.junctions) || (result.statistics.facts.turned_triangles > 0 && any(taken.turned));
+  return any(taken.junctions) || (result.has_turned_faces && any(taken.turned));
 }
 bool may_need_sides(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options) {
-  if (result.statistics.facts.turned_triangles > 0) return true;
+  if (result.has_turned_faces) return true;
   for (std::size_t v = 0; options.off_source && v < result.states.size(); ++v)
     if (result.states[v] == VertexState::Limited && result.positions[v] == mesh.positions[v]) return true;
   return false;

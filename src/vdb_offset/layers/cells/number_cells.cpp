@@ -94,18 +94,6 @@ NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, Laye
   return columns;
 }
 
-/// Whether the surface knows that each side has one partner, and that no column repeats another. It is triangles that
-/// it knows of: polygons may repeat each other, or be split otherwise.
-bool knows_sides(const MeshFacts& facts) {
-  return facts.two_sided() && facts.faces_by_corners.size() == 1 && facts.faces_by_corners.begin()->first == 3;
-}
-
-/// Whether layers rise on the side that their heights say from all faces. They do from each triangle of the surface, as
-/// cells are valid, so that only those that are turned round there need be looked for.
-bool rise_from_all(const MeshFacts& facts) {
-  return knows_sides(facts) && facts.turned_triangles == 0 && facts.inside_out_components == 0;
-}
-
 /// What becomes of a column, and whether it lies on the other side.
 struct ColumnRole {
   FaceRole role;
@@ -115,8 +103,8 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
                                    const NumberedColumns& columns) {
   constexpr std::size_t kAhead = 8;  // columns whose stacks, far apart in memory, are asked for before their turn
   std::vector<std::uint8_t> repeated(columns.count(), 0);
-  if (!knows_sides(layers.statistics.facts)) repeated = find_repeated_faces(columns.corners, columns.begin);
-  const bool none_turned = rise_from_all(layers.statistics.facts);
+  if (!layers.known.paired) repeated = find_repeated_faces(columns.corners, columns.begin);
+  const bool none_turned = layers.known.none_turned;
   std::vector<ColumnRole> roles(columns.count());
   for_each_index(columns.count(), [&](std::size_t c) {
     const auto ring = columns.ring(c);
@@ -304,7 +292,7 @@ NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::
                              LayerCellFacts& facts, bool& all_paired) {
   NumberedColumns columns = find_polygons(mesh, layers, facts);
   const bool none_turned = keep_columns(layers, flat, columns, facts);
-  all_paired = none_turned && knows_sides(layers.statistics.facts) &&
+  all_paired = none_turned && layers.known.paired &&
                std::none_of(facts.role.begin(), facts.role.end(),
                             [](FaceRole role) { return role == FaceRole::Bare || role == FaceRole::Degenerate; });
   return columns;
