@@ -481,3 +481,32 @@ TEST_CASE("curves: a segment that is run through many times is one", "[curve]") 
   CHECK(result.statistics.limit.source_crossings == 0);
   CHECK(result.statistics.limit.left.total() == 0);
 }
+
+TEST_CASE("curves: points that are only rounded have reached their distance, points that are short have not",
+          "[curves]") {
+  // A square hole in a square. Outward of the outer one a corner goes along its diagonal, to coordinates that no number
+  // of digits holds: rounding moves it by up to half a unit of the last one.
+  Curves curves;
+  for (const auto& [x0, y0, x1, y1] : {std::array{0.0, 0.0, 40.0, 30.0}, std::array{15.0, 10.0, 25.0, 20.0}}) {
+    const auto first = static_cast<std::uint32_t>(curves.positions.size());
+    for (const Vec3d& p : {Vec3d(x0, y0, 0), Vec3d(x1, y0, 0), Vec3d(x1, y1, 0), Vec3d(x0, y1, 0)})
+      curves.positions.push_back(p);
+    curves.add_face({first, first + 1, first + 2, first + 3, first});
+  }
+  const auto offset_with = [&](const Distances& distances, int digits) {
+    OffsetOptions options;
+    options.precision = {.kind = Precision::Kind::Digits, .digits = digits};
+    return offset_curves(curves.view(), {&distances, 1}, options).front();
+  };
+  for (const int digits : {4, 5, 6, 7, 8})
+    for (const double d : {0.1, -0.1}) {
+      const OffsetResult result = offset_with(d, digits);
+      CHECK(reached(result) == 8);
+      CHECK(result.statistics.limit.untanglings == 0);
+      const double rounding = 5 * std::pow(10.0, -digits) * std::hypot(40.1, 30.1);
+      for (std::size_t p = 0; p < 8; ++p) CHECK(result.achieved[p] == Approx(0.1).margin(rounding));
+    }
+  // The hole is 10 wide: nothing in it is 6 from its walls, however coarse the coordinates.
+  const OffsetResult short_of = offset_with(6, 6);
+  for (std::size_t p = 4; p < 8; ++p) CHECK(short_of.states[p] != VertexState::Reached);
+}

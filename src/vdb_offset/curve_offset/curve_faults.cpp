@@ -107,10 +107,14 @@ void CurveFaults::measure(std::uint32_t point) {
   away_[point] = {x[0] - closest.point[0], x[1] - closest.point[1]};
   const bool sided = line.facts.closed() && closest.distance > kOnSource * target;
   const double towards = line.pseudonormal(closest.triangle, closest.feature).dot(x - closest.point);
-  const Vec2d& p = place_[point];
-  const double rounding = curves_.precision.epsilon() * std::max(std::abs(p[0]), std::abs(p[1]));
   wrong_side_[point] = sided && towards * curves_.side(point) < 0;
-  misplaced_at_[point] = wrong_side_[point] || closest.distance > target * (1 + kReachedTolerance) + rounding;
+  misplaced_at_[point] = wrong_side_[point] || closest.distance > target * (1 + kReachedTolerance) + rounding(point);
+}
+
+double CurveFaults::rounding(std::uint32_t point) const { return curves_.precision.epsilon() * place_[point].length(); }
+
+bool CurveFaults::is_short(std::uint32_t point) const {
+  return distance_[point] < std::abs(curves_.distances[point]) * (1 - kReachedTolerance) - rounding(point);
 }
 
 CurveFaults::Fault CurveFaults::judge(std::uint32_t segment) const {

@@ -52,6 +52,10 @@ class CurveFaults {
 
   const Vec2d& place(std::uint32_t point) const { return place_[point]; }
   double distance_of(std::uint32_t point) const { return distance_[point]; }
+  /// How far rounding to the precision may have moved a point.
+  double rounding(std::uint32_t point) const;
+  /// Whether a point is nearer than asked, by more than what rounding takes.
+  bool is_short(std::uint32_t point) const;
   /// Of closed curves alone.
   bool on_wrong_side(std::uint32_t point) const { return wrong_side_[point]; }
   std::size_t source_crossings() const { return more_in_source_ ? kMostListedCrossings : source_crossings_.size(); }

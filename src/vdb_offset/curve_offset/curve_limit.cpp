@@ -80,16 +80,11 @@ class CurveLimiter {
     return kNone;
   }
 
-  bool is_short(std::uint32_t point) const {
-    const double target = std::abs(curves_.distances[point]);
-    return faults_.distance_of(point) < target * (1 - kReachedTolerance);
-  }
-
   /// Points that are wrong or short, in runs along the curves, with `bridge` others in between at most.
   std::vector<std::vector<std::uint32_t>> bad_runs(int bridge) const {
     std::vector<std::uint8_t> bad(points_.size(), 0), taken(points_.size(), 0);
     for (const auto p : faults_.wrong_points()) bad[p] = 1;
-    for (const auto p : points_) bad[p] = bad[p] || is_short(p);
+    for (const auto p : points_) bad[p] = bad[p] || faults_.is_short(p);
     std::vector<std::vector<std::uint32_t>> runs;
     for (const auto p : points_) {
       if (!bad[p] || taken[p]) continue;
@@ -139,7 +134,7 @@ class CurveLimiter {
         progress_.advance(run.size());
         // The one before may have taken it along.
         if (std::none_of(run.begin(), run.end(),
-                         [&](auto p) { return is_short(p) || faults_.any_around({p}); }))
+                         [&](auto p) { return faults_.is_short(p) || faults_.any_around({p}); }))
           continue;
         for (std::size_t more = 1;; more *= 2) {
           const std::vector<std::uint32_t> points = widened(run, more);
@@ -236,7 +231,8 @@ class CurveLimiter {
       paths_.displacement[p] = rounded_way(p);
       paths_.achieved[p] = faults_.distance_of(p);
       if (target == 0) continue;
-      if (std::abs(paths_.achieved[p] - target) <= kReachedTolerance * target) paths_.state[p] = VertexState::Reached;
+      const double error = std::abs(paths_.achieved[p] - target);
+      if (error <= kReachedTolerance * target + faults_.rounding(p)) paths_.state[p] = VertexState::Reached;
       else if (pulled || paths_.state[p] == VertexState::Reached) paths_.state[p] = VertexState::Limited;
       statistics_.limited_vertices += paths_.state[p] == VertexState::Limited;
       lost += std::max(0.0, before - paths_.achieved[p]) / target;
