@@ -139,8 +139,8 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   {
     const StageTimer timer(statistics.seconds, Stage::Limit);
     faults.emplace(constrained, mesh.source(), outer, options.precision, mesh.known_crossings());
-    faults->look_at_ends(paths);
-    statistics.limit = untangle(*faults, constrained, mesh.source(), outer, paths, options.progress);
+    faults->move_to_ends(paths);
+    statistics.limit = untangle(*faults, {constrained, mesh.source(), outer, paths}, options.progress);
   }
   std::optional<GrowthColumns> columns;
   LayerStack stack;

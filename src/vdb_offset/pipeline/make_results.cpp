@@ -106,7 +106,7 @@ class ResultMaker {
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Of each result the one that it begins with; its own number if there is none.
     const std::vector<std::size_t> started_from =
-        has_to_be_valid() ? find_precedents(std::span(distances_.moved).first(count)) : order;
+        has_to_be_valid() ? find_warm_starts(std::span(distances_.moved).first(count)) : order;
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return started_from[i] == i; });
     JointProgress progress(options_.progress, count);
     const auto complete = [&](std::size_t i, const WarmStart* start) {
@@ -142,7 +142,7 @@ class ResultMaker {
     const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
-    draft.faults->look_at_ends(draft.paths);
+    draft.faults->move_to_ends(draft.paths);
   }
 
   static bool needs_mending(const Draft& draft) {
@@ -156,7 +156,7 @@ class ResultMaker {
   void make_valid(Draft& draft, const ProgressCallback& progress, const WarmStart* start, WarmStart* to_start) const {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
-    draft.statistics.limit = limit(*draft.faults, draft.constrained, mesh_.source(), draft.distances, draft.paths,
+    draft.statistics.limit = limit(*draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.paths},
                                    progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     draft.faults.reset();
