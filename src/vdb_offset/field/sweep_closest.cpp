@@ -6,13 +6,11 @@
 #include "vdb_offset/base/float_lanes.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/progress_count.h"
+#include "vdb_offset/field/closest_block.h"
 #include "vdb_offset/field/leaf_rounds.h"
 
 namespace vdb_offset {
 namespace {
-
-// Coordinates of a closest point that is not known: its squared distance is more than any reach.
-constexpr float kFar = 1e15f;
 
 // Handed-on points are samples of the surface about a voxel apart: up to this many voxels too far away.
 constexpr float kSampling = 0.25f;
@@ -27,103 +25,8 @@ constexpr float kWorthAVisit = 0.999f;
 // How much nearer, in voxels, a neighbour's closest point must be for the neighbour's triangle to be tried.
 constexpr double kTolerance = 0.002;
 
-/// Closest points of a leaf node's voxels, in voxels from its voxel (0, 0, 0).
-struct Points {
-  float p[3][kLeafVoxels];
-};
-
 /// Of so many leaf nodes together, to ask for memory more seldom.
 constexpr std::size_t kPool = 16;
-
-/// What a leaf node's voxels hand on: closest points and, in the leaf node's own buffer, their triangles. A look at a
-/// neighbour would else wait for its leaf node to come from memory, just to learn where its buffer is.
-struct LeafPoints {
-  Points* points = nullptr;
-  std::int32_t* id = nullptr;
-};
-
-/// A triangle and the side of it: as it is for phi >= 0, its complement for phi < 0.
-std::int32_t with_side(std::uint32_t triangle, bool inside) {
-  const auto index = static_cast<std::int32_t>(triangle);
-  return inside ? ~index : index;
-}
-std::uint32_t triangle_of(std::int32_t id) { return static_cast<std::uint32_t>(id < 0 ? ~id : id); }
-
-// The voxels of a row, four at once, are this far from the first of them.
-constexpr Lanes kCount = {0, 1, 2, 3};
-
-/// One leaf node and its halo, unpacked: a voxel's position is its indices.
-struct ClosestBlock {
-  float limit[kPaddedVoxels];  // squared distance below which another point is nearer
-  float p[3][kPaddedVoxels];   // closest point
-  std::int32_t id[kPaddedVoxels];
-
-  /// Nothing is known of the leaf node yet; its halo is left alone.
-  void forget() {
-    for (auto& axis : p) std::fill(std::begin(axis), std::end(axis), kFar);
-    std::fill(std::begin(id), std::end(id), -1);
-  }
-
-  /// Squared distance from voxel (i, j, k) to the closest point of voxel n.
-  float squared(int i, int j, int k, int n) const {
-    const float x = static_cast<float>(i) - p[0][n], y = static_cast<float>(j) - p[1][n],
-                z = static_cast<float>(k) - p[2][n];
-    return x * x + y * y + z * z;
-  }
-  /// From the voxels (i, j, k), (i, j, k + 1), .. to the closest points of voxels n, n + 1, ..
-  Lanes squared_lanes(int i, int j, int k, int n) const {
-    const Lanes x = static_cast<float>(i) - load_lanes(p[0] + n), y = static_cast<float>(j) - load_lanes(p[1] + n),
-                z = (static_cast<float>(k) + kCount) - load_lanes(p[2] + n);
-    return x * x + y * y + z * z;
-  }
-
-  /// True if row n, or the halo at one of its ends, has a closest point.
-  bool any_known(int n) const {
-    const IntLanes known =
-        (load_lanes(p[0] + n - 1) < kFar) | (load_lanes(p[0] + n + 3) < kFar) | (load_lanes(p[0] + n + 5) < kFar);
-    return any(known);
-  }
-
-  /// Offers the closest points of row m to the eight voxels of row n, which lies at (i, j). True if one is nearer.
-  bool offer_row(int i, int j, int n, int m) {
-    bool taken = false;
-    for (int k = 0; k < kLeafWidth; k += kLanes, n += kLanes, m += kLanes) {
-      const Lanes offered = squared_lanes(i, j, k, m), known = load_lanes(limit + n);
-      const IntLanes nearer = offered < known;
-      if (!any(nearer)) continue;
-      taken = true;
-      store_lanes(limit + n, nearer ? offered : known);
-      for (auto& axis : p) store_lanes(axis + n, nearer ? load_lanes(axis + m) : load_lanes(axis + n));
-      store_lanes(id + n, nearer ? load_lanes(id + m) : load_lanes(id + n));
-    }
-    return taken;
-  }
-  void offer_along_row(int i, int j, int n) {
-    for (int k = 0; k < kLeafWidth; ++k) offer(i, j, k, n + k, n + k - 1);
-    for (int k = kLeafWidth - 1; k >= 0; --k) offer(i, j, k, n + k, n + k + 1);
-  }
-
- private:
-  void offer(int i, int j, int k, int n, int m) {
-    const float offered = squared(i, j, k, m);
-    if (!(offered < limit[n])) return;
-    limit[n] = offered;
-    for (auto& axis : p) axis[n] = axis[m];
-    id[n] = id[m];
-  }
-};
-
-template <class Value>
-void copy_row(const Value* from, Value* to) {
-  for (int k = 0; k < kLeafWidth; k += kLanes) store_lanes(to + k, load_lanes(from + k));
-}
-
-/// Calls work(i, j, padded index, voxel number) for the first voxel of each of a leaf node's rows along k.
-template <class Work>
-void for_each_row(Work&& work) {
-  for (int i = 0; i < kLeafWidth; ++i)
-    for (int j = 0; j < kLeafWidth; ++j) work(i, j, padded_index(i, j, 0), i << 6 | j << 3);
-}
 
 class ClosestSweep {
  public:
@@ -182,7 +85,7 @@ class ClosestSweep {
   void grow(std::size_t leaves) {
     if (leaves > points_.capacity()) points_.reserve(2 * leaves);
     for (std::size_t i = points_.size(); i < leaves; ++i) {
-      if (i % kPool == 0) pools_.push_back(std::make_unique_for_overwrite<Points[]>(kPool));
+      if (i % kPool == 0) pools_.push_back(std::make_unique_for_overwrite<ClosestPoints[]>(kPool));
       points_.push_back({&pools_.back()[i % kPool]});
     }
   }
@@ -199,7 +102,7 @@ class ClosestSweep {
   /// The closest points that the rasteriser's triangles stand for.
   void find_points_of_front(std::size_t leaf) {
     std::int32_t* id = points_[leaf].id = graph_[leaf].closest->buffer().data();
-    for (auto& axis : points_[leaf].points->p) std::fill(std::begin(axis), std::end(axis), kFar);
+    for (auto& axis : points_[leaf].points->p) std::fill(std::begin(axis), std::end(axis), kFarPoint);
     for (auto voxel = frozen_[leaf].beginOn(); voxel; ++voxel) {
       const auto n = static_cast<int>(voxel.pos());
       const auto triangle = static_cast<std::uint32_t>(id[n]);
@@ -284,7 +187,7 @@ class ClosestSweep {
       const auto neighbour = graph_[leaf].neighbour[static_cast<std::size_t>(face)];
       if (neighbour < 0 || points_[static_cast<std::size_t>(neighbour)].id == nullptr) {
         for_each_halo_voxel(face, [&](int padded, int) {
-          for (auto& axis : block.p) axis[padded] = kFar;
+          for (auto& axis : block.p) axis[padded] = kFarPoint;
           block.id[padded] = -1;
         });
         continue;
@@ -378,7 +281,7 @@ class ClosestSweep {
           }
         }
         id[n] = -1;
-        p[0][n] = kFar;
+        p[0][n] = kFarPoint;
       }
     });
     at.phi->setValueMask(active);
@@ -460,7 +363,7 @@ class ClosestSweep {
   std::size_t front_leaves_;
   std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
   std::vector<LeafPoints> points_;
-  std::vector<std::unique_ptr<Points[]>> pools_;
+  std::vector<std::unique_ptr<ClosestPoints[]>> pools_;
 };
 
 }  // namespace

@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <utility>
 
@@ -16,143 +14,10 @@
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/curve/svg_transform.h"
 
 namespace vdb_offset::io {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
-
-/// x' = a x + c y + e, y' = b x + d y + f.
-using Matrix = std::array<double, 6>;
-constexpr Matrix kIdentity = {1, 0, 0, 1, 0, 0};
-
-/// First `inner`, then `outer`.
-Matrix product(const Matrix& outer, const Matrix& inner) {
-  const auto& [a, b, c, d, e, f] = outer;
-  return {a * inner[0] + c * inner[1], b * inner[0] + d * inner[1],     a * inner[2] + c * inner[3],
-          b * inner[2] + d * inner[3], a * inner[4] + c * inner[5] + e, b * inner[4] + d * inner[5] + f};
-}
-
-double determinant(const Matrix& m) { return m[0] * m[3] - m[1] * m[2]; }
-
-/// Whether what it does to a drawing can be undone in doubles.
-bool has_inverse(const Matrix& m) {
-  constexpr double kLeastSize = 1e-100, kLeastShare = 1e-12;
-  const double size = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
-  return size > kLeastSize && size < 1 / kLeastSize && std::abs(determinant(m)) > kLeastShare * size &&
-         std::isfinite(m[4]) && std::isfinite(m[5]);
-}
-
-Vec3d transformed(const Matrix& m, const Vec2d& p) {
-  return {m[0] * p[0] + m[2] * p[1] + m[4], m[1] * p[0] + m[3] * p[1] + m[5], 0};
-}
-
-Vec2d transformed_back(const Matrix& m, const Vec3d& p) {
-  const double x = p[0] - m[4], y = p[1] - m[5], det = determinant(m);
-  return {(m[3] * x - m[2] * y) / det, (m[0] * y - m[1] * x) / det};
-}
-
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
-
-/// Walks over the value of an attribute.
-class ValueScanner {
- public:
-  /// `fail(expected, found)` throws.
-  ValueScanner(std::string_view value, std::function<void(const std::string&, const std::string&)> fail)
-      : value_(value), fail_(std::move(fail)) {}
-
-  bool at_end() {
-    while (at_ < value_.size() && (is_space(value_[at_]) || value_[at_] == ',')) ++at_;
-    return at_ == value_.size();
-  }
-  bool at_number() {
-    return !at_end() && (is_digit(value_[at_]) || std::string_view("+-.").find(value_[at_]) != std::string_view::npos);
-  }
-
-  double number(const char* expected) {
-    if (!at_number()) fail(expected);
-    const char* const first = value_.data() + at_ + (value_[at_] == '+');
-    if (value_[at_] == '+' && value_.substr(at_ + 1).starts_with('-')) fail(expected);
-    double number = 0;
-    const auto [end, error] = std::from_chars(first, value_.data() + value_.size(), number);
-    if (error != std::errc() || !std::isfinite(number) || static_cast<std::size_t>(end - first) > kLongestNumber)
-      fail(expected);
-    at_ = static_cast<std::size_t>(end - value_.data());
-    return number;
-  }
-
-  char letter() { return value_[at_++]; }
-
-  /// What stands before the next "(", and that.
-  std::string_view function_name() {
-    const std::size_t open = value_.find('(', at_);
-    if (open == std::string_view::npos) fail("a transform such as 'translate(1 2)'");
-    std::string_view name = value_.substr(at_, open - at_);
-    while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
-    at_ = open + 1;
-    return name;
-  }
-  bool close() {
-    if (at_end() || value_[at_] != ')') return false;
-    ++at_;
-    return true;
-  }
-
-  [[noreturn]] void fail(const std::string& expected) {
-    const bool end = at_end();
-    fail_(expected, end ? "its end" : fmt::format("'{}'", value_.substr(at_, 20)));
-    std::terminate();  // fail_ has thrown
-  }
-
- private:
-  static bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-  std::string_view value_;
-  std::size_t at_ = 0;
-  std::function<void(const std::string&, const std::string&)> fail_;
-};
-
-Matrix parse_function(ValueScanner& value, std::string_view name) {
-  std::vector<double> n;
-  while (!value.close()) n.push_back(value.number("a number or ')' in a transform"));
-  const auto given = [&](std::initializer_list<std::size_t> counts) {
-    return std::find(counts.begin(), counts.end(), n.size()) != counts.end();
-  };
-  if (name == "matrix" && given({6})) return {n[0], n[1], n[2], n[3], n[4], n[5]};
-  if (name == "translate" && given({1, 2})) return {1, 0, 0, 1, n[0], n.size() > 1 ? n[1] : 0};
-  if (name == "scale" && given({1, 2})) return {n[0], 0, 0, n.back(), 0, 0};
-  if (name == "skewX" && given({1})) return {1, 0, std::tan(n[0] * kDegree), 1, 0, 0};
-  if (name == "skewY" && given({1})) return {1, std::tan(n[0] * kDegree), 0, 1, 0, 0};
-  if (name != "rotate" || !given({1, 3}))
-    value.fail(fmt::format("a transform that SVG knows, not '{}' of {} numbers, before here", name, n.size()));
-  const double c = std::cos(n[0] * kDegree), s = std::sin(n[0] * kDegree);
-  const Matrix turn = {c, s, -s, c, 0, 0};
-  if (n.size() == 1) return turn;
-  return product(product({1, 0, 0, 1, n[1], n[2]}, turn), {1, 0, 0, 1, -n[1], -n[2]});
-}
-
-/// Whether a list of CSS declarations has one that moves the element.
-bool has_transform(std::string_view style) {
-  while (!style.empty()) {
-    std::string_view name = style.substr(0, style.find(';'));
-    style.remove_prefix(std::min(name.size() + 1, style.size()));
-    name = name.substr(0, name.find(':'));
-    while (!name.empty() && is_space(name.front())) name.remove_prefix(1);
-    while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
-    for (const char* const moving : {"transform", "translate", "rotate", "scale"})
-      if (name == moving) return true;
-  }
-  return false;
-}
-
-Matrix parse_transform(ValueScanner value) {
-  Matrix all = kIdentity;
-  while (!value.at_end()) {
-    const std::string_view name = value.function_name();
-    all = product(all, parse_function(value, name));
-  }
-  return all;
-}
 
 /// Reads a drawing as expat comes by its elements.
 class SvgReader {
@@ -187,7 +52,7 @@ class SvgReader {
 
  private:
   struct Element {
-    Matrix to_drawing;
+    SvgMatrix to_drawing;
     bool shown;
   };
   // Between the namespace of an element and its name.
@@ -210,14 +75,14 @@ class SvgReader {
     Scanner(path_, text_).fail_with(expected, found, std::min(at, text_.size()));
   }
 
-  ValueScanner scan(const char* value, const char* what) const {
+  SvgValueScanner scan(const char* value, const char* what) const {
     return {value, [this, what](const std::string& expected, const std::string& found) {
               fail_at(here(), expected, fmt::format("{} in {}", found, what));
             }};
   }
 
   void begin(std::string_view name, const char** attributes) {
-    Element element = open_.empty() ? Element{kIdentity, true} : open_.back();
+    Element element = open_.empty() ? Element{kSvgIdentity, true} : open_.back();
     if (const std::size_t end = name.rfind(kNamespaceEnd); end != std::string_view::npos) {
       element.shown = element.shown && name.substr(0, end) == "http://www.w3.org/2000/svg";
       name.remove_prefix(end + 1);
@@ -240,7 +105,7 @@ class SvgReader {
   }
 
   template <class ValueOf>
-  void look_at(std::string_view name, const Matrix& to_drawing, const ValueOf& value_of) {
+  void look_at(std::string_view name, const SvgMatrix& to_drawing, const ValueOf& value_of) {
     for (const char* const other : {"line", "rect", "circle", "ellipse", "use"})
       if (name == other) fail_at(here(), "paths, polylines and polygons alone", fmt::format("an element '{}'", name));
     if (name == "svg" && !open_.empty()) fail_at(here(), "one element 'svg'", "another one in it");
@@ -270,11 +135,11 @@ class SvgReader {
     const auto skip = [&](auto&& while_so) {
       while (at < end && while_so(text_[at])) ++at;
     };
-    skip([](char c) { return !is_space(c); });
+    skip([](char c) { return !is_svg_space(c); });
     while (at < end) {
-      skip(is_space);
+      skip(is_svg_space);
       const std::size_t name = at;
-      skip([](char c) { return c != '=' && !is_space(c); });
+      skip([](char c) { return c != '=' && !is_svg_space(c); });
       const bool found = text_.substr(name, at - name) == wanted;
       skip([](char c) { return c != '"' && c != '\''; });
       if (at >= end) break;
@@ -321,7 +186,7 @@ class SvgReader {
     lines_.closed.push_back(closed);
   }
 
-  void read_points(ValueScanner value, bool closed) {
+  void read_points(SvgValueScanner value, bool closed) {
     while (!value.at_end()) {
       const double x = value.number("a number");
       add_point({x, value.number("a number for y")});
@@ -329,7 +194,7 @@ class SvgReader {
     end_curve(closed);
   }
 
-  void read_path(ValueScanner value) {
+  void read_path(SvgValueScanner value) {
     Vec2d at(0.0, 0.0), start(0.0, 0.0);
     bool drawing = false;  // a curve has been begun
     char command = 0;
@@ -359,8 +224,8 @@ class SvgReader {
     end_curve(false);
   }
 
-  static char take_command(ValueScanner& value, char before) {
-    ValueScanner ahead = value;
+  static char take_command(SvgValueScanner& value, char before) {
+    SvgValueScanner ahead = value;
     const char command = ahead.letter();
     if (std::string_view("MmLlHhVvZz").find(command) == std::string_view::npos)
       value.fail("straight segments (M, L, H, V, Z)");
@@ -374,7 +239,7 @@ class SvgReader {
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   std::exception_ptr thrown_;
   std::vector<Element> open_;
-  Matrix to_drawing_ = kIdentity;
+  SvgMatrix to_drawing_ = kSvgIdentity;
   SvgLines lines_;
   MemoryWatch held_{path_, sizeof(Vec3d) + sizeof(Vec2d) + sizeof(std::uint32_t)};
 };
@@ -386,8 +251,8 @@ void append_point(std::string& text, const Vec2d& p, const Rounding& precision =
 
 /// A point as its shape has it. Digits are those of the drawing's coordinates, on which results are judged: undoing a
 /// transform takes all there are.
-void append_own(std::string& text, const Matrix& to_drawing, const Vec3d& position, const Rounding& precision) {
-  if (to_drawing == kIdentity) append_point(text, {position[0], position[1]}, precision);
+void append_own(std::string& text, const SvgMatrix& to_drawing, const Vec3d& position, const Rounding& precision) {
+  if (to_drawing == kSvgIdentity) append_point(text, {position[0], position[1]}, precision);
   else append_point(text, transformed_back(to_drawing, precision(position)));
 }
 

@@ -1,0 +1,80 @@
+// Transforms of SVG: their arithmetic, and what attributes say of them.
+#include "vdb_offset/io/curve/svg_transform.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <vector>
+
+namespace vdb_offset::io {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+double determinant(const SvgMatrix& m) { return m[0] * m[3] - m[1] * m[2]; }
+
+SvgMatrix parse_function(SvgValueScanner& value, std::string_view name) {
+  std::vector<double> n;
+  while (!value.close()) n.push_back(value.number("a number or ')' in a transform"));
+  const auto given = [&](std::initializer_list<std::size_t> counts) {
+    return std::find(counts.begin(), counts.end(), n.size()) != counts.end();
+  };
+  if (name == "matrix" && given({6})) return {n[0], n[1], n[2], n[3], n[4], n[5]};
+  if (name == "translate" && given({1, 2})) return {1, 0, 0, 1, n[0], n.size() > 1 ? n[1] : 0};
+  if (name == "scale" && given({1, 2})) return {n[0], 0, 0, n.back(), 0, 0};
+  if (name == "skewX" && given({1})) return {1, 0, std::tan(n[0] * kDegree), 1, 0, 0};
+  if (name == "skewY" && given({1})) return {1, std::tan(n[0] * kDegree), 0, 1, 0, 0};
+  if (name != "rotate" || !given({1, 3}))
+    value.fail(fmt::format("a transform that SVG knows, not '{}' of {} numbers, before here", name, n.size()));
+  const double c = std::cos(n[0] * kDegree), s = std::sin(n[0] * kDegree);
+  const SvgMatrix turn = {c, s, -s, c, 0, 0};
+  if (n.size() == 1) return turn;
+  return product(product({1, 0, 0, 1, n[1], n[2]}, turn), {1, 0, 0, 1, -n[1], -n[2]});
+}
+
+}  // namespace
+
+SvgMatrix product(const SvgMatrix& outer, const SvgMatrix& inner) {
+  const auto& [a, b, c, d, e, f] = outer;
+  return {a * inner[0] + c * inner[1], b * inner[0] + d * inner[1],     a * inner[2] + c * inner[3],
+          b * inner[2] + d * inner[3], a * inner[4] + c * inner[5] + e, b * inner[4] + d * inner[5] + f};
+}
+
+bool has_inverse(const SvgMatrix& m) {
+  constexpr double kLeastSize = 1e-100, kLeastShare = 1e-12;
+  const double size = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
+  return size > kLeastSize && size < 1 / kLeastSize && std::abs(determinant(m)) > kLeastShare * size &&
+         std::isfinite(m[4]) && std::isfinite(m[5]);
+}
+
+Vec3d transformed(const SvgMatrix& m, const Vec2d& p) {
+  return {m[0] * p[0] + m[2] * p[1] + m[4], m[1] * p[0] + m[3] * p[1] + m[5], 0};
+}
+
+Vec2d transformed_back(const SvgMatrix& m, const Vec3d& p) {
+  const double x = p[0] - m[4], y = p[1] - m[5], det = determinant(m);
+  return {(m[3] * x - m[2] * y) / det, (m[0] * y - m[1] * x) / det};
+}
+
+bool has_transform(std::string_view style) {
+  while (!style.empty()) {
+    std::string_view name = style.substr(0, style.find(';'));
+    style.remove_prefix(std::min(name.size() + 1, style.size()));
+    name = name.substr(0, name.find(':'));
+    while (!name.empty() && is_svg_space(name.front())) name.remove_prefix(1);
+    while (!name.empty() && is_svg_space(name.back())) name.remove_suffix(1);
+    for (const char* const moving : {"transform", "translate", "rotate", "scale"})
+      if (name == moving) return true;
+  }
+  return false;
+}
+
+SvgMatrix parse_transform(SvgValueScanner value) {
+  SvgMatrix all = kSvgIdentity;
+  while (!value.at_end()) {
+    const std::string_view name = value.function_name();
+    all = product(all, parse_function(value, name));
+  }
+  return all;
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,165 @@
+// What the texts of single options say.
+#include "option_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include "vdb_offset/decimal.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/selection.h"
+#include "vdb_offset/scene.h"
+
+namespace vdb_offset::tool {
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw UsageError(message);
+}
+
+std::optional<double> parse_number(const char* option, const std::optional<std::string>& text, const char* expected,
+                                   double above, double most) {
+  if (!text) return std::nullopt;
+  const auto value = decimal<double>(*text);
+  require(value && *value > above && *value <= most, fmt::format("{}: expected {}, got '{}'", option, expected, *text));
+  return value;
+}
+
+std::size_t parse_size(const std::string& text) {
+  double value = 0;
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  std::string suffix;
+  for (const char* c = end; c != text.data() + text.size(); ++c)
+    if (*c != ' ') suffix += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
+  static const std::map<std::string, double> kUnits = {
+      {"", 1},         {"B", 1},       {"K", 0x1p10},   {"KB", 0x1p10}, {"KIB", 0x1p10},
+      {"M", 0x1p20},   {"MB", 0x1p20}, {"MIB", 0x1p20}, {"G", 0x1p30},  {"GB", 0x1p30},
+      {"GIB", 0x1p30}, {"T", 0x1p40},  {"TB", 0x1p40},  {"TIB", 0x1p40}};
+  const auto unit = kUnits.find(suffix);
+  if (error != std::errc() || unit == kUnits.end() || !(value > 0) || value * unit->second > 0x1p60)
+    throw UsageError(fmt::format("--max-memory: expected a size such as 4G or 512M, got '{}'", text));
+  return std::max<std::size_t>(1, static_cast<std::size_t>(value * unit->second));
+}
+
+int parse_count(const char* option, const std::string& text, int least, int most) {
+  const auto value = decimal<int>(text);
+  require(value && *value >= least && *value <= most,
+          fmt::format("{}: expected {} to {}, got '{}'", option, least, most, text));
+  return *value;
+}
+
+DistanceRequest parse_request(const std::string& text) {
+  if (text.starts_with("ply:")) return {text, {}, text};
+  if (text.starts_with('@')) {
+    if (text.size() == 1) throw InvalidOption("expected a file's name behind the '@'");
+    return {text.substr(1), {}, text.substr(1)};
+  }
+  return {text, scene::parse_distance_or_expression(text), {}};
+}
+
+io::TransportRequest parse_transport(const std::string& text) {
+  io::TransportRequest request{false, false, false, true};
+  if (text == "none") return request;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    bool* const wanted = word == "uv"         ? &request.texture
+                         : word == "color"    ? &request.colours
+                         : word == "material" ? &request.materials
+                                              : nullptr;
+    require(wanted != nullptr,
+            fmt::format("--transport: expected 'uv', 'color' and 'material', separated by commas, or 'none', got '{}'",
+                        text));
+    *wanted = true;
+    begin = end + 1;
+  }
+  return request;
+}
+
+std::vector<io::Selector> parse_only(const std::vector<std::string>& texts) {
+  std::vector<io::Selector> only;
+  for (const std::string& text : texts) {
+    try {
+      only.push_back(io::parse_selector(text));
+    } catch (const InvalidOption& error) {
+      throw UsageError(std::string("--only: ") + error.what());
+    }
+  }
+  return only;
+}
+
+Border parse_border(const std::string& text) {
+  require(text == "slide" || text == "fixed" || text == "free",
+          fmt::format("--border: expected 'slide', 'fixed' or 'free', got '{}'", text));
+  return text == "slide" ? Border::Slide : text == "fixed" ? Border::Fixed : Border::Free;
+}
+
+scene::Distance parse_clearance(const std::string& text) {
+  scene::Distance clearance;
+  if (text.empty()) return clearance;
+  try {
+    clearance = scene::parse_distance(text);
+  } catch (const InvalidInput&) {
+    clearance.value = -1;
+  }
+  require(clearance.value >= 0,
+          fmt::format("--clearance: expected a number of world units or percent, 0 or more, got '{}'", text));
+  return clearance;
+}
+
+WeldOptions parse_weld(const std::string& text) {
+  WeldOptions weld;
+  if (text == "auto") return WeldOptions::automatic();
+  if (text == "exact") return weld;
+  if (text == "none") {
+    weld.enabled = false;
+    return weld;
+  }
+  const auto tolerance = decimal<double>(text);
+  require(tolerance && *tolerance >= 0,
+          fmt::format("--weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got '{}'", text));
+  weld.tolerance = *tolerance;
+  return weld;
+}
+
+Orient parse_orient(const std::string& text) {
+  if (text == "keep") return Orient::Keep;
+  if (text == "fix-direction-only") return Orient::FixDirectionOnly;
+  throw UsageError(fmt::format("--orient: expected 'keep' or 'fix-direction-only', got '{}'", text));
+}
+
+SymmetryPlane parse_plane(const std::string& text) {
+  const auto number = [&](std::string_view word) {
+    const auto value = decimal<double>(word);
+    require(value.has_value(),
+            fmt::format("--symmetry: expected 'x=0' (or y, z), 'A,B,C,D' for A x + B y + C z = D, or 'none', got '{}'",
+                        text));
+    return *value;
+  };
+  SymmetryPlane plane;
+  const std::string_view given = text;
+  if (given.size() > 2 && given[1] == '=' && given[0] >= 'x' && given[0] <= 'z') {
+    plane.normal[given[0] - 'x'] = 1;
+    plane.offset = number(given.substr(2));
+    return plane;
+  }
+  std::vector<double> factors;
+  for (std::size_t begin = 0; begin <= given.size();) {
+    const std::size_t end = std::min(given.find(',', begin), given.size());
+    factors.push_back(number(given.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  factors.resize(factors.size() == 4 ? 4 : 0);
+  const double length = factors.empty() ? 0 : std::hypot(factors[0], factors[1], factors[2]);
+  if (!(length > 0)) number("");
+  for (int k = 0; k < 3; ++k) plane.normal[k] = factors[static_cast<std::size_t>(k)] / length;
+  plane.offset = factors[3] / length;
+  return plane;
+}
+
+}  // namespace vdb_offset::tool
