@@ -1,18 +1,20 @@
+// `vdb_offset check`: what it is told, what it measures, and what it prints.
 #include "check_command.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "args.h"
-#include "inputs.h"
+#include "job.h"
 #include "messages.h"
 #include "places.h"
+#include "request/command_line.h"
+#include "request/option_values.h"
+#include "source.h"
 #include "terminal.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_check.h"
@@ -39,111 +41,108 @@ constexpr const char* kCheckAbout =
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
-struct CheckArguments {
-  std::string source, offset, distance, distance_from, distance_xy, distance_z, border = "slide", clearance;
-  std::string weld = "auto", orient = "keep", report;
-  std::vector<std::string> only, obstacles;
-  std::string threads_text = "0";
-  std::optional<std::string> digits_text;
-  int threads = 0, digits = 0;
-  bool json = false, strict = false, close = false;
+/// What the command line of `check` asks for.
+struct CheckRequest {
+  Request made;  ///< What made OFFSET of SOURCE, as far as it is told; also files and numbers of this command itself.
+  std::string distance, distance_from;
+  std::optional<AxisDistances> axes;
+  bool json = false;
 };
 
-void declare(CLI::App& app, CheckArguments& args) {
-  app.add_option("SOURCE", args.source, "Mesh before (.obj .ply .stl .off), or curves (.dat .txt .xy .svg .obj)")
-      ->required();
-  app.add_option("OFFSET", args.offset, "Mesh or curves after")->required();
-  app.add_option("-d,--distance", args.distance,
-                 "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
-                 "expression [the median of what is found]")
-      ->type_name("D");
-  app.add_option("--distance-xy", args.distance_xy, "Instead, with --distance-z: as it was for the offset")
-      ->type_name("A");
-  app.add_option("--distance-z", args.distance_z, "The same along z")->type_name("B");
-  app.add_option("--distance-from", args.distance_from,
-                 "Instead: a number for each vertex, as text or .npy, or ply:NAME, a vertex property of SOURCE")
-      ->type_name("FILE");
-  app.add_option("--only", args.only, "The part that was offset: group=NAME, material=NAME or faces=FILE; repeatable")
-      ->type_name("PART")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-  app.add_option("--border", args.border, "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]")
-      ->type_name("MODE");
-  app.add_option("--obstacle", args.obstacles, "Another mesh that nothing may touch; repeatable")
-      ->type_name("FILE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-  app.add_option("--clearance", args.clearance, "How near to obstacles is too near [0]")->type_name("C");
-  app.add_option("--precision", args.digits_text,
-                 "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]")
-      ->type_name("N");
-  app.add_option(
-         "--weld", args.weld,
-         "Vertices of SOURCE that count as one: 'auto', 'exact', 'none', or within TOL world units, as it was for the "
-         "offset [auto]")
-      ->type_name("MODE");
-  app.add_option("--orient", args.orient,
-                 "Which side of SOURCE is outward, as it was for the offset: 'keep' or 'fix-direction-only' [keep]")
-      ->type_name("MODE");
-  app.add_flag("--close", args.close,
-               "SOURCE's curves were closed for the offset, where their ends are near each other");
-  app.add_option("--threads", args.threads_text, "Threads; 0 takes all [0]")->type_name("N");
-  app.add_option("--report", args.report, "Write what is found as JSON")->type_name("FILE");
-  app.add_flag("--json", args.json, "Print JSON, not text");
-  app.add_flag("--strict", args.strict, "Exit with 3 if a vertex in use is not at the distance");
+/// Options that say what the offset was told.
+void declare_offset(CommandLine& line, CheckRequest& request, std::string& distance_xy, std::string& distance_z) {
+  Request& made = request.made;
+  line.option("-d,--distance", "D",
+              "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
+              "expression [the median of what is found]",
+              request.distance);
+  line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", distance_xy);
+  line.option("--distance-z", "B", "The same along z", distance_z);
+  line.option("--distance-from", "FILE",
+              "Instead: a number for each vertex, as text or .npy, or ply:NAME, a vertex property of SOURCE",
+              request.distance_from);
+  line.repeated("--only", "PART", "The part that was offset: group=NAME, material=NAME or faces=FILE; repeatable",
+                [&made](const std::string& text) { made.only.push_back(parse_part(text)); });
+  line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
+              [&made](const std::string& text) { made.border = parse_border(text); });
+  line.repeated("--obstacle", "FILE", "Another mesh that nothing may touch; repeatable",
+                [&made](const std::string& text) { made.obstacles.push_back(text); });
+  line.option("--clearance", "C", "How near to obstacles is too near [0]",
+              [&made](const std::string& text) { made.clearance = parse_clearance(text); });
+  line.option(
+      "--precision", "N", "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]",
+      [&made](const std::string& text) { made.write.digits = parse_count("--precision", text, 1, kMostDigits); });
+  line.option("--weld", "MODE",
+              "Vertices of SOURCE that count as one: 'auto', 'exact', 'none', or within TOL world units, as it was for "
+              "the offset [auto]",
+              [&made](const std::string& text) {
+                made.weld_text = text;
+                made.weld = parse_weld(text);
+              });
+  line.option("--orient", "MODE",
+              "Which side of SOURCE is outward, as it was for the offset: 'keep' or 'fix-direction-only' [keep]",
+              [&made](const std::string& text) {
+                made.orient_text = text;
+                made.orient = parse_orient(text);
+              });
+  line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }
 
-/// The same, as the command that made the offset would have them.
-Arguments as_of_offset(const CheckArguments& args) {
-  Arguments all;
-  all.input = args.source;
-  all.output = args.offset;
-  all.obstacles = args.obstacles;
-  all.only = parse_only(args.only);
-  all.border = parse_border(args.border);
-  all.clearance = parse_clearance(args.clearance);
-  all.options.weld = parse_weld(args.weld);
-  all.options.orient = parse_orient(args.orient);
-  all.write.digits = args.digits;
-  std::vector<std::string> distances;
-  if (!args.distance.empty()) distances.push_back(args.distance);
-  all.distances = parse_distances(distances, args.distance_from, all);
-  return all;
+/// Empty if the command line asked only for help, which is then printed.
+std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
+  CheckRequest request;
+  Request& made = request.made;
+  made.border = Border::Slide;
+  std::string distance_xy, distance_z;
+  CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help");
+  line.file("SOURCE", "Mesh before (.obj .ply .stl .off), or curves (.dat .txt .xy .svg .obj)", made.input);
+  line.file("OFFSET", "Mesh or curves after", made.output);
+  declare_offset(line, request, distance_xy, distance_z);
+  line.option("--threads", "N", "Threads; 0 takes all [0]",
+              [&made](const std::string& text) { made.threads = parse_count("--threads", text, 0, kMostThreads); });
+  line.option("--report", "FILE", "Write what is found as JSON", made.report);
+  line.flag("--json", "Print JSON, not text", request.json);
+  line.flag("--strict", "Exit with 3 if a vertex in use is not at the distance", made.strict);
+  if (!line.parse(argc, argv)) return std::nullopt;
+  require(!line.has("--clearance") || line.has("--obstacle"), "--clearance: expected it with --obstacle");
+  require(!line.has("--distance") || !line.has("--distance-from"),
+          "--distance-from: expected it or --distance, got both");
+  request.axes = parse_axes(distance_xy, distance_z);
+  require(!request.axes || !line.has("--distance"), "--distance: expected it without --distance-xy");
+  require(!request.axes || !line.has("--obstacle"), "--obstacle: expected it without --distance-xy");
+  return request;
 }
 
-void settle_counts(CheckArguments& args) {
-  args.threads = parse_count("--threads", args.threads_text, 0, kMostThreads);
-  if (args.digits_text) args.digits = parse_count("--precision", *args.digits_text, 1, 17);
+/// Of meshes, a distance may be an expression or a file.
+void take_distances_of_meshes(CheckRequest& request) {
+  Request& made = request.made;
+  if (!request.distance.empty()) made.distances.push_back(parse_distance_of("--distance", request.distance, made));
+  if (request.distance_from.empty()) return;
+  made.distances.push_back(parse_distance_from(request.distance_from, made));
+  made.distance_option = "--distance-from";
 }
 
 /// The report may not take the place of what is measured, nor be mixed with what is printed.
-void require_report_apart(const CheckArguments& args) {
-  if (args.report.empty()) return;
-  Arguments made = as_of_offset(args);
-  if (!args.distance_from.empty()) made.distance_option = "--distance-from";
+void require_report_apart(const CheckRequest& request) {
+  const Request& made = request.made;
+  if (made.report.empty()) return;
   std::vector<Place> read = surroundings_of(made);
-  read.push_back({"SOURCE", args.source});
-  read.push_back({"OFFSET", args.offset});
-  require_apart(read, std::vector<Place>{{"--report", args.report}});
-  if (args.json && is_standard_output(args.report))
-    throw UsageError("--report: expected a file of its own, got " + args.report +
+  read.push_back({"SOURCE", made.input});
+  read.push_back({"OFFSET", made.output});
+  require_apart(read, std::vector<Place>{{"--report", made.report}});
+  if (request.json && is_standard_output(made.report))
+    throw UsageError("--report: expected a file of its own, got " + made.report +
                      ", which is that of --json (standard output)");
 }
 
-void require_usable(const CheckArguments& args) {
-  if (!args.clearance.empty() && args.obstacles.empty()) throw UsageError("--clearance: expected it with --obstacle");
-}
-
-/// Of the source's vertices in the offset: of the same faces, or of the triangles that STL has of them.
-std::vector<Vec3d> places_of(const CheckArguments& args, const Polygons& source, const Polygons& offset) {
+/// Positions of the source's vertices in the offset, which has the same faces, or the triangles that STL has of them.
+std::vector<Vec3d> positions_in_offset(const Request& made, const Polygons& source, const Polygons& offset) {
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
     return offset.positions;
   if (auto places = io::places_in_triangles(source.view(), offset.view())) return std::move(*places);
   throw InvalidInput(
-      fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", args.offset, args.source,
+      fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
                   source.positions.size() == offset.positions.size() && source.face_count() == offset.face_count()
                       ? " with other corners"
@@ -160,10 +159,11 @@ std::optional<double> parse_distance(const std::string& text, PolygonView source
   }
 }
 
-/// The same points; a curve that was closed for one of the two may be open in the other.
-void require_same_points(const CheckArguments& args, const Curves& source, const Curves& offset) {
+/// \throw InvalidInput unless both have the same points; a curve that was closed for one of the two may be open in the
+/// other.
+void require_same_points(const Request& made, const Curves& source, const Curves& offset) {
   if (source.positions.size() != offset.positions.size())
-    throw InvalidInput(fmt::format("{}: expected the points of {} ({}), found {}", args.offset, args.source,
+    throw InvalidInput(fmt::format("{}: expected the points of {} ({}), found {}", made.output, made.input,
                                    source.positions.size(), offset.positions.size()));
 }
 
@@ -198,50 +198,50 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
   fmt::print(out, "{}\n", result.valid() ? "valid" : "not valid");
 }
 
-CheckResult measure_curves(const CheckArguments& args) {
-  io::CurveFile source = io::read_curves(args.source);
-  const io::CurveFile offset = io::read_curves(args.offset);
-  for (const auto& [name, given] : {std::pair{"--weld", args.weld != "auto"},
-                                    {"--orient", args.orient != "keep"},
-                                    {"--only", !args.only.empty()},
-                                    {"--obstacle", !args.obstacles.empty()},
-                                    {"--distance-from", !args.distance_from.empty()}})
+CheckResult measure_curves(const CheckRequest& request) {
+  const Request& made = request.made;
+  io::CurveFile source = io::read_curves(made.input);
+  const io::CurveFile offset = io::read_curves(made.output);
+  for (const auto& [name, given] : {std::pair{"--weld", made.weld_text != "auto"},
+                                    {"--orient", made.orient_text != "keep"},
+                                    {"--only", !made.only.empty()},
+                                    {"--obstacle", !made.obstacles.empty()},
+                                    {"--distance-from", !request.distance_from.empty()}})
     if (given) throw UsageError(fmt::format("{}: expected meshes, as this is not for curves", name));
-  if (args.close) close_curves(source.file.polygons);
-  require_same_points(args, source.file.polygons, offset.file.polygons);
+  if (made.close) close_curves(source.file.polygons);
+  require_same_points(made, source.file.polygons, offset.file.polygons);
   CheckOptions options;
-  options.threads = args.threads;
-  if (const auto distance = parse_distance(args.distance, source.file.polygons.view())) options.distance = *distance;
+  options.threads = made.threads;
+  if (const auto distance = parse_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
   return check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
 }
 
-CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisDistances>& axes) {
-  if (args.close) throw UsageError("--close: expected curves, as this is not for meshes");
-  Arguments made = as_of_offset(args);
-  Source source = read_source(made);
-  if (!source.file) throw InvalidInput(args.source + ": expected a mesh, or a scene with a file, got a scene's shape");
-  const io::MeshFile offset = io::read_mesh(args.offset);
+CheckResult measure_meshes(const CheckRequest& request) {
+  const Request& made = request.made;
+  if (made.close) throw UsageError("--close: expected curves, as this is not for meshes");
+  const Source source = read_source(made, false);
+  if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
+  const io::MeshFile offset = io::read_mesh(made.output);
   tell_remarks(offset);
-  const std::vector<Vec3d> places = places_of(args, source.file->polygons, offset.polygons);
-  const std::vector<Distances> distances = settle_options(source, made);
-  const OffsetOptions& of_offset = made.options;
+  const std::vector<Vec3d> positions = positions_in_offset(made, source.file->polygons, offset.polygons);
+  const Job job = resolve_options(made, source);
   CheckOptions options;
-  options.only = of_offset.only;
-  options.border = of_offset.border;
-  options.obstacles = of_offset.obstacles;
-  options.clearance = of_offset.clearance;
-  options.weld = of_offset.weld;
-  options.orient = of_offset.orient;
-  options.precision = io::precision_of(args.offset, offset, made.write);
+  options.only = job.options.only;
+  options.border = job.options.border;
+  options.obstacles = job.options.obstacles;
+  options.clearance = job.options.clearance;
+  options.weld = job.options.weld;
+  options.orient = job.options.orient;
+  options.precision = io::precision_of(made.output, offset, made.write);
   options.precision.rounds_all = source.file->format != offset.format;
-  options.threads = args.threads;
-  if (!distances.empty()) options.distance = distances.front();
-  if (axes) {
-    const auto [metric, distance] = settle_axes(*axes, source.view());
+  options.threads = made.threads;
+  if (!job.distances.empty()) options.distance = job.distances.front();
+  if (request.axes) {
+    const auto [metric, distance] = settle_axes(*request.axes, source.view());
     options.metric = metric;
     options.distance = distance;
   }
-  return check_offset(source.view(), places, options);
+  return check_offset(source.view(), positions, options);
 }
 
 }  // namespace
@@ -249,36 +249,22 @@ CheckResult measure_meshes(const CheckArguments& args, const std::optional<AxisD
 bool is_check(int argc, const char* const* argv) { return argc > 1 && std::string(argv[1]) == "check"; }
 
 int run_check(int argc, const char* const* argv) {
-  CLI::App app(kCheckAbout, "vdb_offset check");
-  app.footer(kCheckMore);
-  CheckArguments args;
-  declare(app, args);
-  try {
-    app.parse(reversed_arguments(argc - 1, argv + 1));
-  } catch (const CLI::Success& success) {
-    print_as_asked(app, success);
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(fmt::format("{} (check --help lists the options)", error.what()));
-  }
-  require_values(app);
-  settle_counts(args);
-  require_usable(args);
-  require_report_apart(args);
-  tell_of_lost_input(args.source);
-  const auto axes = parse_axes(args.distance_xy, args.distance_z);
-  if (axes && !args.distance.empty()) throw UsageError("--distance: expected it without --distance-xy");
-  if (axes && !args.obstacles.empty()) throw UsageError("--obstacle: expected it without --distance-xy");
-  const bool curves = holds_curves(args.source);
-  if (curves && axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
-  const CheckResult result = curves ? measure_curves(args) : measure_meshes(args, axes);
-  const std::string json = check_json(result, args.source, args.offset);
-  if (!args.report.empty()) write_file(args.report, json);
-  const Printout out(is_standard_output(args.report));
-  if (args.json) fmt::print(out, "{}", json);
+  auto request = parse_check(argc - 1, argv + 1);
+  if (!request) return kDone;
+  const Request& made = request->made;
+  tell_of_lost_input(made.input);
+  const bool curves = holds_curves(made.input);
+  if (curves && request->axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
+  if (!curves) take_distances_of_meshes(*request);
+  require_report_apart(*request);
+  const CheckResult result = curves ? measure_curves(*request) : measure_meshes(*request);
+  const std::string json = check_json(result, made.input, made.output);
+  if (!made.report.empty()) write_file(made.report, json);
+  const Printout out(is_standard_output(made.report));
+  if (request->json) fmt::print(out, "{}", json);
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
-  return result.valid() && (all_there || !args.strict) ? 0 : 3;
+  return result.valid() && (all_there || !made.strict) ? kDone : kProcessing;
 }
 
 }  // namespace vdb_offset::tool

@@ -1,14 +1,12 @@
 #pragma once
 
-#include "args.h"
-#include "inputs.h"
+#include "job.h"
 #include "outputs.h"
 #include "terminal.h"
 
 namespace vdb_offset::tool {
 
-/// A run with --mode iso, from the source on. \throw Error for a surface that is not valid, and then no file is
-/// written.
-void run_iso(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar);
+/// Carries out a job with --mode iso. \throw Error for a surface that is not valid, and then no file is written.
+ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar);
 
 }  // namespace vdb_offset::tool

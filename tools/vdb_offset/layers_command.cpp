@@ -48,12 +48,14 @@ void measure(const Source& source, Grown& grown) {
 }
 
 /// Into an object that stays where it is, as what is measured refers to its layers.
-void grow(const Arguments& args, const Source& source, std::span<const Distances> heights, Grown& grown) {
+void grow(const Job& job, Grown& grown) {
+  const Source& source = job.source;
   if (source.curves) {
-    grown.layers = grow_curve_layers(source.view(), heights, args.options);
+    grown.layers = grow_curve_layers(source.view(), job.distances, job.options);
   } else {
-    const bool foam = io::volume_format_of(args.output) == io::VolumeFormat::Foam;
-    grown.layers = grow_layers(source.view(), heights, args.options, foam ? CellRules::OpenFoam : CellRules::AnySolver);
+    const bool foam = io::volume_format_of(job.request.output) == io::VolumeFormat::Foam;
+    grown.layers =
+        grow_layers(source.view(), job.distances, job.options, foam ? CellRules::OpenFoam : CellRules::AnySolver);
   }
   const auto start = Clock::now();
   if (source.curves) measure_on_curves(source.view(), grown);
@@ -61,18 +63,18 @@ void grow(const Arguments& args, const Source& source, std::span<const Distances
   grown.layers.statistics.seconds[static_cast<std::size_t>(Stage::Measure)] += seconds_since(start);
 }
 
-void write_surfaces(const Arguments& args, const Source& source, const LayersResult& layers) {
+void write_surfaces(const Job& job, const LayersResult& layers) {
+  const Source& source = job.source;
   for (std::size_t k = 0; k < layers.count(); ++k) {
-    const std::string path = name_of_layer(args.output, k + 1, layers.count());
-    io::WriteOptions options = args.write;
+    const std::string path = name_of_layer(job.request.output, k + 1, layers.count());
+    const io::WriteOptions options = write_options(job.request, path);
     const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
     if (source.curves) {
       write_curves(path, source, surface, options);
       continue;
     }
-    options.format = format_of(path, args);
     if (source.file) {
-      tell_losses(args, path, io::write_mesh(path, *source.file, surface, options));
+      tell_losses(job.request, path, io::write_mesh(path, *source.file, surface, options));
       continue;
     }
     const PolygonView mesh = source.view();
@@ -80,23 +82,24 @@ void write_surfaces(const Arguments& args, const Source& source, const LayersRes
   }
 }
 
-void write_volume(const Arguments& args, const Source& source, Grown& grown) {
+void write_volume(const Job& job, Grown& grown) {
   const io::VolumeWriteResult written = io::write_volume(
-      args.output, source.curves ? std::move(grown.on_curves) : std::move(*grown.cells).make(grown.names));
+      job.request.output, job.curves() ? std::move(grown.on_curves) : std::move(*grown.cells).make(grown.names));
   grown.report.foam = written.foam;
 }
 
-void write_block(const Arguments& args, const Source& source, Grown& grown) {
-  if (source.curves) return io::write_structured(args.output, make_curve_block(source.view(), grown.layers));
-  const StructuredBlock block = make_block(source.view(), grown.layers);
+void write_block(const Job& job, Grown& grown) {
+  const std::string& path = job.request.output;
+  if (job.curves()) return io::write_structured(path, make_curve_block(job.source.view(), grown.layers));
+  const StructuredBlock block = make_block(job.source.view(), grown.layers);
   grown.report.inverted_block_cells = inverted_cells(block);
-  io::write_structured(args.output, block);
+  io::write_structured(path, block);
 }
 
-void write_cells(const Arguments& args, const Source& source, Grown& grown) {
-  if (args.layers->structured) write_block(args, source, grown);
-  else if (is_volume(args.output)) write_volume(args, source, grown);
-  else write_surfaces(args, source, grown.layers);
+void write_cells(const Job& job, Grown& grown) {
+  if (job.request.layers->structured) write_block(job, grown);
+  else if (is_volume(job.request.output)) write_volume(job, grown);
+  else write_surfaces(job, grown.layers);
 }
 
 bool are_valid(const LayerReport& report) {
@@ -104,55 +107,59 @@ bool are_valid(const LayerReport& report) {
          (!report.foam || report.foam->wrong_faces == 0);
 }
 
-void require_names(const Arguments& args, std::size_t layers) {
-  for (const std::string& path : {args.report, args.states})
-    if (!path.empty()) require_writable(path);
-  if (is_volume(args.output)) {
-    if (io::volume_format_of(args.output) != io::VolumeFormat::Foam) require_writable(args.output);
-    return;
-  }
-  for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(args.output, k, layers));
-}
-
-}  // namespace
-
-bool run_layers(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar) {
-  const std::vector<Distances> heights = settle_layers(source, args);
-  require_apart(args, heights.size());
-  const double read_seconds = seconds_since(start);
-  if (args.dry_run) {
-    const auto outermost = std::span(heights).last(1);
-    print_dry_run(args,
-                  source.curves ? plan_curves(source.view(), outermost, args.options, heights.size())
-                                : plan_several(source.view(), outermost, args.options, heights.size()),
-                  heights.back());
-    return true;
-  }
-  require_names(args, heights.size());
-  if (source.file && !is_volume(args.output))
-    args.options.precision = io::precision_of(name_of_layer(args.output, 1, heights.size()), *source.file, args.write);
-  if (source.curves && !is_volume(args.output)) args.options.precision = io::precision_of_curves(args.write);
-  Grown grown;
-  grow(args, source, heights, grown);
-  LayersResult& layers = grown.layers;
-  bar.show(Stage::Write, 0);
-  layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = read_seconds;
-  const PolygonView mesh = source.view();
-  OutputFiles outputs(args.sync);
-  if (!args.states.empty())
-    io::write_states(args.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
-                     {layers.states, layers.achieved, layers.heights.back()});
-  const auto writing = Clock::now();
-  write_cells(args, source, grown);
-  layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!args.report.empty()) write_layers_report(args, grown.layers, grown.report, start);
-  outputs.commit(ignore_interrupts);
-  bar.clear();
-  if (!args.quiet) print_layers_summary(args, source, grown.layers, grown.report, seconds_since(start));
+/// Whether --strict can be content: every cell is valid, every vertex keeps all of its heights, and nothing is nearer
+/// to an obstacle than asked.
+bool is_as_asked(const Grown& grown) {
+  const LayersResult& layers = grown.layers;
   if (layers.statistics.obstacles && layers.statistics.obstacles->near > 0) return false;
   return are_valid(grown.report) && std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) {
            return state == VertexState::Reached || state == VertexState::Unused;
          });
+}
+
+void require_names(const Request& request, std::size_t layers) {
+  for (const std::string& path : {request.report, request.states})
+    if (!path.empty()) require_writable(path);
+  if (is_volume(request.output)) {
+    if (io::volume_format_of(request.output) != io::VolumeFormat::Foam) require_writable(request.output);
+    return;
+  }
+  for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(request.output, k, layers));
+}
+
+}  // namespace
+
+ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
+  const Request& request = job.request;
+  const Source& source = job.source;
+  const std::vector<Distances>& heights = job.distances;
+  if (request.dry_run) {
+    const auto outermost = std::span(heights).last(1);
+    print_dry_run(job,
+                  source.curves ? plan_curves(source.view(), outermost, job.options, heights.size())
+                                : plan_several(source.view(), outermost, job.options, heights.size()),
+                  heights.back());
+    return kDone;
+  }
+  require_names(request, heights.size());
+  Grown grown;
+  grow(job, grown);
+  LayersResult& layers = grown.layers;
+  bar.show(Stage::Write, 0);
+  layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
+  const PolygonView mesh = source.view();
+  OutputFiles outputs(request.sync);
+  if (!request.states.empty())
+    io::write_states(request.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
+                     {layers.states, layers.achieved, layers.heights.back()});
+  const auto writing = Clock::now();
+  write_cells(job, grown);
+  layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!request.report.empty()) write_layers_report(job, grown.layers, grown.report, timing.start);
+  outputs.commit(ignore_interrupts);
+  bar.clear();
+  if (!request.quiet) print_layers_summary(job, grown.layers, grown.report, seconds_since(timing.start));
+  return is_as_asked(grown) || !request.strict ? kDone : kProcessing;
 }
 
 }  // namespace vdb_offset::tool

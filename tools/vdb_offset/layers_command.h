@@ -1,14 +1,12 @@
 #pragma once
 
-#include "args.h"
-#include "inputs.h"
+#include "job.h"
 #include "outputs.h"
 #include "terminal.h"
 
 namespace vdb_offset::tool {
 
-/// A run with --layers, from the source on. Returns whether --strict can be content: every cell is valid, and every
-/// vertex keeps all of its heights.
-bool run_layers(Arguments& args, Source& source, Clock::time_point start, ProgressBar& bar);
+/// Carries out a job with layers. Returns kProcessing if --strict was given and cannot be content.
+ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar);
 
 }  // namespace vdb_offset::tool

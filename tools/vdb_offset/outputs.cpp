@@ -49,23 +49,24 @@ std::string numbered(std::string name, std::size_t number, std::size_t of, const
   return name;
 }
 
-/// Every option's name and value in force, once settle_options() has run.
-std::vector<std::pair<std::string, std::string>> options_in_force(const Arguments& args, const Destination& to) {
+/// Every option's name and value in force, as a job has them.
+std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job, const Destination& to) {
+  const Request& request = job.request;
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : std::string("automatic");
   };
-  const OffsetOptions& options = args.options;
+  const OffsetOptions& options = job.options;
   const char* const border = options.border == Border::Slide   ? "slide"
                              : options.border == Border::Fixed ? "fixed"
                                                                : "free";
-  const auto text_of = [](const std::optional<DistanceRequest>& request) { return request ? request->text : ""; };
-  const LayersRequest layers = args.layers.value_or(LayersRequest{});
-  const IsoRequest iso = args.iso.value_or(IsoRequest{});
+  const auto text_of = [](const std::optional<DistanceRequest>& distance) { return distance ? distance->text : ""; };
+  const LayersRequest layers = request.layers.value_or(LayersRequest{});
+  const IsoRequest iso = request.iso.value_or(IsoRequest{});
   return {{"distance", to.distance},
           {"metric", fmt::format("{}", fmt::join(std::vector{options.metric.scale[0], options.metric.scale[1],
                                                              options.metric.scale[2]},
                                                  " "))},
-          {"mode", args.iso ? "iso" : "topology"},
+          {"mode", request.iso ? "iso" : "topology"},
           {"adaptivity", iso.adaptivity ? fmt::format("{}", *iso.adaptivity) : "flat"},
           {"inside", iso.use_winding ? "winding" : "never"},
           {"keep-specks", iso.keep_specks ? "true" : "false"},
@@ -76,40 +77,40 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Argument
           {"growth", fmt::format("{}", layers.growth)},
           {"heights", layers.heights},
           {"structured", layers.structured ? "true" : "false"},
-          {"only", fmt::format("{}", fmt::join(args.only_texts, " "))},
+          {"only", fmt::format("{}", fmt::join(request.only_texts, " "))},
           {"border", border},
-          {"obstacle", fmt::format("{}", fmt::join(args.obstacles, " "))},
+          {"obstacle", fmt::format("{}", fmt::join(request.obstacles, " "))},
           {"clearance", fmt::format("{}", options.clearance)},
-          {"fit", args.fit},
-          {"shell", args.shell ? "true" : "false"},
-          {"inner", args.inner ? args.inner->text : ""},
+          {"fit", request.fit},
+          {"shell", job.shell ? "true" : "false"},
+          {"inner", request.inner ? request.inner->text : ""},
           {"voxel-size", number(options.grid.voxel_size)},
           {"voxels-per-distance", number(options.grid.voxels_per_distance)},
           {"collision", options.collision == Collision::Merge ? "merge" : "limit"},
           {"solver", options.solver == Solver::Eikonal ? "eikonal" : "closest"},
-          {"weld", args.weld_text},
-          {"orient", args.orient_text},
-          {"symmetry", fmt::format("{}", fmt::join(args.symmetry_texts, " "))},
-          {"normals", args.write.normals == io::Normals::Keep ? "keep" : "recompute"},
-          {"precision", args.write.digits > 0 ? fmt::format("{}", args.write.digits) : "automatic"},
+          {"weld", request.weld_text},
+          {"orient", request.orient_text},
+          {"symmetry", fmt::format("{}", fmt::join(request.symmetry_texts, " "))},
+          {"normals", request.write.normals == io::Normals::Keep ? "keep" : "recompute"},
+          {"precision", request.write.digits > 0 ? fmt::format("{}", request.write.digits) : "automatic"},
           {"threads", fmt::format("{}", options.threads)},
           {"max-memory", fmt::format("{}", options.max_memory)},
-          {"strict", args.strict ? "true" : "false"}};
+          {"strict", request.strict ? "true" : "false"}};
 }
 
-RunFacts facts_of(const Arguments& args, const Destination& to, Clock::time_point start) {
+RunFacts facts_of(const Job& job, const Destination& to, Clock::time_point start) {
   RunFacts facts;
-  facts.input = args.input;
+  facts.input = job.request.input;
   facts.output = to.mesh;
   facts.distance_text = to.distance;
   facts.total_seconds = seconds_since(start);
-  facts.options = options_in_force(args, to);
+  facts.options = options_in_force(job, to);
   return facts;
 }
 
-void write_report(const Arguments& args, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+void write_report(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
                   Clock::time_point start) {
-  RunFacts facts = facts_of(args, outcome.to, start);
+  RunFacts facts = facts_of(job, outcome.to, start);
   facts.shell = shell;
   write_file(outcome.to.report, report_json(outcome.result, facts));
 }
@@ -133,7 +134,7 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
 void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>& paths) {
   Curves lines;
   for (const std::vector<Vec3d>& places : paths) {
-    if (places.size() < 2) continue;  // of who stayed
+    if (places.size() < 2) continue;  // of vertices that stay
     for (const Vec3d& place : places) {
       lines.corners.push_back(static_cast<std::uint32_t>(lines.positions.size()));
       lines.positions.push_back(place);
@@ -147,19 +148,20 @@ void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>&
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-std::vector<Destination> destinations(const Arguments& args) {
+std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances) {
   std::vector<std::string> texts;
-  for (const DistanceRequest& request : args.distances) texts.push_back(request.text);
+  for (const DistanceRequest& each : distances) texts.push_back(each.text);
   std::vector<Destination> all;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
-    all.push_back({named(args.output), named(args.report), named(args.states), named(args.paths), texts[i]});
+    all.push_back(
+        {named(request.output), named(request.report), named(request.states), named(request.paths), texts[i]});
   }
   return all;
 }
 
-void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written) {
-  if (args.quiet) return;
+void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written) {
+  if (request.quiet) return;
   if (!written.lost.empty()) tell(fmt::format("{}: not carried over: {}", path, written.lost));
   if (written.disagreeing_normals > 0)
     tell(
@@ -172,36 +174,37 @@ std::string name_of_layer(const std::string& output, std::size_t number, std::si
   return numbered(output, number, of, fmt::format("{}", number));
 }
 
-void write_layers_report(const Arguments& args, const LayersResult& result, const LayerReport& report,
+void write_layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
                          Clock::time_point start) {
-  RunFacts facts = facts_of(args, {args.output, args.report, args.states, {}, {}}, start);
+  const Request& request = job.request;
+  RunFacts facts = facts_of(job, {request.output, request.report, request.states, {}, {}}, start);
   facts.layers = report;
-  write_file(args.report, report_json(result, facts));
+  write_file(request.report, report_json(result, facts));
 }
 
-void write_iso_report(const Arguments& args, const Destination& to, const IsoResult& result, Clock::time_point start,
+void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,
                       const ShellFacts* shell, const IsoResult* inner) {
-  RunFacts facts = facts_of(args, to, start);
+  RunFacts facts = facts_of(job, to, start);
   if (shell) facts.shell = *shell;
   if (inner) facts.inner_surface = inner->statistics;
   write_file(to.report, report_json(result.statistics, facts));
 }
 
-std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,
-                                        Clock::time_point start) {
+std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start) {
+  const Request& request = job.request;
   const Destination& to = outcome.to;
   const OffsetResult& result = outcome.result;
   if (result.field)
-    save_vdb(*result.field, args.vdb, result.statistics.facts.closed(),
-             {{"source", args.input},
+    save_vdb(*result.field, request.vdb, result.statistics.facts.closed(),
+             {{"source", request.input},
               {"offset_distance", to.distance},
               {"made_by", std::string("vdb_offset ") + version()}});
-  const PolygonView mesh = source.view();
+  const PolygonView mesh = job.source.view();
   const auto writing = Clock::now();
   std::optional<Shell> shell;
   std::optional<ShellFacts> facts;
-  if (args.shell) {
-    shell = shell_of(mesh, outcome.result, args.options, outcome.inner);
+  if (job.shell) {
+    shell = shell_of(mesh, outcome.result, job.options, outcome.inner);
     tell_states(*shell, outcome.result);
     facts = shell->facts;
   }
@@ -209,12 +212,10 @@ std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& sou
     io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin},
                      {result.states, result.achieved, result.distances});
   if (!to.paths.empty()) write_paths(to.paths, result.paths);
-  io::WriteOptions options = args.write;
-  options.format = format_of(to.mesh, args);
-  const io::WriteResult written = write_mesh_or_shell(source, outcome, shell, options);
+  const io::WriteResult written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!to.report.empty()) write_report(args, outcome, facts, start);
-  tell_losses(args, to.mesh, written);
+  if (!to.report.empty()) write_report(job, outcome, facts, start);
+  tell_losses(request, to.mesh, written);
   return facts;
 }
 

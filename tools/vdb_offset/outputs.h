@@ -1,10 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "inputs.h"
+#include "job.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/layer_report.h"
@@ -16,15 +17,15 @@ namespace vdb_offset::tool {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start);
 
-/// Where the offset for one distance goes. Names of files that were not asked for are empty.
-struct Destination {
-  std::string mesh, report, states, paths;
-  std::string distance;  ///< As given.
+/// When a run began, and how long it took to read its input.
+struct Timing {
+  Clock::time_point start;
+  double read_seconds;
 };
 
 /// One for each distance: `{i}` in a name becomes its number, from 001 on, `{d}` the distance as given; without either
 /// the number is put behind the name, if there are several.
-std::vector<Destination> destinations(const Arguments& args);
+std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances);
 
 /// What is written for one distance.
 struct Outcome {
@@ -37,19 +38,18 @@ struct Outcome {
 std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of);
 
 /// Tells on standard error what a mesh could not be given.
-void tell_losses(const Arguments& args, const std::string& path, const io::WriteResult& written);
+void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written);
 
 /// The report of a run with --layers, to where the command line says.
-void write_layers_report(const Arguments& args, const LayersResult& result, const LayerReport& report,
+void write_layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
                          Clock::time_point start);
 
 /// The report of a run with --mode iso, to where it goes.
-void write_iso_report(const Arguments& args, const Destination& to, const IsoResult& result, Clock::time_point start,
+void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,
                       const ShellFacts* shell = nullptr, const IsoResult* inner = nullptr);
 
 /// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
 /// held before. Returns the facts of a shell, if it is one.
-std::optional<ShellFacts> write_outputs(const Arguments& args, const Source& source, const Outcome& outcome,
-                                        Clock::time_point start);
+std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start);
 
 }  // namespace vdb_offset::tool

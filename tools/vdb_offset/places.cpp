@@ -63,49 +63,48 @@ void add_source_of(std::vector<Place>& places, const std::string& option, const 
   if (!request.from.starts_with("ply:")) add(places, option, request.from);
 }
 
-std::vector<Place> read_by(const Arguments& args) {
-  std::vector<Place> places = surroundings_of(args);
-  places.insert(places.begin(), {"INPUT", args.input});
-  add(places, "--fit", args.fit);
-  if (args.inner) add_source_of(places, "--inner", *args.inner);
-  if (!args.layers) return places;
-  add(places, "--heights", args.layers->heights);
-  for (const std::string& path : args.layers->files_of_heights) add(places, "--heights", path);
-  if (args.layers->first) add_source_of(places, "--first-height", *args.layers->first);
-  if (args.layers->total) add_source_of(places, "--total-thickness", *args.layers->total);
+std::vector<Place> read_by(const Request& request) {
+  std::vector<Place> places = surroundings_of(request);
+  places.insert(places.begin(), {"INPUT", request.input});
+  add(places, "--fit", request.fit);
+  if (request.inner) add_source_of(places, "--inner", *request.inner);
+  if (!request.layers) return places;
+  add(places, "--heights", request.layers->heights);
+  if (request.layers->first) add_source_of(places, "--first-height", *request.layers->first);
+  if (request.layers->total) add_source_of(places, "--total-thickness", *request.layers->total);
   return places;
 }
 
-void add_layers(std::vector<Place>& places, const Arguments& args, std::size_t layers) {
-  const auto volume = io::volume_format_of(args.output);
-  const bool is_one = volume || io::structured_format_of(args.output);
-  if (is_one) places.push_back({"OUTPUT", args.output});
+/// `layers`: how many surfaces are written, if the output is no volume mesh.
+std::vector<Place> written_with_layers(const Request& request, std::size_t layers) {
+  std::vector<Place> places;
+  const auto volume = io::volume_format_of(request.output);
+  const bool is_one = volume || io::structured_format_of(request.output);
+  if (is_one) places.push_back({"OUTPUT", request.output});
   else
     for (std::size_t k = 1; k <= layers; ++k)
-      places.push_back({"OUTPUT", name_of_layer(args.output, k, layers), layers == 1});
+      places.push_back({"OUTPUT", name_of_layer(request.output, k, layers), layers == 1});
   if (volume == io::VolumeFormat::Foam)
-    for (const char* const name : io::kFoamFiles) places.push_back({"OUTPUT", (fs::path(args.output) / name).string()});
-  add(places, "--report", args.report);
-  add(places, "--states", args.states);
+    for (const char* const name : io::kFoamFiles)
+      places.push_back({"OUTPUT", (fs::path(request.output) / name).string()});
+  add(places, "--report", request.report);
+  add(places, "--states", request.states);
+  return places;
 }
 
-std::vector<Place> written_by(const Arguments& args, std::size_t layers) {
+std::vector<Place> written_by(const Request& request, std::vector<Destination> destinations) {
   std::vector<Place> places;
-  if (args.layers) {
-    add_layers(places, args, layers > 0 ? layers : args.layers->count);
-    return places;
-  }
-  std::vector<Destination> destinations = tool::destinations(args);
-  if (destinations.empty()) destinations.push_back({args.output, args.report, args.states, args.paths, {}});
+  // A scene alone has not told of its distance yet.
+  if (destinations.empty()) destinations.push_back({request.output, request.report, request.states, request.paths, {}});
   // A scene is no mesh, and several outputs that begin to replace the input are an oversight.
-  const bool may_be_input = destinations.size() == 1 && !scene::is_scene(args.input);
+  const bool may_be_input = destinations.size() == 1 && !scene::is_scene(request.input);
   for (const Destination& to : destinations) {
     places.push_back({"OUTPUT", to.mesh, may_be_input});
     add(places, "--report", to.report);
     add(places, "--states", to.states);
     add(places, "--paths", to.paths);
   }
-  add(places, "--save-vdb", args.vdb);
+  add(places, "--save-vdb", request.vdb);
   return places;
 }
 
@@ -126,24 +125,32 @@ void require_apart(std::span<const Place> read, std::span<const Place> written) 
   }
 }
 
-void require_apart(const Arguments& args, std::size_t layers, const std::string& mesh_of_scene) {
-  if (!args.fit.empty() && identity_of(args.fit, STDIN_FILENO) == identity_of(args.input, STDIN_FILENO))
-    throw UsageError("--fit: expected a file other than the input, got " + shown(args.fit));
-  std::vector<Place> read = read_by(args);
+void require_apart(const Request& request, const std::string& mesh_of_scene) {
+  if (!request.fit.empty() && identity_of(request.fit, STDIN_FILENO) == identity_of(request.input, STDIN_FILENO))
+    throw UsageError("--fit: expected a file other than the input, got " + shown(request.fit));
+  std::vector<Place> read = read_by(request);
   add(read, "the scene's file", mesh_of_scene);
-  require_apart(read, written_by(args, layers));
+  require_apart(read, request.layers ? written_with_layers(request, request.layers->count)
+                                     : written_by(request, destinations(request, request.distances)));
+}
+
+void require_apart(const Job& job) {
+  std::vector<Place> read = read_by(job.request);
+  for (const std::string& path : job.files_of_heights) add(read, "--heights", path);
+  require_apart(read, job.request.layers ? written_with_layers(job.request, job.distances.size())
+                                         : written_by(job.request, job.outputs));
 }
 
 bool is_standard_output(const std::string& path) {
   return !path.empty() && identity_of(path, STDOUT_FILENO) == identity_of("-", STDOUT_FILENO);
 }
 
-std::vector<Place> surroundings_of(const Arguments& args) {
+std::vector<Place> surroundings_of(const Request& request) {
   std::vector<Place> places;
-  for (const std::string& path : args.obstacles) add(places, "--obstacle", path);
-  for (const io::Selector& part : args.only)
+  for (const std::string& path : request.obstacles) add(places, "--obstacle", path);
+  for (const io::Selector& part : request.only)
     if (part.by == io::Selector::By::File) add(places, "--only", part.name);
-  for (const DistanceRequest& request : args.distances) add_source_of(places, args.distance_option, request);
+  for (const DistanceRequest& each : request.distances) add_source_of(places, request.distance_option, each);
   return places;
 }
 

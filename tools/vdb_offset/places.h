@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "args.h"
+#include "job.h"
 
 namespace vdb_offset::tool {
 
@@ -18,14 +18,17 @@ struct Place {
 /// path, through links and hard links. `-` is standard input or output, whatever these are.
 void require_apart(std::span<const Place> read, std::span<const Place> written);
 
-/// The same for all that a run is told of: once for what the command line says, and again for what is known when the
-/// input has been read, before anything is written. `layers`: how many surfaces are written, if that is known.
-void require_apart(const Arguments& args, std::size_t layers = 0, const std::string& mesh_of_scene = {});
+/// \throw UsageError as above, for all that a request names. It is asked before anything is read; `mesh_of_scene` is
+/// the file that a scene names, once that is known.
+void require_apart(const Request& request, const std::string& mesh_of_scene = {});
+
+/// \throw UsageError as above, for all that a job reads and writes. It is asked before anything is written.
+void require_apart(const Job& job);
 
 /// Whether a path is standard output, as `-` and /dev/stdout are.
 bool is_standard_output(const std::string& path);
 
 /// The files that options name which `check` has as well.
-std::vector<Place> surroundings_of(const Arguments& args);
+std::vector<Place> surroundings_of(const Request& request);
 
 }  // namespace vdb_offset::tool

@@ -15,8 +15,8 @@ namespace vdb_offset::tool {
 namespace {
 
 /// Whether standard output holds a file.
-bool output_is_taken(const Arguments& args) {
-  return is_standard_output(args.output) || is_standard_output(args.report);
+bool output_is_taken(const Request& request) {
+  return is_standard_output(request.output) || is_standard_output(request.report);
 }
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
@@ -148,25 +148,26 @@ std::string turned_round(const std::string& text) {
 }
 
 /// The option that sends what was asked for to the other side.
-std::string option_for_other_side(const Arguments& args) {
-  const DistanceRequest* const request = !args.layers         ? &args.distances.front()
-                                         : args.layers->first ? &*args.layers->first
-                                         : args.layers->total ? &*args.layers->total
-                                                              : nullptr;
-  if (!request) return "heights below 0";
-  if (!request->from.empty()) return "distances of the other sign";
-  const char* const option = !args.layers ? "--distance" : args.layers->first ? "--first-height" : "--total-thickness";
-  return fmt::format("{} {}", option, turned_round(request->text));
+std::string option_for_other_side(const Job& job) {
+  const std::optional<LayersRequest>& layers = job.request.layers;
+  const DistanceRequest* const asked = !layers         ? &job.asked.front()
+                                       : layers->first ? &*layers->first
+                                       : layers->total ? &*layers->total
+                                                       : nullptr;
+  if (!asked) return "heights below 0";
+  if (!asked->from.empty()) return "distances of the other sign";
+  const char* const option = !layers ? "--distance" : layers->first ? "--first-height" : "--total-thickness";
+  return fmt::format("{} {}", option, turned_round(asked->text));
 }
 
-void print_room(std::FILE* out, const Arguments& args, const SideRoom& room) {
+void print_room(std::FILE* out, const Job& job, const SideRoom& room) {
   if (!room.suggests_other()) return;
   fmt::print(
       out,
       "there is room for that on this side of {:.0f} % of the {}, on the other side of {:.0f} %: if {} the wrong "
       "way, {} goes there\n",
-      100 * room.here, args.curves ? "curves" : "surface", 100 * room.there, args.curves ? "curves run" : "faces point",
-      option_for_other_side(args));
+      100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
+      job.curves() ? "curves run" : "faces point", option_for_other_side(job));
 }
 
 void print_curve_ends(std::FILE* out, const Source& source) {
@@ -180,27 +181,26 @@ void print_curve_ends(std::FILE* out, const Source& source) {
              open.size(), plural(open.size()), open.front().gap, open.front().length);
 }
 
-void print_disagreeing(std::FILE* out, const Arguments& args, const OffsetStatistics& statistics) {
+void print_disagreeing(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
   if (statistics.disagreeing_distances > 0)
     fmt::print(out, "{} {} stand with one of which another distance was asked; they go the mean\n",
-               statistics.disagreeing_distances, args.curves ? "points" : "vertices");
+               statistics.disagreeing_distances, job.curves() ? "points" : "vertices");
 }
 
 /// What of the input leaves a result in doubt.
-void print_doubts(std::FILE* out, const Arguments& args, const Source& source, const OffsetStatistics& statistics,
-                  const Distances& distances) {
+void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances) {
   print_seams(out, statistics.facts.seams, std::abs(distances.farthest()));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
   if (in(VertexState::Limited) + in(VertexState::Collision) > 0) print_slivers(out, statistics.facts);
-  if (source.curves) print_curve_ends(out, source);
-  else print_orientation(out, statistics.facts, args.options.orient);
-  print_room(out, args, statistics.room);
+  if (job.curves()) print_curve_ends(out, job.source);
+  else print_orientation(out, statistics.facts, job.options.orient);
+  print_room(out, job, statistics.room);
   print_borders(out, statistics.borders);
   const LimitStatistics& limit = statistics.limit;
   if (limit.source_crossings > 0)
     fmt::print(out, "the input crosses itself: {}{} pairs of {} meet, left as they are; {}\n",
                limit.more_source_crossings ? "more than " : "", limit.source_crossings,
-               source.curves ? "segments" : "triangles",
+               job.curves() ? "segments" : "triangles",
                limit.more_source_crossings ? "what is beside them is not looked at"
                                            : fmt::format("{} more beside them", limit.crossings_near_source));
 }
@@ -287,21 +287,21 @@ void print_iso_plan(std::FILE* out, const IsoStatistics& statistics, double dist
 
 }  // namespace
 
-void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest) {
+void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Distances& farthest) {
   const Printout out;
-  print_facts(out, statistics.facts, args.curves);
+  print_facts(out, statistics.facts, job.curves());
   print_plan(out, statistics, farthest);
   print_seams(out, statistics.facts.seams, std::abs(farthest.farthest()));
-  if (!args.curves) print_orientation(out, statistics.facts, args.options.orient);
+  if (!job.curves()) print_orientation(out, statistics.facts, job.options.orient);
 }
 
-void print_summary(const Arguments& args, const Source& source, const Outcome& outcome,
-                   const std::optional<ShellFacts>& shell, double total_seconds) {
-  const Printout out(output_is_taken(args));
+void print_summary(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+                   double total_seconds) {
+  const Printout out(output_is_taken(job.request));
   const OffsetResult& result = outcome.result;
   const AchievedSummary achieved = summarise(result);
-  const char* const vertices = source.curves ? "points" : "vertices";
-  if (args.verbose) print_details(out, result.statistics, result.distances, args.curves);
+  const char* const vertices = job.curves() ? "points" : "vertices";
+  if (job.request.verbose) print_details(out, result.statistics, result.distances, job.curves());
   const std::string asked = result.distances.uniform()
                                 ? fmt::format("{:.6g}", result.distances[0])
                                 : fmt::format("{:.6g} to {:.6g}", achieved.asked_least, achieved.asked_most);
@@ -310,25 +310,25 @@ void print_summary(const Arguments& args, const Source& source, const Outcome& o
   print_states(out, result);
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
   if (shell) print_shell(out, outcome.to.mesh, *shell);
-  print_disagreeing(out, args, result.statistics);
+  print_disagreeing(out, job, result.statistics);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
-  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, args.options.clearance);
-  print_doubts(out, args, source, result.statistics, result.distances);
+  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
+  print_doubts(out, job, result.statistics, result.distances);
 }
 
-void print_iso_dry_run(const Arguments& args, const IsoStatistics& statistics, double distance) {
+void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance) {
   const Printout out;
   print_iso_plan(out, statistics, distance);
   print_seams(out, statistics.source.seams, std::abs(distance));
-  print_orientation(out, statistics.source, args.options.orient);
+  print_orientation(out, statistics.source, job.options.orient);
 }
 
-void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
+void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
                           const IsoResult& captured, const IsoResult* inner, double total_seconds) {
-  print_iso_summary(args, path, distance, captured, total_seconds);
-  if (inner) print_iso_summary(args, path, inner->statistics.distance, *inner, total_seconds);
+  print_iso_summary(job, path, distance, captured, total_seconds);
+  if (inner) print_iso_summary(job, path, inner->statistics.distance, *inner, total_seconds);
   const ShellFacts& shell = hollow.facts;
-  const Printout out(output_is_taken(args));
+  const Printout out(output_is_taken(job.request));
   fmt::print(out, "{}: hollow solid {}, {}, volume {:.6g}, {} pairs of triangles meet", path,
              shell.closed ? "closed" : "not closed", shell.oriented ? "oriented" : "not oriented", shell.volume,
              shell.crossings);
@@ -338,12 +338,12 @@ void print_hollow_summary(const Arguments& args, const std::string& path, double
   fmt::print(out, "\n");
 }
 
-void print_iso_summary(const Arguments& args, const std::string& path, double distance, const IsoResult& result,
+void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds) {
-  const Printout out(output_is_taken(args));
+  const Printout out(output_is_taken(job.request));
   const IsoStatistics& found = result.statistics;
   const MeshFaults& left = found.mending.left;
-  if (args.verbose) {
+  if (job.request.verbose) {
     print_iso_plan(out, found, distance);
     for (const Stage stage : kIsoStages)
       fmt::print(out, "{:<10} {:.3f} s\n", name(stage), found.seconds[static_cast<std::size_t>(stage)]);
@@ -359,18 +359,17 @@ void print_iso_summary(const Arguments& args, const std::string& path, double di
                found.dropped_specks, found.dropped_specks == 1 ? "" : "s", found.plan.voxel_size);
   print_solids(out, found);
   print_seams(out, found.source.seams, std::abs(distance));
-  print_orientation(out, found.source, args.options.orient);
+  print_orientation(out, found.source, job.options.orient);
 }
 
-void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,
-                          const LayerReport& report, double total_seconds) {
-  const Printout out(output_is_taken(args));
-  if (args.verbose) print_details(out, result.statistics, result.heights.back(), args.curves);
-  fmt::print(out, "{}: {}", args.output, summary(report));
+void print_layers_summary(const Job& job, const LayersResult& result, const LayerReport& report, double total_seconds) {
+  const Printout out(output_is_taken(job.request));
+  if (job.request.verbose) print_details(out, result.statistics, result.heights.back(), job.curves());
+  fmt::print(out, "{}: {}", job.request.output, summary(report));
   fmt::print(out, "{:.2f} s\n", total_seconds);
-  print_disagreeing(out, args, result.statistics);
-  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, args.options.clearance);
-  print_doubts(out, args, source, result.statistics, result.heights.back());
+  print_disagreeing(out, job, result.statistics);
+  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
+  print_doubts(out, job, result.statistics, result.heights.back());
 }
 
 }  // namespace vdb_offset::tool

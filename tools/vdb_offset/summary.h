@@ -3,8 +3,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "args.h"
-#include "inputs.h"
+#include "job.h"
 #include "outputs.h"
 #include "vdb_offset/hollow.h"
 #include "vdb_offset/iso_surface.h"
@@ -14,26 +13,25 @@
 namespace vdb_offset::tool {
 
 /// What --dry-run prints: the mesh's facts and the plan.
-void print_dry_run(const Arguments& args, const OffsetStatistics& statistics, const Distances& farthest);
+void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Distances& farthest);
 
 /// What is printed of one output; with --verbose all that is known of the mesh and the grid. Goes to standard output
 /// unless the mesh does.
-void print_summary(const Arguments& args, const Source& source, const Outcome& outcome,
-                   const std::optional<ShellFacts>& shell, double total_seconds);
+void print_summary(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+                   double total_seconds);
 
 /// What --dry-run prints with --mode iso.
-void print_iso_dry_run(const Arguments& args, const IsoStatistics& statistics, double distance);
+void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance);
 
 /// What is printed of a captured surface.
-void print_iso_summary(const Arguments& args, const std::string& path, double distance, const IsoResult& result,
+void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds);
 
 /// The same of a hollow solid; `inner` is its inner skin if that was captured beside the outer one.
-void print_hollow_summary(const Arguments& args, const std::string& path, double distance, const Hollow& hollow,
+void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
                           const IsoResult& captured, const IsoResult* inner, double total_seconds);
 
 /// The same of layers.
-void print_layers_summary(const Arguments& args, const Source& source, const LayersResult& result,
-                          const LayerReport& report, double total_seconds);
+void print_layers_summary(const Job& job, const LayersResult& result, const LayerReport& report, double total_seconds);
 
 }  // namespace vdb_offset::tool

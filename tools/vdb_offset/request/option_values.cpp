@@ -1,5 +1,5 @@
 // What the texts of single options say.
-#include "option_values.h"
+#include "request/option_values.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
+#include <vector>
 
 #include "vdb_offset/decimal.h"
 #include "vdb_offset/error.h"
@@ -21,12 +22,19 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw UsageError(message);
 }
 
-std::optional<double> parse_number(const char* option, const std::optional<std::string>& text, const char* expected,
-                                   double above, double most) {
-  if (!text) return std::nullopt;
-  const auto value = decimal<double>(*text);
-  require(value && *value > above && *value <= most, fmt::format("{}: expected {}, got '{}'", option, expected, *text));
-  return value;
+std::size_t parse_word(const char* option, const std::string& text, std::initializer_list<const char*> words) {
+  const auto word = std::find(words.begin(), words.end(), text);
+  if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
+  std::string expected;  // 'A', 'B' or 'C'
+  for (auto each = words.begin(); each != words.end(); ++each)
+    expected += fmt::format("{}'{}'", each == words.begin() ? "" : each + 1 == words.end() ? " or " : ", ", *each);
+  throw UsageError(fmt::format("{}: expected {}, got '{}'", option, expected, text));
+}
+
+double parse_number(const char* option, const std::string& text, const char* expected, double above, double most) {
+  const auto value = decimal<double>(text);
+  require(value && *value > above && *value <= most, fmt::format("{}: expected {}, got '{}'", option, expected, text));
+  return *value;
 }
 
 std::size_t parse_size(const std::string& text) {
@@ -53,13 +61,42 @@ int parse_count(const char* option, const std::string& text, int least, int most
   return *value;
 }
 
-DistanceRequest parse_request(const std::string& text) {
+DistanceRequest parse_distance_request(const std::string& text) {
   if (text.starts_with("ply:")) return {text, {}, text};
   if (text.starts_with('@')) {
     if (text.size() == 1) throw InvalidOption("expected a file's name behind the '@'");
     return {text.substr(1), {}, text.substr(1)};
   }
   return {text, scene::parse_distance_or_expression(text), {}};
+}
+
+DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request) {
+  try {
+    DistanceRequest distance = parse_distance_request(text);
+    require(!distance.from.starts_with("ply:") || !scene::is_scene(request.input),
+            fmt::format("{}: expected a file, as a scene has no properties", option));
+    return distance;
+  } catch (const InvalidOption& error) {
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+DistanceRequest parse_distance_from(const std::string& text, const Request& request) {
+  return parse_distance_of("--distance-from", text.starts_with("ply:") ? text : "@" + text, request);
+}
+
+DistanceRequest parse_inner(const std::string& text, const Request& request) {
+  DistanceRequest inner = parse_distance_of("--inner", text, request);
+  require(inner.distance.expression || !inner.from.empty() || inner.distance.value > 0,
+          fmt::format("--inner: expected a distance above 0, got '{}'", text));
+  return inner;
+}
+
+io::Format parse_format(const std::string& text) {
+  const auto format = io::format_of("." + text);
+  require(format && text.find('.') == std::string::npos,
+          fmt::format("--format: expected 'obj', 'ply', 'stl' or 'off', got '{}'", text));
+  return *format;
 }
 
 io::TransportRequest parse_transport(const std::string& text) {
@@ -81,27 +118,21 @@ io::TransportRequest parse_transport(const std::string& text) {
   return request;
 }
 
-std::vector<io::Selector> parse_only(const std::vector<std::string>& texts) {
-  std::vector<io::Selector> only;
-  for (const std::string& text : texts) {
-    try {
-      only.push_back(io::parse_selector(text));
-    } catch (const InvalidOption& error) {
-      throw UsageError(std::string("--only: ") + error.what());
-    }
+io::Selector parse_part(const std::string& text) {
+  try {
+    return io::parse_selector(text);
+  } catch (const InvalidOption& error) {
+    throw UsageError(std::string("--only: ") + error.what());
   }
-  return only;
 }
 
 Border parse_border(const std::string& text) {
-  require(text == "slide" || text == "fixed" || text == "free",
-          fmt::format("--border: expected 'slide', 'fixed' or 'free', got '{}'", text));
-  return text == "slide" ? Border::Slide : text == "fixed" ? Border::Fixed : Border::Free;
+  constexpr Border kBorders[] = {Border::Slide, Border::Fixed, Border::Free};
+  return kBorders[parse_word("--border", text, {"slide", "fixed", "free"})];
 }
 
 scene::Distance parse_clearance(const std::string& text) {
   scene::Distance clearance;
-  if (text.empty()) return clearance;
   try {
     clearance = scene::parse_distance(text);
   } catch (const InvalidInput&) {
@@ -128,9 +159,7 @@ WeldOptions parse_weld(const std::string& text) {
 }
 
 Orient parse_orient(const std::string& text) {
-  if (text == "keep") return Orient::Keep;
-  if (text == "fix-direction-only") return Orient::FixDirectionOnly;
-  throw UsageError(fmt::format("--orient: expected 'keep' or 'fix-direction-only', got '{}'", text));
+  return parse_word("--orient", text, {"keep", "fix-direction-only"}) == 0 ? Orient::Keep : Orient::FixDirectionOnly;
 }
 
 SymmetryPlane parse_plane(const std::string& text) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "args.h"
+#include "request/request.h"
 #include "vdb_offset/curves.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -18,8 +20,8 @@ struct Source {
   std::optional<io::CurveFile> curves;
   std::vector<OpenCurve> closed;    ///< Those of the curves that have been closed (see --close),
   std::optional<Curves> as_closed;  ///< and all of them, if any were.
-  Polygons obstacles;
-  std::optional<Polygons> to_fit;
+  Polygons obstacles;               ///< From the command line; a scene's own are in the scene.
+  std::optional<Polygons> to_fit;   ///< From the command line, as well.
 
   PolygonView view() const {
     return file        ? file->polygons.view()
@@ -29,21 +31,18 @@ struct Source {
   }
 };
 
+/// Whether a file holds curves; one that cannot be opened is for the reader to tell of.
+bool holds_curves(const std::string& path);
+
 /// Prints what is wrong with a file that was read all the same.
 void tell_remarks(const io::MeshFile& file);
 
-Source read_source(const Arguments& args);
+/// Reads INPUT, as curves or as a mesh, and the meshes beside it. \throw ReadError, InvalidInput
+Source read_source(const Request& request, bool curves);
 
-/// Curves with other positions. In the format of the source its bytes stay, which know nothing of a curve that has been
-/// closed: there its ends stand where the closed one has them.
+/// Writes curves with other positions. In the format of the source its bytes stay, which know nothing of a curve that
+/// has been closed: there its ends stand where the closed one has them.
 void write_curves(const std::string& path, const Source& source, std::span<const Vec3d> positions,
                   const io::WriteOptions& options);
-
-/// Takes from a scene what the command line leaves open, and settles all options that depend on the mesh. They refer to
-/// the source. Returns the distances: one set for each output, then that of the inner skin if there is one.
-std::vector<Distances> settle_options(Source& source, Arguments& args);
-/// The same for layers: their heights above the wall, from there on. \throw ReadError, InvalidInput for a file of
-/// heights, with its line.
-std::vector<Distances> settle_layers(Source& source, Arguments& args);
 
 }  // namespace vdb_offset::tool

@@ -1,9 +1,10 @@
+// Distances by axis: what --distance-xy and --distance-z say.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "args.h"
+#include "request/option_values.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh_measures.h"
 #include "vdb_offset/metric.h"

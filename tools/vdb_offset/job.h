@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "request/request.h"
+#include "source.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/scene.h"
+
+namespace vdb_offset::tool {
+
+/// Exit codes of the command.
+enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 };
+
+/// Where the offset for one distance goes. Names of files that were not asked for are empty.
+struct Destination {
+  std::string mesh, report, states, paths;
+  std::string distance;  ///< As given.
+};
+
+/// What a request asks of a source: everything that a run needs, lengths in world units. It refers to both.
+struct Job {
+  const Request& request;
+  const Source& source;
+  OffsetOptions options;               ///< All but the distance and the progress.
+  bool shell = false;                  ///< Asked for, or a scene's own wish.
+  std::vector<DistanceRequest> asked;  ///< The distances as given, one for each output; of layers: none.
+  std::vector<Distances> distances;    ///< One set for each output, then that of the inner skin if there is one; of
+                                       ///< layers: their heights above the wall, from there on.
+  std::optional<PolygonView> to_fit;   ///< The mesh that the source is to make room for, in place of a distance.
+  std::vector<std::string> files_of_heights;  ///< Those that a file of heights names.
+  scene::Expectations expect;                 ///< What a scene expects of its own distance.
+  std::vector<Destination> outputs;           ///< One for each distance; of layers: none.
+
+  bool curves() const { return source.curves.has_value(); }
+};
+
+/// Settles all that depends on the mesh: takes from a scene what the command line leaves open, selects faces, evaluates
+/// distances. `job.outputs` and the precision are left to resolve(). \throw ReadError, InvalidInput, InvalidOption
+Job resolve_options(const Request& request, const Source& source);
+
+/// Makes a job of a request, all of it. \throw ReadError, InvalidInput, InvalidOption; for a file of heights with its
+/// line
+Job resolve(const Request& request, const Source& source);
+
+}  // namespace vdb_offset::tool

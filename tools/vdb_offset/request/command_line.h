@@ -1,0 +1,61 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace vdb_offset::tool {
+
+/// The files and options of a command, as CLI11 finds them. Values are taken once the whole line has been understood,
+/// so that --help is answered whatever else is in it: each by the function that was declared with its option, in the
+/// order of declaration.
+class CommandLine {
+ public:
+  using Take = std::function<void(const std::string& text)>;
+
+  /// `more` stands below the options in --help; `help` is the call that prints it, for messages.
+  CommandLine(const char* name, const char* about, const char* more, const char* help);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  /// -V and --version, which print `version`.
+  void add_version(const std::string& version);
+  /// A file that the command cannot do without, by its position.
+  void file(const char* name, const char* about, std::string& path);
+  /// An option with a value, given at most once. `type` stands for the value in --help.
+  void option(const char* names, const char* type, const char* about, Take take);
+  void option(const char* names, const char* type, const char* about, std::string& text);
+  /// An option with a value that may be given several times.
+  void repeated(const char* names, const char* type, const char* about, Take take);
+  void flag(const char* names, const char* about, bool& is_set);
+
+  /// False if the line asked only for help or the version, which are then printed.
+  /// \throw UsageError for a line that is not understood, for empty values, and as the functions that take values do
+  bool parse(int argc, const char* const* argv);
+
+  /// Whether an option was given, by its long name.
+  bool has(const char* option) const;
+
+ private:
+  struct Value {
+    CLI::Option* option;
+    std::string text;
+    std::vector<std::string> texts;  ///< Of one that may be given several times.
+    Take take;
+  };
+  void require_values() const;
+
+  std::unique_ptr<CLI::App> app_;
+  const char* help_;
+  std::deque<Value> values_;  // CLI11 keeps references to their texts
+};
+
+}  // namespace vdb_offset::tool

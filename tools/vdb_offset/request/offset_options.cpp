@@ -1,0 +1,303 @@
+// The options of an offset: the words of --help, and what each option sets.
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "request/command_line.h"
+#include "request/option_rules.h"
+#include "request/option_values.h"
+#include "request/request.h"
+#include "vdb_offset/memory_limit.h"
+#include "vdb_offset/version.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+constexpr const char* kAbout =
+    "Offsets a mesh by a distance and keeps its topology: the same vertices in the same order, the same faces,\n"
+    "texture coordinates, groups and materials; only positions (and normals) change.";
+
+constexpr const char* kMore = R"(
+INPUT and OUTPUT end in .obj, .ply, .stl or .off, compressed with .gz or .zst behind it, or are '-' (standard input and
+output, with --format); INPUT may also be a scene (.json), which brings its distance. The same format in and out keeps
+every byte but coordinates and normals of what moved. Plane curves are files that end in .dat, .txt, .xy or .svg, or an
+.obj with line elements and no face.
+D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
+below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which tells each vertex its
+own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
+functions (sin, sqrt, min ...); a % behind it makes it percent. Several distances give several outputs: NAME_001.obj,
+NAME_002.obj ..., or OUTPUT holds {i} (their number) or {d} (the distance as given).
+
+Examples:
+  vdb_offset bunny.obj bigger.obj --distance 1%         enlarge by 1 % of the diagonal
+  vdb_offset part.stl clearance.stl --distance -0.2     shrink by 0.2 units
+  vdb_offset wing.ply out.ply --distance 0.5% --report out.json --strict
+  vdb_offset big.obj out.obj --distance 2 --dry-run     what would it take?
+  vdb_offset wing.obj skin.obj --distance '0.02*(1 - u)'       thicker towards u = 0
+  vdb_offset car.obj out.obj --distance 5 --only group=roof    one part; the rest stays
+  vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
+  vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
+  vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
+  vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
+  vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
+  vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
+  vdb_offset scenes/torus.json torus.obj                a procedural scene
+  vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
+
+Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
+met), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
+once they are put in place, all together, a signal changes nothing more.
+Report keys, library and guarantees: see the guides in docs/.)";
+
+constexpr int kMostLayers = 1000;  // --layers: a mistyped number is not to fill the memory; not measured
+constexpr double kAny = std::numeric_limits<double>::max();
+// What is above this is 0 or more.
+constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
+
+/// A request that is being made, and values that belong to it only if another option says so.
+struct Draft {
+  Request request;
+  bool is_iso = false, no_sync = false;
+  IsoRequest iso;
+  LayersRequest layers;
+  std::string distance_xy, distance_z;
+};
+
+/// How far, and in which way.
+void declare_distances(CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  line.repeated(
+      "-d,--distance", "D",
+      "Distance: world units, percent of the diagonal as in 1.5%, or an expression; negative is inward; given "
+      "several times: one output each",
+      [&request](const std::string& text) {
+        request.distances.push_back(parse_distance_of("--distance", text, request));
+      });
+  line.option("--mode", "MODE",
+              "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "
+              "closed and manifold, for which INPUT may be anything [topology]",
+              [&draft](const std::string& text) {
+                draft.is_iso = parse_word("--mode", text, {"topology", "iso"}) == 1;
+              });
+  line.option(
+      "--adaptivity", "X",
+      "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [triangles are "
+      "merged where that changes nothing: where it is flat and nothing comes along]",
+      [&draft](const std::string& text) {
+        draft.iso.adaptivity = parse_number("--adaptivity", text, "a number from 0 to 1", kBelowZero, 1);
+      });
+  line.option("--inside", "MODE",
+              "With --mode iso: 'winding' tells what is inside of a mesh that is closed but for small holes, or has "
+              "edges of four faces and more; 'never' takes such a mesh as open, with a surface on all its sides "
+              "[winding]",
+              [&draft](const std::string& text) {
+                draft.iso.use_winding = parse_word("--inside", text, {"winding", "never"}) == 0;
+              });
+  line.flag("--keep-specks", "With --mode iso: keep pieces that enclose less than a voxel, as knife edges leave them",
+            draft.iso.keep_specks);
+  line.option("--transport", "LIST",
+              "With --mode iso: what comes along from INPUT, of 'uv', 'color' and 'material', separated by commas, or "
+              "'none' [all that INPUT has and OUTPUT can hold]",
+              [&draft](const std::string& text) {
+                draft.iso.transport_text = text;
+                draft.iso.transport = parse_transport(text);
+              });
+  line.option("--distance-from", "FILE",
+              "Each vertex's distance, world units: a file of numbers (text or .npy), or 'ply:NAME', a vertex "
+              "property of INPUT; elsewhere '@FILE' and 'ply:NAME' say the same",
+              [&request](const std::string& text) {
+                request.distances.push_back(parse_distance_from(text, request));
+                request.distance_option = "--distance-from";
+              });
+  line.option("--distance-xy", "A",
+              "Instead of --distance, with --distance-z: how far within the plane of x and y, world units or percent",
+              draft.distance_xy);
+  line.option("--distance-z", "B", "With --distance-xy, of its sign: how far along z; 0 is a thousandth of A",
+              draft.distance_z);
+}
+
+/// Which faces, and what is around them.
+void declare_parts(CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  line.repeated("--only", "PART",
+                "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME' or "
+                "'faces=FILE' (indices from 0, or a 0 or 1 for each face); may be repeated",
+                [&request](const std::string& text) {
+                  request.only_texts.push_back(text);
+                  request.only.push_back(parse_part(text));
+                });
+  line.option("--border", "MODE",
+              "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]",
+              [&request](const std::string& text) { request.border = parse_border(text); });
+  line.repeated("--symmetry", "PLANE",
+                "A plane that what lies on it stays in: 'x=0', 'y=1.5', or 'A,B,C,D' for A x + B y + C z = D; may be "
+                "repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told",
+                [&request](const std::string& text) {
+                  request.symmetry_texts.push_back(text);
+                  if (text == "none") request.symmetry.find = false;
+                  else request.symmetry.planes.push_back(parse_plane(text));
+                });
+  line.repeated("--obstacle", "FILE", "A mesh that nothing may touch; may be repeated",
+                [&request](const std::string& text) { request.obstacles.push_back(text); });
+  line.option("--clearance", "C",
+              "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]",
+              [&request](const std::string& text) {
+                request.clearance_text = text;
+                request.clearance = parse_clearance(text);
+              });
+  line.option("--fit", "FILE",
+              "Instead of --distance, with --clearance: what is nearer to this mesh gives way, inward, until it is "
+              "that far from it; all else stays",
+              request.fit);
+}
+
+/// What is made of the offset.
+void declare_products(CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  line.flag("--shell",
+            "Write the source and its offset as one closed solid, joined by a rim where the surface is open; with "
+            "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin",
+            request.shell);
+  line.option("--inner", "E",
+              "With --shell: the inner skin lies this far inward, not on the source; with --mode iso both are clean",
+              [&request](const std::string& text) { request.inner = parse_inner(text, request); });
+  line.option("--layers", "N",
+              "Grow N layers of cells: with --first-height or --total-thickness, and --growth; OUTPUT is .vtu, .msh, "
+              ".cgns, .su2, a folder called polyMesh, or a mesh for each layer",
+              [&draft](const std::string& text) {
+                draft.layers.count = static_cast<std::size_t>(parse_count("--layers", text, 1, kMostLayers));
+              });
+  line.option("--first-height", "A", "Height of the first layer, as --distance", [&](const std::string& text) {
+    draft.layers.first = parse_distance_of("--first-height", text, request);
+  });
+  line.option("--total-thickness", "T", "Height of all layers together, as --distance", [&](const std::string& text) {
+    draft.layers.total = parse_distance_of("--total-thickness", text, request);
+  });
+  line.option("--growth", "R", "Each layer's height by that of the one below [1.2]", [&draft](const std::string& text) {
+    draft.layers.growth = parse_number("--growth", text, "a number above 0, up to 10", 0, 10);
+  });
+  line.option("--heights", "FILE", "A file of heights above the wall, one a line, each as --distance",
+              draft.layers.heights);
+  line.flag("--structured",
+            "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
+            draft.layers.structured);
+  line.flag("--close",
+            "Of curves: close those whose ends are near each other, by a straight segment, as over the base of a "
+            "blunt trailing edge",
+            request.close);
+}
+
+/// How it is computed.
+void declare_method(CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  line.option("--voxel-size", "H", "Voxel size of the direction field, world units [automatic: about D]",
+              [&request](const std::string& text) {
+                request.grid.voxel_size = parse_number("--voxel-size", text, "a number above 0", 0, kAny);
+              });
+  line.option("--voxels-per-distance", "N", "The same as D / N", [&request](const std::string& text) {
+    request.grid.voxels_per_distance = parse_number("--voxels-per-distance", text, "a number above 0", 0, kAny);
+  });
+  line.option("--collision", "MODE",
+              "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
+              "far as the distance grows [limit]",
+              [&request](const std::string& text) {
+                request.collision =
+                    parse_word("--collision", text, {"limit", "merge"}) == 1 ? Collision::Merge : Collision::Limit;
+              });
+  line.option(
+      "--solver", "NAME", "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]",
+      [&request](const std::string& text) {
+        request.solver = parse_word("--solver", text, {"closest", "eikonal"}) == 1 ? Solver::Eikonal : Solver::Closest;
+      });
+  line.option(
+      "--weld", "MODE",
+      "Vertices that move as one: 'auto' (equal positions, and borders that are one but for the file's rounding), "
+      "'exact' (equal positions), 'none', or within TOL world units [auto]",
+      [&request](const std::string& text) {
+        request.weld_text = text;
+        request.weld = parse_weld(text);
+      });
+  line.option("--orient", "MODE",
+              "Outward is where the faces point ('keep'), or out of what a closed component encloses even where it "
+              "is inside out ('fix-direction-only'; the faces stay as they are) [keep]",
+              [&request](const std::string& text) {
+                request.orient_text = text;
+                request.orient = parse_orient(text);
+              });
+}
+
+/// How files are written, which ones, and with what means.
+void declare_files(CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  line.option("--format", "NAME", "Format of '-' and of files with another ending: 'obj', 'ply', 'stl' or 'off'",
+              [&request](const std::string& text) { request.format = parse_format(text); });
+  line.option(
+      "--normals", "MODE", "Normals of the file where faces moved: 'recompute' or 'keep' them as they are [recompute]",
+      [&request](const std::string& text) {
+        request.write.normals =
+            parse_word("--normals", text, {"recompute", "keep"}) == 1 ? io::Normals::Keep : io::Normals::Recompute;
+      });
+  line.option(
+      "--precision", "N",
+      "Significant digits of moved coordinates in text, 1 to 17 [as many as read back to the same number]",
+      [&request](const std::string& text) { request.write.digits = parse_count("--precision", text, 1, kMostDigits); });
+  line.option(
+      "--threads", "N", "Threads; 0 takes all; the result is the same for any number [0]",
+      [&request](const std::string& text) { request.threads = parse_count("--threads", text, 0, kMostThreads); });
+  line.option("--max-memory", "SIZE", "Refuse work that would need more, as in 4G [80 % of what is free]",
+              [&request](const std::string& text) { request.max_memory = parse_size(text); });
+  line.option("--report", "FILE", "Write what happened as JSON", request.report);
+  line.option("--states", "FILE",
+              "Write state, target and achieved distance of every vertex: .csv, or .ply to colour by in a viewer",
+              request.states);
+  line.option("--paths", "FILE", "Write the path of every vertex as a line: .obj (or .txt)", request.paths);
+  line.option("--save-vdb", "FILE", "Write phi and the closest triangles as OpenVDB grids", request.vdb);
+}
+
+/// How a run goes.
+void declare_run(CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  line.flag("--no-sync", "Do not wait until outputs are on the disk before they get their names", draft.no_sync);
+  line.flag("--strict", "Exit with 3 if a vertex in use falls short of the distance", request.strict);
+  line.flag("--dry-run", "Read the input, print what would be done, write nothing", request.dry_run);
+  line.flag("-q,--quiet", "Print nothing but errors", request.quiet);
+  line.flag("-v,--verbose", "Print the mesh's facts and the seconds of each stage", request.verbose);
+}
+
+/// Puts in what several options say together.
+void complete(const CommandLine& line, Draft& draft) {
+  Request& request = draft.request;
+  if (draft.is_iso) request.iso = draft.iso;
+  if (line.has("--layers") || line.has("--heights")) request.layers = draft.layers;
+  if (draft.no_sync) request.sync = OutputFiles::Sync::No;
+  constexpr std::size_t kParts = 5, kPartsTaken = 4;  // of the free memory, as --help says
+  if (request.max_memory == 0) request.max_memory = std::max<std::size_t>(1, available_memory() / kParts * kPartsTaken);
+  request.axes = parse_axes(draft.distance_xy, draft.distance_z);
+  if (request.axes)
+    request.distances.push_back({draft.distance_xy + " xy " + draft.distance_z + " z", request.axes->xy, {}});
+  if (!request.fit.empty()) request.distances.push_back({"fit", {}, {}});
+}
+
+}  // namespace
+
+std::optional<Request> parse_command_line(int argc, const char* const* argv) {
+  Draft draft;
+  CommandLine line("vdb_offset", kAbout, kMore, "--help");
+  line.add_version(std::string("vdb_offset ") + version());
+  line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
+            draft.request.input);
+  line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
+  declare_distances(line, draft);
+  declare_parts(line, draft);
+  declare_products(line, draft);
+  declare_method(line, draft);
+  declare_files(line, draft);
+  declare_run(line, draft);
+  if (!line.parse(argc, argv)) return std::nullopt;
+  require_together(line, draft.is_iso);
+  complete(line, draft);
+  require_sound(draft.request);
+  return draft.request;
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,178 @@
+// Which options of an offset go together, and which names of files go with them.
+#include "request/option_rules.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "request/option_values.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/volume_file.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+using Names = std::initializer_list<const char*>;
+
+/// `by` says in words which option these need.
+void require_with(const CommandLine& line, bool is_given, const char* by, Names options) {
+  for (const char* const option : options)
+    require(is_given || !line.has(option), fmt::format("{}: expected it with {}", option, by));
+}
+
+/// `by` says in words which option excludes these.
+void require_without(const CommandLine& line, bool is_given, const char* by, Names options) {
+  for (const char* const option : options)
+    require(!is_given || !line.has(option), fmt::format("{}: expected it without {}", option, by));
+}
+
+void require_one(const CommandLine& line, const char* option, const char* other) {
+  require(!line.has(option) || !line.has(other), fmt::format("{}: expected it or {}, got both", option, other));
+}
+
+/// `as` says in words what is expected where there is one of those that are given.
+void require_none(const char* as, std::initializer_list<std::pair<const char*, bool>> given) {
+  for (const auto& [name, is_given] : given)
+    require(!is_given, fmt::format("{}: expected {}, as this is not for {}", name, as,
+                                   std::string(as) == "a mesh" ? "curves" : "meshes"));
+}
+
+constexpr const char* kMeshEndings = ".obj, .ply, .stl or .off (or these and .gz or .zst)";
+
+void require_structured(const Request& request) {
+  require(!request.layers || request.layers->structured == io::structured_format_of(request.output).has_value(),
+          request.output + ": expected .vts or .xyz with --structured, and nothing else");
+}
+
+/// Curves stay curves, and know nothing of faces.
+void require_for_curves(const Request& request) {
+  const auto volume = io::volume_format_of(request.output);
+  const bool cells =
+      volume == io::VolumeFormat::Vtu || volume == io::VolumeFormat::Su2 || io::structured_format_of(request.output);
+  require(io::curve_format_of(request.output).has_value() || (request.layers && cells),
+          request.output +
+              ": expected an output that ends in .dat, .txt, .xy, .svg or .obj, or with --layers in "
+              ".vtu, .su2, .vts or .xyz, as the input holds curves");
+  require_structured(request);
+  require_none("a mesh", {{"--only", !request.only.empty()},
+                          {"--border", request.border.has_value()},
+                          {"--symmetry", !request.symmetry_texts.empty()},
+                          {"--obstacle", !request.obstacles.empty()},
+                          {"--shell", request.shell},
+                          {"--mode iso", request.iso.has_value()},
+                          {"--weld", request.weld_text != "auto" && request.weld_text != "exact"},
+                          {"--orient", request.orient_text != "keep"},
+                          {"--fit", !request.fit.empty()}});
+  require(!request.axes || request.write.digits == 0,
+          "--precision: expected it without --distance-xy where there are curves");
+}
+
+void require_for_mesh(const Request& request) {
+  require_none("curves", {{"--close", request.close}});
+  require(scene::is_scene(request.input) || format_of(request.input, request),
+          request.input +
+              ": expected an input that ends in .obj, .ply, .stl, .off (or these and .gz or .zst) or "
+              ".json, or --format");
+  const bool volume =
+      io::volume_format_of(request.output).has_value() || io::structured_format_of(request.output).has_value();
+  require(!volume || request.layers, request.output + ": expected a mesh, as this is for --layers");
+  require_structured(request);
+  require(volume || format_of(request.output, request).has_value(),
+          fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
+}
+
+void require_endings(const Request& request) {
+  require(request.states.empty() || io::is_states_file(request.states),
+          request.states + ": expected a file of states that ends in .csv or .ply");
+  require(request.paths.empty() ||
+              (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg),
+          request.paths + ": expected a file of paths that ends in .obj or .txt");
+  require(request.vdb != "-", "--save-vdb: expected a file, got '-'");
+  for (const std::string& path : request.obstacles)
+    require(format_of(path, request).has_value(),
+            fmt::format("{}: expected an obstacle that ends in {}", path, kMeshEndings));
+  require(request.fit.empty() || format_of(request.fit, request),
+          fmt::format("{}: expected a mesh that ends in {}", request.fit, kMeshEndings));
+}
+
+/// Distances of an iso-surface are even, and not 0.
+void require_even(const Request& request) {
+  if (!request.iso) return;
+  for (const DistanceRequest& each : request.distances) {
+    require(!each.distance.expression && each.from.empty(),
+            fmt::format("--distance: expected a number with --mode iso, got '{}'", each.text));
+    require(each.distance.value != 0, "--distance: expected one other than 0 with --mode iso");
+  }
+}
+
+}  // namespace
+
+void require_together(const CommandLine& line, bool is_iso) {
+  const bool layers = line.has("--layers") || line.has("--heights"), fit = line.has("--fit"),
+             axes = line.has("--distance-xy") || line.has("--distance-z");
+  require_with(line, is_iso, "--mode iso", {"--adaptivity", "--inside", "--keep-specks", "--transport"});
+  if (is_iso) require(!layers, "--layers: expected it without --mode iso");
+  require_without(line, is_iso, "--mode iso",
+                  {"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--solver",
+                   "--states", "--paths", "--save-vdb"});
+  require_with(line, layers, "--layers", {"--first-height", "--total-thickness", "--growth", "--structured"});
+  if (layers) {
+    require(line.has("--heights") + line.has("--first-height") + line.has("--total-thickness") == 1,
+            "--layers: expected one of --first-height, --total-thickness and --heights");
+    require(!line.has("--heights") || !line.has("--growth"),
+            "--growth: expected it with --first-height or --total-thickness");
+  }
+  require_without(line, layers, "--layers",
+                  {"--distance", "--distance-from", "--shell", "--collision", "--paths", "--save-vdb"});
+  const auto instead_of_distance = [&](bool is_given, const char* by) {
+    require_without(line, is_given, by, {"--distance", "--distance-from"});
+    require(!is_given || !layers, fmt::format("--layers: expected it without {}", by));
+    require_without(line, is_given, by, {"--shell", "--obstacle", "--save-vdb"});
+  };
+  instead_of_distance(axes, "--distance-xy");
+  require_without(line, axes, "--distance-xy", {"--fit"});
+  instead_of_distance(fit, "--fit");
+  require(!fit || !is_iso, "--mode iso: expected it without --fit");
+  require_without(line, fit, "--fit", {"--dry-run", "--collision"});
+  require_with(line, line.has("--clearance"), "--clearance", {"--fit"});
+  require_with(line, fit || line.has("--obstacle"), "--obstacle or --fit", {"--clearance"});
+  require_with(line, line.has("--shell"), "--shell", {"--inner"});
+  require_one(line, "--distance-from", "--distance");
+  require_one(line, "--voxel-size", "--voxels-per-distance");
+  require_one(line, "--quiet", "--verbose");
+}
+
+void require_sound(const Request& request) {
+  require(!request.iso || request.write.normals == io::Normals::Recompute, "--normals: expected it without --mode iso");
+  require_endings(request);
+  require(request.layers || !request.distances.empty() || scene::is_scene(request.input),
+          "--distance: expected a distance (a scene alone brings its own)");
+  require(request.output != "-" || !request.layers, "OUTPUT: expected a file for layers, got '-'");
+  require(request.output != "-" || request.distances.size() < 2, "OUTPUT: expected a file for each distance, got '-'");
+  require_even(request);
+  require(request.only.empty() || !scene::is_scene(request.input),
+          "--only: expected a mesh, as a scene names its own part");
+  require(request.fit.empty() || request.clearance.value > 0,
+          fmt::format("--clearance: expected one above 0 with --fit, got '{}'", request.clearance_text));
+}
+
+void require_for_input(const Request& request, bool curves) {
+  if (curves) require_for_curves(request);
+  else require_for_mesh(request);
+}
+
+std::optional<io::Format> format_of(const std::string& path, const Request& request) {
+  const auto format = io::format_of(path);
+  return format ? format : request.format;
+}
+
+io::WriteOptions write_options(const Request& request, const std::string& path) {
+  io::WriteOptions options = request.write;
+  options.format = format_of(path, request);
+  return options;
+}
+
+}  // namespace vdb_offset::tool

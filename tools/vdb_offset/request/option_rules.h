@@ -1,0 +1,16 @@
+#pragma once
+
+#include "request/command_line.h"
+#include "request/request.h"
+
+namespace vdb_offset::tool {
+
+/// \throw UsageError if an option was given without one that it needs, or beside one that excludes it. `is_iso`: what
+/// --mode says.
+void require_together(const CommandLine& line, bool is_iso);
+
+/// \throw UsageError if values do not go together, or a file's name has no ending that tells what it is to hold. What
+/// depends on whether INPUT holds curves is for require_for_input().
+void require_sound(const Request& request);
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "request/request.h"
+#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/metric.h"
+#include "vdb_offset/polygons.h"
+
+// What the texts of single options say. Each throws UsageError, with the option and what it takes, for another text.
+
+namespace vdb_offset::tool {
+
+// More threads than any machine has: a mistyped number is not to ask the system for them. Not measured.
+constexpr int kMostThreads = 4096;
+// Significant digits with which every double reads back to itself.
+constexpr int kMostDigits = 17;
+
+/// \throw UsageError with the message unless the condition holds.
+void require(bool holds, const std::string& message);
+
+/// Which of some words a text is, counted from 0.
+std::size_t parse_word(const char* option, const std::string& text, std::initializer_list<const char*> words);
+
+/// A number above one bound and up to another. `expected` says in words which numbers these are.
+double parse_number(const char* option, const std::string& text, const char* expected, double above, double most);
+
+/// A whole number, in decimal digits.
+int parse_count(const char* option, const std::string& text, int least, int most);
+
+/// Bytes with an optional suffix K, M, G or T (binary), as in "4G" or "1.5 GiB".
+std::size_t parse_size(const std::string& text);
+
+/// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
+DistanceRequest parse_distance_request(const std::string& text);
+/// A distance, an expression, @FILE or ply:NAME that an option of this request was given.
+DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request);
+/// The file, or ply:NAME, that --distance-from was given.
+DistanceRequest parse_distance_from(const std::string& text, const Request& request);
+/// The distance of an inner skin, above 0 if it is one for all vertices.
+DistanceRequest parse_inner(const std::string& text, const Request& request);
+
+/// The values of --distance-xy and --distance-z; both or none are given.
+std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string& z);
+/// The metric in which distances by axis are one distance, and that distance, world units.
+std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mesh);
+
+/// group=NAME, material=NAME or faces=FILE.
+io::Selector parse_part(const std::string& text);
+
+/// 'slide', 'fixed' or 'free'.
+Border parse_border(const std::string& text);
+
+/// World units or percent, 0 or more.
+scene::Distance parse_clearance(const std::string& text);
+
+/// 'auto', 'exact', 'none' or a tolerance.
+WeldOptions parse_weld(const std::string& text);
+
+/// 'keep' or 'fix-direction-only'.
+Orient parse_orient(const std::string& text);
+
+/// 'x=0', or another axis and number, or 'A,B,C,D' for A x + B y + C z = D.
+SymmetryPlane parse_plane(const std::string& text);
+
+/// 'obj', 'ply', 'stl' or 'off'.
+io::Format parse_format(const std::string& text);
+
+/// 'uv', 'color' and 'material', separated by commas, or 'none', of --transport.
+io::TransportRequest parse_transport(const std::string& text);
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/selection.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/scene.h"
+
+namespace vdb_offset::tool {
+
+/// A command line that cannot be carried out.
+struct UsageError : Error {
+  using Error::Error;
+};
+
+/// One distance that is asked for, and how.
+struct DistanceRequest {
+  std::string text;
+  scene::Distance distance;
+  std::string from;  ///< Then each vertex's own: a file of numbers, or ply:NAME, a property of the input.
+};
+
+/// Distances in the plane of x and y and along z, of one sign.
+struct AxisDistances {
+  scene::Distance xy, z;
+};
+
+/// Layers of cells that are asked for: their count and growth with the first height or the thickness of all, or a file
+/// of heights.
+struct LayersRequest {
+  std::size_t count = 0;                        ///< 0: as many as the file of heights has.
+  double growth = 1.2;                          ///< Each layer's height by that of the one below.
+  std::optional<DistanceRequest> first, total;  ///< One of them, unless there is a file.
+  std::string heights;                          ///< A file with those of all layers, from the wall on.
+  bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
+};
+
+/// The iso-surface at the distance, asked for with --mode iso.
+struct IsoRequest {
+  std::optional<double> adaptivity;
+  bool use_winding = true, keep_specks = false;
+  io::TransportRequest transport;
+  std::string transport_text;  ///< As given; empty: all that there is.
+};
+
+/// What a command line asks for: options that go together, each with a value that it can have. It depends on the words
+/// of the command line alone, as no file has been opened for it; resolve() makes a Job of it.
+struct Request {
+  std::string input, output;
+  std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.
+  const char* distance_option = "--distance";  ///< The option that they were given with.
+  std::optional<AxisDistances> axes;           ///< Then the only distance is that in the plane.
+  std::optional<DistanceRequest> inner;        ///< The distance of a shell's inner skin, above 0.
+  std::string fit;                             ///< Another mesh that INPUT is to keep the clearance from; empty: none.
+  bool shell = false;
+  std::optional<LayersRequest> layers;
+  std::optional<IsoRequest> iso;
+
+  std::vector<io::Selector> only;
+  std::vector<std::string> obstacles;
+  scene::Distance clearance;
+  SymmetryOptions symmetry;
+
+  // Without a value, a scene's own counts.
+  std::optional<Border> border;
+  std::optional<Solver> solver;
+  std::optional<Collision> collision;
+
+  GridOptions grid;
+  WeldOptions weld = WeldOptions::automatic();
+  Orient orient = Orient::Keep;
+  int threads = 0;             ///< 0: all.
+  std::size_t max_memory = 0;  ///< Bytes.
+  bool close = false;          ///< Join ends of curves that are near each other.
+
+  // Texts as given, for the report.
+  std::vector<std::string> only_texts, symmetry_texts;
+  std::string clearance_text, weld_text = "auto", orient_text = "keep";
+
+  std::string report, states, paths, vdb;  ///< Files to write; empty: not asked for.
+  std::optional<io::Format> format;        ///< Of files whose ending names none.
+  io::WriteOptions write;                  ///< All but its format, which is the output's alone.
+  OutputFiles::Sync sync = OutputFiles::Sync::Yes;
+  bool strict = false, dry_run = false, quiet = false, verbose = false;
+};
+
+/// Reads the command line of an offset. Empty if it asked only for help or the version, which are then printed.
+/// \throw UsageError with one line that says what to change.
+std::optional<Request> parse_command_line(int argc, const char* const* argv);
+
+/// \throw UsageError if what was asked for is not for what INPUT holds: curves, or a mesh
+void require_for_input(const Request& request, bool curves);
+
+/// The format of a mesh by its name, or else the one that was given.
+std::optional<io::Format> format_of(const std::string& path, const Request& request);
+
+/// How meshes are written, in the format of a file of that name.
+io::WriteOptions write_options(const Request& request, const std::string& path);
+
+}  // namespace vdb_offset::tool

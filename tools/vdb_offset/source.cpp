@@ -1,0 +1,82 @@
+// Reading what is to be offset.
+#include "source.h"
+
+#include <fmt/format.h>
+
+#include "messages.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/memory_limit.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+/// Several meshes as one.
+void add(Polygons& to, const Polygons& from) {
+  const auto first = static_cast<std::uint32_t>(to.positions.size());
+  to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
+  for (std::size_t f = 0; f < from.face_count(); ++f) {
+    for (const auto v : from.view().face(f)) to.corners.push_back(first + v);
+    to.close_face();
+  }
+}
+
+/// \throw InvalidInput if there are open curves, but none whose ends are near each other
+void close_curves(const Request& request, Source& source) {
+  Curves curves = source.curves->file.polygons;
+  const std::vector<OpenCurve> open = open_curves(curves.view());
+  source.closed = vdb_offset::close_curves(curves);
+  if (!source.closed.empty()) source.as_closed = std::move(curves);
+  else if (!open.empty())
+    throw InvalidInput(
+        fmt::format("{}: --close: expected a curve whose ends are nearer to each other than {:g} of its "
+                    "length, got {:.6g} of {:.6g}",
+                    request.input, OpenCurve::kNearlyClosed, open.front().gap, open.front().length));
+}
+
+}  // namespace
+
+bool holds_curves(const std::string& path) {
+  try {
+    return io::holds_curves(path);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void write_curves(const std::string& path, const Source& source, std::span<const Vec3d> positions,
+                  const io::WriteOptions& options) {
+  if (source.as_closed && io::curve_format_of(path) != source.curves->format)
+    io::write_curves(path, CurvesView{positions, source.as_closed->corners, source.as_closed->face_begin}, options);
+  else io::write_curves(path, *source.curves, positions, options);
+}
+
+void tell_remarks(const io::MeshFile& file) {
+  for (const std::string& remark : file.remarks) tell(fmt::format("{}: {}", file.path, remark));
+}
+
+Source read_source(const Request& request, bool curves) {
+  set_memory_limit(request.max_memory);
+  Source source;
+  if (curves) {
+    source.curves = io::read_curves(request.input);
+    if (request.close) close_curves(request, source);
+    return source;
+  }
+  if (scene::is_scene(request.input)) source.scene = scene::read_scene(request.input);
+  if (!source.scene) source.file = io::read_mesh(request.input, format_of(request.input, request));
+  else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
+  if (source.file && !request.quiet) tell_remarks(*source.file);
+  for (const std::string& path : request.obstacles) {
+    const io::MeshFile obstacle = io::read_mesh(path, format_of(path, request));
+    if (!request.quiet) tell_remarks(obstacle);
+    add(source.obstacles, obstacle.polygons);
+  }
+  if (!request.fit.empty()) {
+    const io::MeshFile to_fit = io::read_mesh(request.fit, format_of(request.fit, request));
+    if (!request.quiet) tell_remarks(to_fit);
+    source.to_fit = to_fit.polygons;
+  }
+  return source;
+}
+
+}  // namespace vdb_offset::tool
