@@ -19,7 +19,7 @@ Distances each(std::vector<double> numbers) { return Distances(std::move(numbers
 
 }  // namespace
 
-TEST_CASE("precedent: the farthest on one's own side, within four times, that follows none", "[precedent]") {
+TEST_CASE("warm start: the farthest on one's own side, within four times, that follows none", "[warm_start]") {
   using Numbers = std::vector<std::size_t>;
   CHECK(find_warm_starts(std::vector<Distances>{}) == Numbers{});
   CHECK(find_warm_starts(std::vector<Distances>{0.5}) == Numbers{0});
@@ -31,7 +31,7 @@ TEST_CASE("precedent: the farthest on one's own side, within four times, that fo
   CHECK(find_warm_starts(std::vector<Distances>{0, 0.5}) == Numbers{0, 1});
 }
 
-TEST_CASE("precedent: uneven distances follow what is nowhere nearer or on another side", "[precedent]") {
+TEST_CASE("warm start: uneven distances follow what is nowhere nearer or on another side", "[warm_start]") {
   using Numbers = std::vector<std::size_t>;
   const Distances far = each({0.4, -0.4, 0.2}), nearer = each({0.2, -0.1, 0.2}), crosses = each({0.2, -0.1, 0.3}),
                   turned = each({0.2, 0.1, 0.2}), still = each({0.2, 0, 0.1});
@@ -43,7 +43,7 @@ TEST_CASE("precedent: uneven distances follow what is nowhere nearer or on anoth
   CHECK(find_warm_starts(std::vector<Distances>{each({0.2, 0.1, 0.1}), 0.3}) == Numbers{1, 1});
 }
 
-TEST_CASE("precedent: a way to a distance ends there exactly, on the straight way", "[precedent][oracle]") {
+TEST_CASE("warm start: a way to a distance ends there exactly, on the straight way", "[warm_start][oracle]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 2, 5, 3);
   Surface surface = build_surface(mesh.view(), {});
   place(surface, 0.05);
@@ -69,7 +69,7 @@ TEST_CASE("precedent: a way to a distance ends there exactly, on the straight wa
   CHECK(worst < 2e-9);
 }
 
-TEST_CASE("precedent: what was freed at a distance is free at less", "[precedent][several]") {
+TEST_CASE("warm start: what was freed at a distance is free at less", "[warm_start][several]") {
   // Each needs untangling on its own, the nearer ones none when the farthest has been untangled.
   const Polygons mesh = scene::bumpy_sphere(1, 0.6, 2.5, 5, 4);
   const std::vector<Distances> distances = {-0.2, -0.4, -0.3};
@@ -97,7 +97,7 @@ TEST_CASE("precedent: what was freed at a distance is free at less", "[precedent
   }
 }
 
-TEST_CASE("precedent: what could not be freed is held back at less, too, and told", "[precedent][several]") {
+TEST_CASE("warm start: what could not be freed is held back at less, too, and told", "[warm_start][several]") {
   const Polygons mesh = scene::naca_wing("2412", 1, 1, 40, 10);
   const std::vector<Distances> distances = {-0.005, -0.01, -0.02};
   const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});
@@ -121,7 +121,7 @@ TEST_CASE("precedent: what could not be freed is held back at less, too, and tol
   }
 }
 
-TEST_CASE("precedent: states are honest where much is held back and eased", "[precedent][several][long]") {
+TEST_CASE("warm start: states are honest where much is held back and eased", "[warm_start][several][long]") {
   const Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
   const std::vector<Distances> distances = {-0.06, -0.08, -0.1, -0.1};  // the last two are equal
   const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});
@@ -137,8 +137,8 @@ TEST_CASE("precedent: states are honest where much is held back and eased", "[pr
   CHECK(short_vertices(results[3]) <= short_vertices(results[2]));
 }
 
-TEST_CASE("precedent: uneven offsets, parts in front of others, and skins off their source follow",
-          "[precedent][several]") {
+TEST_CASE("warm start: uneven offsets, parts in front of others, and skins off their source follow",
+          "[warm_start][several]") {
   std::vector<double> farther, nearer;
   const Polygons bumpy = scene::bumpy_sphere(1, 0.6, 2.5, 5, 4);
   for (const Vec3d& p : bumpy.positions) {

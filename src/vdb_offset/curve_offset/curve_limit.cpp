@@ -68,7 +68,7 @@ class CurveLimiter {
   Vec3d rounded_way(std::uint32_t p) const {
     const double target = std::abs(curves_.distances[p]);
     const Vec2d way = way_[p] * share_[p];
-    return target == 0 ? Vec3d(0.0) : round_way(Vec3d(way[0], way[1], 0), target);
+    return target == 0 ? Vec3d(0.0) : round_displacement(Vec3d(way[0], way[1], 0), target);
   }
 
   /// The next point along the curve, or the one before; kNone at an end, and where curves branch.

@@ -87,7 +87,7 @@ class LayerGrower {
       const double target = share * std::abs(heights_[k][v]);
       const bool at_end = k + 1 == heights_.size() && share == most_[v];
       if (!at_end) above = place_on(rail, origin, above, target, field);
-      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_way(rail(above.eta), target));
+      stack[k + 1] = source_[v] + (at_end ? rail.whole : round_displacement(rail(above.eta), target));
       if (!placed(k, above.phi.value)) return false;
       if (k + 1 == heights_.size()) stood_[v] = {share, above.eta};
       stack_.first_achieved[v] = above.phi.value;

@@ -136,8 +136,8 @@ class SurfaceLayerGrower final : public LayerGrower {
     for (std::size_t k = heights_.size(); k-- > 0;) {
       const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
       const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
-      const Vec3d way =
-          at_end ? paths_.displacement[v] : round_way((*slides_)(v, height) - constrained_.surface.vertices[v], target);
+      const Vec3d way = at_end ? paths_.displacement[v]
+                               : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
       stack[k + 1] = source_[v] + way;
       stack_.first_achieved[v] = constrained_.front(stack[k + 1] - front_.origin, constrained_.hint(v)).distance;
       if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;

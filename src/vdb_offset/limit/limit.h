@@ -30,8 +30,8 @@ struct SurfaceOffset {
 /// 3. Letting out (LetOut): pulled vertices are let out again as far as no fault arises, a few at a time.
 /// 4. Settling (Settling): short vertices are put where there is room, if less is lost with what goes back for that.
 /// 5. Easing (LetOut::ease()): vertices around pulled ones follow these, where thickness would change too fast.
-/// With `started_from`, patches that were moved in that offset and are faulty here start from there, and what could not
-/// be freed there is not tried again.
+/// With `started_from`, patches that were moved in that offset and are faulty here start from there, and patches that
+/// could not be freed there are not tried again.
 ///
 /// Vertices that are short in the end are `Limited`, with the distance that they have. `faults` has been made of this
 /// offset, and has its vertices at the ends of the paths. `starts`, if it is not null, is told what becomes of this

@@ -21,8 +21,8 @@ constexpr double kLeastSettled = 2e-5;
 // share of the live area that is won.
 constexpr std::size_t kMostFaults = 150;
 constexpr double kWorthLosing = 0.8;
-// In a trial, what is in the way keeps this share of its displacement in a round, less than in pull_back(), so that few
-// rounds are needed; below the last share it keeps none.
+// In a trial, a vertex in the way keeps this share of its displacement in a round, less than in pull_back(), so that
+// few rounds are needed; below the last share it keeps none.
 constexpr double kKeptInTrial = 0.6, kLastShareInTrial = 1e-3;
 // More vertices than this do not slide aside, or go along, for one. Not measured.
 constexpr std::size_t kMostAside = 200;
@@ -83,7 +83,7 @@ bool Settling::operator()(LiveArea::Lines lines) {
 }
 
 /// Tries a vertex at each of its positions; then, at the first of them, with its neighbours, with the small feature
-/// that it is part of, and while what is in the way slides aside.
+/// that it is part of, and while the vertices in the way slide aside.
 bool Settling::settle(std::uint32_t v, LiveArea::Lines lines, std::size_t& trials) {
   const auto try_at = [&](const Moves& moves, const SlideAside* aside) {
     ++trials;
@@ -183,7 +183,7 @@ void Settling::put(const Moves& moves, OldOnes& old) {
     Vec3d whole = position - state_.surface.vertices[v];
     if (is_held(v))
       whole = state_.constrained.front.surface().along_border(state_.constrained.front_vertex_of(v), whole);
-    state_.whole[v] = round_way(whole, std::abs(state_.distances[v]));
+    state_.whole[v] = round_displacement(whole, std::abs(state_.distances[v]));
     state_.share[v] = 1;
   }
   sort_unique(moved);
@@ -200,7 +200,7 @@ void Settling::pull_in_trial(const Indices& vertices, OldOnes& old) {
   state_.move(vertices);
 }
 
-/// Lets what is in the way of a vertex, and what is around that, slide at its distance out of the way. False if no
+/// Lets the vertices in the way of a vertex, and those around them, slide at their distance out of the way. False if no
 /// vertex may slide, or too many would have to.
 bool Settling::slide_aside(std::uint32_t vertex, const SlideAside& aside, OldOnes& old) {
   state_.faults.for_each_faulty_corner([&](std::uint32_t v) { state_.gathered.add(v); });

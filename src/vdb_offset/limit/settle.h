@@ -13,9 +13,9 @@ namespace vdb_offset {
 ///
 /// The positions are those of live points of the faces around a vertex (see LiveArea). Vertices with much area go
 /// first. A trial puts the vertex there: alone, with its short neighbours, with the small feature that it is part of,
-/// or while what is in its way slides aside; and pulls back what is in its way. It is kept if less live area is lost by
-/// that than is won. Follows on LetOut, as what could be let out again need not be settled, and is called twice: first
-/// with borders kept in the planes across them, then without.
+/// or while the vertices in its way slide aside; and pulls back the vertices in its way. It is kept if less live area
+/// is lost by that than is won. Follows on LetOut, as what could be let out again need not be settled, and is called
+/// twice: first with borders kept in the planes across them, then without.
 class Settling {
  public:
   /// Keeps a reference.

@@ -89,7 +89,7 @@ class UntangledPatch {
   void store(std::span<Vec3d> displacement) const {
     for (std::size_t i = 0; i < free_; ++i)
       displacement[points_[i].vertex] =
-          round_way(points_[i].x - surface_.vertices[points_[i].vertex], points_[i].target);
+          round_displacement(points_[i].x - surface_.vertices[points_[i].vertex], points_[i].target);
   }
 
  private:

@@ -11,7 +11,7 @@
 namespace vdb_offset {
 namespace {
 
-// A warm start is no more than so many times as far: what goes farther has other things in its way. Reasoned.
+// A warm start is no more than so many times as far: a farther offset meets other parts. Reasoned.
 constexpr double kFarthestStart = 4;
 
 bool may_start_from(const Distances& near, const Distances& far) {
@@ -73,9 +73,9 @@ Vec3d displacement_to_distance(const ConstrainedSurface& constrained, std::uint3
     if (!(end.phi > distance)) return displacement;
     at = cut(at, end, exactly);
     if (!settled(at) && !constrained.front.surface().is_held(constrained.front_vertex_of(vertex)))
-      return round_way(end.x - end.away * (1 - distance / end.phi) - start, distance);
+      return round_displacement(end.x - end.away * (1 - distance / end.phi) - start, distance);
   }
-  return round_way(at.x - start, distance);
+  return round_displacement(at.x - start, distance);
 }
 
 }  // namespace vdb_offset

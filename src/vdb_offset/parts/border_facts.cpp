@@ -4,20 +4,26 @@
 #include <cmath>
 #include <numbers>
 
+#include "vdb_offset/base/assert.h"
+
 namespace vdb_offset {
 
-BorderFacts border_facts(const Surface& surface, std::span<const Vec3d> way, std::span<const std::uint8_t> excepted) {
-  constexpr double kStrayed = 1;  // degrees
+BorderFacts border_facts(const Surface& surface, std::span<const Vec3d> displacement,
+                         std::span<const std::uint8_t> excepted) {
+  // Angle, in degrees, by which a vertex that stays near the plane across its border has not left it. Not measured.
+  constexpr double kStrayed = 1;
+  VDB_OFFSET_ASSERT(displacement.size() == surface.vertices.size());
+  VDB_OFFSET_ASSERT(excepted.empty() || excepted.size() == surface.vertices.size());
   BorderFacts facts;
   for (const auto& [normal, offset] : surface.planes)
     facts.planes.push_back({normal, offset + normal.dot(surface.origin)});
   for (std::uint32_t v = 0; v < surface.conormals.size(); ++v) {
-    facts.beyond += is_beyond_wall(surface, v, surface.vertices[v] + way[v], 0);
+    facts.beyond += is_beyond_wall(surface, v, surface.vertices[v] + displacement[v], 0);
     if (surface.is_held(v)) {
       ++facts.held_vertices;
       continue;
     }
-    const double over = std::abs(surface.conormals[v].dot(way[v])), length = way[v].length();
+    const double over = std::abs(surface.conormals[v].dot(displacement[v])), length = displacement[v].length();
     if (surface.conormals[v].lengthSqr() == 0 || length == 0 || (!excepted.empty() && excepted[v])) continue;
     const double angle = std::asin(std::min(1.0, over / length)) * 180 / std::numbers::pi;
     ++facts.across_vertices;

@@ -11,8 +11,10 @@
 
 namespace vdb_offset {
 
-/// \param way of each vertex of the surface
-/// \param excepted of each vertex: 1 if it goes elsewhere for other reasons; empty: none
-BorderFacts border_facts(const Surface& surface, std::span<const Vec3d> way, std::span<const std::uint8_t> excepted);
+/// Counts the vertices of borders, and of planes, that leave them.
+/// \param displacement of each vertex of the surface
+/// \param excepted of each vertex: 1 if it leaves the plane across the border for other reasons; empty: none does
+BorderFacts border_facts(const Surface& surface, std::span<const Vec3d> displacement,
+                         std::span<const std::uint8_t> excepted);
 
 }  // namespace vdb_offset

@@ -4,25 +4,31 @@
 #include <cmath>
 #include <optional>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-// Normals that differ by less are of one plane; a surface that turns away by more is extended (sine of the angle).
+// Sines: faces whose normals differ by less lie in one plane; faces that turn away from the part's side by more are
+// extended. Reasoned: 30 degrees.
 constexpr double kOnePlane = 0.5, kTurnsAway = -0.5;
-// A path that is longer than this many distances gains too little on the way.
+// Longest path, in distances: a longer one gains too little per length. Not measured.
 constexpr double kLongestSlide = 4;
-// Steps on a bent surface, in distances.
-constexpr double kSlideStep = 0.125;
+// Step on a bent surface, in distances; and the least step, so that a slide ends. Not measured.
+constexpr double kSlideStep = 0.125, kLeastStep = 1e-3;
+// Step along an extension, by the rest of the distance. Reasoned: past the end, which is then cut.
+constexpr double kBeyondEnd = 1.5;
+// Share of the distance that the end may be off by. Reasoned: far below the promised 1e-6.
 constexpr double kSlideTolerance = 1e-9;
 
-/// How a border vertex sets out: a unit vector, and whether it leads over the faces that stay.
+/// The direction in which a border vertex leaves: a unit vector, and whether it leads over the faces that stay.
 struct SlideDirection {
   Vec3d direction;
   bool on_surface;
 };
 
+/// The slide of one border vertex.
 class BorderVertex {
  public:
   BorderVertex(const MeshParts& parts, const ClosestQuery& front, const ClosestQuery& rest, std::uint32_t vertex,
@@ -39,19 +45,20 @@ class BorderVertex {
         side_(distance < 0 ? -1 : 1),
         part_normal_(front.surface().vertex_normals[on_front_] * side_) {}
 
-  /// Where it comes to a stop: at its distance, if it gets there.
+  /// The end of the slide: at the distance, if the vertex gets there.
   Vec3d slide() {
-    const std::optional<SlideDirection> track = find_track();
-    if (!track) return origin_;
-    Vec3d here = origin_, direction = track->direction;
+    const std::optional<SlideDirection> start = find_direction();
+    if (!start) return origin_;
+    Vec3d here = origin_, direction = start->direction;
     double phi = 0, gone = 0;
     while (gone < kLongestSlide * target_) {
       // The distance rises by no more than the step.
-      const double step = track->on_surface ? std::max(std::min(target_ - phi, kSlideStep * target_), 1e-3 * target_)
-                                            : 1.5 * (target_ - phi) + 1e-3 * target_;
-      const Vec3d next = go(here, direction, step, track->on_surface);
+      const double step = start->on_surface
+                              ? std::max(std::min(target_ - phi, kSlideStep * target_), kLeastStep * target_)
+                              : kBeyondEnd * (target_ - phi) + kLeastStep * target_;
+      const Vec3d next = go(here, direction, step, start->on_surface);
       const double next_phi = distance_of(next);
-      if (next_phi >= target_ * (1 - kSlideTolerance)) return cut(here, direction, step, track->on_surface);
+      if (next_phi >= target_ * (1 - kSlideTolerance)) return cut(here, direction, step, start->on_surface);
       if (!(next_phi > phi)) break;
       direction = next - here;
       if (!(direction.lengthSqr() > 0)) break;
@@ -71,7 +78,7 @@ class BorderVertex {
     if (!on_surface) return x;
     const Vec3d there = on_rest(x);
     if (!front_.surface().is_held(on_front_)) return there;
-    constexpr int kMostTurns = 30;
+    constexpr int kMostTurns = 30;  // between planes and faces; not measured
     Vec3d held = in_planes(there);
     for (int i = 0; i < kMostTurns; ++i) {
       const Vec3d next = in_planes(on_rest(held));
@@ -88,13 +95,14 @@ class BorderVertex {
     return closest.point;
   }
 
-  /// The closest place to this in the planes that hold the vertex, if any do.
+  /// The closest position to this in the planes that hold the vertex, if any do.
   Vec3d in_planes(const Vec3d& x) const { return origin_ + front_.surface().along_border(on_front_, x - origin_); }
 
   /// Bisection on the length of the last step.
   Vec3d cut(const Vec3d& here, const Vec3d& direction, double step, bool on_surface) {
     double low = 0, high = step;
-    for (int i = 0; i < 60; ++i) {
+    constexpr int kHalvings = 60;  // reasoned: down to rounding
+    for (int i = 0; i < kHalvings; ++i) {
       const double middle = (low + high) / 2, phi = distance_of(go(here, direction, middle, on_surface));
       if (std::abs(phi - target_) <= kSlideTolerance * target_) return go(here, direction, middle, on_surface);
       (phi < target_ ? low : high) = middle;
@@ -117,13 +125,13 @@ class BorderVertex {
       }
     }
     if (sum.lengthSqr() > 0) return sum;
-    for (const auto t : whole_.triangles_around(vertex_))  // the two only touch here
+    for (const auto t : whole_.triangles_around(vertex_))  // the part and the faces that stay only touch here
       if (off_front_[t])
         for (const auto v : whole_.triangles[t]) sum += whole_.vertices[v] - origin_;
     return sum;
   }
 
-  std::optional<SlideDirection> find_track() const {
+  std::optional<SlideDirection> find_direction() const {
     Vec3d mean(0.0), first(0.0), crease(0.0);
     for (const auto t : whole_.triangles_around(vertex_)) {
       const Vec3d& n = whole_.triangle_normals[t];
@@ -165,7 +173,9 @@ class BorderVertex {
 }  // namespace
 
 BorderSlides::BorderSlides(const MeshParts& parts, const ClosestQuery& front)
-    : parts_(parts), front_(front), rest_(*parts.rest) {}
+    : parts_(parts), front_(front), rest_(*parts.rest) {
+  VDB_OFFSET_ASSERT(parts.whole && parts.rest);
+}
 
 Vec3d BorderSlides::operator()(std::uint32_t vertex, double distance) const {
   return BorderVertex(parts_, front_, rest_, vertex, distance).slide();
@@ -185,6 +195,7 @@ bool BorderSlides::lead(std::uint32_t vertex) const {
 
 void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
                    Paths& paths) {
+  VDB_OFFSET_ASSERT(paths.displacement.size() == front.surface().vertices.size());
   std::vector<std::uint32_t> border;
   for (std::uint32_t v = 0; v < parts.at_border.size(); ++v)
     if (parts.at_border[v] && distances[parts.front_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
@@ -192,9 +203,9 @@ void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQu
   const auto move = [&](std::size_t i) {
     const std::uint32_t v = border[i], f = parts.front_vertex[v];
     const double target = std::abs(distances[f]);
-    paths.displacement[f] = round_way(slides(v, distances[f]) - parts.whole->vertices[v], target);
-    const Vec3d place = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
-    const Closest closest = front(place - front.surface().origin, front.surface().triangles_around(f).front());
+    paths.displacement[f] = round_displacement(slides(v, distances[f]) - parts.whole->vertices[v], target);
+    const Vec3d position = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
+    const Closest closest = front(position - front.surface().origin, front.surface().triangles_around(f).front());
     if (!paths.trace.empty()) paths.trace[f].clear();
     paths.achieved[f] = closest.distance;
     paths.closest[f] = closest.triangle;

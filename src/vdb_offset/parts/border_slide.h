@@ -6,23 +6,23 @@
 
 namespace vdb_offset {
 
-/// Border vertices of a part on their ways along what stays of the mesh.
+/// Slides border vertices of a part along the faces that stay.
 ///
 /// A vertex slides over the faces that stay around it, away from the part; where those turn away from the side that the
 /// part goes to by more than 30 degrees, as the sides of a box do from its lid, along their extension instead. Where
-/// they meet in one crease at the vertex it follows that, and where in more, it stays. On the faces it follows the
-/// surface's bends (steps along the tangent and back to the closest point); along an extension it goes straight.
+/// they meet in one crease at the vertex, the vertex follows that, and where in more, it stays. On the faces it follows
+/// the surface's bends (steps along the tangent and back to the closest point); along an extension it goes straight.
 /// Vertices that planes hold (see border_planes.h) slide where the faces cut those; where the faces lie in such a plane
-/// as well, they go in it as the part alone asks for.
+/// as well, vertices go in it as the part alone asks for.
 class BorderSlides {
  public:
-  /// Keeps references to both. \pre something of the mesh stays.
+  /// Keeps references to both. \pre some faces of the mesh stay
   BorderSlides(const MeshParts& parts, const ClosestQuery& front);
 
-  /// Where a vertex of the whole mesh, on the border, is at this distance from the part, negative inward; or as near to
-  /// that as it gets. In the front's frame.
+  /// The position at which a vertex of the whole mesh, on the border, is at this distance from the part, negative
+  /// inward; or as near to that distance as it gets. In the moving part's frame.
   Vec3d operator()(std::uint32_t vertex, double distance) const;
-  /// Whether a vertex on the border goes that way at all.
+  /// Whether a vertex on the border slides at all.
   bool lead(std::uint32_t vertex) const;
 
  private:
@@ -31,8 +31,9 @@ class BorderSlides {
   ClosestQuery rest_;
 };
 
-/// Gives the border vertices new paths, to their distances. They are bound to these from then on. Distances and paths
-/// are those of the front's vertices. The result does not depend on the number of threads.
+/// Gives the border vertices new paths, to their distances, which they are bound to from then on. Distances and paths
+/// are those of the moving part's vertices. The result does not depend on the number of threads. Replaces
+/// `parts.bound`.
 void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
                    Paths& paths);
 

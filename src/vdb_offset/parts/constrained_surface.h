@@ -13,67 +13,70 @@
 
 namespace vdb_offset {
 
-/// Where distances are measured in the space of a metric: what vertices are in the file, which is what counts where
-/// triangles meet.
+/// The space of the file, where distances are measured in the space of a metric: vertices are written there, and it
+/// decides where triangles meet.
 struct FileFrame {
   const InMetric& space;
-  std::span<const Vec3d> source;  ///< Of the body's vertices, as its source in that space.
-  std::span<const Vec3d> places;  ///< Where they stand, if that is known; else where they are put, rounded.
+  std::span<const Vec3d> source;  ///< Of each vertex of the constrained surface: its position in the input.
+  std::span<const Vec3d>
+      positions;  ///< Of each vertex: its position, if that is known; empty: it is computed, rounded.
 
-  /// Of a vertex that is put to a place in that space.
+  /// The position in the file of a vertex that is moved, in the space of the metric, from `from` to `to`.
   Vec3d of(std::size_t vertex, const Vec3d& from, const Vec3d& to, const Rounding& precision) const {
-    if (!places.empty()) return places[vertex];
+    if (!positions.empty()) return positions[vertex];
     const Vec3d& before = source[vertex];
     return precision(before, to == from ? before : space.moved(before, from, to));
   }
 };
 
-/// All that must stay valid, beside the front that distances are measured from.
+/// All that must stay valid: the part that moves, which distances are measured from, and what it must not meet.
 ///
 /// The surface holds what moves and what is in its way: the whole mesh where only a part of it is offset, and obstacles
-/// behind it. It stands in the front's frame. Spans are empty where the surface is the front itself.
+/// behind it. It stands in the moving part's frame. Spans are empty where the surface is the moving part itself.
 struct ConstrainedSurface {
-  const ClosestQuery& front;
+  const ClosestQuery& front;  ///< Of the moving part.
   const Surface& surface;
-  std::span<const std::uint32_t> front_vertex;  ///< Of each vertex; kNone where it is not on the front.
-  std::span<const std::uint8_t> off_front;      ///< Of each triangle: 1 if it is no part of the front.
-  std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave the path it went.
-  const Obstacles* obstacles = nullptr;         ///< Those to keep away from, if there are any.
-  bool off_source = false;                      ///< What has moved must not meet the source either, as in a shell.
-  /// Faces of the mesh, if what is off the front stays as a whole while layers rise from it: border vertices then go
-  /// along those faces instead of taking them along. 0: they are taken along.
+  std::span<const std::uint32_t> front_vertex;  ///< Of each vertex: its index on the moving part, or kNone.
+  std::span<const std::uint8_t> off_front;      ///< Of each triangle: 1 if it is not on the moving part.
+  std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave its path.
+  const Obstacles* obstacles = nullptr;         ///< Obstacles to keep away from, if there are any.
+  bool off_source = false;                      ///< Moved faces must not meet the source either, as in a shell.
+  /// Number of the mesh's faces, if what is off the moving part rests as a whole while layers rise from it: vertices at
+  /// the border then go along resting faces instead of taking them along. 0: they take the faces along.
   std::size_t resting_faces = 0;
-  bool with_rim = false;  ///< A shell's rim joins its borders to those of its other skin; what meets it is wrong, too.
-  /// Of each vertex: where a shell's other skin stands, world coordinates, which what moves must not meet. Empty: that
-  /// is the source.
+  bool with_rim = false;  ///< A shell's rim joins the borders of both skins; what meets it is a fault, too.
+  /// Of each vertex: its position in the other skin of a shell, world coordinates, which moved faces must not meet.
+  /// Empty: that skin is the source.
   std::span<const Vec3d> other_skin;
 
-  const FileFrame* file = nullptr;  ///< If the body's space is not the file's.
+  const FileFrame* file = nullptr;  ///< If distances are measured in the space of a metric.
 
-  /// The index of a vertex on the front; kNone if it is not there.
+  /// The index of a vertex on the moving part; kNone if it is not there.
   std::uint32_t front_vertex_of(std::uint32_t vertex) const {
     return front_vertex.empty() ? vertex : front_vertex[vertex];
   }
   bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
   bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
-  /// Triangles of an obstacle never move.
+  /// Whether a triangle is one of an obstacle, which never moves.
   bool is_obstacle(std::uint32_t triangle) const {
     return obstacles && triangle >= surface.triangles.size() - obstacles->query.surface().triangles.size();
   }
-  /// Nor do its vertices, which are behind all others, nor are they written.
+  /// Whether a vertex is one of an obstacle. These are behind all others, never move, and are not written.
   bool is_of_obstacle(std::uint32_t vertex) const {
     return obstacles && vertex >= surface.vertices.size() - obstacles->query.surface().vertices.size();
   }
+  /// Whether a triangle stays while layers rise from the moving part.
   bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
   bool has_bound_corner(std::uint32_t triangle) const {
     const auto& corners = surface.triangles[triangle];
     return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_bound(v); });
   }
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
-  /// A triangle of the front to start a search from.
+  /// A triangle of the moving part to begin a search at.
   std::uint32_t hint_of_triangle(std::uint32_t triangle) const {
     return front_vertex.empty() ? triangle : hint(surface.triangles[triangle][0]);
   }
+  /// A triangle of the moving part, at a vertex if that is on it, to begin a search at.
   std::uint32_t hint(std::uint32_t vertex) const {
     const std::uint32_t v = front_vertex_of(vertex);
     return v == kNone ? 0 : front.surface().triangles_around(v).front();

@@ -10,7 +10,7 @@
 namespace vdb_offset {
 namespace {
 
-/// The faces whose mark is `kept`, over the mesh's own vertices.
+/// The faces of a mesh whose mark is `kept`, over the mesh's own vertices.
 struct SomeFaces {
   std::vector<std::uint32_t> corners, face_begin{0};
 
@@ -26,7 +26,7 @@ struct SomeFaces {
   bool empty() const { return corners.empty(); }
 };
 
-/// Tells the whole's vertices and triangles where they are on the front, and which lie at its border.
+/// Finds for the whole's vertices and triangles where they are on the moving part, and which lie at its border.
 void relate(PolygonView mesh, std::span<const std::uint8_t> only, MeshParts& parts) {
   const Surface& whole = *parts.whole;
   parts.front_vertex.assign(whole.vertices.size(), kNone);
@@ -64,7 +64,7 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
   } else {
     const SomeFaces chosen(mesh, options.only, 1), left(mesh, options.only, 0);
     if (chosen.empty()) throw InvalidInput("part: expected at least one face, got none");
-    // All of the mesh says what is one; where a part ends there is no border.
+    // All of the mesh decides which vertices are one: where a part ends, the mesh has no border.
     const Welding welding = find_welding(mesh, options.weld);
     const auto build = [&](PolygonView faces) {
       return build_welded(faces, restricted(welding, faces), options.orient);
@@ -82,7 +82,7 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
   return parts;
 }
 
-void place(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
+void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
   place(parts.front, voxel_size);
   hold_in_planes(parts.front, symmetry, reach);
   for (std::optional<Surface>* other : {&parts.whole, &parts.rest, &parts.obstacles})
@@ -94,8 +94,8 @@ void place(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry,
   parts.off_front.resize(parts.whole->triangles.size(), 1);
 }
 
-Distances distances_on_body(const MeshParts& parts, Border border, const Distances& of_input,
-                            std::size_t& disagreeing) {
+Distances distances_on_parts(const MeshParts& parts, Border border, const Distances& of_input,
+                             std::size_t& disagreeing) {
   const bool all_move = parts.front_vertex.empty();
   if (of_input.uniform() && all_move) return of_input;
   const Surface& surface = parts.surface();

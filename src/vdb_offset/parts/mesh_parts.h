@@ -14,46 +14,50 @@
 namespace vdb_offset {
 
 struct MeshPartsOptions {
-  std::span<const std::uint8_t> only;  ///< Of each face: 1 if it is part of the front. Empty: all are.
+  std::span<const std::uint8_t> only;  ///< Of each face: 1 if it is on the moving part. Empty: all are.
   PolygonView obstacles;               ///< Without faces: none.
   WeldOptions weld;
   Orient orient = Orient::Keep;
 };
 
-/// A mesh, sorted into what distances are measured from, what stays, and what is in the way.
+/// A mesh, sorted into the part that moves, which distances are measured from, the faces that stay, and obstacles.
 struct MeshParts {
-  Surface front;                 ///< What is offset.
-  std::optional<Surface> whole;  ///< All of the mesh, then the obstacles; empty if that is the front alone.
-  std::optional<Surface> rest;   ///< What stays of the mesh; empty if nothing does.
+  Surface front;                 ///< The moving part.
+  std::optional<Surface> whole;  ///< All of the mesh, then the obstacles; empty if that is the moving part alone.
+  std::optional<Surface> rest;   ///< The faces that stay; empty if none does.
   std::optional<Surface> obstacles;
-  PolygonView obstacle_mesh;                ///< What those were built from.
-  std::vector<std::uint32_t> front_vertex;  ///< These three as in Body.
+  PolygonView obstacle_mesh;                ///< The mesh that the obstacles were built from.
+  std::vector<std::uint32_t> front_vertex;  ///< These three as in ConstrainedSurface.
   std::vector<std::uint8_t> off_front;
   std::vector<std::uint8_t> bound;
-  std::vector<std::uint8_t> at_border;  ///< Of each vertex of the whole: 1 if both the front and the rest have it.
+  std::vector<std::uint8_t> at_border;  ///< Of each vertex of the whole: 1 if it is on the moving part and on the rest.
 
   const Surface& surface() const { return whole ? *whole : front; }
   ConstrainedSurface constrained(const ClosestQuery& query, const Obstacles* keep_away, bool off_source,
                                  std::size_t resting_faces = 0) const {
     return {query, surface(), front_vertex, off_front, bound, keep_away, off_source, resting_faces};
   }
-  /// Where the vertices of surface() stand in the input, to the last bit.
+  /// The positions of the vertices of surface() in the input, to the last bit.
   std::vector<Vec3d> source(PolygonView mesh) const;
 };
 
-/// \throw InvalidInput as build_surface(), and if `only` is not one a face or holds no face.
+/// Sorts a mesh into its parts.
+/// \throw InvalidInput as build_surface(), and if `only` has not one mark for each face or marks no face
 MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options);
 
-/// Puts all of it into the front's frame (see place()), and tells which vertices of the front stay in planes, none of
-/// which goes farther than `reach`.
-/// \throw InvalidInput as hold_in_planes()
-void place(MeshParts& workpiece, double voxel_size, const SymmetryOptions& symmetry, double reach);
+/// Puts all parts into the moving part's frame (see place()), appends the obstacles to the whole, and finds which
+/// vertices of the moving part stay in planes, none of which goes farther than `reach` (world units). To be called
+/// once, before distances are made for surface(), and before any ConstrainedSurface. \throw InvalidInput as
+/// hold_in_planes()
+void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach);
 
-/// The distances of the body's vertices: the mean of those of the input's vertices at one place, which go as one; 0 for
-/// what stays. `disagreeing` grows by how many of them are asked for another than the first there. \pre placed
-Distances distances_on_body(const MeshParts& parts, Border border, const Distances& of_input, std::size_t& disagreeing);
+/// The distances of the vertices of surface(): the mean of those of the input's vertices at one position, which are
+/// moved as one; 0 for vertices that stay. `disagreeing` grows by the number of vertices with another distance than the
+/// first one at their position. \pre to_local_frame() has been called
+Distances distances_on_parts(const MeshParts& parts, Border border, const Distances& of_input,
+                             std::size_t& disagreeing);
 
-/// Hands the distances of a surface's vertices back to the input's.
+/// The distances of the input's vertices, from those of a surface's; 0 for vertices that no face uses.
 Distances distances_of_input(const Surface& surface, const Distances& distances);
 
 }  // namespace vdb_offset

@@ -8,29 +8,31 @@
 #include <limits>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/paths/vertex_march.h"
 
 namespace vdb_offset {
 namespace {
 
-// Who has come so near to a stop in haste, as a share of its distance, goes on from there.
-constexpr double kOnTheWay = 0.7;
+// If a fast march got at least this share of the distance, the next one starts from its end. Not measured.
+constexpr double kRestartShare = 0.7;
 
-// Planes through points of which a file has kept seven digits are off by a few of the last, by these shares of the
-// largest coordinate.
+// Share of the largest coordinate by which points of a plane may be off. Reasoned: of points in a file that keeps seven
+// digits, by a few of the last.
 constexpr double kRoughPlanes = 5e-7;
 
-/// Components, as flags; and some that only ever fall, so that who sees one late does work that is not used.
+/// Flags of components; and flags that only go from 1 to 0: a thread that reads a stale 1 does redundant work.
 using Components = std::vector<std::uint8_t>;
 using FallingFlags = std::vector<std::atomic<std::uint8_t>>;
 
-/// The marches of a run: all vertices, for all sets of distances.
+/// The paths of a run: of all vertices, for all sets of distances. The constructor finds those that need no field;
+/// operator() the others, block by block.
 template <class Query>
 class Marches {
  public:
   Marches(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
-          const Obstacles* obstacles, const WayOptions& options, std::vector<Paths>& paths)
+          const Obstacles* obstacles, const PathOptions& options, std::vector<Paths>& paths)
       : query_(query),
         surface_(query.surface()),
         directions_(directions),
@@ -39,7 +41,7 @@ class Marches {
         options_(options),
         paths_(paths) {
     const std::size_t count = surface_.vertices.size();
-    // What bends is not followed to obstacles, nor along borders.
+    // Paths along ridges do not end at obstacles, nor do they keep to borders.
     const bool along_ridges = options.ridges == Ridges::Sharp && !obstacles && surface_.conormals.empty();
     if (along_ridges) roughness_ = kRoughPlanes * largest_coordinate();
     for (std::size_t set = 0; set < distances.size(); ++set) {
@@ -47,7 +49,7 @@ class Marches {
       paths[set].achieved.resize(count);
       paths[set].state.resize(count);
       paths[set].closest.resize(count, kNone);
-      if (options.traces == Traces::Keep) paths[set].trace.resize(count);
+      if (options.keep == KeepPaths::Yes) paths[set].trace.resize(count);
       arrival_.emplace_back(count);
     }
     go_straight();
@@ -61,15 +63,15 @@ class Marches {
   static std::size_t begin_of(std::size_t block) { return block * kBlock; }
   std::size_t end_of(std::size_t block) const { return std::min((block + 1) * kBlock, surface_.vertices.size()); }
 
-  /// Moves the vertices of a block: all in haste; those that did not arrive by that go on from there, now that is known
-  /// what is closest, as it is a place on the way if the surface is only a little nearer than believed; twice, as
-  /// something else may be closest where they arrive. Then carefully from the start.
+  /// Moves the vertices of a block: all by a fast march; those that did not arrive march on from its end, now that the
+  /// closest triangle there is known, as the end is on the path if the surface is only a little nearer than measured;
+  /// twice, as something else may be closest where they arrive then. The rest by an exact march from the start.
   void operator()(std::size_t block) const {
     DirectionSampler sampler(directions_);
-    std::vector<Stop> stops;
+    std::vector<StopDistance> stops;
     std::vector<End> ends;
     for (const auto attempt :
-         {UntangleSetting::InHaste, UntangleSetting::FromThere, UntangleSetting::FromThere, UntangleSetting::Anew}) {
+         {Attempt::FastFromStart, Attempt::FastFromEnd, Attempt::FastFromEnd, Attempt::ExactFromStart}) {
       ends.clear();
       for (std::size_t v = begin_of(block); v < end_of(block); ++v)
         for (const int side : {1, -1}) {
@@ -82,15 +84,15 @@ class Marches {
   }
 
  private:
-  // Vertices are moved in blocks of so many.
+  // Vertices of a block, which are measured together. Not measured.
   static constexpr std::size_t kBlock = 128;
 
-  enum class UntangleSetting { InHaste, FromThere, Anew };
-  enum class Look { Near, Everywhere };
-  /// Where a vertex ended up on its way to a stop.
+  enum class Attempt { FastFromStart, FastFromEnd, ExactFromStart };
+  enum class Search { Near, Everywhere };
+  /// The end of a vertex's path to a stop distance.
   struct End {
     std::uint32_t vertex;
-    Stop stop;
+    StopDistance stop;
     Arrival arrival;
   };
 
@@ -103,24 +105,25 @@ class Marches {
     return largest;
   }
 
-  /// Tries straight ways for all sets; a component of which one vertex has none has none at all in that set. That is
-  /// looked for among neighbours first, and then everywhere, for all sets that are left of a component together.
+  /// Tries straight paths for all sets. A component of which one vertex has none has none at all in that set. Distances
+  /// are measured from the faces around the vertices first, then exactly, for all sets that are left of a component
+  /// together.
   void go_straight() {
     const Components all(surface_.facts.components, 1);
     known_.assign(distances_.size(), all);
-    for (const auto look : {Look::Near, Look::Everywhere}) {
+    for (const auto search : {Search::Near, Search::Everywhere}) {
       std::vector<FallingFlags> straight;
       for (const Components& left : known_) straight.emplace_back(left.begin(), left.end());
       for_each_index(
-          block_count(), [&](std::size_t block) { go_straight(block, look, straight); }, 1);
+          block_count(), [&](std::size_t block) { go_straight(block, search, straight); }, 1);
       for (std::size_t set = 0; set < straight.size(); ++set)
         known_[set].assign(straight[set].begin(), straight[set].end());
     }
   }
 
-  /// One component at a time. A set that has fallen is of no more use, but changes what those find that it is looked
-  /// for with: it stays with them.
-  void go_straight(std::size_t block, Look look, std::vector<FallingFlags>& straight) {
+  /// Tries straight paths for the vertices of a block, one component at a time. A set that has failed stays with the
+  /// others: without it, their searches would begin elsewhere, and their bits would differ.
+  void go_straight(std::size_t block, Search search, std::vector<FallingFlags>& straight) {
     std::vector<std::uint32_t> vertices(end_of(block) - begin_of(block));
     std::iota(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(begin_of(block)));
     const auto component_of = [&](std::uint32_t v) { return surface_.component[v]; };
@@ -135,12 +138,12 @@ class Marches {
       bool any_up = false;
       for (std::size_t set = 0; set < distances_.size(); ++set) {
         if (!known_[set][component]) continue;
-        if (look == Look::Near && !is_up(set)) continue;
+        if (search == Search::Near && !is_up(set)) continue;
         sets.push_back(set);
         any_up = any_up || is_up(set);
       }
       if (!any_up) continue;
-      for (const auto set : look == Look::Near ? without_near_ends(sets, some) : without_ends(sets, some))
+      for (const auto set : search == Search::Near ? without_near_ends(sets, some) : without_ends(sets, some))
         straight[set][component].store(0, std::memory_order_relaxed);
     }
   }
@@ -150,7 +153,7 @@ class Marches {
     if (distance != 0) tries.push_back({v, distance < 0 ? -1 : 1, std::abs(distance)});
   }
 
-  /// Those of the sets for which one of the vertices has no straight way, as its neighbours tell.
+  /// The sets for which one of the vertices has no straight path, as the faces around it tell.
   std::vector<std::size_t> without_near_ends(std::vector<std::size_t> sets, std::span<const std::uint32_t> vertices) {
     std::erase_if(sets, [&](std::size_t set) {
       std::vector<StraightTry> tries;
@@ -160,7 +163,7 @@ class Marches {
     return sets;
   }
 
-  /// Those for which one has none. Notes the others' ends.
+  /// The sets for which one of the vertices has no straight path. Notes the ends of the others.
   std::vector<std::size_t> without_ends(const std::vector<std::size_t>& sets, std::span<const std::uint32_t> vertices) {
     std::vector<StraightTry> tries;
     std::vector<std::size_t> set_of;
@@ -177,7 +180,8 @@ class Marches {
     return without;
   }
 
-  /// Those of the components that have no straight ways; again all of their vertices, or none.
+  /// Follows ridges from the vertices of the components that have no straight paths: again of all of their vertices, or
+  /// of none.
   void go_along_ridges(std::size_t set) {
     Components& known = known_[set];
     FallingFlags found(known.size());
@@ -193,22 +197,23 @@ class Marches {
       auto& flag = found[surface_.component[v]];
       const double distance = distances_[set][v];
       if (!flag.load(std::memory_order_relaxed) || distance == 0) continue;
-      VertexMarch<Query> traveller(query_, directions_, sampler, distance < 0 ? -1 : 1, static_cast<std::uint32_t>(v),
-                                   Pace::Careful);
-      if (options_.traces == Traces::Keep) traveller.keep_trace({});
-      const auto end = traveller.go_along_ridges(std::abs(distance), roughness_);
-      if (options_.traces == Traces::Keep) paths_[set].trace[v] = traveller.trace();
+      VertexMarch<Query> vertex_march(query_, directions_, sampler, distance < 0 ? -1 : 1,
+                                      static_cast<std::uint32_t>(v), March::Exact);
+      if (options_.keep == KeepPaths::Yes) vertex_march.keep_trace({});
+      const auto end = vertex_march.go_along_ridges(std::abs(distance), roughness_);
+      if (options_.keep == KeepPaths::Yes) paths_[set].trace[v] = vertex_march.trace();
       if (end) arrival_[set][v] = *end;
       else flag.store(0, std::memory_order_relaxed);
     }
   }
 
-  /// Where vertex v has to march to for one set, if it goes to this side at all and has not arrived.
-  void add_stop(std::size_t set, std::size_t v, int side, UntangleSetting attempt, std::vector<Stop>& stops,
+  /// Adds the distance that vertex v has to march to for one set, if it goes to this side at all and has not arrived;
+  /// or its end, if that is known without a march.
+  void add_stop(std::size_t set, std::size_t v, int side, Attempt attempt, std::vector<StopDistance>& stops,
                 std::vector<End>& ends) const {
-    const bool again = attempt != UntangleSetting::InHaste;
+    const bool again = attempt != Attempt::FastFromStart;
     const double distance = distances_[set][v];
-    const Stop stop{std::abs(distance), set};
+    const StopDistance stop{std::abs(distance), set};
     if (distance == 0) paths_[set].state[v] = VertexState::Reached;
     if (distance * side <= 0 || (again && (is_known(set, v) || paths_[set].state[v] == VertexState::Reached))) return;
     if (!is_known(set, v)) stops.push_back(stop);
@@ -216,7 +221,7 @@ class Marches {
       ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v), arrival_[set][v].triangle}});
   }
 
-  static VertexState state_at(double distance, const Stop& stop) {
+  static VertexState state_at(double distance, const StopDistance& stop) {
     return std::abs(distance - stop.distance) <= kReachedTolerance * stop.distance ? VertexState::Reached
                                                                                    : VertexState::Collision;
   }
@@ -228,54 +233,56 @@ class Marches {
     return ObstacleGuard(*obstacles_, start, distances_[set][v] < 0 ? -1 : 1).stop(start, end);
   }
 
-  /// At the end of a known way nothing is left to judge, but where rounding moves it.
-  bool end_known(const Stop& stop, std::size_t v) const {
+  /// Writes the end of a path that is known without a march. False if it has to be judged as others are, as rounding or
+  /// an obstacle moves it.
+  bool end_known(const StopDistance& stop, std::size_t v) const {
     const KnownEnd& end = arrival_[stop.set][v];
     const Vec3d& start = surface_.vertices[v];
     const double rounding = (start + surface_.origin).length() * std::numeric_limits<double>::epsilon();
     if (rounding > kStopTolerance * stop.distance || known_end(stop.set, v) != end.position) return false;
     Paths& paths = paths_[stop.set];
-    paths.displacement[v] = round_way(end.position - start, stop.distance);
+    paths.displacement[v] = round_displacement(end.position - start, stop.distance);
     paths.achieved[v] = end.distance;
     paths.closest[v] = end.triangle;
     paths.state[v] = state_at(end.distance, stop);
     return true;
   }
 
-  void march(DirectionSampler& sampler, std::size_t v, int side, UntangleSetting attempt, std::vector<Stop>& stops,
+  void march(DirectionSampler& sampler, std::size_t v, int side, Attempt attempt, std::vector<StopDistance>& stops,
              std::vector<End>& ends) const {
-    std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) { return a.distance < b.distance; });
+    std::stable_sort(stops.begin(), stops.end(),
+                     [](const StopDistance& a, const StopDistance& b) { return a.distance < b.distance; });
     const auto vertex = static_cast<std::uint32_t>(v);
-    const auto pace = attempt == UntangleSetting::Anew ? Pace::Careful : Pace::Hasty;
-    VertexMarch<Query> traveller(query_, directions_, sampler, side, vertex, pace, obstacles_);
-    const bool keep = options_.traces == Traces::Keep;
-    const auto tell = [&](const Stop& stop, const Arrival& end) {
+    const auto pace = attempt == Attempt::ExactFromStart ? March::Exact : March::Fast;
+    VertexMarch<Query> vertex_march(query_, directions_, sampler, side, vertex, pace, obstacles_);
+    const bool keep = options_.keep == KeepPaths::Yes;
+    const auto tell = [&](const StopDistance& stop, const Arrival& end) {
       ends.push_back({vertex, stop, end});
-      if (keep) paths_[stop.set].trace[v] = traveller.trace();
+      if (keep) paths_[stop.set].trace[v] = vertex_march.trace();
     };
-    if (attempt != UntangleSetting::FromThere) {
-      if (keep) traveller.keep_trace({});
-      traveller.march(stops, tell);
+    if (attempt != Attempt::FastFromEnd) {
+      if (keep) vertex_march.keep_trace({});
+      vertex_march.march(stops, tell);
       return;
     }
-    for (const Stop& stop : stops) {
+    for (const StopDistance& stop : stops) {
       const Paths& paths = paths_[stop.set];
-      if (!(paths.achieved[v] > kOnTheWay * stop.distance)) continue;
-      if (keep) traveller.keep_trace(paths.trace[v]);
-      traveller.march_from(surface_.vertices[v] + paths.displacement[v], paths.closest[v], stop, tell);
+      if (!(paths.achieved[v] > kRestartShare * stop.distance)) continue;
+      if (keep) vertex_march.keep_trace(paths.trace[v]);
+      vertex_march.march_from(surface_.vertices[v] + paths.displacement[v], paths.closest[v], stop, tell);
     }
   }
 
-  /// Tells how far the ends are from the surface, and what that makes of their vertices.
+  /// Measures how far the ends are from the surface, and writes distances and states of their vertices.
   void judge(const std::vector<End>& ends) const {
     std::vector<Vec3d> points;
     for (const auto& [v, stop, end] : ends) {
-      const Vec3d way = round_way(end.position - surface_.vertices[v], stop.distance);
-      paths_[stop.set].displacement[v] = way;
+      const Vec3d displacement = round_displacement(end.position - surface_.vertices[v], stop.distance);
+      paths_[stop.set].displacement[v] = displacement;
       // Judged where the vertex will be: far from the origin its coordinates are rounded.
-      points.push_back((surface_.vertices[v] + surface_.origin) + way - surface_.origin);
+      points.push_back((surface_.vertices[v] + surface_.origin) + displacement - surface_.origin);
     }
-    const std::vector<Closest> closest = look(ends, points);
+    const std::vector<Closest> closest = closest_to(ends, points);
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const auto& [v, stop, end] = ends[i];
       paths_[stop.set].achieved[v] = closest[i].distance;
@@ -286,8 +293,8 @@ class Marches {
     }
   }
 
-  /// What is closest to the ends. Those of a vertex on one side stand next to each other.
-  std::vector<Closest> look(const std::vector<End>& ends, std::span<const Vec3d> points) const {
+  /// The closest triangles to the ends, of which those of a vertex on one side stand next to each other.
+  std::vector<Closest> closest_to(const std::vector<End>& ends, std::span<const Vec3d> points) const {
     std::vector<Closest> closest(ends.size());
     std::vector<std::uint32_t> hints;
     std::vector<std::size_t> begin;
@@ -309,18 +316,19 @@ class Marches {
   const DirectionField& directions_;
   std::span<const Distances> distances_;
   const Obstacles* obstacles_;
-  WayOptions options_;
-  double roughness_ = 0;  // of planes
+  PathOptions options_;
+  double roughness_ = 0;  // of planes, world units
   std::vector<Paths>& paths_;
-  std::vector<std::vector<KnownEnd>> arrival_;  // of each set, on ways that need no field
-  std::vector<Components> known_;               // of each set, those that have such ways
+  std::vector<std::vector<KnownEnd>> arrival_;  // of each set and vertex: the ends of paths that need no field
+  std::vector<Components> known_;               // of each set: the components that have such paths
 };
 
 template <class Query>
 std::vector<Paths> march_all(const Query& query, const DirectionField& directions, std::span<const Distances> distances,
-                             const Obstacles* obstacles, const ProgressCallback& callback, const WayOptions& options) {
+                             const Obstacles* obstacles, const ProgressCallback& callback, const PathOptions& options) {
   const std::size_t count = query.surface().vertices.size();
   Progress progress(callback, Stage::Propagate, count);
+  for ([[maybe_unused]] const Distances& each : distances) VDB_OFFSET_ASSERT(each.uniform() || each.count() == count);
   std::vector<Paths> paths(distances.size());
   using All = Marches<Query>;
   const All marches(query, directions, distances, obstacles, options, paths);
@@ -347,38 +355,40 @@ Vec3d start_direction(const Polyline& line, std::uint32_t vertex) { return start
 
 bool is_folded(const Surface& surface, std::uint32_t vertex) { return start_of(surface, vertex).slope <= 0; }
 
-Vec3d round_way(const Vec3d& way, double target) {
+Vec3d round_displacement(const Vec3d& displacement, double target) {
+  VDB_OFFSET_ASSERT(target > 0);
   const int exponent = std::ilogb(target) - 36;
   const double quantum = std::ldexp(1.0, exponent), per_quantum = std::ldexp(1.0, -exponent);
-  // To the nearest whole number: what is larger has no fraction left to lose.
+  // To the nearest whole number: a larger number has no fraction left to lose.
   const auto whole = [](double x) { return std::abs(x) < 0x1p51 ? (x + 0x1.8p52) - 0x1.8p52 : x; };
-  return {whole(way[0] * per_quantum) * quantum, whole(way[1] * per_quantum) * quantum,
-          whole(way[2] * per_quantum) * quantum};
+  return {whole(displacement[0] * per_quantum) * quantum, whole(displacement[1] * per_quantum) * quantum,
+          whole(displacement[2] * per_quantum) * quantum};
 }
 
 void end_traces(Paths& paths) {
+  VDB_OFFSET_ASSERT(paths.trace.empty() || paths.trace.size() == paths.displacement.size());
   for (std::size_t v = 0; v < paths.trace.size(); ++v) paths.trace[v].push_back(paths.displacement[v]);
 }
 
-std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end) {
-  std::vector<Vec3d> places{start};
-  const auto come_by = [&](const Vec3d& way) {
-    if (places.back() != start + way) places.push_back(start + way);
+std::vector<Vec3d> positions_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end) {
+  std::vector<Vec3d> positions{start};
+  const auto add = [&](const Vec3d& displacement) {
+    if (positions.back() != start + displacement) positions.push_back(start + displacement);
   };
-  for (const Vec3d& way : trace) come_by(way);
-  come_by(end);
-  return places;
+  for (const Vec3d& corner : trace) add(corner);
+  add(end);
+  return positions;
 }
 
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles,
-                             const ProgressCallback& progress, const WayOptions& options) {
+                             const ProgressCallback& progress, const PathOptions& options) {
   return march_all(query, directions, distances, obstacles, progress, options);
 }
 
 std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const ProgressCallback& progress,
-                             const WayOptions& options) {
+                             const PathOptions& options) {
   return march_all(query, directions, distances, nullptr, progress, options);
 }
 

@@ -13,46 +13,48 @@
 
 namespace vdb_offset {
 
-/// Where each surface vertex went.
+/// Where each vertex of a surface goes. Each vector has a value for each vertex.
 struct Paths {
   std::vector<Vec3d> displacement;  ///< World units; a multiple of a power of two near 1e-11 of the distance.
   std::vector<double> achieved;     ///< Exact unsigned distance of the end point to the surface.
   std::vector<VertexState> state;
-  std::vector<std::uint32_t> closest;  ///< The triangle of the front that is closest to the end point.
+  std::vector<std::uint32_t> closest;  ///< The triangle of the surface that is closest to the end point.
   std::size_t straight = 0;            ///< Vertices of components that moved along their normals alone.
-  /// Ways from each vertex's start to the places that it came by, in order; the end, which `displacement` leads to, is
-  /// not among them. Empty unless traces are kept.
+  /// Displacements from the source to the corners of each vertex's path, in order, without the end, which
+  /// `displacement` leads to. Empty unless paths are kept.
   std::vector<std::vector<Vec3d>> trace;
 };
 
-/// Whether the places are kept that vertices come by: about ten of 24 bytes each.
-enum class Traces : bool { Drop, Keep };
+/// Whether paths are kept as polylines: about ten corners of 24 bytes for each vertex.
+enum class KeepPaths : bool { No, Yes };
 
-/// What becomes of a component that lies between planes at an angle, where its parts meet: Smooth, as all others, its
-/// vertices are spread along the ridge. Sharp: they follow it where the distance rises fastest, and merge there.
+/// Where fronts meet of a component that lies between planes at an angle. Smooth: its vertices march as those of all
+/// other components, and are spread along the ridge. Sharp: they follow the ridge where the distance rises fastest, and
+/// merge there.
 enum class Ridges : bool { Smooth, Sharp };
 
-struct WayOptions {
-  Traces traces = Traces::Drop;
+struct PathOptions {
+  KeepPaths keep = KeepPaths::No;
   Ridges ridges = Ridges::Smooth;
 };
 
-/// The unit direction in which a vertex sets out, outward: its normal, weighted by angles; where faces turn away from
-/// that, one that more of them face. Zero for a vertex without any.
+/// The unit direction in which a vertex leaves the source, outward: its normal, weighted by angles; where faces turn
+/// away from that, a direction that more of them face. Zero for a vertex without any.
 Vec3d start_direction(const Surface& surface, std::uint32_t vertex);
 Vec3d start_direction(const Polyline& line, std::uint32_t vertex);
-/// Whether the faces around a vertex fold so that none of the directions tried for that is one that all of them face.
-/// What moves such a vertex, however little, takes a face to its own back, and so through the surface.
+/// Whether the faces around a vertex fold so that none of the directions tried by start_direction() is one that all of
+/// them face. However little such a vertex moves, a face goes to its own back, and so through the surface.
 bool is_folded(const Surface& surface, std::uint32_t vertex);
 
-/// Rounds a way to a multiple of a power of two near 1e-11 of the distance. Rounding the way, not the place, makes
-/// the result independent of where the mesh stands.
-Vec3d round_way(const Vec3d& way, double target);
+/// Rounds a displacement to a multiple of a power of two near 1e-11 of the distance `target`. To round displacements,
+/// not positions, makes the result independent of where the mesh stands. \pre target > 0
+Vec3d round_displacement(const Vec3d& displacement, double target);
 
-/// Notes down the ends of paths as places come by, before anything else moves the vertices, if traces are kept.
+/// Makes the ends of paths corners, before anything else moves the vertices, if paths are kept.
 void end_traces(Paths& paths);
-/// The places that a vertex came by, from `start` to the end of its way, along ways from there.
-std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end);
+/// The polyline of a vertex's path, from `start` over the corners of `trace` to `end`, both of which are displacements
+/// from there. Positions that repeat are left out.
+std::vector<Vec3d> positions_on_path(const Vec3d& start, std::span<const Vec3d> trace, const Vec3d& end);
 
 /// Moves every surface vertex to its distance from the surface (Wang, Guibault, Camarero, Tchon, AIAA 2005:
 /// x' = +-grad phi / |grad phi|, stop where phi reaches d or falls). `distances` are those of the surface's vertices;
@@ -60,20 +62,20 @@ std::vector<Vec3d> places_on_path(const Vec3d& start, std::span<const Vec3d> tra
 /// answer.
 ///
 /// Where the straight paths along the normals of all vertices of a component are characteristics of the faces around
-/// them, they are the exact offset: one or two exact distances a vertex prove it, phi being 1-Lipschitz. With
+/// them, they are the exact offset: one or two exact distances for each vertex prove it, phi being 1-Lipschitz. With
 /// Ridges::Sharp, the vertices of another component that lies between planes at an angle follow the ridges of those
 /// (see ridge_path.h), unless there are obstacles or borders. The vertices of any other component all march by RK4
 /// along the smooth directions, since neighbours of which one goes straight and one follows the field lose their order.
-/// Steps are no longer than the exact distance, so that no path can cross the surface; the last is cut where the exact
-/// distance is d; where the distance falls and does not recover, the path ends at its largest. Where it comes as near
-/// to an obstacle as may be, it ends, too. The result does not depend on the number of threads.
+/// Steps are no longer than the exact distance, so that no path can cross the surface; the last step is cut where the
+/// exact distance is d; where the distance falls and does not recover, the path ends at its largest distance. Where a
+/// path comes as near to an obstacle as it may, it ends, too. The result does not depend on the number of threads.
 std::vector<Paths> propagate(const ClosestQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const Obstacles* obstacles = nullptr,
-                             const ProgressCallback& progress = {}, const WayOptions& options = {});
+                             const ProgressCallback& progress = {}, const PathOptions& options = {});
 
-/// The same for the vertices of plane curves, in directions from the field of their ribbon (see ribbon.h).
+/// Moves every vertex of plane curves to its distance, in directions from the field of their ribbon (see ribbon.h).
 std::vector<Paths> propagate(const CurveQuery& query, const DirectionField& directions,
                              std::span<const Distances> distances, const ProgressCallback& progress = {},
-                             const WayOptions& options = {});
+                             const PathOptions& options = {});
 
 }  // namespace vdb_offset

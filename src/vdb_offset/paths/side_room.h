@@ -10,11 +10,12 @@
 
 namespace vdb_offset {
 
-/// Asks at some of the vertices, evenly taken, whether the place straight above is at the distance, one query each.
-SideRoom room_on_sides(const ClosestQuery& front, const Distances& distances);
-SideRoom room_on_sides(const CurveQuery& front, const Distances& distances);
+/// Measures on which side there is room for the distances: at some of the vertices, evenly taken, whether the position
+/// straight above is at the distance. One query for each vertex and side.
+SideRoom room_on_sides(const ClosestQuery& query, const Distances& distances);
+SideRoom room_on_sides(const CurveQuery& query, const Distances& distances);
 
-/// Whether so much falls short of its distance that it is worth while to ask.
+/// Whether so many vertices are short that room_on_sides() is worth while.
 bool falls_short(std::span<const VertexState> states);
 
 }  // namespace vdb_offset

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/paths/obstacle_guard.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/paths/ridge_path.h"
@@ -16,37 +17,37 @@
 #include "vdb_offset/query/cut_at_distance.h"
 #include "vdb_offset/surface/start_direction.h"
 
-/// How one vertex finds its way: of a Surface, by its ClosestQuery, and of a Polyline, by its CurveQuery, alike.
+/// How one vertex finds its path: of a Surface, by its ClosestQuery, and of a Polyline, by its CurveQuery, alike.
 namespace vdb_offset {
 
 /// A distance, above 0, that a vertex is to stop at, and the set of distances that asks for it.
-struct Stop {
+struct StopDistance {
   double distance;
   std::size_t set;
 };
 
-/// A vertex in haste asks what is near of the triangles around the last answer alone. That is right but where another
-/// part of the surface comes near, which shows in the exact distance where it ends up: having met such a part it is
-/// nearer to that than it believes.
-enum class Pace { Careful, Hasty };
+/// How distances are measured on a march. Exact: by the exact query. Fast: from the triangles around the last answer
+/// alone. That is right except where another part of the surface comes near, which shows in the exact distance of the
+/// path's end: it is less than the fast one.
+enum class March { Exact, Fast };
 
-/// Where a vertex ended up on its way.
+/// The end of a path.
 struct Arrival {
   Vec3d position;
-  std::uint32_t triangle;  ///< One that is close to it.
-  bool outside_field = false;
+  std::uint32_t triangle;      ///< One that is close to the position.
+  bool outside_field = false;  ///< The path has left the field.
 };
 
 template <class Query>
 using ShapeOf = std::remove_cvref_t<decltype(std::declval<const Query&>().surface())>;
 
-/// One vertex on its way.
+/// The march of one vertex along its path.
 template <class Query>
 class VertexMarch {
  public:
-  /// `side` is 1 on the way outward, -1 inward.
+  /// Keeps references. `side` is 1 outward, -1 inward.
   VertexMarch(const Query& query, const DirectionField& field, DirectionSampler& sampler, int side,
-              std::uint32_t vertex, Pace pace, const Obstacles* obstacles = nullptr)
+              std::uint32_t vertex, March march, const Obstacles* obstacles = nullptr)
       : query_(query),
         sampler_(sampler),
         surface_(query.surface()),
@@ -56,116 +57,128 @@ class VertexMarch {
         vertex_(vertex),
         origin_(surface_.vertices[vertex]),
         hint_(surface_.triangles_around(vertex).front()),
-        pace_(pace) {
+        march_(march) {
     const StartDirection start = start_of(surface_, vertex);
     normal_ = start.direction * side_;
     slope_ = start.slope;
     if (obstacles) guard_.emplace(*obstacles, origin_, side);
   }
 
-  /// Where the way leads on which the distance rises fastest, to `target` or to where it rises no further, if planes
-  /// decide it all along, or what is off them by no more than `roughness`.
+  /// The end of the path on which the distance rises fastest, at the distance `target` or where it rises no further, if
+  /// planes decide the distance all along, or faces that are off planes by no more than `roughness` (world units).
   std::optional<KnownEnd> go_along_ridges(double target, double roughness) {
     target_ = target;
     const double tolerance = std::clamp(roughness, kStopTolerance * target, kRoughest * target);
     const auto first = leave_along_ridge(tolerance);
     if (!first) return std::nullopt;
-    const RidgePath way = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
+    const RidgePath path = RidgeFollower<Query>(query_, target, tolerance, kStopTolerance * target)(
         first->x, {first->phi, first->triangle, first->feature, false, first->x - first->away});
-    if (!way.found) return std::nullopt;
+    if (!path.found) return std::nullopt;
     if (trace_) {
       trace_->push_back(first->x - origin_);
-      for (std::size_t i = 0; i + 1 < way.count; ++i) trace_->push_back(way.corners[i] - origin_);
+      for (std::size_t i = 0; i + 1 < path.count; ++i) trace_->push_back(path.corners[i] - origin_);
     }
-    return KnownEnd{way.corners[way.count - 1], way.end.distance, way.end.triangle};
+    return KnownEnd{path.corners[path.count - 1], path.end.distance, path.end.triangle};
   }
 
-  /// Where the smooth directions lead: tell(stop, arrival) for each of the stops, which are at rising distances.
+  /// Follows the direction field, and calls tell(stop, arrival) for each stop distance. \pre `stops` rise
   template <class Tell>
-  void march(std::span<const Stop> stops, Tell&& tell) {
-    // What lies before the first step is on the way to it, unless that ends at an obstacle.
+  void march(std::span<const StopDistance> stops, Tell&& tell) {
+    // Stops before the first step are on the way to it, unless that ends at an obstacle.
+    VDB_OFFSET_ASSERT(!stops.empty() && std::is_sorted(stops.begin(), stops.end(), [](const auto& a, const auto& b) {
+      return a.distance < b.distance;
+    }));
     target_ = (guard_ ? stops.front() : stops.back()).distance;
     const auto first = leave_surface(first_step());
     target_ = stops.front().distance;
     if (!first || (guard_ && guard_->stop(origin_, first->x) != first->x)) {
-      for (const Stop& stop : stops) tell(stop, Arrival{origin_, hint_});
+      for (const StopDistance& stop : stops) tell(stop, Arrival{origin_, hint_});
       return;
     }
     march_on(*first, stops, tell);
   }
 
-  /// From now on the places come by are noted down, after these.
+  /// From now on the path's corners are noted down, after these.
   void keep_trace(std::vector<Vec3d> so_far) { trace_ = std::move(so_far); }
-  /// Ways to the places come by, up to the last that was told.
-  const std::vector<Vec3d>& trace() const { return *trace_; }
+  /// Displacements to the path's corners, up to the end that was told last. \pre keep_trace() has been called
+  const std::vector<Vec3d>& trace() const {
+    VDB_OFFSET_ASSERT(trace_.has_value());
+    return *trace_;
+  }
 
-  /// The same to one stop from a place on the way, if the distance still rises there, so that no ridge has been passed,
-  /// and there is nothing between that and the vertex; else tells of none. `triangle` is the closest to the place.
+  /// Marches to one stop distance from a position on the path, if the distance still rises there, so that no ridge has
+  /// been passed, and nothing lies between it and the vertex; else tells of no end. `triangle` is the closest to the
+  /// position.
   template <class Tell>
-  void march_from(const Vec3d& place, std::uint32_t triangle, const Stop& stop, Tell&& tell) {
+  void march_from(const Vec3d& position, std::uint32_t triangle, const StopDistance& stop, Tell&& tell) {
     target_ = stop.distance;
     hint_ = triangle;
     outside_ = false;
-    const Sample first = measure(place);
-    const double length = (place - origin_).length();
+    const Sample first = measure(position);
+    const double length = (position - origin_).length();
     if (!(length > 0)) return;
-    const Vec3d way = (place - origin_) / length;
-    const double slope = least_cosine(surface_, vertex_, way * side_);
-    if (!(first.away.dot(way) > kStillRising * first.phi) || slope < kLeastStraightSlope ||
-        !is_way_free(way, slope, length - first.phi, first_step()))
+    const Vec3d direction = (position - origin_) / length;
+    const double slope = least_cosine(surface_, vertex_, direction * side_);
+    if (!(first.away.dot(direction) > kStillRising * first.phi) || slope < kLeastStraightSlope ||
+        !is_line_free(direction, slope, length - first.phi, first_step()))
       return;
     hint_ = triangle;
     march_on(first, {&stop, 1}, tell);
   }
 
  private:
-  // Longest step, in voxels; and in distances, where the way is straight (cosine between its ends) on a finer grid.
+  // Longest step, in voxels; and in distances, where the path is straight (cosine between its ends) on a finer grid.
+  // Not measured.
   static constexpr double kStepVoxels = 0.75, kStepShare = 0.125, kStraightCourse = 0.9995;
-  // A path may run this far, in distances, without getting anywhere before it counts as stopped.
+  // A path may run this far, in distances, without getting farther away before it counts as stopped. Not measured.
   static constexpr double kPatience = 0.5;
+  // Steps of a path. Reasoned: more than any path needs that gets farther away.
   static constexpr int kMaxSteps = 400;
-  // Steps in haste, in distances from the surface: they may cross something, which the end shows.
-  static constexpr double kHastyShare = 3;
-  // Shortest step, in voxels or distances, unless the surface is nearer.
+  // Longest fast step, in distances from the surface: it may cross other surface, which the end shows. With fast steps
+  // propagation takes two thirds of the time.
+  static constexpr double kFastShare = 3;
+  // Shortest step, in voxels or distances, unless the surface is nearer. Not measured.
   static constexpr double kLeastStep = 0.1;
-  // A path on which the distance grows by less than this share of a step gets nowhere.
+  // A path on which the distance grows by less than this share of a step gets no farther away. Not measured.
   static constexpr double kSlowest = 0.01;
-  // How much the distance must rise the way at a place to march on from, per length.
+  // How much the distance must rise, per length, at a position to march on from. Not measured.
   static constexpr double kStillRising = 0.5;
-  // How far from planes faces may be to count as such, in distances.
+  // How far from planes faces may be to count as planes, in distances. Not measured.
   static constexpr double kRoughest = 1e-4;
-  // Each narrows the ridge's place by 0.62; this many leave a thousandth of a step.
+  // Golden-section steps to a ridge. Reasoned: each narrows the interval by 0.62; this many leave a thousandth of it.
   static constexpr int kRidgeSteps = 14;
-  // Below this length the interpolated gradient is the rest of opposite ones and says nothing.
+  // Length below which the interpolated gradient is the rest of opposite ones, and says nothing. Not measured.
   static constexpr double kLeastGradient = 1e-3;
 
-  // Cosine-like agreement of gradient and vertex normal near the surface: from none of the former to all of it.
+  // Agreement of gradient and vertex normal near the surface (cosine-like), from which on some of the gradient is used,
+  // and all of it. Reasoned: gradients leak across walls thinner than a voxel.
   static constexpr double kLeaked = 0.0, kTrusted = 0.2;
-  // How near, in voxels, that agreement matters. Farther out the two may well differ, at a medial axis for one.
+  // How near to the surface, in voxels, that agreement matters. Farther out the two may well differ, at a medial axis
+  // for one.
   static constexpr double kLeakVoxels = 0.3;
 
   /// The largest distance on a path, and the steps before and after it.
-  struct Peak {
+  struct PathMaximum {
     Sample before, at, after;
   };
 
   template <class Tell>
-  void march_on(const Sample& first, std::span<const Stop> stops, Tell&& tell) {
+  void march_on(const Sample& first, std::span<const StopDistance> stops, Tell&& tell) {
     const double last = stops.back().distance;
     std::size_t passed = 0;
     Sample before{origin_, 0, Vec3d(0.0), hint_, Feature::Face}, here = first;
-    Peak peak{before, here, here};
-    double since_peak = 0;
-    std::size_t noted_at_peak = trace_ ? trace_->size() : 0;
+    PathMaximum largest{before, here, here};
+    double since_largest = 0;
+    std::size_t noted_at_largest = trace_ ? trace_->size() : 0;
     for (int i = 0;; ++i) {
       for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
         tell_of(arrived(here.phi) ? here : cut(before, here), stops[passed], tell);
         if (++passed == stops.size()) return;
       }
-      if (i == kMaxSteps || !(since_peak < kPatience * last)) break;
+      if (i == kMaxSteps || !(since_largest < kPatience * last)) break;
       if (trace_) trace_->push_back(here.x - origin_);
-      // Not far beyond the last stop, which the last step is cut at; not much less than a voxel, for a slow climb.
-      double step = std::min({(pace_ == Pace::Hasty ? kHastyShare : kFreeShare) * here.phi,
+      // Not far beyond the last stop, where the last step is cut; not much less than a voxel, for a slow climb.
+      double step = std::min({(march_ == March::Fast ? kFastShare : kFreeShare) * here.phi,
                               std::max(kStepVoxels * h_, kStepShare * last),
                               std::max(last - here.phi, kLeastStep * std::min(h_, last))});
       const Vec3d ahead = runge_kutta(here, step), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
@@ -176,31 +189,31 @@ class VertexMarch {
         target_ = stops[passed].distance;
       }
       const Sample next = measure(to);
-      since_peak += step;
-      if (peak.at.x == here.x) peak.after = next;
-      if (next.phi > peak.at.phi) {
-        if (next.phi - peak.at.phi > kSlowest * step) since_peak = 0;
-        peak = {here, next, next};
-        if (trace_) noted_at_peak = trace_->size();
+      since_largest += step;
+      if (largest.at.x == here.x) largest.after = next;
+      if (next.phi > largest.at.phi) {
+        if (next.phi - largest.at.phi > kSlowest * step) since_largest = 0;
+        largest = {here, next, next};
+        if (trace_) noted_at_largest = trace_->size();
       }
       before = here;
       here = next;
       if (in_the_way) return tell_blocked(before, here, stops.subspan(passed), tell);
     }
-    const Sample end = climb(peak);
-    if (trace_) trace_->resize(noted_at_peak);
-    for (const Stop& stop : stops.subspan(passed)) tell_of(end, stop, tell);
+    const Sample end = climb(largest);
+    if (trace_) trace_->resize(noted_at_largest);
+    for (const StopDistance& stop : stops.subspan(passed)) tell_of(end, stop, tell);
   }
 
-  /// The place on the way from one short of the target that is at it, if what is closest tells that there is one before
-  /// the end.
+  /// The point of a step at which the distance is the target, if the closest triangles tell that there is one before
+  /// the step's end. `at`, the step's start, is short of the target.
   std::optional<Sample> stop_before(const Vec3d& end, Sample at) {
     constexpr int kMostSteps = 4;
     for (int i = 0; i < kMostSteps; ++i) {
-      const Vec3d way = end - at.x;
-      const auto share = share_to_distance(surface_, at, way, target_);
+      const Vec3d rest = end - at.x;
+      const auto share = share_to_distance(surface_, at, rest, target_);
       if (!share || !(*share < 1)) return std::nullopt;
-      const Sample next = measure(at.x + way * *share);
+      const Sample next = measure(at.x + rest * *share);
       if (arrived(next.phi)) return next;
       if (next.phi > target_) return cut(at, next);
       at = next;
@@ -209,21 +222,21 @@ class VertexMarch {
   }
 
   template <class Tell>
-  void tell_of(const Sample& end, const Stop& stop, Tell&& tell) const {
+  void tell_of(const Sample& end, const StopDistance& stop, Tell&& tell) const {
     tell(stop, Arrival{end.x, end.triangle, outside_});
   }
 
-  /// An obstacle ends the way at `end`; some stops may lie before that.
+  /// Tells of a path that an obstacle ends at `end`; some stops may lie before that.
   template <class Tell>
-  void tell_blocked(const Sample& before, const Sample& end, std::span<const Stop> stops, Tell&& tell) {
-    for (const Stop& stop : stops) {
+  void tell_blocked(const Sample& before, const Sample& end, std::span<const StopDistance> stops, Tell&& tell) {
+    for (const StopDistance& stop : stops) {
       target_ = stop.distance;
       tell_of(end.phi > target_ ? cut(before, end) : end, stop, tell);
     }
   }
 
   Sample measure(const Vec3d& x) {
-    if (pace_ == Pace::Careful) {
+    if (march_ == March::Exact) {
       const Closest closest = query_(x, hint_);
       hint_ = closest.triangle;
       return sample_at(x, closest);
@@ -234,12 +247,13 @@ class VertexMarch {
   double first_step() const { return 0.1 * std::min(target_, h_); }
   bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
 
-  /// Covers the line from `from` along `way` back to `to` with balls that hold no surface, where phi is what the faces
-  /// around the vertex, `slope` of whose normals it has, give it. A line of length d that ends at phi = d needs none:
-  /// it lies in the ball around its end.
-  bool is_way_free(const Vec3d& way, double slope, double from, double to) {
+  /// Whether nothing lies on a line from the vertex, between the lengths `from` and `to` < `from`: covers it with balls
+  /// that hold no surface, where phi is no less than the faces around the vertex make it, `slope` being the least
+  /// cosine between the line and their normals. A line of length d that ends at phi = d needs no balls: it lies in the
+  /// one around its end.
+  bool is_line_free(const Vec3d& direction, double slope, double from, double to) {
     while (from > to) {
-      const Closest closest = query_(origin_ + way * from, hint_);
+      const Closest closest = query_(origin_ + direction * from, hint_);
       const double phi = closest.distance;
       hint_ = closest.triangle;
       if (phi < kFreeShare * slope * from) return false;
@@ -248,19 +262,24 @@ class VertexMarch {
     return true;
   }
 
-  /// The first point off the surface, on the side asked for.
+  /// The first point off the surface, on the side asked for, along the start direction.
   std::optional<Sample> leave_surface(double longest) {
-    for (double step = longest; step > 1e-7 * target_; step *= 0.25) {
+    // Steps from the longest to a share of the distance, each a part of the one before; the least slope that a step is
+    // judged by. Not measured.
+    constexpr double kShortest = 1e-7, kPart = 0.25, kLeastSlope = 0.02;
+    for (double step = longest; step > kShortest * target_; step *= kPart) {
       const Sample sample = measure(origin_ + normal_ * step);
-      const bool free = sample.phi > kFreeShare * std::max(slope_, 0.02) * step;
+      const bool free = sample.phi > kFreeShare * std::max(slope_, kLeastSlope) * step;
       const bool right = !sided_ || side_ * surface_.pseudonormal(sample.triangle, sample.feature).dot(sample.away) > 0;
       if (free && right) return sample;
     }
     return std::nullopt;
   }
 
-  /// The same where the distance rises fastest, if the faces around the vertex tell that.
+  /// The first point off the surface where the distance rises fastest, if the faces around the vertex tell that; else
+  /// along the start direction.
   std::optional<Sample> leave_along_ridge(double tolerance) {
+    // Steps in distances, and how many tolerances a step is at least. Not measured.
     constexpr double kStep = 1e-3, kShortStep = 1e-5, kClear = 30;
     std::optional<detail::Ridge> ridge;
     bool clear = true;
@@ -272,7 +291,7 @@ class VertexMarch {
     }
     if (ridge && clear) {
       const double step = std::max(kStep * target_, kClear * tolerance / ridge->slope());
-      const Sample sample = measure(origin_ + ridge->way() * step);
+      const Sample sample = measure(origin_ + ridge->direction() * step);
       if (std::abs(sample.phi - ridge->slope() * step) <= tolerance) return sample;
     }
     return leave_surface(std::max(kShortStep * target_, kClear * tolerance));
@@ -301,8 +320,8 @@ class VertexMarch {
     return gradient.lengthSqr() > kLeastGradient * kLeastGradient ? gradient.unit() : fallback;
   }
 
-  /// Beyond a border phi is the distance to that, and its gradient leans out. What starts at a border stays in the
-  /// plane across it, so that the offset's border is the source's.
+  /// The velocity that a vertex follows. Beyond a border phi is the distance to that, and its gradient leans out: a
+  /// vertex of a border stays in the plane across it, so that the offset's border is the source's.
   Vec3d course(const Vec3d& x, double phi, const Vec3d& fallback) {
     const Vec3d v = velocity(x, phi, fallback);
     if (surface_.conormals.empty()) return v;
@@ -310,7 +329,7 @@ class VertexMarch {
     return along.lengthSqr() > kLeastGradient * kLeastGradient ? along.unit() : normal_;
   }
 
-  /// Shortens a step of more voxels than one that the way bends on.
+  /// The end of a step by RK4. Shortens a step of more than a voxel on which the path bends.
   Vec3d runge_kutta(const Sample& from, double& step) {
     const Vec3d away = from.phi > 0 ? from.away / from.phi : normal_,
                 fallback = surface_.is_held(vertex_) ? surface_.along_border(vertex_, away) : away;
@@ -335,14 +354,15 @@ class VertexMarch {
   }
 
   /// The ridge between the steps around the largest distance seen, by golden section: near it the distance rises to
-  /// one side and falls to the other. Ends beyond the peak only if that is no nearer.
-  Sample climb(const Peak& peak) {
+  /// one side and falls to the other. A point beyond the largest distance only if that is no nearer.
+  Sample climb(const PathMaximum& largest) {
     const auto on_path = [&](double t) {  // -1 .. 0 .. 1 from before through at to after
-      return t < 0 ? peak.at.x + (peak.before.x - peak.at.x) * -t : peak.at.x + (peak.after.x - peak.at.x) * t;
+      return t < 0 ? largest.at.x + (largest.before.x - largest.at.x) * -t
+                   : largest.at.x + (largest.after.x - largest.at.x) * t;
     };
     constexpr double kGolden = 0.6180339887498949;
     double low = -1, high = 1, a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    Sample at_a = measure(on_path(a)), at_b = measure(on_path(b)), best = peak.at;
+    Sample at_a = measure(on_path(a)), at_b = measure(on_path(b)), best = largest.at;
     for (int i = 0; i < kRidgeSteps; ++i) {
       if (at_a.phi > at_b.phi) {
         high = b;
@@ -370,10 +390,10 @@ class VertexMarch {
   double target_ = 0, h_;
   bool sided_;
   std::uint32_t vertex_;
-  Vec3d origin_, normal_;  // of the vertex; the normal points to the side asked for
+  Vec3d origin_, normal_;  // of the vertex: position and start direction, to the side asked for
   double slope_;
   std::uint32_t hint_;
-  Pace pace_;
+  March march_;
   bool outside_ = false;
   std::optional<ObstacleGuard> guard_;  // if there are obstacles
   std::optional<std::vector<Vec3d>> trace_;

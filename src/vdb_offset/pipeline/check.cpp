@@ -99,7 +99,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
   result.facts =
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
-  place(parts, parts.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
+  to_local_frame(parts, parts.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
   const Surface& surface = parts.surface();
   const ClosestQuery query(parts.front);
   const std::vector<Vec3d> source = parts.source(space.view()),
@@ -116,7 +116,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, places));
   std::size_t disagreeing = 0;
-  const Distances distances = distances_on_body(parts, options.border, result.distances, disagreeing);
+  const Distances distances = distances_on_parts(parts, options.border, result.distances, disagreeing);
   result.distances = distances_of_input(surface, distances);
   result.distance = result.distances.farthest();
   if (result.distance == 0) {

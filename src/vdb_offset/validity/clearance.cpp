@@ -15,10 +15,12 @@
 namespace vdb_offset {
 namespace {
 
-// What is nearer than it may be by no more than this share of the clearance is far enough.
-constexpr double kHeld = 1e-6;
+// Share of the clearance by which a triangle may be nearer than it should. Reasoned: as exact as distances are
+// promised.
+constexpr double kKeptClearance = 1e-6;
 
-/// Where two segments are nearest, as shares of them (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
+/// The points where two segments are nearest, as shares of their lengths (Ericson, Real-Time Collision Detection,
+/// 2005, 5.1.9).
 std::pair<double, double> nearest_shares(const Vec3d& p1, const Vec3d& q1, const Vec3d& p2, const Vec3d& q2) {
   const Vec3d d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
   const double a = d1.lengthSqr(), e = d2.lengthSqr(), f = d2.dot(r);
@@ -38,7 +40,7 @@ std::pair<double, double> nearest_shares(const Vec3d& p1, const Vec3d& q1, const
   return {s, t};
 }
 
-/// Where a segment runs through a triangle's inside, if it does.
+/// The point where a segment runs through a triangle's inside, if it does.
 std::optional<Vec3d> piercing(const Vec3d& p, const Vec3d& q, const TriangleCorners& triangle) {
   const Vec3d u = triangle[1] - triangle[0], v = triangle[2] - triangle[0], n = u.cross(v);
   const double at_p = n.dot(p - triangle[0]), at_q = n.dot(q - triangle[0]);
@@ -115,7 +117,7 @@ double ClearanceFinder::gap(const TriangleCorners& triangle, double limit) const
   return gap(triangle, limit, where);
 }
 
-/// Down the tree, what is nearest first; what is no nearer than the least so far is left out.
+/// Goes down the tree, the nearest boxes first; boxes that are no nearer than the least distance so far are left out.
 double ClearanceFinder::gap(const TriangleCorners& triangle, double limit, Vec3d& where) const {
   struct Node {
     std::uint32_t level, node;
@@ -152,16 +154,17 @@ double ClearanceFinder::gap(const TriangleCorners& triangle, double limit, Vec3d
 }
 
 bool ClearanceFinder::is_crowded(const TriangleCorners& triangle, double bound, double slack) const {
-  const double least = bound - obstacles_.clearance * kHeld - slack;
+  const double least = bound - obstacles_.clearance * kKeptClearance - slack;
   return least > 0 && gap(triangle, least) < least;
 }
 
-Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles, OfEach of_each) {
+Gap measure_gap(const Surface& surface, std::span<const Vec3d> positions, const Obstacles& obstacles, OfEach of_each) {
   const std::size_t count = surface.triangles.size() - obstacles.query.surface().triangles.size();
   const ClearanceFinder finder(obstacles);
-  // What touches is to be told from what does not, though nothing is nearer than 0.
+  // Without a clearance a triangle that touches has to be told from one that does not, though none is nearer than 0:
+  // the limit has to be above 0. Reasoned: far below any gap.
   constexpr double kTouching = 1e-150;
-  const double held = obstacles.clearance * (1 - kHeld), most = std::max(obstacles.clearance, kTouching);
+  const double kept = obstacles.clearance * (1 - kKeptClearance), most = std::max(obstacles.clearance, kTouching);
   Gap gap;
   if (of_each == OfEach::Yes) gap.of_each.resize(count);
   std::atomic<double> least = std::numeric_limits<double>::infinity();
@@ -173,8 +176,8 @@ Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obs
           const Vec3d& origin = surface.origin;
           const double known = least.load(std::memory_order_relaxed);
           const double found =
-              finder.gap({places[a] - origin, places[b] - origin, places[c] - origin}, std::max(known, most));
-          near += found < held || found == 0;
+              finder.gap({positions[a] - origin, positions[b] - origin, positions[c] - origin}, std::max(known, most));
+          near += found < kept || found == 0;
           if (of_each == OfEach::Yes) gap.of_each[t] = std::min(found, obstacles.clearance);
           for (double so_far = known; found < so_far && !least.compare_exchange_weak(so_far, found);) {
           }
@@ -186,12 +189,12 @@ Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obs
   return gap;
 }
 
-StartingGaps find_starting_gaps(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles,
+StartingGaps find_starting_gaps(const Surface& surface, std::span<const Vec3d> positions, const Obstacles& obstacles,
                                 std::vector<TrianglePair>& meeting) {
   const auto count = static_cast<std::uint32_t>(surface.triangles.size() - obstacles.query.surface().triangles.size());
-  const CrossingFinder finder(surface, places);
+  const CrossingFinder finder(surface, positions);
   StartingGaps start;
-  Gap gap = measure_gap(surface, places, obstacles, OfEach::Yes);
+  Gap gap = measure_gap(surface, positions, obstacles, OfEach::Yes);
   start.bound = std::move(gap.of_each);
   start.least = gap.least;
   start.touches.assign(count, 0);

@@ -11,26 +11,27 @@
 
 namespace vdb_offset {
 
-/// Three corners.
+/// The corners of a triangle.
 using TriangleCorners = std::array<Vec3d, 3>;
 
 /// Distance between two triangles, 0 if they meet.
 double distance_between(const TriangleCorners& a, const TriangleCorners& b);
-/// The same, with a point of `a` that is that near to `b`.
+/// Distance between two triangles, 0 if they meet; `on_a` becomes a point of `a` that is that near to `b`.
 double distance_between(const TriangleCorners& a, const TriangleCorners& b, Vec3d& on_a);
 
-/// Tells how near triangles come to obstacles, not at their vertices alone.
+/// Measures how near triangles come to obstacles, not at their vertices alone.
 class ClearanceFinder {
  public:
-  /// Keeps a reference.
+  /// Keeps a reference. Lengths are world units.
   explicit ClearanceFinder(const Obstacles& obstacles);
 
-  /// The least distance of a triangle, in the obstacles' frame, to any of them: exact if it is below `limit`, which is
-  /// the answer if none is that near.
+  /// The least distance of a triangle, in the obstacles' frame, to any obstacle: exact if it is below `limit`, which is
+  /// the answer if no obstacle is that near.
   double gap(const TriangleCorners& triangle, double limit) const;
-  /// The same, with a point of the triangle that is that near, if there is one.
+  /// The least distance of a triangle to any obstacle, at most `limit`; `where` becomes a point of the triangle that is
+  /// that near, if the answer is below `limit`.
   double gap(const TriangleCorners& triangle, double limit, Vec3d& where) const;
-  /// Whether it is nearer to any of them than `bound` by more than 1e-6 of the clearance and `slack`.
+  /// Whether a triangle is nearer to any obstacle than `bound` by more than 1e-6 of the clearance and `slack`.
   bool is_crowded(const TriangleCorners& triangle, double bound, double slack) const;
 
  private:
@@ -38,20 +39,23 @@ class ClearanceFinder {
   BoxTree tree_;
 };
 
-/// What stands between a body and its obstacles: of the triangles that are not obstacles' own.
+/// The gap between a constrained surface and its obstacles: of its triangles that are not obstacles' own.
 struct Gap {
-  double least = 0;             ///< World units; 0 if any meets an obstacle.
+  double least = 0;             ///< World units; 0 if any triangle meets an obstacle.
   std::size_t near = 0;         ///< Triangles nearer than the clearance by more than 1e-6 of it, or that meet one.
   std::vector<double> of_each;  ///< Of each triangle, but no more than the clearance; only if asked for.
 };
+/// Whether Gap::of_each is asked for.
 enum class OfEach : bool { No, Yes };
-/// `places` of the surface's vertices, in world coordinates. The result does not depend on the number of threads.
-Gap measure_gap(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles,
+/// Measures the gap. The result does not depend on the number of threads.
+/// \param positions of the surface's vertices, world coordinates
+Gap measure_gap(const Surface& surface, std::span<const Vec3d> positions, const Obstacles& obstacles,
                 OfEach of_each = OfEach::No);
 
-/// Where a body stands to its obstacles, given the pairs of its surface's triangles that meet where it stands. Of those
-/// the ones are taken out that have an obstacle in them and do not go through each other: touching is not crossing.
-StartingGaps find_starting_gaps(const Surface& surface, std::span<const Vec3d> places, const Obstacles& obstacles,
+/// Measures how near a surface is to its obstacles before anything moves. `meeting` are the pairs of triangles that
+/// meet at these positions: those of an obstacle's triangle that do not go through each other are taken out, as
+/// touching is not crossing.
+StartingGaps find_starting_gaps(const Surface& surface, std::span<const Vec3d> positions, const Obstacles& obstacles,
                                 std::vector<TrianglePair>& meeting);
 
 }  // namespace vdb_offset

@@ -3,27 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
 
-FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> places,
+FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> positions,
                                    const Distances& distances, std::size_t most) {
   const Surface& surface = constrained.surface;
   const Vec3d origin = constrained.front.surface().origin;
   const std::size_t all = surface.triangles.size(), count = most == 0 ? all : std::min(all, most);
-  constexpr std::size_t kSamples = 4;
-  constexpr double kLeftOut = -1;
-  const double least_target = 1e-3 * distances.scale();
+  constexpr std::size_t kSamples = 4;  // of a triangle
+  constexpr double kLeftOut = -1;      // the error of a sample that is left out
+  // Share of the largest distance below which a sample counts as asked to stay. Reasoned: errors are relative.
+  constexpr double kLeastTarget = 1e-3;
+  VDB_OFFSET_ASSERT(positions.size() == surface.vertices.size());
+  const double least_target = kLeastTarget * distances.scale();
   std::vector<double> error(kSamples * count, kLeftOut);
-  const auto look = [&](std::size_t i) {
+  const auto measure = [&](std::size_t i) {
     const auto t = static_cast<std::uint32_t>(i * all / count);
     if (!constrained.is_front(t)) return;
     const auto& [a, b, c] = surface.triangles[t];
     const double da = distances[a], db = distances[b], dc = distances[c];
-    const Vec3d samples[kSamples] = {(places[a] + places[b] + places[c]) / 3.0 - origin,
-                                     (places[a] + places[b]) / 2.0 - origin, (places[b] + places[c]) / 2.0 - origin,
-                                     (places[c] + places[a]) / 2.0 - origin};
+    const Vec3d samples[kSamples] = {
+        (positions[a] + positions[b] + positions[c]) / 3.0 - origin, (positions[a] + positions[b]) / 2.0 - origin,
+        (positions[b] + positions[c]) / 2.0 - origin, (positions[c] + positions[a]) / 2.0 - origin};
     const double wanted[kSamples] = {std::abs(da + db + dc) / 3, std::abs(da + db) / 2, std::abs(db + dc) / 2,
                                      std::abs(dc + da) / 2};
     const std::uint32_t hint = constrained.hint_of_triangle(t), hints[kSamples] = {hint, hint, hint, hint};
@@ -32,7 +36,7 @@ FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::s
     for (std::size_t k = 0; k < kSamples; ++k)
       if (wanted[k] > least_target) error[kSamples * i + k] = std::abs(closest[k].distance - wanted[k]) / wanted[k];
   };
-  for_each_index(count, look, 64);
+  for_each_index(count, measure, 64);
   std::erase(error, kLeftOut);
   return sum_up_errors(std::move(error));
 }

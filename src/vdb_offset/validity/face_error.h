@@ -10,13 +10,15 @@
 
 namespace vdb_offset {
 
-/// `places` of the body's vertices in world coordinates; between them, their distances' mean is asked for. Looks at no
-/// more than `most` triangles, evenly taken from all; 0 is all. Samples that are asked to stay on the front, and
-/// triangles off it, are left out. The result does not depend on the number of threads.
-FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> places,
+/// Measures how far faces are off their distance between their vertices: at a triangle's centre and at the middles of
+/// its edges, where the mean of the corners' distances is asked for. Samples of distance 0, and triangles that are not
+/// on the moving part, are left out. The result does not depend on the number of threads. \param positions of the
+/// constrained surface's vertices, world coordinates \param most triangles that are measured, evenly taken from all; 0:
+/// all are
+FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> positions,
                                    const Distances& distances, std::size_t most = 0);
 
-/// Sums up errors of single places, relative to what was asked there.
+/// Mean, 99 % quantile and maximum of the errors of samples, each relative to the distance that was asked there.
 FaceInteriorError sum_up_errors(std::vector<double> errors);
 
 }  // namespace vdb_offset

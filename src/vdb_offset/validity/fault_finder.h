@@ -27,7 +27,7 @@ struct Paths;
 /// vertices that are misplaced (VertexPositions).
 ///
 /// All is judged on coordinates as they will be written, and by these alone, whatever path led there: vertices that are
-/// moved to the same positions again have the same faults. Only what is around moved vertices is judged anew. The
+/// moved to the same positions again have the same faults. Only faces around moved vertices are judged anew. The
 /// result does not depend on the number of threads.
 ///
 /// Calls: move_to_ends() or move_all() once; then, in any order, move(), or try_out() and what is taken back of that

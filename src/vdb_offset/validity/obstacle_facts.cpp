@@ -1,5 +1,7 @@
 #include "vdb_offset/validity/obstacle_facts.h"
 
+#include "vdb_offset/base/assert.h"
+
 namespace vdb_offset {
 
 Surroundings::Surroundings(const MeshParts& parts, std::span<const Vec3d> source, double clearance)
@@ -8,6 +10,7 @@ Surroundings::Surroundings(const MeshParts& parts, std::span<const Vec3d> source
       obstacles_{query_, clearance},
       source_crossings_(CrossingFinder(surface_, source).all()),
       start_(find_starting_gaps(surface_, source, obstacles_, source_crossings_)) {
+  VDB_OFFSET_ASSERT(parts.obstacles->origin == surface_.origin);
   obstacles_.start = &start_;
 }
 
@@ -20,8 +23,8 @@ void Surroundings::hold(const Paths& paths, const Distances& distances, std::vec
         if (distances[v] != 0 && paths.displacement[v] == Vec3d(0.0)) bound[v] = 1;
 }
 
-ObstacleFacts Surroundings::facts(std::span<const Vec3d> places) const {
-  const Gap gap = measure_gap(surface_, places, obstacles_);
+ObstacleFacts Surroundings::facts(std::span<const Vec3d> positions) const {
+  const Gap gap = measure_gap(surface_, positions, obstacles_);
   return {gap.least, start_.least, gap.near, start_.touching - start_.crossing, start_.crossing};
 }
 

@@ -12,25 +12,26 @@
 
 namespace vdb_offset {
 
-/// A workpiece's obstacles, and how it stands to them before anything moves.
+/// The obstacles of mesh parts, and how near the parts are to them before anything moves.
 class Surroundings {
  public:
-  /// `source` holds where the vertices of the workpiece's surface stand, world coordinates. Keeps a reference to the
-  /// workpiece. \pre it is placed, and has obstacles
+  /// Keeps a reference to the parts. \param source positions of the vertices of parts.surface(), world coordinates
+  /// \pre to_local_frame() has been called, and there are obstacles
   Surroundings(const MeshParts& parts, std::span<const Vec3d> source, double clearance);
   Surroundings(const Surroundings&) = delete;
   Surroundings& operator=(const Surroundings&) = delete;
 
   const Obstacles& obstacles() const { return obstacles_; }
-  /// Pairs of triangles that meet in the source, but for those that only touch an obstacle, and obstacles' own.
+  /// Pairs of triangles that meet in the source, without those that only touch an obstacle, and obstacles' own.
   const std::vector<TrianglePair>& source_crossings() const { return source_crossings_; }
-  /// How many of them go through an obstacle.
+  /// The number of these pairs that go through an obstacle.
   std::size_t crossing() const { return start_.crossing; }
 
-  /// Marks the vertices that cannot leave an obstacle that they touch, so that they do not slide past it, either.
+  /// Marks, as 1 in `bound`, the vertices that cannot leave an obstacle that they touch, so that they do not slide past
+  /// it, either.
   void hold(const Paths& paths, const Distances& distances, std::vector<std::uint8_t>& bound) const;
-  /// Of a result whose vertices stand at these places, as written.
-  ObstacleFacts facts(std::span<const Vec3d> places) const;
+  /// What is between the obstacles and a result with its vertices at these positions, as written.
+  ObstacleFacts facts(std::span<const Vec3d> positions) const;
 
  private:
   const Surface& surface_;

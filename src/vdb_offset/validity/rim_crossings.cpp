@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "vdb_offset/base/assert.h"
+
 namespace vdb_offset {
 namespace {
 
-/// Whether no other face of the front lies at a half-edge's edge.
+/// Whether no other face of the moving part lies at a half-edge's edge.
 bool ends_front(const ConstrainedSurface& constrained, std::uint32_t half_edge) {
   const auto& next = constrained.surface.next_around_edge;
   for (std::uint32_t h = next[half_edge]; h != half_edge; h = next[h])
@@ -13,7 +15,7 @@ bool ends_front(const ConstrainedSurface& constrained, std::uint32_t half_edge) 
   return true;
 }
 
-/// Whether a triangle is of what stays of the mesh, which a shell of its part does not have.
+/// Whether a triangle is one of the mesh that stays, which a shell of the moving part does not have.
 bool is_left_out(const ConstrainedSurface& constrained, std::uint32_t triangle) {
   return !constrained.is_front(triangle) &&
          constrained.surface.representative[constrained.surface.triangles[triangle][0]] != kNone;
@@ -22,19 +24,20 @@ bool is_left_out(const ConstrainedSurface& constrained, std::uint32_t triangle) 
 }  // namespace
 
 RimCrossings::RimCrossings(const ConstrainedSurface& constrained, std::span<const Vec3d> other_skin,
-                           std::span<const Vec3d> places, const Distances& distances)
+                           std::span<const Vec3d> positions, const Distances& distances)
     : constrained_(constrained),
       surface_(constrained.surface),
       other_skin_(other_skin),
-      places_(places),
+      positions_(positions),
       distances_(distances) {
+  VDB_OFFSET_ASSERT(other_skin.size() == surface_.vertices.size() && positions.size() == other_skin.size());
   find_edges();
   if (edges_.empty()) return;
   list_vertices();
   finder_.emplace(rim_, skins_);
 }
 
-/// Edges of what is no part of the front have no rim.
+/// Finds the border's edges. Edges of faces that are not on the moving part have no rim.
 void RimCrossings::find_edges() {
   const auto half_edges = static_cast<std::uint32_t>(surface_.next_around_edge.size());
   for (std::uint32_t h = 0; h < half_edges; ++h) {
@@ -62,8 +65,8 @@ void RimCrossings::list_vertices() {
 void RimCrossings::put(std::uint32_t border_vertex) {
   const std::uint32_t v = vertices_[border_vertex];
   const bool inward = distances_[v] < 0;
-  skins_[2 * border_vertex] = inward ? other_skin_[v] : places_[v];
-  skins_[2 * border_vertex + 1] = inward ? places_[v] : other_skin_[v];
+  skins_[2 * border_vertex] = inward ? other_skin_[v] : positions_[v];
+  skins_[2 * border_vertex + 1] = inward ? positions_[v] : other_skin_[v];
 }
 
 std::uint32_t RimCrossings::border_index(std::uint32_t vertex) const {
@@ -100,7 +103,7 @@ void RimCrossings::find(std::span<const std::uint32_t> moved, std::span<const st
   const auto rim_corners = [&](std::uint32_t t) { return corners(t); };
   const auto skin_corners = [&](std::uint32_t t) -> std::array<Vec3d, 3> {
     const auto& [a, b, c] = surface_.triangles[t];
-    return {places_[a], places_[b], places_[c]};
+    return {positions_[a], positions_[b], positions_[c]};
   };
 
   std::erase_if(with_skin_,

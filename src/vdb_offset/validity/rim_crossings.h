@@ -14,32 +14,35 @@
 
 namespace vdb_offset {
 
-/// Where the rim of a shell meets what it must not, as the border's vertices are moved about: the skin that moves, the
-/// other one, and the rim itself, elsewhere than in edges and corners that they share, but where sheets of the source
-/// cross (see source_crossings.h). The rim has the triangles that make_shell() gives it.
+/// Finds where the rim of a shell meets the skin that moves, the other skin, or itself, as the border's vertices are
+/// moved about: elsewhere than in edges and corners that they share, and not where sheets of the source cross (see
+/// source_crossings.h). The rim has the triangles that make_shell() gives it.
 class RimCrossings {
  public:
-  /// `places` are where the body's vertices stand, `other_skin` where the rim leads, `distances` theirs: the sign tells
-  /// which skin is the outer one. Keeps references to all.
-  RimCrossings(const ConstrainedSurface& constrained, std::span<const Vec3d> other_skin, std::span<const Vec3d> places,
-               const Distances& distances);
+  /// Keeps references to all.
+  /// \param other_skin positions of the vertices in the skin that does not move
+  /// \param positions of the vertices in the skin that moves
+  /// \param distances of the vertices: the sign tells which skin is the outer one
+  RimCrossings(const ConstrainedSurface& constrained, std::span<const Vec3d> other_skin,
+               std::span<const Vec3d> positions, const Distances& distances);
 
-  /// Judges anew what has moved: vertices, and the triangles around them; sorted, no two the same. The finders are of
-  /// both skins, and up to date.
+  /// Finds anew what the rim meets around vertices that have moved. The finders are those of both skins.
+  /// \param touched the triangles around the moved vertices; \pre both sorted, each once
+  /// \pre the last update of `skin` was told of `touched`
   void find(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched, const CrossingFinder& skin,
             const CrossingFinder& other_skin, const SourceCrossings& source_crossings);
 
   std::size_t count() const { return with_skin_.size() + with_other_.size() + with_rim_.size(); }
 
-  /// Calls visit(vertex) for each vertex that may give way: the corners of the border's edges there, and of the
-  /// triangles in their way that have moved.
+  /// Calls visit(vertex) for each vertex that may give way: the ends of the border's edges whose rim meets something,
+  /// and the corners of the triangles that it meets and that move.
   template <class Visit>
   void for_each_corner(Visit&& visit) const;
 
  private:
-  /// An edge with one face, in the direction of that.
+  /// A border edge, in the direction in which its triangle runs.
   struct Edge {
-    std::uint32_t from, to;  ///< The body's vertices.
+    std::uint32_t from, to;
     std::uint32_t triangle;
   };
   using Pairs = std::vector<TrianglePair>;
@@ -54,14 +57,14 @@ class RimCrossings {
 
   const ConstrainedSurface& constrained_;
   const Surface& surface_;
-  std::span<const Vec3d> other_skin_, places_;
+  std::span<const Vec3d> other_skin_, positions_;
   const Distances& distances_;
   std::vector<Edge> edges_;
-  std::vector<std::uint32_t> vertices_;  // of the body, at the border; sorted
-  std::vector<Vec3d> skins_;             // where each of these is on the outer skin, and on the inner one
-  Surface rim_;                          // two triangles for each edge; only those, and the frame
+  std::vector<std::uint32_t> vertices_;  // at the border; sorted
+  std::vector<Vec3d> skins_;             // of each of these: its position on the outer skin, then on the inner one
+  Surface rim_;                          // two triangles for each edge; only these, and the frame
   std::optional<CrossingFinder> finder_;
-  // A triangle of the rim first, then one of the skin that moves, of the other one, or of the rim again.
+  // Pairs of a triangle of the rim, and one of the skin that moves, of the other skin, or of the rim.
   Pairs with_skin_, with_other_, with_rim_;
 };
 

@@ -3,20 +3,25 @@
 #include <algorithm>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
+
 namespace vdb_offset {
 namespace {
 
+// Rings around a face that crosses another within which crossings slide. Not measured.
 constexpr int kNearRings = 2;
 
 }  // namespace
 
 SourceCrossings::SourceCrossings(const Surface& surface, SelfCrossings crossings)
     : surface_(surface), crossings_(std::move(crossings)), near_begin_(surface.vertices.size() + 1, 0) {
+  VDB_OFFSET_ASSERT(std::is_sorted(pairs().begin(), pairs().end()));
+  VDB_OFFSET_ASSERT(!has_more() || crossings_.crossed.size() == surface.triangles.size());
   if (count() == 0) return;
   if (!has_more()) pair_up();
   for (std::uint32_t t = 0; t < crossings_.crossed.size(); ++t)
     if (crossings_.crossed[t]) crossing_.push_back(t);
-  look_around();
+  find_near();
 }
 
 void SourceCrossings::pair_up() {
@@ -34,7 +39,7 @@ void SourceCrossings::pair_up() {
                                                   crossing_.begin()));
 }
 
-void SourceCrossings::look_around() {
+void SourceCrossings::find_near() {
   std::vector<std::vector<std::uint32_t>> beside;
   beside.reserve(crossing_.size());
   for (const auto triangle : crossing_) {
@@ -52,7 +57,7 @@ void SourceCrossings::look_around() {
       for (const auto t : surface_.triangles_around(v)) triangle_near_[t] = 1;
 }
 
-/// Those of the triangle, and within two rings of it; sorted.
+/// The vertices of a triangle, and those within two rings of it; sorted.
 std::vector<std::uint32_t> SourceCrossings::vertices_beside(std::uint32_t triangle) const {
   std::vector<std::uint32_t> vertices(surface_.triangles[triangle].begin(), surface_.triangles[triangle].end());
   for (int ring = 0; ring < kNearRings; ++ring) {

@@ -14,9 +14,11 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/base/parallel.h"
 
@@ -28,32 +30,32 @@ using Point = Kernel::Point_3;
 using Triangle = Kernel::Triangle_3;
 using Segment = Kernel::Segment_3;
 
-/// Two triangles, the corners that they share first.
-struct Couple {
+/// Two triangles to be tested, the corners that they share first.
+struct TestedPair {
   std::array<Vec3d, 3> a, b;
   int shared = 0;
 
-  /// A triangle where its corners stand at some places, and one where they may stand at others. They share a corner
-  /// only if it is at one place.
-  Couple(const Surface& surface, std::span<const Vec3d> places_of_a, std::uint32_t s,
-         std::span<const Vec3d> places_of_b, std::uint32_t t) {
+  /// Two triangles of a surface, with their vertices at positions that may be others for each. They share a corner only
+  /// if both have it at the same position.
+  TestedPair(const Surface& surface, std::span<const Vec3d> positions_of_a, std::uint32_t s,
+             std::span<const Vec3d> positions_of_b, std::uint32_t t) {
     std::array<std::uint32_t, 3> of_a = surface.triangles[s], of_b = surface.triangles[t];
     for (std::size_t i = 0; i < 3; ++i) {
       const auto n = static_cast<std::size_t>(shared);
       const auto found = std::find(of_b.begin() + shared, of_b.end(), of_a[i]);
-      if (found == of_b.end() || places_of_a[of_a[i]] != places_of_b[*found]) continue;
+      if (found == of_b.end() || positions_of_a[of_a[i]] != positions_of_b[*found]) continue;
       std::swap(*found, of_b[n]);
       std::swap(of_a[i], of_a[n]);
       ++shared;
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      a[k] = places_of_a[of_a[k]];
-      b[k] = places_of_b[of_b[k]];
+      a[k] = positions_of_a[of_a[k]];
+      b[k] = positions_of_b[of_b[k]];
     }
   }
 
-  /// Two triangles that share what corners of theirs are at one place.
-  Couple(const std::array<Vec3d, 3>& first, const std::array<Vec3d, 3>& second) : a(first), b(second) {
+  /// Two triangles that share the corners that both have at the same position.
+  TestedPair(const std::array<Vec3d, 3>& first, const std::array<Vec3d, 3>& second) : a(first), b(second) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto n = static_cast<std::size_t>(shared);
       const auto found = std::find(b.begin() + shared, b.end(), a[i]);
@@ -65,14 +67,15 @@ struct Couple {
   }
 };
 
-// Differences of coordinates are exact to 2^-53 of themselves; a dot product of three with a cross product, or with a
-// sum of such differences, is off by far less than this share of the product of lengths.
+// Share of the product of lengths by which rounding may change a dot product. Reasoned: differences of coordinates are
+// exact to 2^-53 of themselves; a dot product of three with a cross product, or with a sum of such differences, is off
+// by far less than this.
 constexpr double kRounding = 1e-14;
 
-/// No less than a vector's length, and found faster.
+/// A number that is no less than a vector's length, and found faster.
 double no_shorter(const Vec3d& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
 
-/// A triangle's plane, which tells most of what does not meet the triangle.
+/// A triangle's plane, which tells most of the triangles that do not meet it.
 class Plane {
  public:
   explicit Plane(const std::array<Vec3d, 3>& triangle) : point_(triangle[0]) {
@@ -81,7 +84,7 @@ class Plane {
     size_ = kRounding * no_shorter(ab) * no_shorter(ac);
   }
 
-  /// 1 for what is clearly above, -1 for what is clearly below.
+  /// 1 for a point that is clearly above the plane, -1 for one that is clearly below, 0 for all others.
   int side(const Vec3d& x) const {
     const Vec3d to = x - point_;
     const double height = normal_.dot(to), margin = size_ * no_shorter(to);
@@ -109,7 +112,8 @@ bool on_one_side(const Plane& plane, const std::array<Vec3d, 3>& b, int shared) 
   return std::abs(sum) == 3 - shared;
 }
 
-/// The same of two of a surface's triangles, of the first of which the plane is known.
+/// True if the corners of a surface's triangle t that triangle s does not have lie clearly on one side of the plane of
+/// s.
 bool on_one_side(const Plane& plane, const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s,
                  std::uint32_t t) {
   const auto& [a, b, c] = surface.triangles[s];
@@ -138,8 +142,9 @@ bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b
   return true;
 }
 
-/// Most pairs are clearly apart; no more than rounding is left to the exact predicates.
-bool meet(const Couple& pair) {
+/// Whether two triangles meet elsewhere than in the corners that they share. Most pairs are clearly apart; no more than
+/// rounding is left to the exact predicates.
+bool meet(const TestedPair& pair) {
   if (pair.shared == 3) return false;  // the same triangle twice, or a sheet's two sides
   const Plane plane_of_a(pair.a), plane_of_b(pair.b);
   if (on_one_side(plane_of_a, pair.b, pair.shared) || on_one_side(plane_of_b, pair.a, pair.shared)) return false;
@@ -172,14 +177,15 @@ bool has_both_sides(const std::array<Vec3d, 3>& triangle, const std::array<Vec3d
 }
 
 bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s, std::uint32_t t) {
-  return meet(Couple(surface, positions, s, positions, t));
+  return meet(TestedPair(surface, positions, s, positions, t));
 }
 
-// Where lists of crossings are refused.
+// The word for a list of crossings in the message that refuses it for want of memory.
 constexpr const char* kCrossings = "crossings";
-constexpr std::size_t kSmallList = std::size_t{1} << 20;  // bytes
+// Bytes of a list that memory is not asked for. Reasoned: to ask takes longer than to find so few pairs.
+constexpr std::size_t kSmallList = std::size_t{1} << 20;
 
-/// Lets find(first, last, found) look at runs of 0 .. count - 1 in parallel; sorts what they find.
+/// Calls find(i, found) for 0 .. count - 1 in parallel, and sorts the pairs that it adds to `found`, each once.
 template <class Find>
 std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain, Find&& find) {
   tbb::enumerable_thread_specific<std::vector<TrianglePair>> found;
@@ -202,6 +208,7 @@ std::vector<TrianglePair> find_in_parallel(std::size_t count, std::size_t grain,
 
 CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
     : surface_(surface), positions_(positions), is_updated_(surface.triangles.size(), 0) {
+  VDB_OFFSET_ASSERT(positions.size() == surface.vertices.size());
   build();
 }
 
@@ -210,6 +217,7 @@ void CrossingFinder::build() {
 }
 
 void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
+  VDB_OFFSET_ASSERT(std::adjacent_find(triangles.begin(), triangles.end(), std::greater_equal<>()) == triangles.end());
   for (const auto t : updated_) is_updated_[t] = 0;
   updated_.assign(triangles.begin(), triangles.end());
   for (const auto t : updated_) is_updated_[t] = 1;
@@ -217,9 +225,9 @@ void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
   else tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
 }
 
-std::array<Vec3d, 3> CrossingFinder::corners(std::size_t t, std::span<const Vec3d> places) const {
+std::array<Vec3d, 3> CrossingFinder::corners(std::size_t t, std::span<const Vec3d> positions) const {
   const auto& [a, b, c] = surface_.triangles[t];
-  return {places[a], places[b], places[c]};
+  return {positions[a], positions[b], positions[c]};
 }
 
 /// Rounded outwards, relative to the surface's own frame.
@@ -329,8 +337,8 @@ std::vector<std::uint32_t> CrossingFinder::updated_runs() const {
   return runs;
 }
 
-/// Calls is_it(t, other, plane) for each triangle of a run that `takes` and each other whose boxes meet, `plane` being
-/// that of the former; no more for who has had true.
+/// Calls is_it(t, other, plane) for each triangle t of a run that `takes` is true of, and each other triangle whose box
+/// meets that of t; `plane` is that of t. No more for a t for which is_it() was true once.
 template <class Takes, class IsIt>
 void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes, IsIt&& is_it) const {
   struct Open {
@@ -347,7 +355,7 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
     open[count].emplace(Open{t, box_of(here), Plane(here)});
     all.include(open[count++]->box);
   }
-  const auto look_at = [&](std::size_t block) {
+  const auto search = [&](std::size_t block) {
     for (std::size_t i = 0; i < count;) {
       const auto& [t, box, plane] = *open[i];
       bool found = false;
@@ -363,8 +371,8 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
     return count == 0;
   };
   if (count == 0) return;
-  if (tree_.levels().size() == 1) look_at(0);
-  else tree_.any_overlap(all, look_at, 1);
+  if (tree_.levels().size() == 1) search(0);
+  else tree_.any_overlap(all, search, 1);
 }
 
 std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(std::uint32_t)>& matters) const {
@@ -382,8 +390,8 @@ std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(st
   });
 }
 
-/// First each looks at those that are not to look at it; then who has found none, and has been found by none, looks at
-/// those that would have, had they not stopped before.
+/// First each triangle searches those that do not search it. Then a triangle that is in no pair yet searches those that
+/// were to search it, and had stopped before.
 std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
     const std::function<bool(std::uint32_t)>& matters, const std::function<bool(const TrianglePair&)>& counts) const {
   const std::vector<std::uint32_t> runs = updated_runs();
@@ -415,16 +423,17 @@ std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
 }
 
 bool CrossingFinder::go_through(const TrianglePair& pair) const {
-  const Couple couple(surface_, positions_, pair.first, positions_, pair.second);
-  return has_both_sides(couple.a, couple.b) && has_both_sides(couple.b, couple.a) && meet(couple);
+  const TestedPair tested(surface_, positions_, pair.first, positions_, pair.second);
+  return has_both_sides(tested.a, tested.b) && has_both_sides(tested.b, tested.a) && meet(tested);
 }
 
-std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> places) const {
+std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> positions) const {
   std::vector<std::uint32_t> met;
-  const Plane plane(corners(triangle, places));
-  tree_.for_each_overlap(box_of(corners(triangle, places)), [&](std::size_t child) {
+  const Plane plane(corners(triangle, positions));
+  tree_.for_each_overlap(box_of(corners(triangle, positions)), [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
-    if (!misses(plane, corners(other, positions_)) && meet(Couple(surface_, places, triangle, positions_, other)))
+    if (!misses(plane, corners(other, positions_)) &&
+        meet(TestedPair(surface_, positions, triangle, positions_, other)))
       met.push_back(other);
   });
   return met;
@@ -438,7 +447,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> CrossingFinder::met_by(
     tree_.for_each_overlap(box_of(other), [&](std::size_t child) {
       const auto t = static_cast<std::uint32_t>(child);
       const std::array<Vec3d, 3> here = corners(t, positions_);
-      if (!misses(plane, here) && meet(Couple(other, here))) found.emplace_back(others[i], t);
+      if (!misses(plane, here) && meet(TestedPair(other, here))) found.emplace_back(others[i], t);
     });
   });
 }

@@ -17,55 +17,57 @@ using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Where a surface crosses itself: all pairs, or, if there are more than kMostListedPairs, which triangles are in one.
 struct SelfCrossings {
-  std::vector<TrianglePair> pairs;    ///< Sorted; empty if there are more.
-  bool more = false;                  ///< There are more than are listed.
-  std::vector<std::uint8_t> crossed;  ///< Then, of each triangle: whether it meets another.
+  std::vector<TrianglePair> pairs;    ///< Sorted; empty if there are more than are listed.
+  bool more = false;                  ///< There are more pairs than are listed.
+  std::vector<std::uint8_t> crossed;  ///< If there are more: of each triangle, 1 if it meets another.
 
-  /// No more than are counted.
+  /// The number of pairs, but no more than kMostListedPairs.
   std::size_t count() const;
 };
 
-/// Most pairs that are listed of where a source crosses itself: found in two seconds, and gone through in about as
-/// many.
+/// Most pairs of a surface that crosses itself that are listed. Measured: so many are found in two seconds, and gone
+/// through in about as many.
 inline constexpr std::size_t kMostListedPairs = 1000000;
 
 inline std::size_t SelfCrossings::count() const { return more ? kMostListedPairs : pairs.size(); }
 
-/// Finds the pairs of a surface's triangles that meet elsewhere than in the corners and edges they share: decided with
-/// exact predicates (CGAL's kernel), without a tolerance. Neighbours across an edge meet if they are folded flat onto
-/// each other. Triangles without area meet nothing. Memory: 29 bytes a triangle.
+/// Finds the pairs of a surface's triangles that meet elsewhere than in the corners and edges that they share: decided
+/// with exact predicates (CGAL's kernel), without a tolerance. Neighbours across an edge meet if they are folded flat
+/// onto each other. Triangles without area meet nothing. Memory: 29 bytes a triangle. Results are the same for any
+/// number of threads.
 class CrossingFinder {
  public:
-  /// `positions` of the surface's vertices may lie anywhere. Keeps references to both.
+  /// Keeps references to both. \param positions of the surface's vertices; they may lie anywhere
   CrossingFinder(const Surface& surface, std::span<const Vec3d> positions);
 
-  /// To be told of triangles whose corners have moved; sorted, no two the same.
+  /// To be told of triangles whose corners have moved. \pre sorted, each once
   void update(std::span<const std::uint32_t> triangles);
   /// Whether a triangle was among those of the last update.
   bool is_updated(std::uint32_t triangle) const { return is_updated_[triangle]; }
 
-  /// All pairs, sorted; the same for any number of threads.
+  /// All pairs, sorted.
   std::vector<TrianglePair> all() const { return all({}); }
-  /// The same of triangles that matter.
+  /// All pairs of two triangles that `matters` is true of, sorted.
   std::vector<TrianglePair> all(const std::function<bool(std::uint32_t)>& matters) const;
-  /// All pairs, or which triangles are in one.
+  /// All pairs, or, if there are too many, which triangles are in one.
   SelfCrossings listed() const;
-  /// The pairs that a triangle of the last update is part of, or two, both of which matter (all do by default); sorted.
+  /// The pairs that at least one triangle of the last update is part of, of two triangles that `matters` is true of (by
+  /// default all); sorted.
   std::vector<TrianglePair> of_updated(const std::function<bool(std::uint32_t)>& matters = {}) const;
-  /// Of each triangle of the last update one such pair that counts, if there are any; sorted.
+  /// For each triangle of the last update that matters, one pair that counts, of two triangles that matter, if there is
+  /// any; sorted.
   std::vector<TrianglePair> one_of_each_updated(const std::function<bool(std::uint32_t)>& matters,
                                                 const std::function<bool(const TrianglePair&)>& counts) const;
 
-  /// Whether two triangles, where they stand, do not just touch but go through each other: each has corners on both
-  /// sides of the other.
+  /// Whether two triangles do not just touch but go through each other: each has corners on both sides of the other.
   bool go_through(const TrianglePair& pair) const;
 
-  /// The surface's triangles, as they stand here, that one meets with its corners at `places`, elsewhere than in
-  /// corners that are at one place. In no particular order.
-  std::vector<std::uint32_t> met_by(std::uint32_t triangle, std::span<const Vec3d> places) const;
+  /// The surface's triangles, at this finder's positions, that a triangle meets whose corners are at other `positions`:
+  /// elsewhere than in corners that both have at the same position. In no particular order.
+  std::vector<std::uint32_t> met_by(std::uint32_t triangle, std::span<const Vec3d> positions) const;
 
   /// Pairs of another triangle, whose corners are given in the surface's own coordinates, and one of the surface's that
-  /// it meets elsewhere than in corners and edges that are at one place. Sorted.
+  /// it meets elsewhere than in corners and edges at the same positions. Sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> met_by(
       std::span<const std::uint32_t> others,
       const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const;
@@ -75,7 +77,7 @@ class CrossingFinder {
   template <class Takes, class Visit>
   void for_each_pair_of(std::size_t block, Takes&& takes, Visit&& visit) const;
   bool meets_any(std::uint32_t triangle) const;
-  std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> places) const;
+  std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> positions) const;
   FloatBox box_of(const std::array<Vec3d, 3>& corners) const;
   std::vector<std::uint32_t> updated_runs() const;
   template <class Takes, class IsIt>
@@ -85,7 +87,7 @@ class CrossingFinder {
   std::span<const Vec3d> positions_;
   BoxTree tree_;
   std::vector<std::uint32_t> updated_;
-  std::vector<std::uint8_t> is_updated_;  // of each triangle
+  std::vector<std::uint8_t> is_updated_;  // of each triangle: 1 if it is in updated_
 };
 
 }  // namespace vdb_offset
