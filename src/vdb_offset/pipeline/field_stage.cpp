@@ -44,7 +44,7 @@ Ridges ridges_of(const OffsetOptions& options) {
 }
 
 WayOptions march_options(const OffsetOptions& options, Ridges ridges) {
-  return {options.keep_paths ? Traces::Keep : Traces::Drop, ridges};
+  return {options.keep_paths ? KeepPaths::Yes : KeepPaths::No, ridges};
 }
 
 }  // namespace vdb_offset

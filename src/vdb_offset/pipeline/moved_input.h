@@ -112,7 +112,7 @@ void hand_out_paths(const Input& input, const Paths& paths, OffsetResult& result
     std::vector<Vec3d> trace;
     trace.reserve(paths.trace[w].size());
     for (const Vec3d& displacement : paths.trace[w]) trace.push_back(input.to_input(displacement));
-    result.paths[v] = places_on_path(input.start(v), trace, input.to_input(paths.displacement[w]));
+    result.paths[v] = positions_on_path(input.start(v), trace, input.to_input(paths.displacement[w]));
   });
 }
 

@@ -112,7 +112,7 @@ std::optional<SelfCrossings> PreparedMesh::known_crossings() const {
 
 Distances PreparedMesh::distances_of_all(const Distances& of_input, std::size_t& disagreeing) const {
   disagreeing = 0;
-  return distances_on_body(parts_, options_.border, of_input, disagreeing);
+  return distances_on_parts(parts_, options_.border, of_input, disagreeing);
 }
 
 std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances> distances, Ridges ridges) {
