@@ -91,9 +91,9 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     statistics_.threads = threads;
     if (moves) {
       plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
-      place(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
+      to_local_frame(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
     } else if (parts_.obstacles) {
-      place(parts_, std::max(parts_.front.facts.diagonal, kLeastSize) / kFrameVoxels, options.symmetry, 0);
+      to_local_frame(parts_, std::max(parts_.front.facts.diagonal, kLeastSize) / kFrameVoxels, options.symmetry, 0);
     }
   }
   statistics_.plan = plan;
