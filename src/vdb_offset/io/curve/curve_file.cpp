@@ -13,6 +13,7 @@
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/base/compression.h"
+#include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/curve/svg.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
@@ -145,15 +146,14 @@ class TextParser {
 /// Reads `v` lines and `l` elements; all others stay what they are.
 class LineElementParser {
  public:
-  explicit LineElementParser(MeshFile& file)
-      : file_(file), scanner_(file.path, file.text(), byte_order_mark(file.text()), true, kComment) {}
+  explicit LineElementParser(MeshFile& file) : file_(file), scanner_(file.path, file.text(), 0, true, kComment) {}
 
   void run() {
-    for (; !scanner_.at_text_end(); scanner_.next_line()) {
-      const std::string_view keyword = scanner_.token();
-      if (keyword == "v") file_.polygons.positions.push_back(scanner_.triple("a coordinate", at_.emplace_back()));
-      else if (keyword == "l") element();
-    }
+    for_each_obj_line(file_.path, file_.text(), [&](const ObjLine& line) {
+      scanner_ = line.words();
+      if (line.is("v")) file_.polygons.positions.push_back(scanner_.triple("a coordinate", at_.emplace_back()));
+      else if (line.is("l")) element();
+    });
     for (const auto& [index, at] : ahead_)
       if (index > file_.polygons.positions.size())
         scanner_.fail(fmt::format("a vertex index up to {}", file_.polygons.positions.size()), at);

@@ -11,6 +11,7 @@
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/face_labels.h"
 #include "vdb_offset/io/mesh/read/off_binary.h"
@@ -138,20 +139,21 @@ bool texture_of(std::string_view corner, std::size_t so_far, std::uint32_t& text
 
 /// `vt` lines, and what the corners of faces name of them. False if something is wrong with them.
 bool read_obj_texture(const MeshFile& source, CornerValues<Vec2d>& texture, bool& has_depth) {
-  Scanner scanner = scanner_at(source, byte_order_mark(source.text()));
-  for (; !scanner.at_end(); scanner.next_line()) {
-    const std::string_view keyword = scanner.token();
-    if (keyword == "vt") {
+  bool are_indices = true;
+  for_each_obj_line(source.path, source.text(), [&](const ObjLine& line) {
+    if (line.is("vt")) {
       double uvw[3] = {kNaN, 0, 0};
-      for (double* number = uvw; number != std::end(uvw) && !scanner.at_line_end(); ++number)
-        *number = number_or_nan(scanner.token());
+      Scanner words = line.words();
+      for (double* number = uvw; number != std::end(uvw) && !words.at_line_end(); ++number)
+        *number = number_or_nan(words.token());
       texture.value.emplace_back(uvw[0], uvw[1]);
       has_depth |= uvw[2] != 0;
-    } else if (keyword == "f") {
-      while (!scanner.at_line_end())
-        if (!texture_of(scanner.token(), texture.value.size(), texture.of_corner.emplace_back())) return false;
+    } else if (line.is("f") && are_indices) {
+      for (Scanner words = line.words(); are_indices && !words.at_line_end();)
+        are_indices = texture_of(words.token(), texture.value.size(), texture.of_corner.emplace_back());
     }
-  }
+  });
+  if (!are_indices) return false;
   return all_finite(texture.value) && texture.of_corner.size() == source.polygons.corners.size() &&
          any_named(texture.of_corner) && std::all_of(texture.of_corner.begin(), texture.of_corner.end(), [&](auto t) {
            return t == kNoNormal || t < texture.value.size();
@@ -400,16 +402,14 @@ Materials read_materials(const MeshFile& source) {
   if (source.format != Format::Obj || !has_extra(source, "materials")) return materials;
   std::unordered_map<std::string, std::uint32_t> index_of;
   std::string name;
-  Scanner scanner = scanner_at(source, byte_order_mark(source.text()));
-  for (; !scanner.at_end(); scanner.next_line()) {
-    const std::string_view keyword = scanner.token();
-    if (keyword == "usemtl") name = rest_of_line(scanner);
-    else if (keyword == "mtllib") materials.libraries.push_back(rest_of_line(scanner));
-    if (keyword != "f") continue;
+  for_each_obj_line(source.path, source.text(), [&](const ObjLine& line) {
+    if (line.is("usemtl")) name = rest_of_line(line);
+    else if (line.is("mtllib")) materials.libraries.push_back(rest_of_line(line));
+    if (!line.is("f")) return;
     const auto [known, is_new] = index_of.try_emplace(name, static_cast<std::uint32_t>(materials.names.size()));
     if (is_new) materials.names.push_back(name);
     materials.of_face.push_back(known->second);
-  }
+  });
   const bool any = materials.names.size() > 1 || (materials.names.size() == 1 && !materials.names[0].empty());
   if (!any || materials.of_face.size() != source.polygons.face_count()) return {};
   return materials;

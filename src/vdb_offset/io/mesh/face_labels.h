@@ -3,22 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 
-/// What is left of a line, without blanks at its end.
-inline std::string rest_of_line(Scanner& scanner) {
-  std::string rest;
-  while (!scanner.at_line_end()) {
-    if (!rest.empty()) rest += ' ';
-    rest += scanner.token();
-  }
-  return rest;
-}
-
-inline std::vector<std::string> words_of_line(Scanner& scanner) {
+inline std::vector<std::string> words_of_line(Scanner scanner) {
   std::vector<std::string> words;
   while (!scanner.at_line_end()) words.emplace_back(scanner.token());
   return words;
@@ -30,14 +21,12 @@ inline std::vector<std::string> words_of_line(Scanner& scanner) {
 template <class Listener>
 void visit_labels(const MeshFile& mesh, Listener& listener) {
   if (mesh.format == Format::Obj) {
-    Scanner scanner(mesh.path, mesh.text(), byte_order_mark(mesh.text()), true, '#');
-    for (; !scanner.at_end(); scanner.next_line()) {
-      const std::string_view keyword = scanner.token();
-      if (keyword == "f") listener.add_face();
-      else if (keyword == "g") listener.set_groups(words_of_line(scanner));
-      else if (keyword == "o") listener.set_object(rest_of_line(scanner));
-      else if (keyword == "usemtl") listener.set_material(rest_of_line(scanner));
-    }
+    for_each_obj_line(mesh.path, mesh.text(), [&](const ObjLine& line) {
+      if (line.is("f")) listener.add_face();
+      else if (line.is("g")) listener.set_groups(words_of_line(line.words()));
+      else if (line.is("o")) listener.set_object(rest_of_line(line));
+      else if (line.is("usemtl")) listener.set_material(rest_of_line(line));
+    });
   } else if (mesh.format == Format::Stl && mesh.encoding == Encoding::Ascii) {
     Scanner scanner(mesh.path, mesh.text());
     for (; !scanner.at_text_end(); scanner.next_line()) {

@@ -6,6 +6,7 @@
 #include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
+#include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
 #include "vdb_offset/io/shell/shell_writers.h"
@@ -39,24 +40,6 @@ std::size_t face_state_of(std::string_view keyword) {
 
 /// Faces' statements as they stand somewhere in a file: whole lines, empty where there is none yet.
 using StateLines = std::array<std::string_view, kFaceStateCount>;
-
-/// A line, with those that backslashes join to it.
-struct ObjLine {
-  std::string_view whole, keyword;
-  Scanner words;  // behind the keyword
-};
-
-template <class Visit>
-void for_each_obj_line(const std::string& path, std::string_view text, std::size_t begin, Visit&& visit) {
-  Scanner scanner(path, text, begin, true, '#');
-  while (!scanner.at_end()) {
-    const std::size_t at = scanner.position();
-    const std::string_view keyword = scanner.token();
-    const Scanner words = scanner;
-    scanner.next_line();
-    visit(ObjLine{text.substr(at, scanner.position() - at), keyword, words});
-  }
-}
 
 bool is_element(std::string_view keyword) { return keyword == "l" || keyword == "p"; }
 
@@ -104,16 +87,15 @@ class ObjRunFinder {
     ObjRun& run = found_.runs[i];
     run.begin = begin;
     run.end = end;
-    const std::string_view text = source_.text();
-    const std::size_t start = begin == 0 ? byte_order_mark(text) : begin;
-    for_each_obj_line(source_.path, text.substr(0, end), start, [&](const ObjLine& line) {
-      run.vertices += line.keyword == "v";
-      run.textures += line.keyword == "vt";
-      run.faces += line.keyword == "f";
+    const std::size_t start = begin == 0 ? byte_order_mark(source_.text()) : begin;
+    for_each_obj_line(source_.path, source_.text(), start, end, [&](const ObjLine& line) {
+      run.vertices += line.is("v");
+      run.textures += line.is("vt");
+      run.faces += line.is("f");
       run.has_elements |= is_element(line.keyword);
-      run.has_groups |= line.keyword == "g";
-      named_[i].group |= run.faces == 0 && line.keyword == "g";
-      named_[i].object |= run.faces == 0 && line.keyword == "o";
+      run.has_groups |= line.is("g");
+      named_[i].group |= run.faces == 0 && line.is("g");
+      named_[i].object |= run.faces == 0 && line.is("o");
       if (const std::size_t state = face_state_of(line.keyword); state != kNoState) run.state[state] = line.whole;
     });
   }
@@ -199,14 +181,14 @@ class ObjShellWriter {
     const std::size_t mark = i == 0 ? byte_order_mark(patched) : 0;
     std::string text = patched.substr(0, mark);
     Progress at{run.vertices, run.textures, run.faces};
-    for_each_obj_line(source_.path, patched, mark, [&](const ObjLine& line) {
-      const bool is_face = line.keyword == "f";
-      at.textures += line.keyword == "vt";
+    for_each_obj_line(source_.path, patched, mark, patched.size(), [&](const ObjLine& line) {
+      const bool is_face = line.is("f");
+      at.textures += line.is("vt");
       if (needs_group && is_face) {
         text += "g outer\n";
         needs_group = false;
       }
-      if (line.keyword == "g") append_group(text, line, ShellPart::Outer);
+      if (line.is("g")) append_group(text, line, ShellPart::Outer);
       else if (is_face) append_outer_face(text, line, at);
       else if (!(elements_inside_ && is_element(line.keyword))) append_line(text, line.whole);
       at.faces += is_face;
@@ -237,15 +219,14 @@ class ObjShellWriter {
     std::string text = i == 0 && found_.groups_late ? "g inner\n" : "";
     StateLines state = found_.runs[i].state, written = i == 0 ? found_.state_at_end : state;
     for_each_face_line(i, [&](const ObjLine& line, const Progress& at) {
-      if (line.keyword == "g") return append_group(text, line, ShellPart::Inner);
+      if (line.is("g")) return append_group(text, line, ShellPart::Inner);
       if (const std::size_t k = face_state_of(line.keyword); k != kNoState) {
         state[k] = line.whole;
         return;
       }
-      if (line.keyword != "f" ? !elements_inside_ : shell_.skin_face(static_cast<std::uint32_t>(at.faces)) == kNone)
-        return;
+      if (!line.is("f") ? !elements_inside_ : shell_.skin_face(static_cast<std::uint32_t>(at.faces)) == kNone) return;
       append_changes(text, state, written);
-      if (line.keyword == "f") append_inner_face(text, line, at);
+      if (line.is("f")) append_inner_face(text, line, at);
       else append_element(text, line, at);
     });
     append_changes(text, state, written);
@@ -260,7 +241,7 @@ class ObjShellWriter {
     StateLines state = found_.runs[i].state, written = state_before(edge);
     for_each_face_line(i, [&](const ObjLine& line, const Progress& at) {
       if (const std::size_t k = face_state_of(line.keyword); k != kNoState) state[k] = line.whole;
-      if (line.keyword != "f" || edge == shell_.rim.end() || edge->face != at.faces) return;
+      if (!line.is("f") || edge == shell_.rim.end() || edge->face != at.faces) return;
       append_changes(text, with_flat_rim(state), written);
       const std::vector<std::uint64_t> textures = textures_of(line, at);
       for (; edge != shell_.rim.end() && edge->face == at.faces; ++edge) append_rim_face(text, edge, textures);
@@ -281,14 +262,14 @@ class ObjShellWriter {
   void for_each_face_line(std::size_t i, Visit&& visit) const {
     const ObjRun& run = found_.runs[i];
     Progress at{run.vertices, run.textures, run.faces};
-    const std::string_view text = source_.text().substr(0, run.end);
-    for_each_obj_line(source_.path, text, run.begin == 0 ? byte_order_mark(text) : run.begin, [&](const ObjLine& line) {
-      const bool is_face = line.keyword == "f";
-      at.vertices += line.keyword == "v";
-      at.textures += line.keyword == "vt";
+    const std::size_t begin = run.begin == 0 ? byte_order_mark(source_.text()) : run.begin;
+    for_each_obj_line(source_.path, source_.text(), begin, run.end, [&](const ObjLine& line) {
+      const bool is_face = line.is("f");
+      at.vertices += line.is("v");
+      at.textures += line.is("vt");
       // A file that has changed meanwhile may have more faces; it will not be put in place.
       if (is_face && at.faces >= mesh_faces()) return;
-      if (is_face || line.keyword == "g" || is_element(line.keyword) || face_state_of(line.keyword) != kNoState)
+      if (is_face || line.is("g") || is_element(line.keyword) || face_state_of(line.keyword) != kNoState)
         visit(line, at);
       at.faces += is_face;
     });
@@ -324,7 +305,7 @@ class ObjShellWriter {
   /// One for each corner that the face has.
   std::vector<std::uint64_t> textures_of(const ObjLine& line, const Progress& at) const {
     std::vector<std::uint64_t> textures;
-    for (Scanner words = line.words; !words.at_line_end();)
+    for (Scanner words = line.words(); !words.at_line_end();)
       textures.push_back(texture_number(words.token(), at.textures));
     textures.resize(source_.polygons.view().face(at.faces).size(), 0);
     return textures;
@@ -387,7 +368,7 @@ class ObjShellWriter {
   /// Lines v/vt.. and points v, over the inner vertices.
   void append_element(std::string& text, const ObjLine& line, const Progress& at) const {
     text += line.keyword;
-    for (Scanner words = line.words; !words.at_line_end();) {
+    for (Scanner words = line.words(); !words.at_line_end();) {
       const std::string_view word = words.token();
       std::int64_t vertex = 0;
       if (!parse_integer(word.substr(0, word.find('/')), vertex)) {

@@ -2,13 +2,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
 #include <exception>
 #include <tuple>
 
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/line_records.h"
+#include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 
@@ -32,7 +32,7 @@ constexpr const char* kExtraNames[] = {
 enum Named : unsigned { kNamesTexture = 128, kNamesNormals = 256 };
 
 // Bytes of "v 0 0 0".
-constexpr std::ptrdiff_t kLeastVertexLine = 7;
+constexpr std::size_t kLeastVertexLine = 7;
 
 /// How much of everything a run of lines holds, or there is before it.
 struct Counts {
@@ -55,86 +55,33 @@ struct Arrays {
   std::vector<NumberTriple> position_at, normal_at;
 };
 
-/// The end of a line: behind its line end, or behind that of the last line that backslashes join to it.
-const char* line_end(const char* line, const char* end) {
-  const char* at = line;
-  for (;;) {
-    const char* const part = at;
-    const auto* newline = static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
-    if (!newline) return end;
-    at = newline + 1;
-    const char* last = newline != line && newline[-1] == '\r' ? newline - 1 : newline;
-    if (last == line || last[-1] != '\\') return at;
-    // A comment ends with its line. Only what has come since is looked at, however many lines are joined.
-    if (std::memchr(part, '#', static_cast<std::size_t>(newline - part))) return at;
-    if (at == end) return end;
-  }
-}
-
-enum class Line { Vertex, Normal, Face, Blank, Other };
-
-bool is_keyword(FastCursor& cursor, char first, char second = 0) {
-  FastCursor ahead = cursor;
-  if (!ahead.take(first) || (second && !ahead.take(second)) || !ahead.at_word_end()) return false;
-  cursor = ahead;
-  return true;
-}
-
-Line line_of(std::string_view keyword) {
-  return keyword == "v" ? Line::Vertex : keyword == "vn" ? Line::Normal : keyword == "f" ? Line::Face : Line::Other;
-}
-
-/// A scanner at the start of a line.
-Scanner scanner_at(const MeshFile& file, const char* line) {
-  return {file.path, file.text(), static_cast<std::size_t>(line - file.text().data()), true, '#'};
-}
-
-/// What a line is. The cursor goes behind the keyword, or, where a backslash stands in front of it, stays there.
-Line classify(const MeshFile& file, const char* line, FastCursor& cursor) {
-  cursor.skip_blanks();
-  if (is_keyword(cursor, 'v')) return Line::Vertex;
-  if (is_keyword(cursor, 'f')) return Line::Face;
-  if (is_keyword(cursor, 'v', 'n')) return Line::Normal;
-  if (cursor.at_line_end()) return Line::Blank;
-  FastCursor ahead = cursor;
-  if (ahead.take('#')) return Line::Blank;
-  return ahead.take('\\') ? line_of(scanner_at(file, line).token()) : Line::Other;
-}
-
-/// The corners of a face's line, behind its keyword.
-std::size_t count_corners(const MeshFile& file, const char* line, FastCursor cursor, const char* end) {
+/// How many corners a face's line has.
+std::size_t count_corners(const ObjLine& line) {
   std::size_t corners = 0;
+  FastCursor cursor = line.cursor;
   while (cursor.skip_word()) ++corners;
-  if (cursor.at_line_end() && cursor.position() + 1 >= end) return corners;
-  Scanner scanner = scanner_at(file, line);  // a comment, or a line that goes on in the next
-  scanner.token();
-  for (corners = 0; !scanner.token().empty();) ++corners;
+  if (cursor.at_line_end() && cursor.position() + 1 >= line.whole.data() + line.whole.size()) return corners;
+  Scanner words = line.words();  // a comment, or a line that goes on in the next
+  for (corners = 0; !words.token().empty();) ++corners;
   return corners;
 }
 
 /// Counts what a run of lines holds. Lines that are wrong are counted somehow: parsing tells.
 Counts count_run(const MeshFile& file, std::size_t begin, std::size_t end) {
   Counts counts;
-  const char* const last = file.text().data() + end;
-  for (const char* line = file.text().data() + begin; line != last;) {
-    const char* const next = line_end(line, last);
-    FastCursor cursor(line, next);
-    const Line kind = classify(file, line, cursor);
+  for_each_obj_line(file.path, file.text(), begin, end, [&](const ObjLine& line) {
+    const bool is_vertex = line.is("v"), is_face = line.is("f");
     // Lines too short for a vertex would make much of little: they are refused before there is an array.
-    if (kind == Line::Vertex && next - line < kLeastVertexLine) {
-      Scanner scanner = scanner_at(file, line);
-      scanner.token();
+    if (is_vertex && line.whole.size() < kLeastVertexLine) {
       NumberTriple ignored;
-      scanner.triple("a coordinate", ignored);
+      line.words().triple("a coordinate", ignored);
     }
-    counts.vertices += kind == Line::Vertex;
-    counts.normals += kind == Line::Normal;
-    if (kind == Line::Face) {
-      ++counts.faces;
-      counts.corners += count_corners(file, line, cursor, next);
-    }
-    line = next;
-  }
+    counts.vertices += is_vertex;
+    counts.normals += line.is("vn");
+    if (!is_face) return;
+    ++counts.faces;
+    counts.corners += count_corners(line);
+  });
   return counts;
 }
 
@@ -144,7 +91,7 @@ class RunParser {
   RunParser(const MeshFile& file, Arrays& arrays, const Counts& from, const Counts& to, const Counts& all)
       : file_(file),
         text_(file.text()),
-        scanner_(scanner_at(file, text_.data())),
+        scanner_(file.path, text_, 0, true, '#'),
         arrays_(arrays),
         next_(from),
         to_(to),
@@ -152,17 +99,12 @@ class RunParser {
 
   /// What the lines hold besides positions and faces.
   unsigned run(std::size_t begin, std::size_t end) {
-    const char* const last = text_.data() + end;
-    for (const char* line = text_.data() + begin; line != last;) {
-      const char* const next = line_end(line, last);
-      FastCursor cursor(line, next);
-      const Line kind = classify(file_, line, cursor);
-      if (kind == Line::Vertex) vertex(line, cursor);
-      else if (kind == Line::Face) face(line, cursor);
-      else if (kind == Line::Normal) normal(line, cursor);
-      else if (kind == Line::Other) other(line);
-      line = next;
-    }
+    for_each_obj_line(file_.path, text_, begin, end, [&](const ObjLine& line) {
+      if (line.is("v")) vertex(line);
+      else if (line.is("f")) face(line);
+      else if (line.is("vn")) normal(line);
+      else if (!line.keyword.empty()) other(line);
+    });
     if (!(next_ == to_)) changed();
     return extras_;
   }
@@ -177,13 +119,8 @@ class RunParser {
     return (next_.*what)++;
   }
   std::uint64_t place(const char* at) const { return static_cast<std::uint64_t>(at - text_.data()); }
-  /// For what the fast way does not read: the line again, from behind its keyword.
-  void scan(const char* line) {
-    scanner_ = scanner_at(file_, line);
-    scanner_.token();
-  }
-
-  void vertex(const char* line, FastCursor cursor) {
+  void vertex(const ObjLine& line) {
+    FastCursor cursor = line.cursor;
     const std::size_t v = take(&Counts::vertices);
     Vec3d& p = arrays_.polygons.positions[v];
     NumberTriple& at = arrays_.position_at[v];
@@ -194,12 +131,13 @@ class RunParser {
       plain = cursor.number(p[k]);
     }
     if (plain && cursor.at_line_end()) return;
-    scan(line);
+    scanner_ = line.words();
     p = scanner_.triple("a coordinate", at);
     if (!scanner_.at_line_end()) extras_ |= kVertexData;
   }
 
-  void normal(const char* line, FastCursor cursor) {
+  void normal(const ObjLine& line) {
+    FastCursor cursor = line.cursor;
     NumberTriple& at = arrays_.normal_at[take(&Counts::normals)];
     extras_ |= kNormals;
     bool plain = true;
@@ -209,22 +147,23 @@ class RunParser {
       plain = plain && cursor.skip_word();
     }
     if (plain && cursor.at_line_end()) return;
-    scan(line);
+    scanner_ = line.words();
     scanner_.skip_triple("three numbers of a normal", at);
   }
 
-  void face(const char* line, FastCursor cursor) {
+  void face(const ObjLine& line) {
+    FastCursor cursor = line.cursor;
     const std::size_t f = take(&Counts::faces), first = next_.corners;
     bool plain = true;
     while (plain && !cursor.at_line_end()) plain = plain_corner(cursor);
     if (!plain) {
       next_.corners = first;
-      scan(line);
+      scanner_ = line.words();
       while (!scanner_.at_line_end()) corner(scanner_.token());
     }
     if (next_.corners - first < 3) {
-      scan(line);
-      scanner_.fail_with("at least 3 corners in a face", fmt::format("{}", next_.corners - first), place(line));
+      scanner_ = line.words();
+      scanner_.fail_with("at least 3 corners in a face", fmt::format("{}", next_.corners - first), line.begin());
     }
     arrays_.polygons.face_begin[f + 1] = static_cast<std::uint32_t>(next_.corners);
   }
@@ -288,9 +227,9 @@ class RunParser {
     return static_cast<std::uint32_t>(value - 1);
   }
 
-  void other(const char* line) {
-    scanner_ = scanner_at(file_, line);
-    const std::string_view keyword = scanner_.token();
+  void other(const ObjLine& line) {
+    scanner_ = line.words();
+    const std::string_view keyword = line.keyword;
     // A file of random bytes is recognised by its first line that is none.
     if (keyword.size() > 32 || !std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; }))
       scanner_.fail("a line of an OBJ file", scanner_.position() - keyword.size());
@@ -298,7 +237,7 @@ class RunParser {
     else if (keyword == "usemtl" || keyword == "mtllib") extras_ |= kMaterials;
     else if (keyword == "g" || keyword == "o") extras_ |= kGroups;
     else if (keyword == "s") extras_ |= kSmooth;
-    else if (!keyword.empty()) extras_ |= kOther;
+    else extras_ |= kOther;
   }
 
   const MeshFile& file_;
