@@ -43,7 +43,7 @@ Ridges ridges_of(const OffsetOptions& options) {
   return options.collision == Collision::Merge ? Ridges::Sharp : Ridges::Smooth;
 }
 
-WayOptions march_options(const OffsetOptions& options, Ridges ridges) {
+PathOptions march_options(const OffsetOptions& options, Ridges ridges) {
   return {options.keep_paths ? KeepPaths::Yes : KeepPaths::No, ridges};
 }
 

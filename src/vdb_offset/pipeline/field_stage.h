@@ -40,7 +40,7 @@ DirectionField find_directions(DistanceField& field, bool open, OffsetStatistics
 /// How vertices go along ridges of the distance field: as Collision::Merge asks for, or evenly spread.
 Ridges ridges_of(const OffsetOptions& options);
 /// The options of propagate() in a run.
-WayOptions march_options(const OffsetOptions& options, Ridges ridges);
+PathOptions march_options(const OffsetOptions& options, Ridges ridges);
 
 /// Runs `work(threads)` in an arena of its own, which keeps the number of threads a matter of this call alone.
 /// \param asked number of threads; 0 for as many as the machine has. \throw InvalidInput below 0
