@@ -7,10 +7,10 @@
 
 namespace vdb_offset {
 
-/// Measures `positions` as an offset of plane curves: what check_offset() does for meshes, with segments for faces, and
-/// with the same eyes as limit_curves() (see CurveFaults). Welding and orientation do not count.
-/// \throw InvalidInput for curves that do not lie in one plane or have no segment, and for positions that are not one
-/// for each of their points, not finite, or not in that plane.
+/// Measures `positions` as an offset of plane curves, as check_offset() does for meshes, with segments for faces, and
+/// the faults that limit_curves() looks for (see CurveFaults). Welding and orientation have no effect. \throw
+/// InvalidInput for curves that do not lie in one plane or have no segment, and for positions that are not one for each
+/// of their points, not finite, or not in that plane.
 CheckResult check_curves(CurvesView source, std::span<const Vec3d> positions, const CheckOptions& options = {});
 
 }  // namespace vdb_offset

@@ -10,39 +10,41 @@ namespace vdb_offset {
 
 /// What became of a face of the mesh.
 enum class FaceRole : std::uint8_t {
-  Bare,        ///< Asked to carry nothing.
-  Full,        ///< One cell in each layer, or two prisms on a split quad; none of its corners is flat.
-  Transition,  ///< Some of its corners keep no height: its cells are those of other types that close the layers there.
-  Flat,        ///< None of its corners keeps any height: left out.
-  Degenerate,  ///< Left out: fewer than three places, or one that it comes by twice.
-  Repeated,    ///< Left out: over the corners of an earlier one, either way round.
+  Bare,        ///< It was not asked to carry layers.
+  Full,        ///< It carries one cell in each layer, or two prisms on a split quad; none of its corners is flat.
+  Transition,  ///< Some of its corners keep no height: it carries cells of other types, which close the layers there.
+  Flat,        ///< None of its corners keeps any height: it is left out.
+  Degenerate,  ///< It has fewer than three positions, or one of them twice: it is left out.
+  Repeated,    ///< It lies over the corners of an earlier face, either way round: it is left out.
 };
 
 inline constexpr std::size_t kFaceRoleCount = 6;
 
+/// The role's name in reports.
 const char* name(FaceRole role);
 
 /// What making cells found.
 struct LayerCellFacts {
   std::vector<FaceRole> role;        ///< Of each face of the input.
-  std::vector<std::uint8_t> cells;   ///< Of each face of the input: how many in each layer.
-  std::size_t turned_faces = 0;      ///< Whose cells lie on the side that the heights' sign does not say.
-  std::size_t border_sides = 0;      ///< In each layer, on edges of one face that carries cells.
-  std::size_t unpaired_sides = 0;    ///< On other edges: no cell of opposite direction is left for them.
-  std::size_t split_points = 0;      ///< Of the wall: added so that unpaired sides have points of their own.
-  std::size_t coincident_sides = 0;  ///< Unpaired ones that have the points of other sides nevertheless.
+  std::vector<std::uint8_t> cells;   ///< Of each face of the input: the number of cells in each layer.
+  std::size_t turned_faces = 0;      ///< Faces whose cells lie on the side opposite to the sign of the heights.
+  std::size_t border_sides = 0;      ///< Sides of a layer's cells on edges of one face that carries cells.
+  std::size_t unpaired_sides = 0;    ///< Sides of a layer's cells on other edges, without a cell of opposite direction.
+  std::size_t split_points = 0;      ///< Points of the wall that were added for unpaired sides.
+  std::size_t coincident_sides = 0;  ///< Unpaired sides that have the points of other sides nevertheless.
 };
 
-/// What is measured of the cells over layers.
+/// Measures of the cells over layers.
 struct LayerQuality {
-  std::vector<CellType> types;  ///< Of a layer's cells.
-  /// Of all cells, layer by layer: see cell_quality.h.
+  std::vector<CellType> types;  ///< Of the cells of one layer: all layers have the same.
+  /// Of all cells, layer by layer (see cell_quality.h).
   std::vector<float> scaled_jacobian, aspect_ratio;
-  std::vector<float> wall_angle;  ///< Degrees, of a layer's cells, in whose column it is: see cell_quality.h.
-  double volume = 0;              ///< Of all cells, world units^3; of those in a plane their area, ^2.
+  /// Degrees, of the cells of one layer: at the wall, in the column that the cell is in (see cell_quality.h).
+  std::vector<float> wall_angle;
+  double volume = 0;  ///< Of all cells, world units^3; of cells in a plane their area, world units^2.
   std::size_t points = 0;
-  bool plane = false;
-  /// On curves: the shortest segment of any layer, as a share of the one that it stands on.
+  bool plane = false;  ///< The layers are on curves.
+  /// On curves: the shortest segment of any layer, as a share of the segment of the wall that it stands on.
   double least_segment = 1;
 };
 

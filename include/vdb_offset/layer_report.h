@@ -20,14 +20,15 @@ struct LayerFigures {
   std::array<std::size_t, kCellTypeCount> cells_by_type{};
   std::size_t cells = 0, transition_cells = 0;
   double area = 0;                ///< Of the faces that were asked to carry layers, world units^2.
-  double layers_reached = 0;      ///< Layers times the share of heights kept, mean over that area.
+  double layers_reached = 0;      ///< Number of layers times the share of heights kept, mean over that area.
   double coverage = 0;            ///< Share of that area whose faces have all of their heights at all of their corners.
   Spread asked, reached;          ///< Thickness of all layers, means over faces' corners, by area; world units.
-  std::size_t full_vertices = 0;  ///< That keep all of their heights. The same number of places counts once a copy.
-  double first_error = 0, first_error_99 = 0;  ///< Of their first heights, relative: the most, and the 99 % quantile.
-  Spread scaled_jacobian, aspect_ratio;        ///< Of cells (see cell_quality.h).
-  std::size_t inverted_cells = 0;              ///< Whose scaled Jacobian is not above 0.
-  Spread wall_angle;                           ///< Degrees, of the cells at the wall: 0 is best.
+  std::size_t full_vertices = 0;  ///< Vertices that keep all of their heights. Copies of a position count separately.
+  /// Relative errors of the first heights of those vertices: the largest, and the 99 % quantile.
+  double first_error = 0, first_error_99 = 0;
+  Spread scaled_jacobian, aspect_ratio;  ///< Of cells (see cell_quality.h).
+  std::size_t inverted_cells = 0;        ///< Cells whose scaled Jacobian is not above 0.
+  Spread wall_angle;                     ///< Degrees, of the cells at the wall: 0 is best.
 };
 
 struct LayerReport {
@@ -39,17 +40,18 @@ struct LayerReport {
   double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
   std::size_t points = 0;
   LayerStatistics growing;
-  std::optional<FoamQuality> foam;       ///< Of what has been written for OpenFOAM.
-  std::size_t inverted_block_cells = 0;  ///< Of what has been written as a structured block.
+  std::optional<FoamQuality> foam;       ///< If a mesh has been written for OpenFOAM.
+  std::size_t inverted_block_cells = 0;  ///< Cells of a structured block that was written, with a Jacobian not above 0.
   std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;
 };
 
-/// Sums up layers and the cells over them, of which facts and quality tell, under their faces' names.
+/// Sums up layers and the cells over them, for each boundary patch and for all.
+/// \param names of the faces
 /// \throw InvalidInput as require_names()
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
                           const LayerCellFacts& facts, const LayerQuality& quality);
 
-/// A few lines for a terminal, each ended.
+/// A few lines of text for a terminal, each with a line end.
 std::string summary(const LayerReport& report);
 
 }  // namespace vdb_offset

@@ -8,20 +8,21 @@
 
 namespace vdb_offset {
 
-/// Double-precision positions: a float would lose the exact distance.
+/// Traits with double-precision positions: a float would lose the exact distance.
 struct MeshTraits : OpenMesh::DefaultTraitsDouble {};
 
 /// The half-edge mesh that the library takes and gives; polygons of any size.
 using Mesh = OpenMesh::PolyMesh_ArrayKernelT<MeshTraits>;
 
-/// The mesh's vertices and faces in handle order. \pre no deleted elements (call garbage_collection() first).
+/// Copies the mesh's vertices and faces in the order of their handles. \pre no deleted elements (call
+/// garbage_collection() first).
 Polygons to_polygons(const Mesh& mesh);
 
-/// An OpenMesh with the same vertices and faces in the same order.
+/// Makes an OpenMesh with these vertices and faces, in their order.
 /// \throw InvalidInput if a face cannot be added to a half-edge mesh (non-manifold or wrongly oriented).
 Mesh to_mesh(PolygonView polygons);
 
-/// The same as offset() for a half-edge mesh, whose points are replaced. \pre no deleted elements.
+/// Offsets a half-edge mesh by offset(), and replaces its points. \pre no deleted elements.
 OffsetResult offset(Mesh& mesh, const OffsetOptions& options);
 
 }  // namespace vdb_offset

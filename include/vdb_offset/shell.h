@@ -10,6 +10,7 @@
 
 namespace vdb_offset {
 
+/// The parts of a shell.
 enum class ShellPart : std::uint8_t { Outer, Inner, Rim };
 inline constexpr std::size_t kShellPartCount = 3;
 constexpr const char* name(ShellPart part) {
@@ -17,54 +18,56 @@ constexpr const char* name(ShellPart part) {
   return kNames[static_cast<std::size_t>(part)];
 }
 
-/// What a shell is, counted on its faces and by position: copies of a vertex, and vertices of both skins that stand at
-/// one place, are one.
+/// Facts about a shell, counted on its faces and by position: copies of a vertex, and vertices of both skins at one
+/// position, count as one.
 struct ShellFacts {
   std::size_t rim_quads = 0, rim_triangles = 0;
-  std::size_t border_edges_left = 0;   ///< With one face.
-  std::size_t non_manifold_edges = 0;  ///< With three faces or more.
-  std::size_t pinched_vertices = 0;    ///< Of the mesh: inner and outer skin are at one place there, and touch.
-  bool has_thickness = false;          ///< There are others.
-  std::size_t junction_vertices = 0;   ///< Of the mesh: at junctions of sheets (see find_junctions()).
-  std::size_t short_junctions = 0;     ///< Of these, where a corner has been held back from where it should be.
-  // Pairs of triangles that meet but for shared edges and corners.
-  std::size_t source_crossings = 0;       ///< Neither has moved: the mesh's own.
-  std::size_t crossings_near_source = 0;  ///< Others within two rings of where the mesh crosses itself.
-  std::size_t crossings = 0;              ///< All others.
+  std::size_t border_edges_left = 0;   ///< Edges with one face.
+  std::size_t non_manifold_edges = 0;  ///< Edges with three faces or more.
+  std::size_t pinched_vertices = 0;    ///< Vertices of the mesh at which inner and outer skin touch.
+  bool has_thickness = false;          ///< There are vertices at which the skins do not touch.
+  std::size_t junction_vertices = 0;   ///< Vertices of the mesh at junctions of sheets (see find_junctions()).
+  std::size_t short_junctions = 0;     ///< Junction vertices at which a corner is held back from where it should be.
+  // Pairs of triangles that meet elsewhere than in shared edges and corners.
+  std::size_t source_crossings = 0;       ///< Pairs of which neither has moved: the mesh's own.
+  std::size_t crossings_near_source = 0;  ///< Other pairs within two rings of where the mesh crosses itself.
+  std::size_t crossings = 0;              ///< All other pairs.
   bool closed = false;                    ///< Every edge has an even number of faces.
   bool oriented = false;                  ///< As many faces run through every edge one way as the other.
-  double volume = 0;  ///< World units^3, positive for faces that point outwards; of use if it is oriented.
+  double volume = 0;  ///< World units^3, positive for faces that point outwards; meaningful if the shell is oriented.
 };
 
 /// Two skins over the same faces, and the rim that joins their borders.
 ///
-/// With n vertices in the mesh that it is made of, and m faces in that mesh, or in the part of it that the shell is of:
-/// vertices 0 .. n - 1 are those of the outer skin and n .. 2 n - 1 those of the inner one, in the mesh's order, and
-/// splits of these behind them; faces 0 .. m - 1 are the mesh's, m .. 2 m - 1 the same from their back, and the rim is
-/// behind them, in the order of the mesh's corners. Without splits, corners of the outer skin's faces are the mesh's.
+/// The mesh that it is made from has n vertices, and m faces, or the part of it that the shell is made from has m.
+/// Vertices 0 .. n - 1 are those of the outer skin and n .. 2 n - 1 those of the inner skin, in the mesh's order, with
+/// splits of both behind them. Faces 0 .. m - 1 are the mesh's, m .. 2 m - 1 the mesh's turned round, and behind them
+/// are those of the rim, in the order of the mesh's corners. Without splits, corners of the outer skin's faces are the
+/// mesh's.
 struct Shell {
-  /// The border edge that a face of the rim stands on: of the mesh's face, from one of its corners to the next.
+  /// The border edge that a face of the rim stands on, as a side of one of the mesh's faces: from a corner to the next.
   struct RimOrigin {
     std::uint32_t face, corner;  ///< `corner` indexes PolygonView::corners.
-    bool at_corner = false;      ///< It closes what is between the rims there, and stands on that corner alone.
+    bool at_corner = false;      ///< The face closes the hole between rims at that corner, and stands on no edge.
   };
-  /// A vertex beside those of the skins: where more than two sheets' sides meet, each two that face each other have
-  /// one of their own (see sheet_sides.h).
+  /// A vertex in addition to those of the skins: where more than two sheets meet, each wedge has a vertex of its own
+  /// (see sheet_sides.h).
   struct Split {
-    std::uint32_t vertex;  ///< Of the mesh.
-    ShellPart skin;        ///< Whose attributes it has.
+    std::uint32_t vertex;  ///< The mesh's vertex that it comes from.
+    ShellPart skin;        ///< The skin whose attributes it has.
   };
 
   Polygons polygons;
-  std::vector<std::uint32_t> faces;  ///< Of the mesh: those that it is made of, ascending. Empty: all are.
+  std::vector<std::uint32_t> faces;  ///< The mesh's faces that the shell is made from, ascending. Empty: all of them.
   std::vector<Split> splits;
   std::vector<RimOrigin> rim;
-  /// Of each of the mesh's vertices: the share that it kept of its way to where the skins of sheets that meet should
-  /// be, below 0 where it is as offset. Empty if nothing meets.
+  /// Of each of the mesh's vertices: the share that it kept of its displacement to where the skins of sheets that meet
+  /// should be; below 0 where it is as offset. Empty if no sheets meet.
   std::vector<double> kept;
-  std::vector<std::uint8_t> is_junction;  ///< Of each of these: 1 where sheets meet.
+  std::vector<std::uint8_t> is_junction;  ///< Of each of the mesh's vertices: 1 where sheets meet. Empty likewise.
   ShellFacts facts;
 
+  /// Vertices of the mesh.
   std::size_t source_vertices() const { return (polygons.positions.size() - splits.size()) / 2; }
   /// Faces of each skin.
   std::size_t skin_faces() const { return (polygons.face_count() - rim.size()) / 2; }
@@ -77,7 +80,7 @@ struct Shell {
     const std::size_t count = skin_faces();
     return face < count ? ShellPart::Outer : face < 2 * count ? ShellPart::Inner : ShellPart::Rim;
   }
-  /// The face of the mesh that a face comes from; for the rim, the one at that border.
+  /// The face of the mesh that a face comes from; for a face of the rim, the mesh's face at that border.
   std::uint32_t source_face(std::size_t face) const {
     const std::size_t count = skin_faces();
     if (face >= 2 * count) return rim[face - 2 * count].face;
@@ -103,7 +106,7 @@ struct Shell {
   std::uint32_t source_corner(PolygonView mesh, std::size_t face, std::size_t k) const;
 };
 
-/// The other corner at which a border edge ends, as an index into the mesh's corners.
+/// The corner at which a border edge ends, as an index into the mesh's corners.
 inline std::uint32_t next_corner(PolygonView mesh, const Shell::RimOrigin& edge) {
   return edge.corner + 1 < mesh.face_begin[edge.face + 1] ? edge.corner + 1 : mesh.face_begin[edge.face];
 }
@@ -121,28 +124,30 @@ inline std::uint32_t Shell::source_corner(PolygonView mesh, std::size_t face, st
   return edge.at_corner || vertex == mesh.corners[edge.corner] ? edge.corner : next_corner(mesh, edge);
 }
 
-/// Joins two skins over a mesh's faces into one solid. `outer` and `inner` are positions of its vertices; either may be
-/// the mesh's own. The rim has a quad for each edge that has one face by the mesh's own positions, over the vertices
-/// that this face uses; a triangle where one end did not move apart, and nothing where neither did. Edges of three
-/// faces or more have no rim. Inner faces start with the same corner as the mesh's, so that quads are split into the
-/// same triangles.
-/// The facts are those of coordinates rounded to `precision`.
+/// Joins two skins over a mesh's faces into one solid. The rim has a quad for each edge that has one face by the mesh's
+/// own positions, over the vertices that this face uses; a triangle where the skins touch at one end of the edge, and
+/// nothing where they touch at both. Edges of three faces or more have no rim. Inner faces start with the same corner
+/// as the mesh's, so that quads are split into the same triangles. The facts are those of coordinates rounded to
+/// `precision`.
+/// \param outer positions of the mesh's vertices on the outer skin; may be the mesh's own
+/// \param inner positions of the mesh's vertices on the inner skin; may be the mesh's own
 /// \param only of each face: 1 if the shell is made of it, and has a rim where those faces end; empty: of all
 /// \throw InvalidInput for a mesh that cannot be used, or skins that do not have one position for each of its vertices.
 Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
                  const Precision& precision = {}, std::span<const std::uint8_t> only = {});
 
-/// The same between a mesh and its offset, or the part of it that was offset: each vertex is where it was on one skin,
-/// and where it went on the other. If that was made with OffsetOptions::off_source, junctions of sheets have vertices
-/// of their own (see make_junction_shell()). Faces that were turned round for the offset have their sides on the skins
-/// that those are part of, so that all agree about the outside.
-/// \param inner an offset inward that the inner skin is, instead of the mesh
+/// Makes the shell between a mesh and its offset, or the offset of a part of it: each vertex is at its position in the
+/// mesh on one skin, and at that in the offset on the other. If the offset was made with OffsetOptions::off_source,
+/// junctions of sheets have vertices of their own (see make_junction_shell()). The sides of faces that were turned
+/// round for the offset are on the skins that they belong to, so that all faces of the shell agree about the outside.
+/// \param inner an offset inward that is the inner skin instead of the mesh
 /// \param options those that the offset was made with
 Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options,
                const OffsetResult* inner = nullptr);
 
-/// Puts the states of vertices at junctions, and near them, into a result: they have reached the distance if all their
-/// corners are where they should be. What they have achieved is the share of it that all have kept.
+/// Updates the states and distances of vertices at junctions, and near them, in a result: they have reached the
+/// distance if all of their corners are where they should be. Else their distance is the share of it that all corners
+/// have kept.
 void tell_states(const Shell& shell, OffsetResult& result);
 
 }  // namespace vdb_offset

@@ -5,15 +5,15 @@
 
 namespace vdb_offset {
 
-/// Layers on a grid of quads as one structured block: i and j over the grid, k from the wall outward; its cells have
-/// positive volumes, but for inverted_cells(). Row and column 0 are at the corner of the grid with the lowest vertex. A
-/// grid that is closed in a direction, as a tube is, is cut open, and its first points come again as the last. Fields:
-/// share, height and state, as make_cells() has them. \throw InvalidInput as require_layers_of(), and unless the faces
-/// that carry layers are quads that make one such grid, with its vertices welded.
+/// Makes one structured block of the layers on a grid of quads: i and j over the grid, k from the wall outward. All
+/// cells but inverted_cells() have positive volumes. Row and column 0 are at the corner of the grid with the lowest
+/// vertex. A grid that is closed in a direction, as a tube is, is cut open, and its first points are repeated as the
+/// last. Point fields: share, height and state, as make_cells() has them. \throw InvalidInput as require_layers_of(),
+/// and unless the faces that carry layers are quads that make one such grid, with its vertices welded.
 StructuredBlock make_block(PolygonView mesh, const LayersResult& layers);
 
-/// A block's hexahedra whose scaled Jacobian (cell_quality.h) is not above 0: those of no height where layers end,
-/// which a block cannot leave out, and those on quads that would otherwise carry two prisms. \pre nk > 1
+/// Counts a block's hexahedra whose scaled Jacobian (cell_quality.h) is not above 0: cells of no height where layers
+/// end, which a block cannot leave out, and cells on quads that would otherwise carry two prisms. \pre nk > 1
 std::size_t inverted_cells(const StructuredBlock& block);
 
 }  // namespace vdb_offset

@@ -9,7 +9,7 @@
 
 namespace vdb_offset {
 
-/// With the order of a cell's corners, as in Gmsh, CGNS and SU2; VTK has prisms the other way round.
+/// Types of cells, and the order of their corners, as in Gmsh, CGNS and SU2; VTK has prisms the other way round.
 enum class CellType : std::uint8_t {
   Tetrahedron,  ///< 0 1 2, whose normal by the right hand points to 3.
   Pyramid,      ///< 0 1 2 3 around the base, whose normal points to 4.
@@ -20,20 +20,22 @@ enum class CellType : std::uint8_t {
   Quadrilateral,
 };
 inline constexpr std::size_t kCellTypeCount = 7;
+/// The type's name in reports, in the plural.
 const char* name(CellType type);
 
-/// Numbers that belong to points or cells, one each.
+/// A field of numbers, one for each point, or for each cell.
 struct VolumeField {
   std::string name;
   std::vector<float> values;
 };
 
-/// A part of the boundary.
+/// A named part of the boundary of a volume mesh.
 struct BoundaryPatch {
   enum class Kind : std::uint8_t { Wall, Outer, Side };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;
-  /// Points; a face runs ccw seen from outside the volume. Of a plane mesh two each, in the order of the cell's.
+  /// Points of the faces, which run ccw seen from outside the volume. Faces of a plane mesh have two points each, in
+  /// the order of the cell's corners.
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> face_begin{0};  ///< One more than faces.
   std::vector<std::uint32_t> cell;           ///< The cell behind each face.
@@ -44,8 +46,8 @@ struct BoundaryPatch {
   }
 };
 
-/// Cells of mixed types that share their points and faces, and the boundary, every face of which is in one patch. A
-/// plane mesh has triangles and quadrilaterals alone; its faces are edges, and its volume is an area.
+/// Cells of mixed types that share their points and faces, and the boundary, each face of which is in one patch. A
+/// plane mesh has only triangles and quadrilaterals; its faces are edges, and its volume is an area.
 struct VolumeMesh {
   std::vector<Vec3d> points;  ///< World units.
   std::vector<CellType> cell_types;
@@ -62,8 +64,8 @@ struct VolumeMesh {
   }
 };
 
-/// A block of hexahedra: points in a grid, i fastest, k from wall to outer surface. Or, where nk is 1, of
-/// quadrilaterals in a plane: j from wall to outer curve.
+/// A block of hexahedra: points in a grid, i fastest, k from the wall to the outer surface. If nk is 1, a block of
+/// quadrilaterals in a plane: j from the wall to the outer curve.
 struct StructuredBlock {
   std::uint32_t ni = 0, nj = 0, nk = 0;  ///< Points in each direction.
   std::vector<Vec3d> points;             ///< ni nj nk of them, world units.

@@ -85,7 +85,8 @@ class CurveCellMaker {
     result_.mesh.cell_fields = {{"layer", {}}, {"face", {}}, {"patch", {}}};
   }
 
-  /// Cells run ccw: outward is to the right of a segment, so that it runs backward as the lower side of its cells.
+  /// Adds the cells of a layer, ccw. Outward is to the right of a segment, so that it runs backward as the lower side
+  /// of its cells.
   void add_layer(std::size_t k) {
     VolumeMesh& mesh = result_.mesh;
     for (std::size_t s = 0; s < chains_.segments.size(); ++s) {
@@ -120,8 +121,8 @@ class CurveCellMaker {
   CurveChains chains_;
   bool inward_;
   CurveCells result_;
-  std::vector<std::vector<std::uint32_t>> numbers_;  // of the mesh's points, by layer and point of the curves
-  std::vector<std::uint8_t> sides_of_;               // of each point: segments with cells there
+  std::vector<std::vector<std::uint32_t>> numbers_;  // by layer and point of the curves: the mesh's point
+  std::vector<std::uint8_t> sides_of_;               // of each point: the number of segments with cells there
 };
 
 }  // namespace

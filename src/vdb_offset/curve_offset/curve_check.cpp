@@ -17,7 +17,8 @@
 namespace vdb_offset {
 namespace {
 
-// How far off the curves' plane an offset may be, by their extent, as plane_of() has it.
+// The largest distance of an offset's points from the plane of the curves, as a share of their extent. plane_of() takes
+// 1e-9 for the source; files of offsets may keep fewer digits. Not measured.
 constexpr double kFlatCurve = 1e-6;
 
 void require_usable(CurvesView source, std::span<const Vec3d> positions) {
@@ -38,7 +39,7 @@ class CurveChecker {
         options_(options),
         result_(result) {
     result.facts = facts_of(source, plane_);
-    place(positions);
+    find_positions(positions);
   }
 
   void run() {
@@ -50,9 +51,9 @@ class CurveChecker {
     const Distances distances(result_.distance);
     const PlaneCurves curves{query_, drawn_.source, distances, {}};
     CurveFaults faults(curves);
-    Indices all(places_.size());
+    Indices all(positions_.size());
     std::iota(all.begin(), all.end(), 0u);
-    faults.move(all, places_);
+    faults.move(all, positions_);
     result_.faults = faults.count();
     result_.source_crossings = faults.source_crossings();
     result_.more_source_crossings = faults.more_in_source();
@@ -62,10 +63,10 @@ class CurveChecker {
   }
 
  private:
-  /// Where the line's vertices are in the offset, in the plane.
-  void place(std::span<const Vec3d> positions) {
-    places_.assign(drawn_.source.size(), Vec2d(0.0));
-    std::vector<std::uint32_t> first(places_.size(), kNone);
+  /// Finds the positions of the line's vertices in the offset, in the plane.
+  void find_positions(std::span<const Vec3d> positions) {
+    positions_.assign(drawn_.source.size(), Vec2d(0.0));
+    std::vector<std::uint32_t> first(positions_.size(), kNone);
     const Vec3d normal = plane_.frame.u.cross(plane_.frame.v).unit();
     for (std::uint32_t p = 0; p < positions.size(); ++p) {
       const std::uint32_t v = drawn_.vertex[p];
@@ -76,24 +77,24 @@ class CurveChecker {
                            " (from 0) " + std::to_string(off) + " off it");
       if (first[v] == kNone) {
         first[v] = p;
-        places_[v] = plane_.frame.to_plane(positions[p]);
+        positions_[v] = plane_.frame.to_plane(positions[p]);
       } else {
         result_.torn += positions[p] != positions[first[v]];
       }
     }
   }
 
-  Closest closest_to(const Vec2d& place, std::uint32_t vertex) const {
-    return query_(Vec3d(place[0], place[1], 0), drawn_.line.triangles_around(vertex).front());
+  Closest closest_to(const Vec2d& position, std::uint32_t vertex) const {
+    return query_(Vec3d(position[0], position[1], 0), drawn_.line.triangles_around(vertex).front());
   }
 
-  /// The median, with the sign of the side that most points lie on.
+  /// The median distance, with the sign of the side that most points lie on.
   double find_distance() const {
     std::vector<double> distance;
     std::ptrdiff_t outside = 0;
-    for (std::uint32_t v = 0; v < places_.size(); ++v) {
-      const Closest closest = closest_to(places_[v], v);
-      const Vec3d away = Vec3d(places_[v][0], places_[v][1], 0) - closest.point;
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      const Closest closest = closest_to(positions_[v], v);
+      const Vec3d away = Vec3d(positions_[v][0], positions_[v][1], 0) - closest.point;
       distance.push_back(closest.distance);
       outside += drawn_.line.pseudonormal(closest.triangle, closest.feature).dot(away) < 0 ? -1 : 1;
     }
@@ -108,7 +109,7 @@ class CurveChecker {
       const std::uint32_t v = drawn_.vertex[p];
       if (v == kNone) continue;
       const double distance = faults.distance_of(v), error = distance - target,
-                   tolerance = kReachedTolerance * target + epsilon * places_[v].length();
+                   tolerance = kReachedTolerance * target + epsilon * positions_[v].length();
       result_.achieved[p] = distance;
       if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
       result_.beyond += error > tolerance;
@@ -121,7 +122,7 @@ class CurveChecker {
     std::vector<double> errors(drawn_.line.segments.size());
     for_each_index(errors.size(), [&](std::size_t s) {
       const auto [a, b] = drawn_.line.segments[s];
-      errors[s] = std::abs(closest_to((places_[a] + places_[b]) * 0.5, a).distance - target) / target;
+      errors[s] = std::abs(closest_to((positions_[a] + positions_[b]) * 0.5, a).distance - target) / target;
     });
     result_.interior = sum_up_errors(std::move(errors));
   }
@@ -131,7 +132,7 @@ class CurveChecker {
   CurveQuery query_;
   const CheckOptions& options_;
   CheckResult& result_;
-  std::vector<Vec2d> places_;  // of the line's vertices
+  std::vector<Vec2d> positions_;  // of the line's vertices
 };
 
 }  // namespace

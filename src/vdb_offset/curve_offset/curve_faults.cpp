@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/paths/propagate.h"
@@ -9,10 +10,13 @@
 namespace vdb_offset {
 namespace {
 
+// The length below which a segment is collapsed, as a share of its length in the source: that of faces'
+// areas (see FaultFinder).
 constexpr double kCollapsedLength = 1e-6;
-// What is nearer to the source, as a share of the distance, says nothing about sides.
+// The distance from the source, as a share of the distance asked for, below which the side of a point is only rounding.
+// Far below the promised 1e-6, far above rounding; not measured.
 constexpr double kOnSource = 1e-9;
-// Segments along the curve that a crossing of the source may slide over.
+// The number of segments along the curve that a crossing of the source may slide over: as two rings of faces.
 constexpr int kSlides = 2;
 
 }  // namespace
@@ -31,13 +35,13 @@ void CurveFaults::Pairs::remove_all_of(std::uint32_t segment) {
 
 CurveFaults::CurveFaults(const PlaneCurves& curves)
     : curves_(curves),
-      place_(curves.source.begin(), curves.source.end()),
+      position_(curves.source.begin(), curves.source.end()),
       away_(curves.source.size(), Vec2d(0.0)),
       distance_(curves.source.size(), 0.0),
       wrong_side_(curves.source.size(), 0),
       misplaced_at_(curves.source.size(), 0),
       fault_(curves.line().segments.size(), Fault::None),
-      finder_(curves.line().segments, place_) {
+      finder_(curves.line().segments, position_) {
   crossing_.of.resize(fault_.size());
   slid_.of.resize(fault_.size());
   auto found = finder_.all(kMostListedCrossings);
@@ -49,7 +53,7 @@ CurveFaults::CurveFaults(const PlaneCurves& curves)
   for (const auto& [s, t] : source_crossings_) crossed_[s] = crossed_[t] = 1;
 }
 
-/// The segments that are no more than so many from one.
+/// The segments within kSlides segments of one. Sorted.
 Indices CurveFaults::ring(std::uint32_t segment) const {
   Indices some{segment};
   for (int i = 0; i < kSlides; ++i) {
@@ -62,11 +66,10 @@ Indices CurveFaults::ring(std::uint32_t segment) const {
   return some;
 }
 
-/// Where there are too many crossings to ask each pair, segments near any are told from the others, as triangles are:
-/// ring by ring, all at once.
+/// Marks the segments near source crossings where these are too many to look at each: ring by ring, for all at once.
 void CurveFaults::mark_near() {
   near_ = finder_.crossed();
-  std::vector<std::uint8_t> points(place_.size());
+  std::vector<std::uint8_t> points(position_.size());
   for (int i = 0; i < kSlides; ++i) {
     std::fill(points.begin(), points.end(), std::uint8_t{0});
     for (std::size_t s = 0; s < near_.size(); ++s)
@@ -77,7 +80,7 @@ void CurveFaults::mark_near() {
   }
 }
 
-/// Whether a crossing of the source is no more than two segments from either.
+/// Whether some source crossing is within kSlides segments of both segments of a pair.
 bool CurveFaults::is_near(const SegmentPair& pair) const {
   if (crossed_.empty()) return false;
   Indices of_first = ring(pair.first), of_second = ring(pair.second);
@@ -100,7 +103,7 @@ Indices CurveFaults::segments_around(const Indices& points) const {
 
 void CurveFaults::measure(std::uint32_t point) {
   const Polyline& line = curves_.line();
-  const Vec3d x = curves_.in_frame(place_[point]);
+  const Vec3d x = curves_.in_frame(position_[point]);
   const Closest closest = curves_.front(x, around(point).front());
   const double target = std::abs(curves_.distances[point]);
   distance_[point] = closest.distance;
@@ -111,7 +114,9 @@ void CurveFaults::measure(std::uint32_t point) {
   misplaced_at_[point] = wrong_side_[point] || closest.distance > target * (1 + kReachedTolerance) + rounding(point);
 }
 
-double CurveFaults::rounding(std::uint32_t point) const { return curves_.precision.epsilon() * place_[point].length(); }
+double CurveFaults::rounding(std::uint32_t point) const {
+  return curves_.precision.epsilon() * position_[point].length();
+}
 
 bool CurveFaults::is_short(std::uint32_t point) const {
   return distance_[point] < std::abs(curves_.distances[point]) * (1 - kReachedTolerance) - rounding(point);
@@ -119,17 +124,17 @@ bool CurveFaults::is_short(std::uint32_t point) const {
 
 CurveFaults::Fault CurveFaults::judge(std::uint32_t segment) const {
   const auto [a, b] = curves_.line().segments[segment];
-  const Vec2d way = place_[b] - place_[a], before = curves_.source[b] - curves_.source[a];
-  if (place_[a] == curves_.source[a] && place_[b] == curves_.source[b]) return Fault::None;
-  if (!(way.length() > kCollapsedLength * before.length())) return Fault::Collapsed;
+  const Vec2d along = position_[b] - position_[a], before = curves_.source[b] - curves_.source[a];
+  if (position_[a] == curves_.source[a] && position_[b] == curves_.source[b]) return Fault::None;
+  if (!(along.length() > kCollapsedLength * before.length())) return Fault::Collapsed;
   const double least = kOnSource * std::max(std::abs(curves_.distances[a]), std::abs(curves_.distances[b]));
   const int side = curves_.distances[a] != 0 ? curves_.side(a) : curves_.side(b);
-  // Beside the flank of a deep corner the middle or an end alone may see that flank.
+  // Beside a flank of a deep corner the middle alone, or one end, may be closest to that flank.
   const auto is_against = [&](const Vec2d& away) {
-    return !(away.length() > least) || side * (way[1] * away[0] - way[0] * away[1]) <= 0;
+    return !(away.length() > least) || side * (along[1] * away[0] - along[0] * away[1]) <= 0;
   };
   if (!is_against(away_[a]) || !is_against(away_[b])) return Fault::None;
-  const Vec3d middle = curves_.in_frame((place_[a] + place_[b]) * 0.5);
+  const Vec3d middle = curves_.in_frame((position_[a] + position_[b]) * 0.5);
   const Vec3d away = middle - curves_.front(middle, around(a).front()).point;
   return is_against({away[0], away[1]}) ? Fault::Inverted : Fault::None;
 }
@@ -139,8 +144,9 @@ bool CurveFaults::is_new(const SegmentPair& pair) const {
   return !std::binary_search(source_crossings_.begin(), source_crossings_.end(), pair);
 }
 
-void CurveFaults::move(const Indices& points, std::span<const Vec2d> place) {
-  constexpr std::size_t kGrain = 64;
+void CurveFaults::move(const Indices& points, std::span<const Vec2d> positions) {
+  constexpr std::size_t kGrain =
+      64;  // points or segments that a thread takes at a time. For speed alone; not measured.
   const Indices segments = segments_around(points);
   const auto count_wrong = [&] {
     std::size_t at_points = 0, of_segments = 0;
@@ -153,7 +159,7 @@ void CurveFaults::move(const Indices& points, std::span<const Vec2d> place) {
       points.size(),
       [&](std::size_t i) {
         const auto p = points[i];
-        place_[p] = {curves_.precision(place[i][0]), curves_.precision(place[i][1])};
+        position_[p] = {curves_.precision(positions[i][0]), curves_.precision(positions[i][1])};
         measure(p);
       },
       kGrain);
@@ -181,23 +187,23 @@ FaultCounts CurveFaults::count() const {
   return counts;
 }
 
-Indices CurveFaults::wrong_points() const {
-  Indices wrong;
-  for (std::uint32_t p = 0; p < place_.size(); ++p)
-    if (misplaced_at_[p]) wrong.push_back(p);
+Indices CurveFaults::faulty_points() const {
+  Indices faulty;
+  for (std::uint32_t p = 0; p < position_.size(); ++p)
+    if (misplaced_at_[p]) faulty.push_back(p);
   for (std::uint32_t s = 0; s < fault_.size(); ++s) {
     if (fault_[s] == Fault::None && crossing_.of[s].empty()) continue;
     const Segment& segment = curves_.line().segments[s];
-    wrong.insert(wrong.end(), segment.begin(), segment.end());
+    faulty.insert(faulty.end(), segment.begin(), segment.end());
   }
-  sort_unique(wrong);
-  return wrong;
+  sort_unique(faulty);
+  return faulty;
 }
 
 bool CurveFaults::any_around(const Indices& points) const {
-  const auto is_wrong = [&](std::uint32_t s) { return fault_[s] != Fault::None || !crossing_.of[s].empty(); };
+  const auto is_faulty = [&](std::uint32_t s) { return fault_[s] != Fault::None || !crossing_.of[s].empty(); };
   return std::any_of(points.begin(), points.end(), [&](std::uint32_t p) {
-    return misplaced_at_[p] || std::any_of(around(p).begin(), around(p).end(), is_wrong);
+    return misplaced_at_[p] || std::any_of(around(p).begin(), around(p).end(), is_faulty);
   });
 }
 

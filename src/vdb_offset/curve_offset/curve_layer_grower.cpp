@@ -10,13 +10,14 @@
 namespace vdb_offset {
 namespace {
 
-/// Whether a to b and a to c turn counterclockwise by more than the least angle, or clockwise where the sign is -1.
+/// Whether the turn from b to c, as seen from a, is counterclockwise by more than the least angle; or clockwise if the
+/// sign is -1.
 bool turns(const Vec3d& a, const Vec3d& b, const Vec3d& c, double sign) {
   const Vec3d ab = b - a, ac = c - a;
   return sign * (ab[0] * ac[1] - ab[1] * ac[0]) > kLeastLean * ab.length() * ac.length();
 }
 
-/// Columns stand on segments.
+/// Grows layers on curves: columns stand on segments.
 class CurveLayerGrower final : public LayerGrower {
  public:
   CurveLayerGrower(const PlaneCurves& curves, std::span<const Vec3d> source, std::span<const Distances> heights,
@@ -26,11 +27,12 @@ class CurveLayerGrower final : public LayerGrower {
  private:
   bool moves(std::uint32_t p) const override { return heights_.back()[p] != 0; }
 
-  /// None does where curves branch.
-  bool sees_all_faces(std::uint32_t p, const Vec3d& way) const override {
+  /// False where curves branch.
+  bool sees_all_faces(std::uint32_t p, const Vec3d& displacement) const override {
     const auto around = faults_.around(p);
     for (const auto s : around)
-      if (!(side_ * curves_.line().triangle_normals[s].dot(way) > kLeastSlope * way.length())) return false;
+      if (!(side_ * curves_.line().triangle_normals[s].dot(displacement) > kLeastSlope * displacement.length()))
+        return false;
     return around.size() <= 2;
   }
   Vec3d direction_of(std::uint32_t p) const override { return start_direction(curves_.line(), p); }
@@ -65,13 +67,13 @@ class CurveLayerGrower final : public LayerGrower {
         64);
   }
 
-  void look(const Indices& points) override {
-    std::vector<Vec2d> places;
-    places.reserve(points.size());
-    for (const auto p : points) places.emplace_back(outermost(p)[0], outermost(p)[1]);
-    faults_.move(points, places);
+  void find_faults(const Indices& points) override {
+    std::vector<Vec2d> positions;
+    positions.reserve(points.size());
+    for (const auto p : points) positions.emplace_back(outermost(p)[0], outermost(p)[1]);
+    faults_.move(points, positions);
   }
-  Indices faulty_vertices() const override { return faults_.wrong_points(); }
+  Indices faulty_vertices() const override { return faults_.faulty_points(); }
   double distance_of(std::uint32_t p) const override { return faults_.distance_of(p); }
 
   const PlaneCurves& curves_;
@@ -82,6 +84,7 @@ class CurveLayerGrower final : public LayerGrower {
 
 LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, CurveFaults& faults,
                         Paths& paths, const ProgressCallback& callback) {
+  // Rounds after which progress is told to be complete; more of them are told as that. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   const double z = curves.line().vertices.front()[2] + curves.line().origin[2];
@@ -91,8 +94,8 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   LayerStack stack = CurveLayerGrower(curves, source, heights, faults, paths).run(progress);
   round_layers(
       source, curves.precision, [](std::uint32_t) { return true; },
-      [&](std::uint32_t p, const Vec3d& place) -> std::optional<double> {
-        return curves.front(curves.in_frame({place[0], place[1]}), faults.around(p).front()).distance;
+      [&](std::uint32_t p, const Vec3d& position) -> std::optional<double> {
+        return curves.front(curves.in_frame({position[0], position[1]}), faults.around(p).front()).distance;
       },
       stack, paths);
   return stack;

@@ -7,13 +7,15 @@
 
 namespace vdb_offset {
 
-/// What stack_layers() does, for plane curves: stacks layers between their points and where these ended up, of which
-/// `paths` tells, with no segment of the outermost curve inverted, collapsed or crossing another (see limit_curves()).
-/// `heights` are those of the points, one set for each layer. Cells are quadrilaterals over the segments; at a point
-/// without any height, triangles. None has a corner that does not turn the right way, nor a layer an angle with the
-/// layer below whose sine is under 1e-3. `paths` receives what became of the outermost curve, and `faults`, of
-/// the same curves, what is wrong with it still; places of the stacks are in the plane, all of one z. The result does
-/// not depend on the number of threads.
+/// Stacks layers between the points of plane curves and the ends of their paths, as stack_layers() does for surfaces.
+/// No segment of the outermost curve is inverted, collapsed or crossing another (see limit_curves()). Cells are
+/// quadrilaterals over the segments; at a point without any height, triangles. All of their corners turn the right way,
+/// and the sine of the angle between the sides of a cell is at least 1e-3. The result does not depend on the number of
+/// threads.
+/// \param heights of the polyline's vertices, one set for each layer
+/// \param faults of `curves`; receives those of the outermost curve
+/// \param paths of the polyline's vertices; receive what became of the outermost curve
+/// \return stacks whose positions are in the plane, all of one z
 LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, CurveFaults& faults,
                         Paths& paths, const ProgressCallback& progress = {});
 

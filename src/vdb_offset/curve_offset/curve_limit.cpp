@@ -14,13 +14,20 @@
 namespace vdb_offset {
 namespace {
 
-// Points that are spread along with a run of bad ones, to either side, by the length of that.
+// The most points to either side, as a multiple of a run of faulty points, that are spread along with it. Larger
+// windows find room for more runs, and take as much longer. Not measured.
 constexpr std::size_t kWidest = 16;
-// Pulled back by this in each round; after so many it goes all the way.
+// The share of its displacement that a faulty point keeps in a round of pulling back. Not measured.
 constexpr double kPull = 0.85;
+// The number of rounds after which faulty points go all the way back: by then they have 0.15 % of their displacement
+// left.
 constexpr int kMostPulls = 40;
-// Each halves what is left of a point's way out again.
-constexpr int kLettings = 10;
+// The rounds of letting out, each of which halves what a point lacks: it ends within 0.1 % of its displacement of the
+// farthest valid position between. Not measured.
+constexpr int kLetOuts = 10;
+// The numbers of good points that are taken into a run between bad ones, tried one after the other: small windows
+// first, then runs that block each other together. Not measured.
+constexpr int kBridges[] = {0, 2, 8};
 
 class CurveLimiter {
  public:
@@ -29,17 +36,17 @@ class CurveLimiter {
         paths_(paths),
         spacing_(spacing),
         faults_(curves),
-        way_(curves.source.size(), Vec2d(0.0)),
+        displacement_(curves.source.size(), Vec2d(0.0)),
         share_(curves.source.size(), 1.0),
         progress_(callback, Stage::Limit, 4 * curves.source.size()) {
     points_.resize(curves.source.size());
     std::iota(points_.begin(), points_.end(), 0u);
-    for (const auto p : points_) way_[p] = {paths.displacement[p][0], paths.displacement[p][1]};
+    for (const auto p : points_) displacement_[p] = {paths.displacement[p][0], paths.displacement[p][1]};
   }
 
   LimitStatistics run() {
-    statistics_.untanglings += put_in_order(curves_, paths_, way_, spacing_) > 0;
-    place(points_);
+    statistics_.untanglings += put_in_order(curves_, paths_, displacement_, spacing_) > 0;
+    move(points_);
     statistics_.before = faults_.count();
     statistics_.source_crossings = faults_.source_crossings();
     statistics_.more_source_crossings = faults_.more_in_source();
@@ -53,22 +60,23 @@ class CurveLimiter {
   }
 
  private:
-  void place(const Indices& points) {
-    std::vector<Vec2d> places;
-    places.reserve(points.size());
+  /// Moves points to where their displacements and shares lead.
+  void move(const Indices& points) {
+    std::vector<Vec2d> positions;
+    positions.reserve(points.size());
     for (const auto p : points) {
-      const Vec3d way = rounded_way(p);
-      places.push_back(curves_.source[p] + Vec2d(way[0], way[1]));
+      const Vec3d displacement = rounded_displacement(p);
+      positions.push_back(curves_.source[p] + Vec2d(displacement[0], displacement[1]));
     }
-    faults_.move(points, places);
+    faults_.move(points, positions);
   }
 
-  /// What a point will be handed back with, so that this is what is looked at: where two curves share a part of the
-  /// front, their segments meet or not by the last bit.
-  Vec3d rounded_way(std::uint32_t p) const {
+  /// The displacement that a point will be handed back with. Faults are looked for at exactly that: where two curves
+  /// share a part of the front, the last bit decides whether their segments meet.
+  Vec3d rounded_displacement(std::uint32_t p) const {
     const double target = std::abs(curves_.distances[p]);
-    const Vec2d way = way_[p] * share_[p];
-    return target == 0 ? Vec3d(0.0) : round_displacement(Vec3d(way[0], way[1], 0), target);
+    const Vec2d displacement = displacement_[p] * share_[p];
+    return target == 0 ? Vec3d(0.0) : round_displacement(Vec3d(displacement[0], displacement[1], 0), target);
   }
 
   /// The next point along the curve, or the one before; kNone at an end, and where curves branch.
@@ -80,10 +88,10 @@ class CurveLimiter {
     return kNone;
   }
 
-  /// Points that are wrong or short, in runs along the curves, with `bridge` others in between at most.
+  /// Faulty and short points, in runs along the curves, with at most `bridge` other points in a row in between.
   std::vector<std::vector<std::uint32_t>> bad_runs(int bridge) const {
     std::vector<std::uint8_t> bad(points_.size(), 0), taken(points_.size(), 0);
-    for (const auto p : faults_.wrong_points()) bad[p] = 1;
+    for (const auto p : faults_.faulty_points()) bad[p] = 1;
     for (const auto p : points_) bad[p] = bad[p] || faults_.is_short(p);
     std::vector<std::vector<std::uint32_t>> runs;
     for (const auto p : points_) {
@@ -99,7 +107,7 @@ class CurveLimiter {
     }
     return runs;
   }
-  /// The last bad point that can be come to, not going as far as `stop`.
+  /// The last bad point of a run, coming from one of its points, and ending before `stop`.
   std::uint32_t end_of_run(std::uint32_t from, bool forward, int bridge, const std::vector<std::uint8_t>& bad,
                            std::uint32_t stop) const {
     std::uint32_t last = from;
@@ -112,7 +120,7 @@ class CurveLimiter {
     return last;
   }
 
-  /// A run with so many more points to either side, or as many as there are.
+  /// A run with `more` points added on either side, or as many as there are.
   std::vector<std::uint32_t> widened(const std::vector<std::uint32_t>& run, std::size_t more) const {
     std::vector<std::uint32_t> before, points;
     for (std::uint32_t at = step(run.front(), false); at != kNone && at != run.back() && before.size() < more;
@@ -128,11 +136,11 @@ class CurveLimiter {
   }
 
   void spread() {
-    for (const int bridge : {0, 2, 8}) {
+    for (const int bridge : kBridges) {
       if (!faults_.any() && bridge > 0) return;
       for (const auto& run : bad_runs(bridge)) {
         progress_.advance(run.size());
-        // The one before may have taken it along.
+        // Spreading another run may have mended this one as well.
         if (std::none_of(run.begin(), run.end(),
                          [&](auto p) { return faults_.is_short(p) || faults_.any_around({p}); }))
           continue;
@@ -146,14 +154,14 @@ class CurveLimiter {
     }
   }
 
-  /// Puts the points between the first and the last on the front, as far from each other as they are on the source;
-  /// takes that back if anything is wrong then, and tells.
+  /// Puts the points between the first and the last on the front, with the spacing that they have on the source. Takes
+  /// them back if they have a fault there, and returns false.
   bool spread(const std::vector<std::uint32_t>& window) {
     if (window.size() < 3) return false;
     std::vector<double> along{0.0};
     for (std::size_t i = 1; i < window.size(); ++i)
       along.push_back(along.back() + (curves_.source[window[i]] - curves_.source[window[i - 1]]).length());
-    const Vec2d from = faults_.place(window.front()), to = faults_.place(window.back());
+    const Vec2d from = faults_.position(window.front()), to = faults_.position(window.back());
     const std::size_t count = window.size() - 2;
     std::vector<std::pair<std::uint32_t, Vec2d>> moves(count);
     std::atomic<bool> all = true;
@@ -162,22 +170,22 @@ class CurveLimiter {
         [&](std::size_t i) {
           if (!all) return;
           const std::uint32_t p = window[i + 1];
-          const auto place = place_on_front(curves_, from + (to - from) * (along[i + 1] / along.back()), p);
-          if (!place) all = false;
-          else moves[i] = {p, *place - curves_.source[p]};
+          const auto position = position_on_front(curves_, from + (to - from) * (along[i + 1] / along.back()), p);
+          if (!position) all = false;
+          else moves[i] = {p, *position - curves_.source[p]};
         },
         64);
     if (!all) return false;
     std::sort(moves.begin(), moves.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     Indices moved;
-    for (auto& [p, way] : moves) {
+    for (auto& [p, displacement] : moves) {
       moved.push_back(p);
-      std::swap(way_[p], way);
+      std::swap(displacement_[p], displacement);
     }
-    place(moved);
+    move(moved);
     if (!faults_.any_around(moved)) return true;
-    for (const auto& [p, way] : moves) way_[p] = way;
-    place(moved);
+    for (const auto& [p, displacement] : moves) displacement_[p] = displacement;
+    move(moved);
     return false;
   }
 
@@ -186,37 +194,37 @@ class CurveLimiter {
       progress_.advance(0);
       ++statistics_.rounds;
       const bool all_the_way = round + 1 == kMostPulls;
-      const Indices wrong = faults_.wrong_points();
-      for (const auto p : wrong) share_[p] *= all_the_way ? 0 : kPull;
-      place(wrong);
+      const Indices faulty = faults_.faulty_points();
+      for (const auto p : faulty) share_[p] *= all_the_way ? 0 : kPull;
+      move(faulty);
     }
-    // What is still wrong is so between pulled points and others: those follow.
+    // The faults that are left are between pulled points and others: those follow.
     while (faults_.any()) {
-      Indices wrong = faults_.wrong_points();
-      std::erase_if(wrong, [&](std::uint32_t p) { return share_[p] == 0; });
-      if (wrong.empty()) return;
-      for (const auto p : wrong) share_[p] = 0;
-      place(wrong);
+      Indices faulty = faults_.faulty_points();
+      std::erase_if(faulty, [&](std::uint32_t p) { return share_[p] == 0; });
+      if (faulty.empty()) return;
+      for (const auto p : faulty) share_[p] = 0;
+      move(faulty);
     }
   }
 
-  /// One point after the other goes as far as it can between what it keeps and what it was asked for.
+  /// Lets pulled points out again, one after the other, as far as they get no fault.
   void let_out() {
     if (faults_.any()) return;
     std::vector<double> most(share_.size(), 1.0);
-    for (int i = 0; i < kLettings; ++i) {
+    for (int i = 0; i < kLetOuts; ++i) {
       bool any = false;
       progress_.advance(0);
       for (const auto p : points_) {
         if (!(share_[p] < most[p])) continue;
         const double before = share_[p];
         share_[p] = i == 0 ? most[p] : (before + most[p]) / 2;
-        place({p});
+        move({p});
         any = true;
         if (!faults_.any_around({p})) continue;
         most[p] = share_[p];
         share_[p] = before;
-        place({p});
+        move({p});
       }
       if (!any) return;
       ++statistics_.rounds;
@@ -228,7 +236,7 @@ class CurveLimiter {
     for (const auto p : points_) {
       const double target = std::abs(curves_.distances[p]), before = paths_.achieved[p];
       const bool pulled = share_[p] < 1;
-      paths_.displacement[p] = rounded_way(p);
+      paths_.displacement[p] = rounded_displacement(p);
       paths_.achieved[p] = faults_.distance_of(p);
       if (target == 0) continue;
       const double error = std::abs(paths_.achieved[p] - target);
@@ -245,8 +253,8 @@ class CurveLimiter {
   Spacing spacing_;
   CurveFaults faults_;
   Indices points_;
-  std::vector<Vec2d> way_;     // of each point, from its source
-  std::vector<double> share_;  // of that, which is gone
+  std::vector<Vec2d> displacement_;  // of each point, from its source
+  std::vector<double> share_;        // of each point: the share of its displacement that it keeps
   LimitStatistics statistics_;
   Progress progress_;
 };

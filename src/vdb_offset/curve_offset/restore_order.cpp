@@ -10,11 +10,17 @@
 namespace vdb_offset {
 namespace {
 
+// The most steps of projecting a point onto the front. On straight parts of the source one is exact; steps that switch
+// between two of its parts end there. Not measured.
 constexpr int kProjections = 8;
-// Points that are put in order have to be apart by this share of what they are on the source.
+// The error of a projected point, as a share of kReachedTolerance, at which projecting ends: far below what counts as
+// reached, since rounding adds to it.
+constexpr double kProjectionTolerance = 1e-3;
+// The least spacing of points that are put in order, as a share of their spacing on the source. Larger shares leave the
+// front without room for many points, smaller ones make slivers of cells. Not measured.
 constexpr double kLeastSpacing = 0.2;
 
-/// Segments that follow each other, from end to end or all around.
+/// A range of segments that follow each other, from end to end or all around.
 struct Chain {
   std::uint32_t first, count;
   bool closed;
@@ -35,11 +41,17 @@ std::vector<Chain> chains_of(const Polyline& line) {
   return chains;
 }
 
-/// One curve's points, in its order. Lengths are those of the source, or of the front.
+/// The points of one curve in their order. Lengths are measured along the source, or along the front.
 class ChainOrder {
  public:
-  ChainOrder(const PlaneCurves& curves, const Paths& paths, const Chain& chain, std::span<Vec2d> way, Spacing spacing)
-      : curves_(curves), paths_(paths), chain_(chain), way_(way), spacing_(spacing), arrived_(chain.points()) {
+  ChainOrder(const PlaneCurves& curves, const Paths& paths, const Chain& chain, std::span<Vec2d> displacement,
+             Spacing spacing)
+      : curves_(curves),
+        paths_(paths),
+        chain_(chain),
+        displacement_(displacement),
+        spacing_(spacing),
+        arrived_(chain.points()) {
     for (std::uint32_t i = 0; i < chain.points(); ++i)
       points_.push_back(i < chain.count ? segment(i)[0] : segment(chain.count - 1)[1]);
     along_.push_back(0);
@@ -50,7 +62,7 @@ class ChainOrder {
   std::size_t run() {
     if (!one_sided()) return 0;
     for_each_index(
-        points_.size(), [&](std::size_t i) { arrived_[i] = look(i); }, 64);
+        points_.size(), [&](std::size_t i) { arrived_[i] = arrival_of(i); }, 64);
     if (chain_.closed && !cut()) return 0;
     sort_front();
     if (order_.empty() || (spacing_ == Spacing::AsItIs && std::is_sorted(order_.begin(), order_.end()))) return 0;
@@ -68,13 +80,14 @@ class ChainOrder {
   }
 
  private:
-  /// A point that has arrived: the place along the source that is closest to it, and for one that is closest to a
-  /// corner, where in the fan around that. Then how far along the front it is.
+  /// Where a point has arrived, if it has.
   struct Arrived {
     bool on_front = false;
-    double closest = 0, fan = 0, front = 0;
+    double closest = 0;  // length along the source to its closest point
+    double fan = 0;      // order among the points that are closest to one corner
+    double front = 0;    // length along the front
   };
-  /// Points that have arrived, from `first` on, whose best places are one but for what they have to be apart.
+  /// Points that have arrived, from `first` on, with one best position but for their spacing.
   struct Block {
     std::size_t first;
     double sum, count;
@@ -83,7 +96,7 @@ class ChainOrder {
   };
 
   const Segment& segment(std::uint32_t i) const { return curves_.line().segments[chain_.first + i]; }
-  Vec2d place(std::size_t i) const { return curves_.source[points_[i]] + way_[points_[i]]; }
+  Vec2d position(std::size_t i) const { return curves_.source[points_[i]] + displacement_[points_[i]]; }
 
   bool one_sided() const {
     return std::all_of(points_.begin(), points_.end(), [&](std::uint32_t p) {
@@ -91,11 +104,11 @@ class ChainOrder {
     });
   }
 
-  Arrived look(std::size_t i) const {
+  Arrived arrival_of(std::size_t i) const {
     const std::uint32_t p = points_[i];
     if (paths_.state[p] != VertexState::Reached) return {};
     const Polyline& line = curves_.line();
-    const Vec3d x = curves_.in_frame(place(i));
+    const Vec3d x = curves_.in_frame(position(i));
     const Closest closest = curves_.front(x, paths_.closest[p]);
     const Vec3d away = x - closest.point;
     if (closest.triangle < chain_.first || closest.triangle >= chain_.first + chain_.count ||
@@ -107,7 +120,7 @@ class ChainOrder {
     if (closest.feature == Feature::Face) arrived.closest += (closest.point - line.vertices[segment(s)[0]]).length();
     else arrived.fan = away.dot(around(s, at_end));
     if (!chain_.closed) return arrived;
-    // At the corner that ends a segment the next one begins, once around.
+    // Closed curves: the length nearest to the point's own, of all that are a whole turn apart.
     const double length = along_.back();
     arrived.closest -= std::round((arrived.closest - along_[i]) / length) * length;
     return arrived;
@@ -116,16 +129,16 @@ class ChainOrder {
   /// Halfway between the directions of the segments that meet at one end of segment s, not normalised.
   Vec3d around(std::uint32_t s, bool at_end) const {
     const std::uint32_t last = chain_.count - 1;
-    const auto way = [&](std::uint32_t t) {
+    const auto direction = [&](std::uint32_t t) {
       return (curves_.line().vertices[segment(t)[1]] - curves_.line().vertices[segment(t)[0]]).unit();
     };
     const std::uint32_t before = at_end ? s : s > 0 ? s - 1 : chain_.closed ? last : s;
     const std::uint32_t after = !at_end ? s : s < last ? s + 1 : chain_.closed ? 0 : s;
-    return way(before) + way(after);
+    return direction(before) + direction(after);
   }
 
-  /// Begins a closed curve at the point whose closest place is nearest to itself, so that none has overtaken that.
-  /// False if no point has arrived.
+  /// Rotates a closed curve to begin at the point whose closest point is nearest to its own source, so that no point
+  /// has overtaken it. Returns false if no point has arrived.
   bool cut() {
     std::size_t first = points_.size();
     const auto ahead = [&](std::size_t i) { return std::abs(arrived_[i].closest - along_[i]); };
@@ -154,15 +167,16 @@ class ChainOrder {
       return std::tie(a.closest, a.fan, i) < std::tie(b.closest, b.fan, j);
     });
     for (const auto i : order_) {
-      const double step = front_.empty() ? 0 : (place(i) - front_.back()).length();
+      const double step = front_.empty() ? 0 : (position(i) - front_.back()).length();
       along_front_.push_back(front_.empty() ? 0 : along_front_.back() + step);
-      front_.push_back(place(i));
+      front_.push_back(position(i));
       arrived_[i].front = along_front_.back();
     }
   }
 
-  /// Points have to be apart by a share of what they are on the source, which all of the front has room for twice;
-  /// those in order by no more than they are, unless they are to be even. Those that have not arrived take up no room.
+  /// Finds the least spacing of points: a share of that on the source, for twice of which the front has room; for
+  /// points in order no more than they have, unless spacing is to be even. Points that have not arrived take up no
+  /// room.
   void space() {
     const double share = std::min(kLeastSpacing, 0.5 * along_front_.back() / along_.back());
     spaced_.push_back(0);
@@ -184,20 +198,20 @@ class ChainOrder {
     return front_[k - 1] + (front_[k] - front_[k - 1]) * share;
   }
 
-  /// Puts the points of a block along the front. Returns how many found a place there.
+  /// Puts the points of a block along the front. Returns the number of those for which there was a position.
   std::size_t put(const Block& block, std::size_t end) {
     std::size_t moved = 0;
     for (std::size_t i = block.first; i < end; ++i) {
       if (!arrived_[i].on_front) continue;
-      const auto to = place_on_front(curves_, front_at(block.mean() + spaced_[i]), points_[i]);
+      const auto to = position_on_front(curves_, front_at(block.mean() + spaced_[i]), points_[i]);
       if (!to) continue;
-      way_[points_[i]] = *to - curves_.source[points_[i]];
+      displacement_[points_[i]] = *to - curves_.source[points_[i]];
       ++moved;
     }
     return moved;
   }
 
-  /// Pools adjacent violators.
+  /// Pools adjacent violators (see put_in_order()).
   std::vector<Block> pool() const {
     std::vector<Block> blocks;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -216,13 +230,13 @@ class ChainOrder {
   const PlaneCurves& curves_;
   const Paths& paths_;
   Chain chain_;
-  std::span<Vec2d> way_;
+  std::span<Vec2d> displacement_;
   Spacing spacing_;
   Indices points_;
-  std::vector<double> along_;   // of each point, along the source
-  std::vector<double> spaced_;  // of each point, how far from the first it has to be along the front
+  std::vector<double> along_;   // of each point: its length along the source
+  std::vector<double> spaced_;  // of each point: its least length along the front from the first point
   std::vector<Arrived> arrived_;
-  // The front: who has arrived there, by number in the curve, where, and how far along it.
+  // The front: the numbers of the points that have arrived there, their positions, and the lengths along it.
   std::vector<std::uint32_t> order_;
   std::vector<Vec2d> front_;
   std::vector<double> along_front_;
@@ -230,7 +244,7 @@ class ChainOrder {
 
 }  // namespace
 
-std::optional<Vec2d> place_on_front(const PlaneCurves& curves, Vec2d x, std::uint32_t point) {
+std::optional<Vec2d> position_on_front(const PlaneCurves& curves, Vec2d x, std::uint32_t point) {
   const double target = std::abs(curves.distances[point]);
   const Vec2d& source = curves.source[point];
   if (target == 0 || (x - source).length() > 2 * kFarthestSpread * target) return std::nullopt;
@@ -242,16 +256,18 @@ std::optional<Vec2d> place_on_front(const PlaneCurves& curves, Vec2d x, std::uin
     const Vec3d away = at - closest.point;
     const double towards = curves.line().pseudonormal(closest.triangle, closest.feature).dot(away);
     if (!(towards * curves.side(point) > 0)) return std::nullopt;
-    if (std::abs(closest.distance - target) <= 1e-3 * kReachedTolerance * target)
+    if (std::abs(closest.distance - target) <= kProjectionTolerance * kReachedTolerance * target)
       return (x - source).length() <= kFarthestSpread * target ? std::optional(x) : std::nullopt;
     x += Vec2d(away[0], away[1]) * (target / closest.distance - 1);
   }
   return std::nullopt;
 }
 
-std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> way, Spacing spacing) {
+std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> displacement,
+                         Spacing spacing) {
   std::size_t moved = 0;
-  for (const Chain& chain : chains_of(curves.line())) moved += ChainOrder(curves, paths, chain, way, spacing).run();
+  for (const Chain& chain : chains_of(curves.line()))
+    moved += ChainOrder(curves, paths, chain, displacement, spacing).run();
   return moved;
 }
 

@@ -17,11 +17,11 @@ namespace {
 
 using openvdb::Coord;
 
-// More than the rounding of phi to single precision, as a share of a length.
+// The share by which lengths are enlarged so that the rounding of phi to single precision (6e-8) does not decide.
 constexpr double kPhiRounding = 1e-5;
 const double kHalfRoot3 = std::sqrt(3.0) / 2;
 
-/// phi at a point, and the way from the closest point to it.
+/// phi at a point, and the vector there from its closest point.
 struct Probe {
   Vec3d x, away;
   double distance;  ///< Unsigned.
@@ -31,10 +31,10 @@ struct Probe {
   double phi() const { return inside ? -distance : distance; }
 };
 
-/// A cube of voxel corners, as many along each side as its width.
+/// A cube of voxel corners. Its width is their number along each side.
 struct Cube {
   Coord at;
-  Probe probe;  ///< At its centre, or at that of the cube it is part of.
+  Probe probe;  ///< At its centre, or at that of the cube that it is part of.
 };
 
 class IsoRasteriser {
@@ -42,7 +42,7 @@ class IsoRasteriser {
   IsoRasteriser(const ClosestQuery& query, const Inside& inside, double level, const Lattice& lattice)
       : query_(query), inside_(inside), level_(level), lattice_(lattice), h_(lattice.voxel_size) {}
 
-  /// Halves cubes down to leaf nodes.
+  /// Finds the leaf nodes that the surface may reach, by halving cubes.
   std::vector<Cube> find_leaves(std::size_t most) const {
     int width = kLeafWidth;
     std::vector<Cube> cubes = roots(width);
@@ -62,23 +62,25 @@ class IsoRasteriser {
     }
   }
 
-  /// phi - level at the voxel corners of a leaf node.
+  /// Fills in phi - level at the voxel corners of a leaf node.
   void fill(const Cube& leaf, float* phi) const {
     for_each_octant(leaf, kLeafWidth, [&](const Cube& octant) { fill(octant, kLeafWidth / 2, leaf.at, phi); });
   }
 
  private:
-  /// Between two points on one side of the source, the ball around one of them that it does not reach holds the other.
+  /// Finds phi at a point. If the point is in the ball around a known point that does not reach the source, both are on
+  /// one side of it.
   Probe probe(const Vec3d& x, const Probe& known) const {
     const Closest closest = query_(x, known.triangle);
     const bool same_side = (x - known.x).length() < known.distance * (1 - kPhiRounding);
     return {x, x - closest.point, closest.distance, closest.triangle, same_side ? known.inside : inside_(x)};
   }
 
-  Vec3d centre(const Coord& at, int width) const { return lattice_.place(at.asVec3d() + Vec3d((width - 1) / 2.0)); }
-  /// How far from a cube's centre a grid edge may end that starts at one of its corners.
+  Vec3d centre(const Coord& at, int width) const { return lattice_.position(at.asVec3d() + Vec3d((width - 1) / 2.0)); }
+  /// The largest distance from a cube's centre at which a grid edge that starts at one of its corners may end.
   double reach(int width) const { return (kHalfRoot3 * (width - 1) + 1) * h_ * (1 + kPhiRounding); }
-  /// In a hole the sign changes at less than the distance from its rim, which the surface has nothing to do with.
+  /// Whether the surface may cross a grid edge at a cube. In a hole the sign of phi changes at less than the distance,
+  /// where there is no surface.
   bool is_reached(const Probe& centre, int width) const {
     const double away =
         inside_.has_holes() ? std::abs(centre.distance - std::abs(level_)) : std::abs(centre.phi() - level_);
@@ -89,6 +91,7 @@ class IsoRasteriser {
     const MeshFacts& facts = query_.surface().facts;
     const Vec3d pad(std::abs(level_) + 2 * h_), zero = query_.surface().origin + lattice_.corner,
                                                 lower = facts.lower - zero - pad, upper = facts.upper - zero + pad;
+    // The number of cubes along the longest side to begin with. For speed alone; not measured.
     constexpr int kRootsAcross = 4;
     const double across = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]}) / h_;
     while (width * kRootsAcross < across) width *= 2;
@@ -102,7 +105,7 @@ class IsoRasteriser {
   }
 
   void keep_reached(std::vector<Cube>& cubes, int width) const {
-    constexpr std::size_t kGrain = 32;
+    constexpr std::size_t kGrain = 32;  // cubes that a thread takes at a time. For speed alone; not measured.
     for_each_index(
         cubes.size(), [&](std::size_t c) { cubes[c].probe = probe(centre(cubes[c].at, width), cubes[c].probe); },
         kGrain);
@@ -127,7 +130,8 @@ class IsoRasteriser {
     }
   }
 
-  /// phi in a cube that is not reached, along its gradient: this changes by less than what the surface is away.
+  /// Extrapolates phi in a cube that the surface does not reach, along the gradient at its centre: the sign of phi -
+  /// level stays, since phi changes by less than the distance of the surface.
   void extend(const Cube& cube, int width, const Coord& leaf, float* phi) const {
     const auto& [x, away, distance, triangle, inside] = cube.probe;
     const Vec3d gradient = distance > 0 ? away * ((inside ? -1 : 1) / distance) : Vec3d(0.0);
@@ -136,7 +140,7 @@ class IsoRasteriser {
         for (int k = 0; k < width; ++k) {
           const Coord at = cube.at.offsetBy(i, j, k);
           value_at(at - leaf, phi) =
-              static_cast<float>(cube.probe.phi() - level_ + gradient.dot(lattice_.place(at.asVec3d()) - x));
+              static_cast<float>(cube.probe.phi() - level_ + gradient.dot(lattice_.position(at.asVec3d()) - x));
         }
   }
 
@@ -170,7 +174,7 @@ IsoGrid rasterise_iso(const ClosestQuery& query, const Inside& inside, double le
       },
       8);
   for (auto& node : nodes) grid.phi->tree().addLeaf(node.release());
-  // No grid edge between a leaf node and what is left out crosses the surface: signs go on from one to the other.
+  // No grid edge from a leaf node to the cubes that are left out crosses the surface: these have the signs beside them.
   openvdb::tools::signedFloodFillWithValues(grid.phi->tree(), beyond, -beyond);
   return grid;
 }

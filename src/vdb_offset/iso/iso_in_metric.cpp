@@ -7,7 +7,7 @@
 namespace vdb_offset {
 namespace {
 
-/// The source as it is in the file, its triangles in the same order: all of it, for what comes along from there.
+/// The source as it is in the file, with its triangles in their order, for attributes that come from there.
 std::shared_ptr<const IsoSource> unscaled(const Surface& scaled, const Metric& metric, Orient orient) {
   Surface surface = scaled;
   for (Vec3d& v : surface.vertices) v = metric.from(v + scaled.origin);
@@ -24,8 +24,8 @@ IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options
   inner.precision.scale = metric.scale;
   IsoResult result = make_iso_surface(scaled.view(), inner);
   for_each_index(result.polygons.positions.size(), [&](std::size_t v) {
-    Vec3d &place = result.polygons.positions[v], &normal = result.normals[v];
-    place = Rounding(inner.precision).in_file(place);
+    Vec3d &position = result.polygons.positions[v], &normal = result.normals[v];
+    position = Rounding(inner.precision).in_file(position);
     normal = metric.to(normal);  // a gradient
     if (const double length = normal.length(); length > 0) normal /= length;
   });
@@ -36,7 +36,7 @@ IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options
 
 IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric) {
   IsoStatistics statistics = plan_iso_surface(InMetric(mesh, metric).view(), options);
-  // What is told of the mesh is of the mesh as it is.
+  // Facts of the mesh are those of the mesh in the file.
   if (!metric.even()) statistics.source = build_surface(mesh, options.weld, options.orient).facts;
   return statistics;
 }

@@ -8,12 +8,12 @@
 
 namespace vdb_offset {
 
-/// The surface phi = level, as a place to put vertices on. phi is the distance to a surface, below 0 inside of it;
+/// The iso-surface phi = level, which vertices are put on. phi is the distance to a surface, below 0 inside of it;
 /// points are in that surface's local frame.
-class LevelSet {
+class IsoLevel {
  public:
-  /// Keeps references to the first two. `voxel_size` tells how far from each other points are that are asked for.
-  LevelSet(const ClosestQuery& query, const Inside& inside, double level, double voxel_size)
+  /// Keeps references to `query` and `inside`. `voxel_size` is the spacing of the points that are asked for.
+  IsoLevel(const ClosestQuery& query, const Inside& inside, double level, double voxel_size)
       : query_(query), inside_(inside), level_(level), h_(voxel_size) {}
 
   const ClosestQuery& query() const { return query_; }
@@ -21,30 +21,32 @@ class LevelSet {
   double distance() const { return std::abs(level_); }
   double voxel_size() const { return h_; }
 
-  /// Whether an unsigned distance is that of the surface. Vertices are put as near to it, if rounding lets them.
+  /// Whether an unsigned distance is that of the iso-surface. Vertices are put so near to it, unless they are rounded.
   bool is_reached(double distance) const {
     return std::abs(distance - this->distance()) <= kTolerance * this->distance();
   }
-  /// Whether x, which has the surface's unsigned distance, has the sign, too. Only a voxel that may hold some of the
-  /// source has both signs in it.
+  /// Whether x, which has the unsigned distance of the iso-surface, has its sign, too. It is looked for only near the
+  /// source: elsewhere no voxel has both signs in it.
   bool is_on_side(const Vec3d& x) const {
+    // Two diagonals, in voxels: the distance from a vertex's own voxel within which the source may be.
     constexpr double kVoxelDiagonals = 2 * 1.7321;
     if (!inside_.has_inside() || kVoxelDiagonals * h_ < distance()) return true;
     return inside_(x) == (level_ < 0);
   }
 
-  /// phi - level.
+  /// phi - level at x.
+  /// \param hint a triangle to start from; receives the closest one
   double operator()(const Vec3d& x, std::uint32_t& hint) const {
     const Closest closest = query_(x, hint);
     hint = closest.triangle;
     return (inside_(x) ? -closest.distance : closest.distance) - level_;
   }
 
-  /// From x along the gradient of phi, as long as that stays where `is_near` holds. Inward, phi is straight along the
-  /// way and one step is exact; outward it may rise less than hoped for, and not at all at the medial axis.
+  /// Goes from x along the gradient of phi to the level, as long as `is_near` holds. Inward, phi is linear along it and
+  /// one step is exact; outward phi may rise more slowly, and not at all at the medial axis.
   template <class IsNear>
   std::optional<Vec3d> follow(Vec3d x, std::uint32_t& hint, IsNear&& is_near) const {
-    constexpr int kMostSteps = 20;
+    constexpr int kMostSteps = 20;  // Not measured.
     for (int step = 0; step < kMostSteps; ++step) {
       const Closest closest = query_(x, hint);
       hint = closest.triangle;
@@ -56,9 +58,9 @@ class LevelSet {
     return std::nullopt;
   }
 
-  /// Where phi = level between two points with phi on either side of it.
+  /// A point with phi = level between two points with phi below and above it, by bisection.
   Vec3d between(Vec3d below, Vec3d above, std::uint32_t& hint) const {
-    constexpr int kMostSteps = 60;
+    constexpr int kMostSteps = 60;  // Then the points differ by rounding alone.
     for (int step = 0; step < kMostSteps; ++step) {
       const Vec3d middle = (below + above) / 2.0;
       const double value = (*this)(middle, hint);
@@ -69,6 +71,8 @@ class LevelSet {
   }
 
  private:
+  // The largest error of a distance, relative to it, at which a point is on the iso-surface: far below the promised
+  // 1e-6, far above rounding.
   static constexpr double kTolerance = 1e-9;
 
   const ClosestQuery& query_;

@@ -20,13 +20,13 @@ using openvdb::Coord;
 /// Puts the vertices that volumeToMesh makes onto the surface.
 class Projection {
  public:
-  Projection(const IsoGrid& grid, const LevelSet& level, const Lattice& lattice, bool merged)
+  Projection(const IsoGrid& grid, const IsoLevel& level, const Lattice& lattice, bool merged)
       : tree_(grid.phi->tree()), level_(level), lattice_(lattice), h_(lattice.voxel_size), merged_(merged) {}
 
-  /// From a point in index space. Its own voxel's corners have both signs, unless it stands for several that were
-  /// merged; then it may go farther.
+  /// Projects a point of index space. Its voxel's corners have both signs, unless it stands for several merged voxels;
+  /// then it may go farther.
   Vec3d operator()(const Vec3d& index, std::uint32_t& hint) const {
-    const Vec3d x = lattice_.place(index);
+    const Vec3d x = lattice_.position(index);
     const Coord cell = Coord::floor(index);
     const double most = merged_ ? kLeafWidth * h_ : h_;
     const auto is_near = [&](const Vec3d& y) {
@@ -36,17 +36,18 @@ class Projection {
         if (!(in_lattice[k] >= cell[k] * h_ && in_lattice[k] <= (cell[k] + 1) * h_)) return false;
       return true;
     };
-    if (const auto place = level_.follow(x, hint, is_near)) return *place;
+    if (const auto position = level_.follow(x, hint, is_near)) return *position;
     const double here = level_(x, hint);
     for (int ring = 0; ring <= (merged_ ? kLeafWidth : 1); ++ring)
       if (const auto corner = nearest_corner(cell, ring, index, here))
-        return here < 0 ? level_.between(x, lattice_.place(*corner), hint)
-                        : level_.between(lattice_.place(*corner), x, hint);
+        return here < 0 ? level_.between(x, lattice_.position(*corner), hint)
+                        : level_.between(lattice_.position(*corner), x, hint);
     return x;
   }
 
  private:
-  /// Among the voxel corners up to so many voxels away, one of the other sign, towards which the surface seems nearest.
+  /// Of the voxel corners up to `ring` voxels away that have the other sign, the one towards which the surface seems
+  /// nearest.
   std::optional<Vec3d> nearest_corner(const Coord& cell, int ring, const Vec3d& index, double here) const {
     openvdb::tree::ValueAccessor<const openvdb::FloatTree> accessor(tree_);
     std::optional<Vec3d> nearest;
@@ -66,45 +67,48 @@ class Projection {
   }
 
   const openvdb::FloatTree& tree_;
-  const LevelSet& level_;
+  const IsoLevel& level_;
   const Lattice& lattice_;
   double h_;
   bool merged_;
 };
 
-/// Splits quads along the shorter diagonal; those at a crease along the one whose middle is nearer to the surface, so
-/// that the other does not cut it. Where three corners are on one crease both may be: then no triangle is to be flat.
+/// Splits quads along the shorter diagonal; quads at a crease along the diagonal whose middle is nearer to the surface,
+/// so that the crease is not cut. If three corners are on one crease, both may be as near: then no triangle is to be
+/// flat.
 class QuadSplitter {
  public:
-  QuadSplitter(const LevelSet& level, std::span<const Vec3d> places, std::span<const std::uint32_t> closest,
+  QuadSplitter(const IsoLevel& level, std::span<const Vec3d> positions, std::span<const std::uint32_t> closest,
                std::span<const std::uint8_t> on_crease)
-      : level_(level), places_(places), closest_(closest), on_crease_(on_crease) {}
+      : level_(level), positions_(positions), closest_(closest), on_crease_(on_crease) {}
 
-  /// The corner that the diagonal starts at, 0 or 1.
+  /// The corner at which the diagonal starts, 0 or 1.
   std::uint8_t operator()(const openvdb::Vec4I& q) const {
-    const auto length = [&](int i, int j) { return (places_[q[i]] - places_[q[j]]).lengthSqr(); };
+    const auto length = [&](int i, int j) { return (positions_[q[i]] - positions_[q[j]]).lengthSqr(); };
     if (!on_crease_[q[0]] && !on_crease_[q[1]] && !on_crease_[q[2]] && !on_crease_[q[3]])
       return length(0, 2) > length(1, 3);
-    const double even = error(q[0], q[2]), odd = error(q[1], q[3]), alike = 1e-3 * level_.voxel_size();
+    // Errors that differ by less than this share of a voxel count as equal. Not measured.
+    constexpr double kAlike = 1e-3;
+    const double even = error(q[0], q[2]), odd = error(q[1], q[3]), alike = kAlike * level_.voxel_size();
     if (std::abs(even - odd) > alike) return even > odd;
     return std::min(area(q, 0, 1, 2), area(q, 0, 2, 3)) < std::min(area(q, 1, 2, 3), area(q, 1, 3, 0));
   }
 
  private:
   double error(std::uint32_t a, std::uint32_t b) const {
-    return std::abs(level_.query()((places_[a] + places_[b]) / 2.0, closest_[a]).distance - level_.distance());
+    return std::abs(level_.query()((positions_[a] + positions_[b]) / 2.0, closest_[a]).distance - level_.distance());
   }
   double area(const openvdb::Vec4I& q, int i, int j, int k) const {
-    return (places_[q[j]] - places_[q[i]]).cross(places_[q[k]] - places_[q[i]]).lengthSqr();
+    return (positions_[q[j]] - positions_[q[i]]).cross(positions_[q[k]] - positions_[q[i]]).lengthSqr();
   }
 
-  const LevelSet& level_;
-  std::span<const Vec3d> places_;
+  const IsoLevel& level_;
+  std::span<const Vec3d> positions_;
   std::span<const std::uint32_t> closest_;
   std::span<const std::uint8_t> on_crease_;
 };
 
-/// Triangles of a mesh, without its places; turned round if asked for.
+/// The triangles of a mesh, without positions, turned round if asked for.
 Polygons split_polygons(const VoxelMesh& voxels, const QuadSplitter& split, bool turned) {
   std::vector<std::uint8_t> first(voxels.quads.size());  // corner of the diagonal
   for_each_index(first.size(), [&](std::size_t i) { first[i] = split(voxels.quads[i]); });
@@ -125,39 +129,39 @@ Polygons split_polygons(const VoxelMesh& voxels, const QuadSplitter& split, bool
   return mesh;
 }
 
-/// Where the vertices are on the surface, and what they are closest to.
-void project(const IsoGrid& grid, const LevelSet& level, const VoxelMesh& voxels, std::vector<Vec3d>& places,
+/// Finds the positions of vertices on the surface, and the triangles that they are closest to.
+void project(const IsoGrid& grid, const IsoLevel& level, const VoxelMesh& voxels, std::vector<Vec3d>& positions,
              std::vector<std::uint32_t>& closest, const ProgressCallback& callback) {
   const Projection projection(grid, level, voxels.lattice, voxels.merged);
-  // Runs of one length, whatever the number of threads: an answer may depend on its hint.
+  // The length of runs does not depend on the number of threads, as an answer may depend on its hint. Not measured.
   constexpr std::size_t kRun = 256;
-  Progress progress(callback, Stage::Capture, places.size());
+  Progress progress(callback, Stage::Capture, positions.size());
   const auto run = [&](std::size_t r) {
     std::uint32_t hint = 0;
-    const std::size_t end = std::min(places.size(), (r + 1) * kRun);
+    const std::size_t end = std::min(positions.size(), (r + 1) * kRun);
     for (std::size_t v = r * kRun; v < end; ++v) {
-      places[v] = projection(Vec3d(voxels.points[v]), hint);
+      positions[v] = projection(Vec3d(voxels.points[v]), hint);
       closest[v] = hint;
     }
     progress.advance(kRun);
   };
-  for_each_index((places.size() + kRun - 1) / kRun, run, 1);
+  for_each_index((positions.size() + kRun - 1) / kRun, run, 1);
 }
 
 }  // namespace
 
-Polygons mesh_iso_surface(const IsoGrid& grid, const Lattice& lattice, const LevelSet& level, double adaptivity,
+Polygons mesh_iso_surface(const IsoGrid& grid, const Lattice& lattice, const IsoLevel& level, double adaptivity,
                           bool turned, const ProgressCallback& progress) {
   VoxelMesh voxels;
   voxels.lattice = lattice;
   voxels.merged = adaptivity > 0;
   openvdb::tools::volumeToMesh(*grid.phi, voxels.points, voxels.triangles, voxels.quads, 0.0, adaptivity);
-  std::vector<Vec3d> places(voxels.points.size());
-  std::vector<std::uint32_t> closest(places.size());
-  project(grid, level, voxels, places, closest, progress);
-  const std::vector<std::uint8_t> on_crease = put_on_creases(level, voxels, places, closest);
-  Polygons mesh = split_polygons(voxels, {level, places, closest, on_crease}, turned);
-  mesh.positions = std::move(places);
+  std::vector<Vec3d> positions(voxels.points.size());
+  std::vector<std::uint32_t> closest(positions.size());
+  project(grid, level, voxels, positions, closest, progress);
+  const std::vector<std::uint8_t> on_crease = put_on_creases(level, voxels, positions, closest);
+  Polygons mesh = split_polygons(voxels, {level, positions, closest, on_crease}, turned);
+  mesh.positions = std::move(positions);
   return mesh;
 }
 

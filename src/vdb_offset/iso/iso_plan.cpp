@@ -13,25 +13,26 @@
 namespace vdb_offset {
 namespace {
 
-// Beside voxel corners of a leaf node, OpenVDB's grids of signs and point numbers, and the new mesh with all that is
-// made to check it.
+// Triangles of the iso-surface for each leaf node, for the estimate alone.
 constexpr double kTrianglesPerLeaf = 110;
-constexpr double kCaptureProcessBytes = 64 << 20;
+// Bytes of the process itself: code, libraries, allocator. For the estimate alone.
+constexpr double kIsoProcessBytes = 64 << 20;
 
 double longest_of(const MeshFacts& facts, double distance) { return facts.diagonal + 2 * std::abs(distance); }
 
-/// Cubes whose centre is so near to the surface that it may pass through them make a slab of this many voxels.
+// The thickness, in voxels, of the slab that is made of leaf nodes so near to the surface that it may pass through
+// them.
 constexpr double kSlabVoxels = 14.2;
 
-IsoPlan estimate_capture(const Surface& surface, double distance, bool is_signed, double h) {
+IsoPlan estimate_iso(const Surface& surface, double distance, bool is_signed, double h) {
   const MeshFacts& facts = surface.facts;
   const double d = std::abs(distance), sides = is_signed ? 1 : 2;
-  // What is curved outwards has more area farther out, and whatever it is, at least that of a ball.
+  // A surface that is curved outwards has more area farther out, and each component has at least that of a ball.
   const double spread = distance > 0 || sides == 2 ? 1 + 2 * d / facts.diagonal : 1;
   const double area = sides * facts.area * spread * spread + 4 * M_PI * d * d * static_cast<double>(facts.components);
   const double leaf = kLeafWidth * h, across = longest_of(facts, d) + 2 * leaf;
   const double leaves = std::min(area * kSlabVoxels * h / (leaf * leaf * leaf) + 8, std::pow(across / leaf, 3));
-  const double bytes = kCaptureProcessBytes + static_cast<double>(surface_bytes(surface)) + leaves * kCaptureLeafBytes;
+  const double bytes = kIsoProcessBytes + static_cast<double>(surface_bytes(surface)) + leaves * kIsoLeafBytes;
   constexpr double kMost = 0x1p62;  // only to be refused; the casts must not overflow
   IsoPlan plan;
   plan.voxel_size = h;
@@ -42,16 +43,20 @@ IsoPlan estimate_capture(const Surface& surface, double distance, bool is_signed
 }
 
 bool fits_budget(const IsoPlan& plan, const IsoOptions& options, const MeshFacts& facts) {
-  // volumeToMesh tells places in single precision, to a small part of a voxel.
+  // Voxels across, so that volumeToMesh, which has positions in single precision, tells them to a small part of a
+  // voxel.
   constexpr double kMostVoxelsAcross = 0x1p19;
   return (options.max_memory == 0 || plan.bytes <= options.max_memory) &&
          longest_of(facts, options.distance) / plan.voxel_size < kMostVoxelsAcross;
 }
 
-/// Fine enough that a chord of the rounding around an edge, of radius d, is off by less than 1 % of d in its middle,
-/// and for the details that the mesh has.
+/// Chooses voxels that are fine enough for a chord of the rounding around an edge, of radius d, to be off by less than
+/// 1 % of d in its middle, and for the details that the mesh has.
 IsoPlan choose_voxels(const Surface& surface, const IsoOptions& options, bool is_signed) {
-  constexpr double kPerDistance = 4, kCoarsest = 128, kFinest = 512;
+  // Voxels per distance: the chord of a quarter of d is off by 0.8 % of d.
+  constexpr double kPerDistance = 4;
+  // The least and the most voxels along the diagonal, whatever distance and edges ask for. Not measured.
+  constexpr double kCoarsest = 128, kFinest = 512;
   const MeshFacts& facts = surface.facts;
   const double d = std::abs(options.distance), coarsest = facts.diagonal / kCoarsest, finest = facts.diagonal / kFinest;
   const double wanted = std::min(d / kPerDistance, facts.median_edge);
@@ -60,20 +65,21 @@ IsoPlan choose_voxels(const Surface& surface, const IsoOptions& options, bool is
                        : wanted > coarsest                    ? "diagonal / 128, the coarsest useful size"
                        : facts.median_edge < d / kPerDistance ? "the median edge"
                                                               : "distance / 4";
-  constexpr double kCoarser = 1.25;
+  constexpr double kCoarser = 1.25;  // factor from one tried voxel size to the next. Not measured.
   const double most = longest_of(facts, d);
   for (; h < most; h *= kCoarser) {
-    IsoPlan plan = estimate_capture(surface, options.distance, is_signed, h);
+    IsoPlan plan = estimate_iso(surface, options.distance, is_signed, h);
     plan.reason = reason;
     if (fits_budget(plan, options, facts)) return plan;
     reason = "the finest that the memory allows";
   }
-  return estimate_capture(surface, options.distance, is_signed, most);
+  return estimate_iso(surface, options.distance, is_signed, most);
 }
 
-/// Corners of the new triangles are a part of a voxel apart. Rounded by three voxels (measured: by no less), they fold
-/// and cross wherever they are mended, without end.
-void require_fine_places(const MeshFacts& facts, const IsoOptions& options, double h) {
+/// Requires coordinates that are rounded by less than kMostVoxels. The corners of the new triangles are a part of a
+/// voxel apart: rounded by three voxels (measured: by no less), they fold and cross wherever they are mended, without
+/// end.
+void require_fine_coordinates(const MeshFacts& facts, const IsoOptions& options, double h) {
   constexpr double kMostVoxels = 2;
   const double rounding =
       Rounding(options.precision).half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
@@ -91,16 +97,15 @@ IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_s
   require_plannable(surface.facts.diagonal, std::abs(options.distance), grid);
   IsoPlan plan;
   if (grid.voxel_size) {
-    plan = estimate_capture(surface, options.distance, is_signed, *grid.voxel_size);
+    plan = estimate_iso(surface, options.distance, is_signed, *grid.voxel_size);
     plan.reason = "as given";
   } else if (grid.voxels_per_distance) {
-    plan =
-        estimate_capture(surface, options.distance, is_signed, std::abs(options.distance) / *grid.voxels_per_distance);
+    plan = estimate_iso(surface, options.distance, is_signed, std::abs(options.distance) / *grid.voxels_per_distance);
     plan.reason = fmt::format("distance / {:.6g}, as given", *grid.voxels_per_distance);
   } else {
     plan = choose_voxels(surface, options, is_signed);
   }
-  require_fine_places(surface.facts, options, plan.voxel_size);
+  require_fine_coordinates(surface.facts, options, plan.voxel_size);
   if (fits_budget(plan, options, surface.facts)) return plan;
   throw OutOfBudget(
       fmt::format("capture: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "

@@ -5,12 +5,13 @@
 
 namespace vdb_offset {
 
-/// Voxel corners of a leaf node, OpenVDB's grids of signs and point numbers, and the new mesh with all that is made to
-/// check it; measured: 16,000 to 29,000, the file included. While flats are merged the mesh as it was is there, too
-/// (2,600), but the grids are gone by then and the file gets smaller: peaks are lower than without.
-inline constexpr double kCaptureLeafBytes = 34e3;
+/// Bytes for each leaf node: its voxel corners, OpenVDB's grids of signs and point numbers, and the new mesh with all
+/// that is made to check it; measured: 16,000 to 29,000, the file included. While flat parts are merged, the mesh as it
+/// was is kept (2,600), but the grids are gone by then and the file gets smaller: peaks are lower than without merging.
+inline constexpr double kIsoLeafBytes = 34e3;
 
-/// Chooses the voxel size and estimates the cost, for a surface on one side of what has an inside, or on all sides.
+/// Chooses the voxel size and estimates the cost.
+/// \param is_signed the source has an inside; else the iso-surface is on both of its sides
 /// \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
 IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_signed);
 

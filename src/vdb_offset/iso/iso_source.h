@@ -11,20 +11,22 @@
 
 namespace vdb_offset {
 
-/// The mesh, in the local frame, what is inside of it, and what distances are measured to.
+/// The source of an iso-surface: the mesh in the local frame, its inside, and the surface that distances are measured
+/// to.
 struct IsoSource {
   Surface surface;  ///< All of the mesh.
   Inside inside;
-  std::optional<Boundary> boundary;  ///< Of what is inside, if that is not all of the mesh and no more.
-  ClosestQuery query;                ///< Asks the boundary, or else the mesh. Members refer to those before them.
+  std::optional<Boundary> boundary;  ///< The boundary of the inside, if it is not the mesh itself.
+  ClosestQuery query;                ///< Of the boundary, or else of the mesh. Members refer to those before them.
 
-  /// `solidity` tells of a mesh that is not plainly closed; holes as wide as `distance` (world units, below 0 inward),
-  /// which a ball of this radius fits into, are filled for distances, too.
+  /// \param solidity of a mesh that is not plainly closed
+  /// \param distance world units, below 0 inward: holes that a ball of this radius fits into are filled for distances,
+  /// too
   IsoSource(Surface placed, const std::optional<Solidity>& solidity, double distance, Orient orient);
   IsoSource(const IsoSource&) = delete;
   IsoSource& operator=(const IsoSource&) = delete;
 
-  /// The mesh's triangle that one of those asked is part of.
+  /// The mesh's triangle that a triangle of the query's surface is part of.
   std::uint32_t given(std::uint32_t triangle) const { return boundary ? boundary->given[triangle] : triangle; }
 };
 

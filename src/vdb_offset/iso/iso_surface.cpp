@@ -29,10 +29,11 @@
 namespace vdb_offset {
 namespace {
 
-/// Where lattices have their corner, in voxels. Flat parts of models like to lie at round places, and so do their
-/// offsets at round distances; these are irrational, as are their sums and differences. On the second one and on, what
-/// could not be mended on the one before is tried anew.
+// The number of lattices that are tried: on each, faults that could not be mended on the one before are met anew. Not
+// measured.
 constexpr std::size_t kLattices = 4;
+/// The lattice of an attempt. Flat parts of models often lie at round coordinates, and so do their offsets at round
+/// distances; the corners of lattices, in voxels, are irrational, as are their sums and differences.
 Lattice lattice_of(std::size_t attempt, double voxel_size) {
   const double turns = static_cast<double>(attempt) + 1;
   const auto part = [&](double x) { return x * turns - std::floor(x * turns); };
@@ -91,8 +92,8 @@ class IsoSurfaceMaker {
   PolygonView mesh_;
   const IsoOptions& options_;
   double h_ = 0;
-  std::optional<LevelSet> level_;
-  std::uint32_t hint_ = 0;  // while mending, tries follow each other in one place
+  std::optional<IsoLevel> level_;
+  std::uint32_t hint_ = 0;  // the triangle that was closest last: while mending, points follow each other nearby
   IsoResult result_;
 };
 
@@ -161,7 +162,7 @@ void IsoSurfaceMaker::prepare() {
 
 Surface IsoSurfaceMaker::extract(const Lattice& lattice) {
   std::size_t most_leaves = std::numeric_limits<std::size_t>::max();
-  if (options_.max_memory > 0) most_leaves = options_.max_memory / static_cast<std::size_t>(kCaptureLeafBytes);
+  if (options_.max_memory > 0) most_leaves = options_.max_memory / static_cast<std::size_t>(kIsoLeafBytes);
   IsoGrid grid;
   {
     const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
@@ -196,8 +197,9 @@ MeshFaults IsoSurfaceMaker::mend_on_surface(Surface& mesh) {
   return mending.left;
 }
 
-/// Nothing crosses before, and nothing does after: flat parts stay what they are, but for rounding.
+/// Merges flat parts of a mesh without faults, which has none after that.
 void IsoSurfaceMaker::merge_where_flat(Surface& mesh) {
+  // The tolerance of flatness, as a share of the distance: a tenth of the promised 1e-6.
   constexpr double kShareOfDistance = 1e-7;
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   double farthest = 0;
@@ -206,10 +208,11 @@ void IsoSurfaceMaker::merge_where_flat(Surface& mesh) {
   result_.statistics.merged_vertices = merge_flats_soundly(mesh, tolerance);
 }
 
+/// A position on the surface within a voxel of a wish, as written.
 std::optional<Vec3d> IsoSurfaceMaker::onto(const Vec3d& wish) {
   const Vec3d local = wish - source().origin;
-  const auto place = level_->follow(local, hint_, [&](const Vec3d& x) { return (x - local).length() <= h_; });
-  return place ? std::optional(as_written(*place)) : std::nullopt;
+  const auto on_level = level_->follow(local, hint_, [&](const Vec3d& x) { return (x - local).length() <= h_; });
+  return on_level ? std::optional(as_written(*on_level)) : std::nullopt;
 }
 
 void IsoSurfaceMaker::hand_over(const Surface& mesh) {
@@ -220,7 +223,7 @@ void IsoSurfaceMaker::hand_over(const Surface& mesh) {
   for (const auto& [a, b, c] : mesh.triangles) polygons.add_face({a, b, c});
 }
 
-/// Vertices whose faces, from one to the next over edges, are not all that there are.
+/// Counts vertices whose faces make more than one fan.
 std::size_t count_pinched(const Surface& mesh) {
   std::size_t pinched = 0;
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -275,15 +278,16 @@ bool IsoSurfaceMaker::is_valid(const Surface& in_file, const MeshFaults& left) {
 }
 
 void IsoSurfaceMaker::measure_faces(const Surface& written) {
+  // Triangles on which the error between vertices is measured: its 99 % quantile is made of a hundred of them.
   constexpr std::size_t kInteriorSamples = 10000;
-  const std::vector<std::uint32_t> none(written.vertices.size(), kNone);  // of its vertices is one of the source's
+  const std::vector<std::uint32_t> none(written.vertices.size(), kNone);  // no vertex of it is one of the source's
   const ConstrainedSurface constrained{result_.source->query, written, none, {}, {}};
   const StageTimer timer(result_.statistics.seconds, Stage::Measure);
   result_.statistics.interior =
       measure_interior(constrained, written.vertices, Distances(level_->distance()), kInteriorSamples);
 }
 
-/// Distances, and all else that closest points tell.
+/// Measures the distances and normals of vertices, and finds the triangles that are closest to them.
 void IsoSurfaceMaker::measure_vertices() {
   const StageTimer timer(result_.statistics.seconds, Stage::Capture);
   const std::size_t count = result_.polygons.positions.size();
@@ -292,7 +296,7 @@ void IsoSurfaceMaker::measure_vertices() {
   const std::vector<Closest> closest = closest_points(result_.source->query, local);
   result_.normals.resize(count);
   result_.closest.resize(count);
-  // Away from the source, or towards it, is where phi grows, and where the source's faces point.
+  // phi grows away from the source, or towards it, and there the source's faces point.
   const double sense = (level_->level() < 0) != inside().is_turned() ? -1 : 1;
   IsoStatistics& statistics = result_.statistics;
   double squares = 0;

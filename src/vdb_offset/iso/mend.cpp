@@ -12,7 +12,8 @@ namespace {
 
 using TriangleList = std::vector<std::uint32_t>;
 
-// Splits alone make more faults; after so many rounds that leave no fewer than there have been, they lead nowhere.
+// The number of rounds of splits that leave no fewer faults than the best so far after which mending ends: splits alone
+// make more faults before the moves after them take some out. Not measured.
 constexpr int kFruitlessRounds = 3;
 
 void make_set(TriangleList& list) {
@@ -26,11 +27,11 @@ bool stands_as_needle(const Surface& mesh, std::uint32_t t) {
   return is_needle(ab.cross(ac).lengthSqr(), std::max({ab.lengthSqr(), ac.lengthSqr(), bc.lengthSqr()}));
 }
 
-/// One round: the topology that it starts with, the faults that are left, and what is done about them.
+/// One round of mending, by moves and flips.
 class MendingRound {
  public:
   MendingRound(Surface& mesh, const Onto& onto, MendStatistics& statistics)
-      : mesh_(mesh), places_(mesh.vertices), onto_(onto), statistics_(statistics), finder_(mesh, mesh.vertices) {
+      : mesh_(mesh), positions_(mesh.vertices), onto_(onto), statistics_(statistics), finder_(mesh, mesh.vertices) {
     crossings_ = finder_.all();
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
       if (stands_as_needle(t)) needles_.push_back(t);
@@ -38,26 +39,26 @@ class MendingRound {
 
   MeshFaults faults() const { return {crossings_.size(), needles_.size()}; }
 
-  /// Tries each fault in turn, for as long as that leaves fewer.
+  /// Tries to mend each fault in turn, as long as that leaves fewer faults.
   void move_and_flip() {
     for (std::size_t before = 0; before != faults().total() && faults().total() > 0;) {
       before = faults().total();
-      const TriangleList wrong = wrong_triangles();
-      for (const auto t : wrong) {
-        if (!is_wrong(t)) continue;
+      const TriangleList faulty = faulty_triangles();
+      for (const auto t : faulty) {
+        if (!is_faulty(t)) continue;
         for (const auto v : std::array(mesh_.triangles[t]))
-          if (is_wrong(t)) try_to_move(v);
-        for (std::size_t k = 0; k < 3 && is_wrong(t); ++k) try_to_flip(t, k);
+          if (is_faulty(t)) try_to_move(v);
+        for (std::size_t k = 0; k < 3 && is_faulty(t); ++k) try_to_flip(t, k);
       }
     }
   }
 
-  /// Triangles with a fault: sorted.
-  TriangleList wrong_triangles() const {
-    TriangleList wrong = needles_;
-    for (const auto& [s, t] : crossings_) wrong.insert(wrong.end(), {s, t});
-    make_set(wrong);
-    return wrong;
+  /// The triangles with a fault. Sorted.
+  TriangleList faulty_triangles() const {
+    TriangleList faulty = needles_;
+    for (const auto& [s, t] : crossings_) faulty.insert(faulty.end(), {s, t});
+    make_set(faulty);
+    return faulty;
   }
 
  private:
@@ -68,14 +69,14 @@ class MendingRound {
 
   bool stands_as_needle(std::uint32_t t) const { return vdb_offset::stands_as_needle(mesh_, t); }
 
-  bool is_wrong(std::uint32_t t) const {
+  bool is_faulty(std::uint32_t t) const {
     return std::binary_search(needles_.begin(), needles_.end(), t) ||
            std::any_of(crossings_.begin(), crossings_.end(),
                        [&](const TrianglePair& pair) { return pair.first == t || pair.second == t; });
   }
 
-  /// Faults that triangles, sorted, take part in as they stand now.
-  MeshFaults look_at(const TriangleList& changed) {
+  /// Finds the faults of triangles, sorted, at their present positions.
+  MeshFaults find_faults_of(const TriangleList& changed) {
     finder_.update(changed);
     found_ = finder_.of_updated();
     const auto needles =
@@ -83,7 +84,7 @@ class MendingRound {
     return {found_.size(), static_cast<std::size_t>(needles)};
   }
 
-  /// The same, as they were when faults were last taken down.
+  /// The number of known faults of triangles, as noted by settle().
   std::size_t known_faults(const TriangleList& of) const {
     const auto is_one = [&](std::uint32_t t) { return std::binary_search(of.begin(), of.end(), t); };
     return static_cast<std::size_t>(std::count_if(needles_.begin(), needles_.end(), is_one) +
@@ -92,7 +93,7 @@ class MendingRound {
                                     }));
   }
 
-  /// Takes down the faults of triangles that were just looked at.
+  /// Notes the faults of triangles that were found last as the known ones.
   void settle(const TriangleList& changed) {
     const auto is_one = [&](std::uint32_t t) { return std::binary_search(changed.begin(), changed.end(), t); };
     std::erase_if(crossings_, [&](const TrianglePair& pair) { return is_one(pair.first) || is_one(pair.second); });
@@ -111,46 +112,46 @@ class MendingRound {
     return star;
   }
 
-  /// Where a vertex may better stand: towards the middle of its neighbours, and towards each of them.
+  /// Positions to try for a vertex: towards the middle of its neighbours, and towards each of them.
   std::vector<Vec3d> wishes_of(std::uint32_t vertex, const TriangleList& star) const {
     std::vector<std::uint32_t> ring;
     for (const auto t : star)
       for (const auto w : mesh_.triangles[t])
         if (w != vertex) ring.push_back(w);
     make_set(ring);
-    const Vec3d& here = places_[vertex];
+    const Vec3d& here = positions_[vertex];
     Vec3d middle(0.0);
-    for (const auto w : ring) middle += places_[w] / static_cast<double>(ring.size());
+    for (const auto w : ring) middle += positions_[w] / static_cast<double>(ring.size());
     std::vector<Vec3d> wishes;
     for (const double share : {0.5, 1.0}) wishes.push_back(here + (middle - here) * share);
     for (const double share : {0.25, 0.5})
-      for (const auto w : ring) wishes.push_back(here + (places_[w] - here) * share);
+      for (const auto w : ring) wishes.push_back(here + (positions_[w] - here) * share);
     return wishes;
   }
 
   void try_to_move(std::uint32_t vertex) {
     const TriangleList star = star_of(vertex);
-    const Vec3d before = places_[vertex];
+    const Vec3d before = positions_[vertex];
     std::size_t fewest = known_faults(star);
     std::optional<Vec3d> best;
     for (const Vec3d& wish : wishes_of(vertex, star)) {
       if (fewest == 0) break;
-      const auto place = onto_(wish);
-      if (!place) continue;
-      places_[vertex] = *place;
-      if (const std::size_t faults = look_at(star).total(); faults < fewest) {
+      const auto position = onto_(wish);
+      if (!position) continue;
+      positions_[vertex] = *position;
+      if (const std::size_t faults = find_faults_of(star).total(); faults < fewest) {
         fewest = faults;
-        best = place;
+        best = position;
       }
     }
-    places_[vertex] = best.value_or(before);
-    look_at(star);
+    positions_[vertex] = best.value_or(before);
+    find_faults_of(star);
     if (!best) return;
     settle(star);
     ++statistics_.moved_vertices;
   }
 
-  /// The triangle across edge k of another, kNone if there is not just one, and its corner opposite to the edge.
+  /// The triangle across edge k of a triangle, and its corner opposite to the edge; kNone unless there is exactly one.
   std::pair<std::uint32_t, std::uint32_t> across(std::uint32_t t, std::size_t k) const {
     const std::uint32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3];
     std::pair<std::uint32_t, std::uint32_t> found{kNone, kNone};
@@ -181,10 +182,10 @@ class MendingRound {
     const std::size_t known = known_faults(both);
     mesh_.triangles[t] = {a, d, c};
     mesh_.triangles[other] = {d, b, c};
-    if (look_at(both).total() >= known) {
+    if (find_faults_of(both).total() >= known) {
       mesh_.triangles[t] = before[0];
       mesh_.triangles[other] = before[1];
-      look_at(both);
+      find_faults_of(both);
       return;
     }
     settle(both);
@@ -203,7 +204,7 @@ class MendingRound {
   }
 
   Surface& mesh_;
-  std::vector<Vec3d>& places_;
+  std::vector<Vec3d>& positions_;
   const Onto& onto_;
   MendStatistics& statistics_;
   CrossingFinder finder_;
@@ -212,7 +213,7 @@ class MendingRound {
   std::unordered_map<std::uint32_t, TriangleList> changed_;  // stars of vertices whose edges were flipped
 };
 
-/// Triangles on both sides of an edge.
+/// The triangles at an edge.
 TriangleList triangles_at(const Surface& mesh, std::uint32_t a, std::uint32_t b) {
   TriangleList found;
   for (const auto t : mesh.triangles_around(a))
@@ -221,7 +222,7 @@ TriangleList triangles_at(const Surface& mesh, std::uint32_t a, std::uint32_t b)
   return found;
 }
 
-/// From the corner that it returns to the next one.
+/// The corner of a triangle at which its longest edge starts.
 std::size_t longest_edge(const Surface& mesh, std::uint32_t t) {
   const auto& corners = mesh.triangles[t];
   std::array<double, 3> squared;
@@ -231,23 +232,23 @@ std::size_t longest_edge(const Surface& mesh, std::uint32_t t) {
 }
 
 /// Splits the longest edge of each of these triangles in the middle, unless a triangle beside it is split already.
-/// Stars are to be listed anew. Returns how many there were.
-std::size_t split_longest_edges(Surface& mesh, const TriangleList& wrong, const Onto& onto) {
+/// Stars have to be listed anew then. Returns the number of splits.
+std::size_t split_longest_edges(Surface& mesh, const TriangleList& faulty, const Onto& onto) {
   TriangleList taken;
   std::size_t splits = 0;
-  for (const auto t : wrong) {
-    // Its corners may be new by now, which no star is listed for.
+  for (const auto t : faulty) {
+    // A triangle that is split has a new corner, for which no star is listed.
     if (std::find(taken.begin(), taken.end(), t) != taken.end()) continue;
     const std::size_t k = longest_edge(mesh, t);
     const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
     const TriangleList sides = triangles_at(mesh, a, b);
-    // One side alone: the other one is split, and listed no more.
+    // If there is one triangle, the other one has been split, and is not listed.
     if (sides.size() != 2) continue;
     if (std::find_first_of(taken.begin(), taken.end(), sides.begin(), sides.end()) != taken.end()) continue;
-    const auto place = onto((mesh.vertices[a] + mesh.vertices[b]) / 2.0);
-    if (!place) continue;
+    const auto position = onto((mesh.vertices[a] + mesh.vertices[b]) / 2.0);
+    if (!position) continue;
     const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.push_back(*place);
+    mesh.vertices.push_back(*position);
     for (const auto s : sides) {
       auto half = mesh.triangles[s];
       std::replace(mesh.triangles[s].begin(), mesh.triangles[s].end(), b, middle);
@@ -283,35 +284,35 @@ std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std:
 MendStatistics mend(Surface& mesh, const Onto& onto) {
   MendStatistics statistics, kept;
   std::optional<std::size_t> fewest;  // faults of any mesh so far
-  std::vector<Vec3d> places;          // of the mesh that had the fewest faults
+  std::vector<Vec3d> positions;       // of the mesh with the fewest faults
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (int fruitless = 0; fruitless < kFruitlessRounds;) {
-    TriangleList wrong;
+    TriangleList faulty;
     {
       MendingRound round(mesh, onto, statistics);
       if (!fewest) statistics.before = round.faults();
       ++statistics.rounds;
       round.move_and_flip();
-      wrong = round.wrong_triangles();
+      faulty = round.faulty_triangles();
       if (!fewest || round.faults().total() < *fewest) {
         fewest = round.faults().total();
         statistics.left = round.faults();
         kept = statistics;
-        places = mesh.vertices;
+        positions = mesh.vertices;
         triangles = mesh.triangles;
         fruitless = 0;
       } else {
         ++fruitless;
       }
     }
-    if (wrong.empty()) break;
+    if (faulty.empty()) break;
     list_incident_triangles(mesh);  // edges were flipped
-    const std::size_t splits = split_longest_edges(mesh, wrong, onto);
+    const std::size_t splits = split_longest_edges(mesh, faulty, onto);
     if (splits == 0) break;
     statistics.split_edges += splits;
     list_incident_triangles(mesh);
   }
-  mesh.vertices = std::move(places);
+  mesh.vertices = std::move(positions);
   mesh.triangles = std::move(triangles);
   list_incident_triangles(mesh);
   return kept;

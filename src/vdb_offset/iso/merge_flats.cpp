@@ -13,20 +13,25 @@
 namespace vdb_offset {
 namespace {
 
-// More triangles around a vertex are not looked at: it waits until some of them have gone.
+// The most triangles around a vertex that is taken out: with more, it waits until some of them have gone. Bounds the
+// cost of a trial, which grows with their square. Not measured.
 constexpr std::size_t kMostAround = 14;
-// Height by longest edge: no triangle may get thinner, unless there was one as thin.
+// The least height of a triangle, as a share of its longest edge, that merging may make, unless there was one as thin:
+// 1 to 50. Not measured.
 constexpr double kThin = 0.02;
-// Sine of the least angle between two flat parts with an edge between them that tells where it runs.
+// The least sine of the angle between two flat parts (3 degrees): below it, the edge between them is too vague for its
+// vertices to be merged along it. Not measured.
 constexpr double kLeastAngle = 0.05;
-// Cosine of an angle that normals of one plane do not enclose, but for triangles that hardly have an area.
+// The least cosine between normals of one plane (0.8 degrees), but for triangles with next to no area. For a quick test
+// that leaves out most vertices of curved parts; not measured.
 constexpr double kAlikeNormals = 0.9999;
-// A triangle's height in tolerances, from which on it tells a plane.
+// The least height of a triangle, in tolerances, that tells a plane. Not measured.
 constexpr double kClearHeight = 8;
-// Where fewer vertices are in flat parts, next to nothing would be won.
+// The least share of vertices in flat parts for which merging is worth its time. Not measured.
 constexpr double kWorthMerging = 0.02;
-// Looks for what crosses when flats are merged. With each, what stays around it is twice as many edges wide.
-constexpr int kMostLooks = 5;
+// The most trials of merging. With each, vertices stay in rings twice as wide around crossings: at last 16 edges. Not
+// measured.
+constexpr int kMostTrials = 5;
 
 using List = std::vector<std::uint32_t>;
 
@@ -45,7 +50,7 @@ class FlatMerger {
         is_gone_(mesh.triangles.size(), 0),
         is_changed_(mesh.triangles.size(), 0) {}
 
-  /// What lost a neighbour, or has others, is looked at again.
+  /// Takes out vertices until none can be. Vertices that lost a neighbour, or got others, are tried again.
   MergedFlats run() {
     MergedFlats merged;
     List turn = find_flat();
@@ -63,17 +68,18 @@ class FlatMerger {
   }
 
  private:
-  /// Most vertices of what is curved need no more than a look at the normals around.
+  /// The vertices inside flat parts, and on straight edges between two. For most vertices of curved parts the normals
+  /// around them suffice.
   List find_flat() const {
     std::vector<Vec3d> normal(mesh_.triangles.size());
     for_each_index(normal.size(), [&](std::size_t t) {
-      const Vec3d cross = cross_of(places(mesh_.triangles[t]));
+      const Vec3d cross = cross_of(corners_of(mesh_.triangles[t]));
       normal[t] = cross.lengthSqr() > 0 ? cross.unit() : Vec3d(0.0);
     });
     std::vector<std::uint8_t> is_flat(mesh_.vertices.size(), 0);
     for_each_index(is_flat.size(), [&](std::size_t v) {
       const auto vertex = static_cast<std::uint32_t>(v);
-      is_flat[v] = !has_to_stay(vertex) && has_two_normals(vertex, normal) && look_at(vertex).has_value();
+      is_flat[v] = !has_to_stay(vertex) && has_two_normals(vertex, normal) && flat_around(vertex).has_value();
     });
     List flat;
     for (std::uint32_t v = 0; v < is_flat.size(); ++v)
@@ -81,7 +87,7 @@ class FlatMerger {
     return flat;
   }
 
-  /// Or one, or such that are nearly alike.
+  /// Whether the triangles around a vertex have at most two different normals, but for small differences.
   bool has_two_normals(std::uint32_t v, const std::vector<Vec3d>& normal) const {
     const auto star = around(v);
     if (star.size() < 3) return false;
@@ -106,7 +112,7 @@ class FlatMerger {
     const auto& corners = mesh_.triangles[triangle];
     return corners[0] == v || corners[1] == v || corners[2] == v;
   }
-  std::array<Vec3d, 3> places(const std::array<std::uint32_t, 3>& corners) const {
+  std::array<Vec3d, 3> corners_of(const std::array<std::uint32_t, 3>& corners) const {
     return {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]]};
   }
   static Vec3d cross_of(const std::array<Vec3d, 3>& p) { return (p[1] - p[0]).cross(p[2] - p[0]); }
@@ -114,12 +120,13 @@ class FlatMerger {
     return std::max({(p[1] - p[0]).lengthSqr(), (p[2] - p[1]).lengthSqr(), (p[0] - p[2]).lengthSqr()});
   }
 
-  /// The plane of the largest of some triangles; none if all are too small to tell one.
+  /// The plane through a vertex with the normal of the largest of some triangles; none if all are too small to tell
+  /// one.
   std::optional<Plane> plane_of_largest(std::span<const std::uint32_t> triangles, std::uint32_t v) const {
     double most = 0;
     Vec3d cross(0.0);
     for (const auto t : triangles)
-      if (const Vec3d c = cross_of(places(mesh_.triangles[t])); c.lengthSqr() > most) {
+      if (const Vec3d c = cross_of(corners_of(mesh_.triangles[t])); c.lengthSqr() > most) {
         most = c.lengthSqr();
         cross = c;
       }
@@ -128,21 +135,21 @@ class FlatMerger {
     return Plane{mesh_.vertices[v], cross / length};
   }
 
-  /// And seen from where the plane is: a sliver may be folded over within the tolerance.
+  /// Whether a triangle lies in a plane, and faces as the plane does: a sliver may be folded over within the tolerance.
   bool is_in(const Plane& plane, std::uint32_t triangle) const {
     for (const auto w : mesh_.triangles[triangle])
       if (std::abs(plane.height(mesh_.vertices[w])) > tolerance_) return false;
-    return plane.normal.dot(cross_of(places(mesh_.triangles[triangle]))) > 0;
+    return plane.normal.dot(cross_of(corners_of(mesh_.triangles[triangle]))) > 0;
   }
 
-  /// What is flat around a vertex: one plane, or two with the neighbours that the edge between them leads to.
+  /// The flat parts around a vertex: one plane, or two.
   struct Flat {
     std::array<Plane, 2> plane;
-    std::vector<std::uint8_t> plane_of;  // of each triangle around
-    List ways;                           // neighbours that the vertex may go into
+    std::vector<std::uint8_t> plane_of;  // of each triangle around: 0 or 1
+    List targets;  // neighbours that the vertex may be merged into: all, or the two along the edge
   };
 
-  std::optional<Flat> look_at(std::uint32_t v) const {
+  std::optional<Flat> flat_around(std::uint32_t v) const {
     const auto star = around(v);
     const auto first = plane_of_largest(star, v);
     if (!first) return std::nullopt;
@@ -156,7 +163,8 @@ class FlatMerger {
     if (rest.empty()) {
       for (const auto t : star)
         for (const auto w : mesh_.triangles[t])
-          if (w != v && std::find(flat.ways.begin(), flat.ways.end(), w) == flat.ways.end()) flat.ways.push_back(w);
+          if (w != v && std::find(flat.targets.begin(), flat.targets.end(), w) == flat.targets.end())
+            flat.targets.push_back(w);
       return flat;
     }
     const auto second = plane_of_largest(rest, v);
@@ -168,24 +176,26 @@ class FlatMerger {
     return flat;
   }
 
-  /// The two neighbours at which the planes meet, one on either side in a row with the vertex.
+  /// Finds the two neighbours at which the planes meet, in a row with the vertex between them. Returns false if there
+  /// are no such.
   bool find_edge(std::uint32_t v, Flat& flat) const {
     const auto star = around(v);
     for (std::size_t i = 0; i < star.size(); ++i)
       for (std::size_t j = 0; j < star.size(); ++j) {
         if (flat.plane_of[i] != 0 || flat.plane_of[j] != 1) continue;
         for (const auto w : mesh_.triangles[star[i]])
-          if (w != v && has(star[j], w)) flat.ways.push_back(w);
+          if (w != v && has(star[j], w)) flat.targets.push_back(w);
       }
-    if (flat.ways.size() != 2 || flat.ways[0] == flat.ways[1]) return false;
-    const Vec3d a = mesh_.vertices[flat.ways[0]] - mesh_.vertices[v],
-                b = mesh_.vertices[flat.ways[1]] - mesh_.vertices[v], along = b - a;
+    if (flat.targets.size() != 2 || flat.targets[0] == flat.targets[1]) return false;
+    const Vec3d a = mesh_.vertices[flat.targets[0]] - mesh_.vertices[v],
+                b = mesh_.vertices[flat.targets[1]] - mesh_.vertices[v], along = b - a;
     return a.dot(b) < 0 && a.cross(along).lengthSqr() <= 4 * tolerance_ * tolerance_ * along.lengthSqr();
   }
 
   static double thinness(const std::array<Vec3d, 3>& p, double cross) { return cross / longest_squared(p); }
 
-  /// The thinnest triangle there would be if v went into w, by height and longest edge; none if one would turn round.
+  /// The height of the thinnest triangle as a share of its longest edge, if v were merged into w; none if a triangle
+  /// would turn round.
   std::optional<double> thinnest_after(std::uint32_t v, std::uint32_t w, const Flat& flat) const {
     const auto star = around(v);
     double least = 1;
@@ -193,7 +203,7 @@ class FlatMerger {
       if (has(star[i], w)) continue;
       auto corners = mesh_.triangles[star[i]];
       std::replace(corners.begin(), corners.end(), v, w);
-      const std::array<Vec3d, 3> p = places(corners);
+      const std::array<Vec3d, 3> p = corners_of(corners);
       const double cross = flat.plane[flat.plane_of[i]].normal.dot(cross_of(p)),
                    longest = std::sqrt(longest_squared(p));
       if (!(cross > kClearHeight * tolerance_ * longest)) return std::nullopt;
@@ -202,7 +212,7 @@ class FlatMerger {
     return least;
   }
 
-  /// v and w have no neighbour in common but at the two triangles beside their edge.
+  /// Whether v and w have no common neighbours but those of the two triangles at their edge.
   bool keeps_manifold(std::uint32_t v, std::uint32_t w) const {
     std::size_t common = 0;
     List seen{w};
@@ -222,16 +232,16 @@ class FlatMerger {
     const auto star = around(v);
     if (has_to_stay(v) || star.size() < 3 || star.size() > kMostAround || is_gone_[star[0]] || !has(star[0], v))
       return false;
-    const auto flat = look_at(v);
+    const auto flat = flat_around(v);
     if (!flat) return false;
     double thinnest = 1;
     for (const auto t : star) {
-      const std::array<Vec3d, 3> p = places(mesh_.triangles[t]);
+      const std::array<Vec3d, 3> p = corners_of(mesh_.triangles[t]);
       thinnest = std::min(thinnest, thinness(p, cross_of(p).length()));
     }
     std::uint32_t best = kNone;
     double least = std::min(kThin, thinnest);
-    for (const auto w : flat->ways) {
+    for (const auto w : flat->targets) {
       const auto after = thinnest_after(v, w, *flat);
       if (!after || *after < least || (best != kNone && *after == least) || !keeps_manifold(v, w)) continue;
       best = w;
@@ -261,7 +271,7 @@ class FlatMerger {
     }
   }
 
-  /// Tells what is left.
+  /// Removes what was merged from the mesh, and notes the numbers that the rest had.
   void close_ranks(MergedFlats& merged) {
     std::vector<std::uint32_t> number(mesh_.vertices.size(), kNone);
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -289,12 +299,12 @@ class FlatMerger {
   Surface& mesh_;
   double tolerance_;
   std::span<const std::uint8_t> stays_;
-  std::vector<List> stars_;  // of vertices whose triangles have changed; the others' are the mesh's
+  std::vector<List> stars_;  // of vertices whose triangles have changed; empty for others, which have the mesh's
   std::vector<std::uint8_t> is_gone_, is_changed_;  // of each triangle
   List touched_;
 };
 
-/// Marks the neighbours of what is marked, so many edges away.
+/// Marks the neighbours of marked vertices, up to so many edges away.
 void widen(std::vector<std::uint8_t>& marked, const Surface& mesh, int edges) {
   List rim;
   for (std::uint32_t v = 0; v < marked.size(); ++v)
@@ -320,7 +330,7 @@ std::size_t merge_flats_soundly(Surface& mesh, double tolerance) {
                        .incident = mesh.incident,
                        .incident_begin = mesh.incident_begin};
   std::vector<std::uint8_t> stays;
-  for (int look = 0; look < kMostLooks; ++look) {
+  for (int trial = 0; trial < kMostTrials; ++trial) {
     const MergedFlats merged = merge_flats(mesh, tolerance, stays);
     const List faulty = merged.vertices > 0 ? find_faulty(mesh, merged.changed) : List();
     if (faulty.empty()) return merged.vertices;
@@ -329,7 +339,7 @@ std::size_t merge_flats_soundly(Surface& mesh, double tolerance) {
       for (const auto v : mesh.triangles[t]) around[merged.vertex_before[v]] = 1;
       for (const auto v : before.triangles[merged.triangle_before[t]]) around[v] = 1;
     }
-    widen(around, before, 1 << look);
+    widen(around, before, 1 << trial);
     stays.resize(around.size(), 0);
     for (std::size_t v = 0; v < around.size(); ++v) stays[v] |= around[v];
     mesh.vertices = before.vertices;

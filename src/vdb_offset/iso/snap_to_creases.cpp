@@ -11,13 +11,14 @@
 namespace vdb_offset {
 namespace {
 
-// Cosine of the least angle between the gradients of two sheets: a rounding of the surface turns by less from one voxel
-// to the next, if its radius, the distance, is three voxels or more.
+// The largest cosine of the angle between the gradients of two sheets. Where the surface is rounded by a radius of
+// three voxels or more, which is the distance, its gradient turns by less than that from one voxel to the next.
 constexpr double kSharp = 0.9;
-// Least volume that the gradients of three sheets span.
+// The least volume that the gradients of three sheets span: less of it makes a corner that rounding moves far. Not
+// measured.
 constexpr double kCorner = 0.2;
 
-/// Two or three sheets, each by a triangle that a place on it is closest to.
+/// Two or three sheets, each told by a triangle of the source that a point of it is closest to.
 struct CreaseSheets {
   std::array<std::uint32_t, 3> triangle;
   std::size_t count;
@@ -25,26 +26,26 @@ struct CreaseSheets {
 
 class CreaseFinder {
  public:
-  CreaseFinder(const LevelSet& level, const VoxelMesh& mesh, const std::vector<Vec3d>& places,
+  CreaseFinder(const IsoLevel& level, const VoxelMesh& mesh, const std::vector<Vec3d>& positions,
                const std::vector<std::uint32_t>& closest)
       : level_(level),
         surface_(level.query().surface()),
         mesh_(mesh),
-        places_(places),
+        positions_(positions),
         closest_(closest),
-        away_(places.size()),
-        second_(places.size(), kNone),
-        third_(places.size(), kNone) {
-    for_each_index(places.size(), [&](std::size_t v) {
-      const Vec3d away = places_[v] - surface_.closest_on(closest_[v], places_[v]).point;
+        away_(positions.size()),
+        second_(positions.size(), kNone),
+        third_(positions.size(), kNone) {
+    for_each_index(positions.size(), [&](std::size_t v) {
+      const Vec3d away = positions_[v] - surface_.closest_on(closest_[v], positions_[v]).point;
       away_[v] = away.lengthSqr() > 0 ? away.unit() : Vec3d(0.0);
     });
-    for_each_neighbour([&](std::uint32_t v, std::uint32_t w) { look_for_second(v, w); });
-    for_each_neighbour([&](std::uint32_t v, std::uint32_t w) { look_for_third(v, w); });
+    for_each_neighbour([&](std::uint32_t v, std::uint32_t w) { note_second(v, w); });
+    for_each_neighbour([&](std::uint32_t v, std::uint32_t w) { note_third(v, w); });
   }
 
-  /// Where a vertex would be on a crease, and what it is closest to there.
-  std::optional<std::pair<Vec3d, std::uint32_t>> place(std::size_t v) const {
+  /// The position of a vertex on a crease, if its voxel holds one, and the triangle that it is closest to there.
+  std::optional<std::pair<Vec3d, std::uint32_t>> find(std::size_t v) const {
     if (second_[v] == kNone) return std::nullopt;
     const std::uint32_t own = closest_[v], second = closest_[second_[v]];
     if (third_[v] == kNone) return meet(v, {{own, second, kNone}, 2});
@@ -55,7 +56,8 @@ class CreaseFinder {
   }
 
  private:
-  /// Across a quad, too: of the voxels at a corner's sides, those alone may hold one sheet and no other.
+  /// Calls visit(v, w) for neighbours, also across quads: at a corner, the voxel across a quad may be the only one that
+  /// holds one sheet and no other.
   template <class Visit>
   void for_each_neighbour(Visit&& visit) const {
     const auto visit_pairs = [&](const auto& face, unsigned size) {
@@ -67,8 +69,8 @@ class CreaseFinder {
     for (const auto& triangle : mesh_.triangles) visit_pairs(triangle, 3);
   }
 
-  /// The neighbour whose gradient turns away most; of equals the first by number.
-  void look_for_second(std::uint32_t v, std::uint32_t w) {
+  /// Takes a neighbour as the second sheet if its gradient turns away most; of equals the lowest number counts.
+  void note_second(std::uint32_t v, std::uint32_t w) {
     const double cosine = away_[v].dot(away_[w]);
     if (cosine > kSharp || away_[w] == Vec3d(0.0)) return;
     std::uint32_t& second = second_[v];
@@ -76,7 +78,8 @@ class CreaseFinder {
     if (cosine < known || (cosine == known && w < second)) second = w;
   }
 
-  void look_for_third(std::uint32_t v, std::uint32_t w) {
+  /// Takes a neighbour as the third sheet if the gradients of all three span the largest volume.
+  void note_third(std::uint32_t v, std::uint32_t w) {
     if (second_[v] == kNone) return;
     const Vec3d across = away_[v].cross(away_[second_[v]]);
     const double volume = std::abs(across.dot(away_[w]));
@@ -86,10 +89,10 @@ class CreaseFinder {
     if (volume > known || (volume == known && w < third)) third = w;
   }
 
-  /// The place nearest to a vertex, by Newton's method, that has the distance to all of these sheets.
+  /// The point nearest to a vertex that has the distance to all of these sheets, by Newton's method.
   std::optional<std::pair<Vec3d, std::uint32_t>> meet(std::size_t v, CreaseSheets sheets) const {
-    constexpr int kMostSteps = 12;
-    Vec3d x = places_[v];
+    constexpr int kMostSteps = 12;  // Newton's method converges in three or four; not measured beyond that.
+    Vec3d x = positions_[v];
     for (int step = 0; step < kMostSteps; ++step) {
       std::array<Vec3d, 3> gradient{Vec3d(0.0), Vec3d(0.0), Vec3d(0.0)};
       Vec3d missing(0.0);
@@ -105,7 +108,8 @@ class CreaseFinder {
       if (!are_apart(gradient, sheets.count)) return std::nullopt;  // the walks have led to one sheet
       if (reached) return accept(v, x, sheets.triangle[0]);
       x += shortest_step(gradient, sheets.count, missing);
-      if (!is_near(v, x, 0.5)) return std::nullopt;
+      constexpr double kOnTheWay = 0.5;  // voxels that steps may leave the voxel by. Not measured.
+      if (!is_near(v, x, kOnTheWay)) return std::nullopt;
     }
     return std::nullopt;
   }
@@ -115,7 +119,8 @@ class CreaseFinder {
     return count == 2 || std::abs(gradient[0].cross(gradient[1]).dot(gradient[2])) >= kCorner;
   }
 
-  /// With the gradients as rows of G: G^T (G G^T)^-1 missing.
+  /// The shortest step that changes the distances by what is missing: G^T (G G^T)^-1 missing, with the gradients as
+  /// rows of G.
   static Vec3d shortest_step(const std::array<Vec3d, 3>& g, std::size_t count, const Vec3d& missing) {
     if (count == 3) return openvdb::math::Mat3d(g[0], g[1], g[2], true).inverse() * missing;
     const double cosine = g[0].dot(g[1]), determinant = 1 - cosine * cosine;
@@ -123,10 +128,10 @@ class CreaseFinder {
            g[1] * ((missing[1] - cosine * missing[0]) / determinant);
   }
 
-  /// In the vertex's voxel, or so much of a voxel beyond it.
+  /// Whether a point is in the vertex's voxel, or beyond it by no more than `slack` voxels.
   bool is_near(std::size_t v, const Vec3d& x, double slack) const {
     const double h = level_.voxel_size();
-    if (mesh_.merged) return (x - places_[v]).length() <= (1 + slack) * h;
+    if (mesh_.merged) return (x - positions_[v]).length() <= (1 + slack) * h;
     const Vec3d in_lattice = x - mesh_.lattice.corner;
     for (int k = 0; k < 3; ++k) {
       const double cell = std::floor(static_cast<double>(mesh_.points[v][k]));
@@ -135,34 +140,37 @@ class CreaseFinder {
     return true;
   }
 
-  /// Nothing else may be nearer. Flat parts of models like to lie on the boundary of voxels, but for rounding.
+  /// Accepts a point if it is in the voxel, but for rounding (flat parts of models often lie on the boundary of
+  /// voxels), and if nothing else is nearer.
   std::optional<std::pair<Vec3d, std::uint32_t>> accept(std::size_t v, const Vec3d& x, std::uint32_t hint) const {
-    if (!is_near(v, x, 1e-6)) return std::nullopt;
+    constexpr double kRounding = 1e-6;  // voxels: above the rounding of single precision, in which voxels are told
+    if (!is_near(v, x, kRounding)) return std::nullopt;
     const Closest closest = level_.query()(x, hint);
     if (!level_.is_reached(closest.distance) || !level_.is_on_side(x)) return std::nullopt;
     return std::pair(x, closest.triangle);
   }
 
-  const LevelSet& level_;
+  const IsoLevel& level_;
   const Surface& surface_;
   const VoxelMesh& mesh_;
-  const std::vector<Vec3d>& places_;
+  const std::vector<Vec3d>& positions_;
   const std::vector<std::uint32_t>& closest_;
-  std::vector<Vec3d> away_;                    // of each vertex, the unit vector away from what is closest
-  std::vector<std::uint32_t> second_, third_;  // the neighbours that other sheets are told by
+  std::vector<Vec3d> away_;  // of each vertex: the unit vector away from its closest point
+  std::vector<std::uint32_t> second_,
+      third_;  // of each vertex: neighbours that lie on other sheets; kNone if none does
 };
 
 }  // namespace
 
-std::vector<std::uint8_t> put_on_creases(const LevelSet& level, const VoxelMesh& mesh, std::vector<Vec3d>& places,
+std::vector<std::uint8_t> put_on_creases(const IsoLevel& level, const VoxelMesh& mesh, std::vector<Vec3d>& positions,
                                          std::vector<std::uint32_t>& closest) {
-  const CreaseFinder finder(level, mesh, places, closest);
-  std::vector<std::uint8_t> on_crease(places.size(), 0);
-  std::vector<std::optional<std::pair<Vec3d, std::uint32_t>>> found(places.size());
-  for_each_index(places.size(), [&](std::size_t v) { found[v] = finder.place(v); });
-  for (std::size_t v = 0; v < places.size(); ++v) {
+  const CreaseFinder finder(level, mesh, positions, closest);
+  std::vector<std::uint8_t> on_crease(positions.size(), 0);
+  std::vector<std::optional<std::pair<Vec3d, std::uint32_t>>> found(positions.size());
+  for_each_index(positions.size(), [&](std::size_t v) { found[v] = finder.find(v); });
+  for (std::size_t v = 0; v < positions.size(); ++v) {
     if (!found[v]) continue;
-    std::tie(places[v], closest[v]) = *found[v];
+    std::tie(positions[v], closest[v]) = *found[v];
     on_crease[v] = 1;
   }
   return on_crease;

@@ -11,7 +11,7 @@
 namespace vdb_offset {
 namespace {
 
-// Of the diagonal: more than the rounding of a cut's place.
+// Lengths below this share of the diagonal are the rounding of a cut's position.
 constexpr double kCutRounding = 1e-13;
 
 using Polygon = std::vector<Vec3d>;  // plane and convex
@@ -19,8 +19,8 @@ struct SharedSegment {
   Vec3d from, to;
 };
 
-/// Cuts a triangle into convex parts, none of which a segment leads into: a binary tree of lines in its plane, each the
-/// line of a segment where this passes through a part.
+/// Cuts a triangle into convex parts such that no segment leads into one: by a binary tree of lines in its plane, each
+/// of which is the line of a segment that passes through a part.
 class TriangleCutter {
  public:
   TriangleCutter(const std::array<Vec3d, 3>& triangle, const Vec3d& normal, double rounding)
@@ -33,7 +33,7 @@ class TriangleCutter {
     if (const double length = across.length(); length > rounding_) insert(0, segment, across / length);
   }
 
-  /// Calls take(part) for each.
+  /// Calls take(part) for each part.
   template <class Take>
   void for_each_part(Take&& take) const {
     for (const Node& node : nodes_)
@@ -41,7 +41,7 @@ class TriangleCutter {
   }
 
  private:
-  /// A line with what is on its two sides, or a part.
+  /// A line with the nodes on its two sides, or a part.
   struct Node {
     Vec3d across;
     double offset;
@@ -57,7 +57,7 @@ class TriangleCutter {
   void insert(std::uint32_t at, const SharedSegment& segment, const Vec3d& across) {
     if (!nodes_[at].part.empty()) return split(at, segment, across);
     const int from = side(nodes_[at], segment.from), to = side(nodes_[at], segment.to);
-    if (from == 0 && to == 0) return;  // along a line that cuts already
+    if (from == 0 && to == 0) return;  // the line cuts there already
     const std::uint32_t below = nodes_[at].below, above = nodes_[at].above;
     if (from >= 0 && to >= 0) return insert(above, segment, across);
     if (from <= 0 && to <= 0) return insert(below, segment, across);
@@ -92,7 +92,7 @@ class TriangleCutter {
     nodes_.push_back({{}, 0, 0, 0, std::move(above)});
   }
 
-  /// Whether more than an end of the segment is in a part, away from its edges.
+  /// Whether the segment is inside of a part, by more than an end.
   bool passes_through(const Polygon& part, const SharedSegment& segment) const {
     double begin = 0, end = 1;
     const Vec3d way = segment.to - segment.from;
@@ -161,7 +161,8 @@ class BoundaryFinder {
     return t;
   }
 
-  /// Nothing meets the triangles of a patch, so that what is on either side of it is the same all over.
+  /// Judges whether components of triangles that meet no others are buried: either side of such a component is inside
+  /// or outside as a whole.
   void judge_patches() {
     patch_.resize(given_.triangles.size());
     std::iota(patch_.begin(), patch_.end(), 0u);
@@ -214,7 +215,7 @@ class BoundaryFinder {
     given_of_face_.push_back(given);
   }
 
-  /// Cuts along what another triangle shares with the plane of one: a segment, or its outline if it lies in it.
+  /// Cuts along the intersection of another triangle with the plane: a segment, or its outline if it lies in the plane.
   void cut_along(const std::array<Vec3d, 3>& plane, const Vec3d& normal, std::uint32_t other,
                  TriangleCutter& cutter) const {
     const std::array<Vec3d, 3> corner = corners(other);
@@ -255,7 +256,7 @@ class BoundaryFinder {
       for (const Vec3d& p : part) middle += p / static_cast<double>(part.size());
       if (!inside_.is_buried(t, middle, rounding_)) result.kept.push_back(part);
     });
-    // Left as it is, if nothing of it is buried.
+    // A triangle of which no part is buried stays as it is.
     if (result.kept.size() == result.parts) result.kept = {whole};
     return result;
   }
@@ -300,7 +301,7 @@ class BoundaryFinder {
   const Inside& inside_;
   double rounding_;
   std::vector<std::uint8_t> meets_;  // of each triangle: 1 if it meets others
-  std::vector<TrianglePair> met_;    // each of these with each that it meets, sorted
+  std::vector<TrianglePair> met_;    // both orders of each pair of triangles that meet, sorted
   std::vector<std::uint32_t> crossing_, patch_, buried_;
   Polygons kept_;
   std::vector<std::uint32_t> given_of_face_;

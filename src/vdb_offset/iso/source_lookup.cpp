@@ -15,7 +15,7 @@ std::uint32_t first_of_chart(std::vector<std::uint32_t>& parent, std::uint32_t t
   return t;
 }
 
-/// Barycentric coordinates of a triangle's closest point, which lies on the feature that it says.
+/// The barycentric coordinates of a triangle's closest point, which has zeros according to the feature that it lies on.
 std::array<double, 3> weights_of(const TrianglePoint& closest, const std::array<Vec3d, 3>& corner) {
   std::array<double, 3> weight{};
   const auto feature = static_cast<std::size_t>(closest.feature);
@@ -42,18 +42,18 @@ std::array<double, 3> weights_of(const TrianglePoint& closest, const std::array<
 
 }  // namespace
 
-SourceLookup::SourceLookup(const IsoResult& captured, PolygonView mesh) : captured_(captured), mesh_(mesh) {
-  const auto& corners = captured.polygons.corners;
-  std::vector<Vec3d> centres(captured.polygons.face_count());
+SourceLookup::SourceLookup(const IsoResult& iso, PolygonView mesh) : iso_(iso), mesh_(mesh) {
+  const auto& corners = iso.polygons.corners;
+  std::vector<Vec3d> centres(iso.polygons.face_count());
   for_each_index(centres.size(), [&](std::size_t t) {
     centres[t] = (local(corners[3 * t]) + local(corners[3 * t + 1]) + local(corners[3 * t + 2])) / 3.0;
   });
-  const std::vector<Closest> closest = closest_points(captured.source->query, centres);
+  const std::vector<Closest> closest = closest_points(iso.source->query, centres);
   home_.resize(centres.size());
-  for_each_index(home_.size(), [&](std::size_t t) { home_[t] = captured.source->given(closest[t].triangle); });
+  for_each_index(home_.size(), [&](std::size_t t) { home_[t] = iso.source->given(closest[t].triangle); });
 }
 
-/// The corner of the mesh's face that corner k of one of the source's triangles is.
+/// The corner of the mesh's face that corner k of a triangle of the source comes from.
 std::uint32_t SourceLookup::corner_at(std::uint32_t triangle, std::size_t k) const {
   const std::uint32_t face = source().face[triangle], vertex = source().triangles[triangle][k];
   std::uint32_t corner = mesh_.face_begin[face];
@@ -91,10 +91,10 @@ SourcePoint SourceLookup::point_on(std::uint32_t triangle, const Vec3d& x) const
 }
 
 SourcePoint SourceLookup::at_vertex(std::uint32_t vertex) const {
-  return point_on(captured_.closest[vertex], local(vertex));
+  return point_on(iso_.closest[vertex], local(vertex));
 }
 
-/// Goes over the chart from triangle to triangle, for as long as one with a corner in common is nearer.
+/// Goes over the chart from triangle to triangle, as long as one with a common corner is nearer.
 std::uint32_t SourceLookup::closest_in_chart(const Vec3d& x, std::uint32_t start) const {
   std::uint32_t best = start;
   double least = source().closest_on(start, x).squared_distance;
@@ -115,8 +115,8 @@ std::uint32_t SourceLookup::closest_in_chart(const Vec3d& x, std::uint32_t start
 }
 
 SourcePoint SourceLookup::at_corner(std::size_t triangle, std::size_t k) const {
-  const std::uint32_t vertex = captured_.polygons.corners[3 * triangle + k], home = home_[triangle],
-                      closest = captured_.closest[vertex];
+  const std::uint32_t vertex = iso_.polygons.corners[3 * triangle + k], home = home_[triangle],
+                      closest = iso_.closest[vertex];
   const Vec3d x = local(vertex);
   const bool across_seam = !chart_.empty() && chart_[closest] != chart_[home];
   return point_on(across_seam ? closest_in_chart(x, home) : closest, x);

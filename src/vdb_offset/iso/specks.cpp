@@ -13,7 +13,7 @@ std::uint32_t root_of_piece(std::vector<std::uint32_t>& parent, std::uint32_t v)
   return v;
 }
 
-/// For each vertex one that stands for its piece.
+/// For each vertex the vertex that stands for its piece.
 std::vector<std::uint32_t> find_pieces(PolygonView mesh) {
   std::vector<std::uint32_t> parent(mesh.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -26,7 +26,8 @@ std::vector<std::uint32_t> find_pieces(PolygonView mesh) {
   return parent;
 }
 
-/// Of each piece, by the vertex that stands for it: measured from there, so that far-away specks keep their digits.
+/// The volume of each piece, by the vertex that stands for it; measured relative to that, so that specks far from the
+/// origin lose no digits.
 std::vector<double> find_volumes(PolygonView mesh, const std::vector<std::uint32_t>& piece) {
   std::vector<double> volume(mesh.positions.size(), 0);
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {

@@ -11,10 +11,10 @@
 
 namespace vdb_offset {
 
-/// The cells of one column in one layer. Corners are numbered around the face, and go on with 0.
-class CellStack {
+/// The cells of one column in one layer. Corners are numbered around the face; after the last comes 0 again.
+class ColumnCells {
  public:
-  CellStack(const LayerPoints& points, std::span<const std::uint32_t> ring, std::size_t layer)
+  ColumnCells(const LayerPoints& points, std::span<const std::uint32_t> ring, std::size_t layer)
       : points_(points), ring_(ring), n_(static_cast<std::uint32_t>(ring.size())), layer_(layer), apex_(find_apex()) {}
 
   std::uint32_t corner(std::uint32_t k) const {
@@ -46,7 +46,8 @@ class CellStack {
     }
   }
 
-  /// Calls visit(corners, cell) for each face of the column's cells below or above: of the first, second ... of them.
+  /// Calls visit(corners, cell) for each lower face of the column's cells. `cell` counts them from 0; `face` is
+  /// scratch.
   template <class Visit>
   void visit_below(std::vector<std::uint32_t>& face, Visit&& visit) const {
     visit_cap([&](std::uint32_t k) { return below(k); }, face,
@@ -55,13 +56,15 @@ class CellStack {
                 visit(face, cell);
               });
   }
+  /// Calls visit(corners, cell) for each upper face of the column's cells. `cell` counts them from 0; `face` is
+  /// scratch.
   template <class Visit>
   void visit_above(std::vector<std::uint32_t>& face, Visit&& visit) const {
     visit_cap([&](std::uint32_t k) { return above(k); }, face, [&](std::uint32_t cell) { visit(face, cell); });
   }
 
-  /// The face on the side from corner k to the next, seen from outside; returns its number of corners, which is 0 if
-  /// both are flat.
+  /// The face on the side from corner k to the next, seen from outside. Returns its number of corners, which is 0 if
+  /// both of these are flat.
   std::uint32_t side(std::uint32_t k, std::array<std::uint32_t, 4>& face) const {
     std::uint32_t size = 0;
     face[size++] = below(k), face[size++] = below(k + 1);
@@ -69,7 +72,7 @@ class CellStack {
     if (!flat(k)) face[size++] = above(k);
     return size < 3 ? 0 : size;
   }
-  /// The cell that has that face.
+  /// The cell that has the face on the side from corner k to the next.
   std::uint32_t cell_at_side(std::uint32_t k) const {
     if (!has_apex()) return 0;
     const std::uint32_t from_apex = (k + n_ - apex_) % n_;
@@ -81,18 +84,18 @@ class CellStack {
   std::uint32_t first_flat() const {
     std::uint32_t k = 0;
     while (k < n_ && !flat(k)) ++k;
-    // In a row around the end, the last one is the first.
+    // If the last corner and corner 0 are both flat, the last is the first of the two.
     return k == 0 && flat(0) && flat(n_ - 1) ? n_ - 1 : k;
   }
-  /// A flat corner from which cones over the sides that do not hold it fill the column: in a quad not one of two in
-  /// a row, which need no cone, and of three in a row the middle one, from where the cones cover the whole wall.
+  /// A flat corner from which cones over the sides that do not hold it fill the column. Two flat corners in a row of a
+  /// quad need no cone; of three in a row it is the middle one, from where the cones cover the whole wall. n_ if none.
   std::uint32_t find_apex() const {
     for (std::uint32_t k = 0; n_ < 5 && k < n_; ++k)
       if (flat(k) && (n_ == 3 || flat(k + 1) == flat(k + n_ - 1))) return k;
     return n_;
   }
 
-  /// The base is the side, seen from inside.
+  /// A cone from the apex, whose base is the side from corner k to the next, seen from inside.
   template <class Begin, class Add>
   void visit_cone(std::uint32_t k, Begin& begin, Add& add) const {
     std::array<std::uint32_t, 4> base;

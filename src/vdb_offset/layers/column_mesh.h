@@ -10,12 +10,12 @@
 
 namespace vdb_offset {
 
-/// The cells of one column by themselves, one layer after the other. Their points are numbered within it: those of the
-/// wall first, each in the order of the ring's numbers, so that faces that are not flat are taken as in the whole mesh
-/// (cell_volume()).
+/// The cells of one column as a mesh of their own, one layer after the other. Points are numbered within the column:
+/// those of the wall first, in the order of the ring's numbers, so that faces that are not flat are split as in the
+/// whole mesh (see cell_volume()).
 class ColumnMesh {
  public:
-  /// `flat(k)` tells of corner k whether it rises in no layer.
+  /// Starts a column. `flat(k)` is whether corner k rises in no layer.
   template <class Flat>
   void begin(std::span<const std::uint32_t> ring, Flat&& flat) {
     const auto corners = static_cast<std::uint32_t>(ring.size());
@@ -36,7 +36,7 @@ class ColumnMesh {
     make_cells();
   }
 
-  /// `stack(k)` are the places of corner k in all layers, from the wall outward.
+  /// The cells in one layer. `stack(k)` are the positions of corner k in all layers, from the wall outward.
   template <class Stack>
   const VolumeMesh& at(std::size_t layer, Stack&& stack) {
     for (std::uint32_t k = 0; k < ring_.size(); ++k) {
@@ -54,7 +54,7 @@ class ColumnMesh {
     mesh_.cell_types.clear();
     mesh_.corners.clear();
     mesh_.cell_begin.clear();
-    CellStack(points_, ring_, 0)
+    ColumnCells(points_, ring_, 0)
         .visit_cells(
             [&](CellType type) {
               mesh_.cell_types.push_back(type);

@@ -17,22 +17,24 @@
 namespace vdb_offset {
 namespace {
 
-// From so many corners on, a cell is a polyhedron, whose faces need not be convex.
+// The number of corners from which on the cell on a face is a polyhedron, whose faces need not be convex: all types of
+// cells that formats have end at four.
 constexpr std::size_t kPolyhedron = 5;
 
-/// Whether b follows a in the polygon, over its end.
+/// Whether b is the corner after a in a polygon, of which the first follows the last.
 bool follows(std::span<const std::uint32_t> polygon, std::uint32_t a, std::uint32_t b) {
   for (std::size_t k = 0; k < polygon.size(); ++k)
     if (polygon[k] == a && polygon[(k + 1) % polygon.size()] == b) return true;
   return false;
 }
 
+/// Whether a vector makes less than a right angle with a normal, by kLeastLean.
 bool leans(const Vec3d& way, const Vec3d& n) {
   const double dot = n.dot(way);
   return dot > 0 && dot * dot > kLeastLean * kLeastLean * n.lengthSqr() * way.lengthSqr();
 }
 
-/// Whether the ways up to and from a layer lean towards a normal.
+/// Whether the vectors from the layer below and to the layer above lean towards a normal.
 bool rises(std::span<const Vec3d> stack, std::size_t layer, const Vec3d& n) {
   return (layer == 0 || leans(stack[layer] - stack[layer - 1], n)) &&
          (layer + 1 == stack.size() || leans(stack[layer + 1] - stack[layer], n));
@@ -68,7 +70,7 @@ struct TwoTriangles {
   double2 square;  // of the normal
 };
 
-/// The corners of two triangles in the order of their places' numbers, and on which side of them so their normals lie.
+/// The corners of two triangles in the order of their vertices' numbers, and the signs that their normals then have.
 struct TwoOrders {
   TwoOrders(const std::array<std::span<const std::uint32_t>, 2>& base, std::span<const std::uint32_t> place) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -87,7 +89,7 @@ struct TwoOrders {
 };
 
 /// Whether prisms have volumes above 0 if their sides are split in two triangles as cell_volume() does it: from the
-/// lower corner of the lower number to the upper one of the higher. Of the three tetrahedra, two stand on the
+/// lower corner of the lower number to the upper corner of the higher number. Of the three tetrahedra, two stand on the
 /// triangles.
 PairMask have_volume(const TwoOrders& order, const VertexStacks& stacks, std::size_t layer, const double2& sign,
                      const Vec3Of<double2>& below, const Vec3Of<double2>& above) {
@@ -98,10 +100,10 @@ PairMask have_volume(const TwoOrders& order, const VertexStacks& stacks, std::si
   return sign * on_triangles + sign * order.sign * q.cross(upper_r - p).dot(upper_q) > 0.0;
 }
 
-/// Whether the prisms of two columns are inside out nowhere: in all of them the ways up from each corner lean towards
-/// both triangles' normals, as leans(), and between, at height t, the Jacobian is above 0 as well. On the way up from
-/// a corner it is a (1 - t)^2 + (a + c - d) t (1 - t) + c t^2, where a and c are the way's products with the normals,
-/// and d is the triple product of all three ways.
+/// Whether no prism of two columns is inside out anywhere. In each, the edges up from the corners lean towards the
+/// normals of both triangles (see leans()), and between, at height t, the Jacobian is above 0 as well. Along an edge up
+/// it is a (1 - t)^2 + (a + c - d) t (1 - t) + c t^2, where a and c are the edge's products with the normals, and d is
+/// the triple product of all three edges.
 std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const VertexStacks& stacks,
                                 std::span<const std::uint32_t> place, int side) {
   const double2 sign = double2{} + static_cast<double>(side);
@@ -132,10 +134,13 @@ double area_along(const Vec3d& n, const Vec3d& a, const Vec3d& b, const Vec3d& c
   return (b - a).cross(c - a).dot(n);
 }
 
-/// The corner, 0 or 1, that a quad is to be split at into two triangles, as one of its corners is straight or turns
-/// inwards, where no hexahedron can be valid. None for other quads, and for those that neither diagonal splits well.
+/// The corner, 0 or 1, from which a quad is to be split into two triangles: one of its corners is straight or turns
+/// inwards, so that no hexahedron over it can be valid. None for other quads, and where no diagonal gives two
+/// triangles.
 std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
-  constexpr double kStraight = 0.02;  // sine of the angle by which a corner that goes on ahead has to turn
+  // The least sine of the angle by which a corner has to turn: below 1.1 degrees, a hexahedron's Jacobian there is
+  // below 0.02, and two prisms are better. Not measured.
+  constexpr double kStraight = 0.02;
   const Vec3d n = (x[2] - x[0]).cross(x[3] - x[1]);
   bool convex = true;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -180,7 +185,8 @@ GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constra
     for (const auto v : base(column)) incident_[incident_begin_[v + 1]++] = column;
 }
 
-/// The usual case: the surface's triangles are the columns.
+/// Takes the surface's triangles as the columns, if all faces of the mesh are triangles with an area: the usual case.
+/// Returns false if they are not.
 bool GrowthColumns::take_all(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source) {
   const Surface& surface = constrained.surface;
   if (!constrained.off_front.empty() || mesh.corners.size() != 3 * mesh.face_count()) return false;
@@ -203,6 +209,8 @@ bool GrowthColumns::take_all(PolygonView mesh, const ConstrainedSurface& constra
   return true;
 }
 
+/// Adds the column on a face, or two on a quad that has to be split.
+/// \param triangle one of the face's, with an area
 void GrowthColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t triangle,
                         std::span<const Vec3d> source) {
   const auto& [a, b, c] = surface.triangles[triangle];
@@ -212,7 +220,7 @@ void GrowthColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t 
     if (polygon.empty() || polygon.back() != w) polygon.push_back(w);
   }
   while (polygon.size() > 1 && polygon.back() == polygon.front()) polygon.pop_back();
-  // One of the sides at least is the polygon's own.
+  // At least one side of a triangle is a side of its polygon, and tells whether the triangle runs as the polygon does.
   const bool turned = follows(polygon, b, a) || follows(polygon, c, b) || follows(polygon, a, c);
   const auto take = [&](std::vector<std::uint32_t> base) {
     if (turned) std::reverse(base.begin(), base.end());
@@ -246,7 +254,7 @@ bool GrowthColumns::is_valid(std::size_t column, const VertexStacks& stacks, int
   return rises_everywhere(column, stacks, side) && has_valid_cells(column, stacks, side);
 }
 
-/// Whether the ways up from each corner lean towards the normals of the faces that it has below and above.
+/// Whether the edges up from each corner lean towards the normals of the faces below and above it.
 bool GrowthColumns::rises_everywhere(std::size_t column, const VertexStacks& stacks, int side) const {
   const auto corners = base(column);
   const std::size_t count = corners.size();
@@ -267,7 +275,7 @@ bool GrowthColumns::rises_everywhere(std::size_t column, const VertexStacks& sta
   return true;
 }
 
-/// Whether cells are told to be valid once they are made.
+/// Whether the cells of a column are valid by the measures that are told of them once they are made.
 bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const {
   thread_local ColumnMesh cells;
   thread_local std::vector<std::uint32_t> ring, numbers;

@@ -10,16 +10,26 @@
 namespace vdb_offset {
 namespace {
 
-// How much of its heights a vertex keeps in a step of thinning; below the last share it keeps none. Large steps take
-// few rounds, and what is thinned too far is let out again by small ones.
-constexpr double kKeptHeight = 0.65, kLeastShare = 0.01;
-// A vertex that has been thinned in so many rounds and is still wrong takes ever more steps at once, up to some.
+// The share of its heights that a vertex keeps in a step of thinning. Large steps take few rounds; vertices that were
+// thinned too far are let out again by small ones. Not measured.
+constexpr double kKeptHeight = 0.65;
+// The share of its heights below which a vertex keeps none: its cells would have a hundredth of the height asked for,
+// and aspect ratios as much larger. Not measured.
+constexpr double kLeastShare = 0.01;
+// The number of rounds in which a vertex is thinned by one step each; if it still has faults it takes ever more steps
+// at once, up to kMostSteps, which ends the thinning of large tangles. Not measured.
 constexpr int kSmallSteps = 3, kMostSteps = 4;
-// Rounds in which thinned vertices are let out again, each by one step; and what it had before, of what it has then.
+// The number of rounds in which thinned vertices are let out again, each by one step. 0.85^-16 is 13: a vertex that
+// lost six steps of thinning to its neighbours gets all of that back. Not measured.
 constexpr int kLetOuts = 16;
+// The share before a step of letting out, of that after it: what is left between a vertex and the largest height that
+// would be valid is less than a sixth. Not measured.
 constexpr double kLetOutFrom = 0.85;
-// Thickness may change by so much of the length of an edge.
+// The largest difference of thickness between two neighbours, as a share of the length of the edge between them: an
+// angle of 27 degrees between wall and outer surface. Not measured.
 constexpr double kThicknessSlope = 0.5;
+// Differences of thickness below this share are rounding, and no reason to thin another vertex.
+constexpr double kSameThickness = 1e-9;
 
 }  // namespace
 
@@ -31,7 +41,7 @@ LayerGrower::LayerGrower(std::span<const Vec3d> source, const Vec3d& front_origi
       side_(heights.back().farthest() < 0 ? -1 : 1),
       paths_(paths),
       most_(source.size(), 0.0),
-      stood_(source.size()),
+      last_put_(source.size()),
       bend_(source.size(), Vec3d(0.0)),
       thinned_(source.size(), 0) {
   stack_.stacks = VertexStacks(source.size(), heights.size());
@@ -47,9 +57,9 @@ LayerStack LayerGrower::run(Progress& progress) {
   if (heights_.back().uniform()) std::erase_if(uneven, [&](std::uint32_t v) { return stack_.share[v] == 1; });
   smooth(std::move(uneven));
   put(all);
-  look_first(all);
+  find_first_faults(all);
   check_all_columns();
-  stack_.statistics.wrong_columns = wrong_columns_.size();
+  stack_.statistics.wrong_columns = invalid_columns_.size();
   while (straighten()) progress.advance(0);
   while (thin()) progress.advance(1);
   let_all_out(progress);
@@ -57,8 +67,8 @@ LayerStack LayerGrower::run(Progress& progress) {
   return std::move(stack_);
 }
 
-/// What a vertex could keep of its heights for where its path ended; nothing where no way up has all of the faces
-/// around it in view.
+/// The share of its heights that the end of a vertex's path leaves it; 0 where neither the vertex's own direction nor a
+/// straight line leads away from all faces around it. Chooses between the two.
 double LayerGrower::share_at_end(std::uint32_t v) {
   if (!moves(v) || !(paths_.achieved[v] > 0)) return 0;
   const Vec3d& whole = paths_.displacement[v];
@@ -70,7 +80,7 @@ double LayerGrower::share_at_end(std::uint32_t v) {
   return share < kLeastShare ? 0 : share;
 }
 
-/// Calls visit(neighbour, length of the edge) for each that moves: twice, where two columns share the edge.
+/// Calls visit(neighbour, length of the edge) for each neighbour that moves: twice where two columns share the edge.
 template <class Visit>
 void LayerGrower::for_each_neighbour(std::uint32_t v, Visit&& visit) const {
   for (const auto column : columns_around(v)) {
@@ -81,15 +91,15 @@ void LayerGrower::for_each_neighbour(std::uint32_t v, Visit&& visit) const {
   }
 }
 
-/// False if a vertex's thickness is no more than what a neighbour allows.
+/// Lowers the thickness of a vertex to `most`. Returns false if it is no more than that.
 bool LayerGrower::lower(std::uint32_t v, double most) {
-  if (!(stack_.share[v] * asked(v) > most * (1 + 1e-9))) return false;
+  if (!(stack_.share[v] * asked(v) > most * (1 + kSameThickness))) return false;
   stack_.share[v] = most / asked(v) < kLeastShare ? 0 : most / asked(v);
   return true;
 }
 
-/// Lowers shares of these vertices and their neighbours until thickness is even enough: for each what the lowest
-/// allow. Returns all vertices that it lowered.
+/// Lowers the shares of vertices until no thickness differs from that of a neighbour by more than kThicknessSlope. Only
+/// the neighbours of `changed`, and theirs, may have to be lowered. Returns all vertices that were, sorted.
 Indices LayerGrower::smooth(Indices changed) {
   Indices lowered;
   for (std::size_t i = 0; i < changed.size(); ++i) {
@@ -106,7 +116,8 @@ Indices LayerGrower::smooth(Indices changed) {
   return lowered;
 }
 
-/// As smooth(), where only these vertices, which have been let out, may be too high. Returns whom else it lowered.
+/// Makes the thickness even again, as smooth() does, after these vertices alone have been let out, and so may be too
+/// thick. Returns the other vertices that were lowered.
 Indices LayerGrower::smooth_back(const Indices& vertices) {
   std::vector<double> most(vertices.size(), std::numeric_limits<double>::infinity());
   for_each_index(vertices.size(), [&](std::size_t i) {
@@ -120,124 +131,127 @@ Indices LayerGrower::smooth_back(const Indices& vertices) {
   return smooth(std::move(held_back));
 }
 
-/// Looks whether columns column(0 .. count - 1) are valid, two at a time.
+/// Judges whether the columns column(0), column(1) ... column(count - 1) are valid, two at a time.
 template <class Column>
 void LayerGrower::judge(std::size_t count, Column&& column) {
   for_each_index((count + 1) / 2,
                  [&](std::size_t i) {
                    const std::size_t c = column(2 * i), other = column(std::min(2 * i + 1, count - 1));
                    const auto [valid, other_valid] = are_valid(c, other);
-                   wrong_column_[c] = !valid;
-                   wrong_column_[other] = !other_valid;
+                   is_invalid_[c] = !valid;
+                   is_invalid_[other] = !other_valid;
                  },
                  32);
 }
 
 void LayerGrower::check_all_columns() {
-  wrong_column_.assign(column_count(), 0);
+  is_invalid_.assign(column_count(), 0);
   judge(column_count(), [](std::size_t c) { return c; });
   for (std::uint32_t c = 0; c < column_count(); ++c)
-    if (wrong_column_[c]) wrong_columns_.push_back(c);
+    if (is_invalid_[c]) invalid_columns_.push_back(c);
 }
 
+/// Judges the columns around vertices that have moved.
 void LayerGrower::check_columns(const Indices& moved) {
   Indices columns;
   for (const auto v : moved) columns.insert(columns.end(), columns_around(v).begin(), columns_around(v).end());
   sort_unique(columns);
   judge(columns.size(), [&](std::size_t i) { return columns[i]; });
-  std::erase_if(wrong_columns_, [&](std::uint32_t c) { return !wrong_column_[c]; });
+  std::erase_if(invalid_columns_, [&](std::uint32_t c) { return !is_invalid_[c]; });
   for (const auto c : columns)
-    if (wrong_column_[c]) wrong_columns_.push_back(c);
-  sort_unique(wrong_columns_);
+    if (is_invalid_[c]) invalid_columns_.push_back(c);
+  sort_unique(invalid_columns_);
 }
 
 LayerGrower::Snapshot LayerGrower::snapshot(const Indices& vertices) const {
   Snapshot taken{vertices, {}, {}, {}};
-  taken.places.reserve(vertices.size() * (heights_.size() + 1));
+  taken.positions.reserve(vertices.size() * (heights_.size() + 1));
   taken.first_achieved.reserve(vertices.size());
-  taken.stood.reserve(vertices.size());
+  taken.last_put.reserve(vertices.size());
   for (const auto v : vertices) {
     const auto stack = stack_.stacks.of(v);
-    taken.places.insert(taken.places.end(), stack.begin(), stack.end());
+    taken.positions.insert(taken.positions.end(), stack.begin(), stack.end());
     taken.first_achieved.push_back(stack_.first_achieved[v]);
-    taken.stood.push_back(stood_[v]);
+    taken.last_put.push_back(last_put_[v]);
   }
   return taken;
 }
 
-/// False if v is none of the snapshot's.
+/// Puts the layers of a vertex back to where they were. Returns false if it is not in the snapshot.
 bool LayerGrower::restore(const Snapshot& snapshot, std::uint32_t v) {
   const auto found = std::lower_bound(snapshot.vertices.begin(), snapshot.vertices.end(), v);
   if (found == snapshot.vertices.end() || *found != v) return false;
   const auto i = static_cast<std::size_t>(found - snapshot.vertices.begin());
   const auto stack = stack_.stacks.of(v);
-  std::copy_n(snapshot.places.begin() + static_cast<std::ptrdiff_t>(i * stack.size()), stack.size(), stack.begin());
+  std::copy_n(snapshot.positions.begin() + static_cast<std::ptrdiff_t>(i * stack.size()), stack.size(), stack.begin());
   stack_.first_achieved[v] = snapshot.first_achieved[i];
-  stood_[v] = snapshot.stood[i];
+  last_put_[v] = snapshot.last_put[i];
   return true;
 }
 
+/// Moves the layers of vertices to where their shares want them, and judges that.
 void LayerGrower::move(const Indices& vertices) {
   put(vertices);
   judge_moved(vertices);
 }
 
 void LayerGrower::judge_moved(const Indices& vertices) {
-  look(vertices);
+  find_faults(vertices);
   check_columns(vertices);
   ++stack_.statistics.rounds;
 }
 
-Indices LayerGrower::corners_of_wrong_columns() const {
+Indices LayerGrower::corners_of_invalid_columns() const {
   Indices corners;
-  for (const auto c : wrong_columns_) corners.insert(corners.end(), base(c).begin(), base(c).end());
+  for (const auto c : invalid_columns_) corners.insert(corners.end(), base(c).begin(), base(c).end());
   sort_unique(corners);
   return corners;
 }
 
-Indices LayerGrower::wrong_vertices() const {
-  Indices wrong = faulty_vertices();
-  const Indices corners = corners_of_wrong_columns();
-  wrong.insert(wrong.end(), corners.begin(), corners.end());
-  sort_unique(wrong);
-  return wrong;
+/// The vertices of faulty faces, and of columns with invalid cells. Sorted.
+Indices LayerGrower::vertices_to_thin() const {
+  Indices vertices = faulty_vertices();
+  const Indices corners = corners_of_invalid_columns();
+  vertices.insert(vertices.end(), corners.begin(), corners.end());
+  sort_unique(vertices);
+  return vertices;
 }
 
-/// VertexPositions the layers of wrong cells' vertices on straight lines, where these see all faces around. False if
-/// none is left that could be.
+/// Puts the layers of vertices of invalid cells on straight lines, where these lead away from all faces around. Returns
+/// false if no vertex is left for which that could be done.
 bool LayerGrower::straighten() {
-  Indices corners = corners_of_wrong_columns();
+  Indices corners = corners_of_invalid_columns();
   std::erase_if(corners, [&](std::uint32_t v) {
     return bend_[v] == Vec3d(0.0) || stack_.share[v] == 0 || !sees_all_faces(v, paths_.displacement[v]);
   });
   if (corners.empty()) return false;
   for (const auto v : corners) {
     bend_[v] = Vec3d(0.0);
-    stood_[v] = {};
+    last_put_[v] = {};
   }
   straightened_.insert(straightened_.end(), corners.begin(), corners.end());
   move(corners);
   return true;
 }
 
-/// Thins the layers of the vertices that something is wrong with. False if none of them has any height left.
+/// Thins the layers at faulty faces and invalid cells. Returns false if none of their vertices has any height left.
 bool LayerGrower::thin() {
-  Indices wrong = wrong_vertices();
-  std::erase_if(wrong, [&](std::uint32_t v) { return stack_.share[v] == 0; });
-  if (wrong.empty()) return false;
-  for (const auto v : wrong) {
+  Indices thinned = vertices_to_thin();
+  std::erase_if(thinned, [&](std::uint32_t v) { return stack_.share[v] == 0; });
+  if (thinned.empty()) return false;
+  for (const auto v : thinned) {
     const int steps = std::clamp(thinned_[v]++ - kSmallSteps + 1, 1, kMostSteps);
     for (int i = 0; i < steps; ++i) stack_.share[v] *= kKeptHeight;
     if (stack_.share[v] < kLeastShare) stack_.share[v] = 0;
   }
-  const Indices lowered = smooth(wrong);
-  wrong.insert(wrong.end(), lowered.begin(), lowered.end());
-  sort_unique(wrong);
-  move(wrong);
+  const Indices lowered = smooth(thinned);
+  thinned.insert(thinned.end(), lowered.begin(), lowered.end());
+  sort_unique(thinned);
+  move(thinned);
   return true;
 }
 
-/// Lets all that is thinned out again, step by step, each vertex until it cannot go on.
+/// Lets all thinned vertices out again, step by step, each until its next step would not be valid.
 void LayerGrower::let_all_out(Progress& progress) {
   Indices thinned;
   for (std::uint32_t v = 0; v < source_.size(); ++v)
@@ -249,9 +263,9 @@ void LayerGrower::let_all_out(Progress& progress) {
   }
 }
 
-/// Lets these vertices out by one step, as far as thickness stays even, and takes those back that something is then
-/// wrong with. Keeps in `thinned` who has been let out, and is not at its end yet; `before`, the shares that there are,
-/// keeps up with them.
+/// Lets these vertices out by one step, as far as the thickness stays even, and takes those back that then have faults.
+/// \param thinned the vertices; receives those that have been let out and have a larger share to get to
+/// \param before the shares of all vertices, before and after
 void LayerGrower::let_out(Indices& thinned, std::vector<double>& before) {
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
   for (const auto v : thinned) stack_.share[v] = std::min(most_[v], before[v] / kLetOutFrom);
@@ -260,21 +274,21 @@ void LayerGrower::let_out(Indices& thinned, std::vector<double>& before) {
   add(smooth_back(thinned));
   std::erase_if(thinned, stays);
   if (thinned.empty()) return;
-  const Snapshot stood = snapshot(thinned);
+  const Snapshot taken = snapshot(thinned);
   move(thinned);
-  add(take_back(before, stood));
+  add(take_back(before, taken));
   std::erase_if(thinned, [&](std::uint32_t v) { return stays(v) || stack_.share[v] == most_[v]; });
   for (const auto v : changed) before[v] = stack_.share[v];
 }
 
-/// Takes vertices that something is wrong with, and who hinders their thickness from being even, back to where all was
-/// well. Those with the share they had are put back themselves: on its rail, a vertex may find that share's height at
-/// several places. Returns all of them.
+/// Restores faulty vertices, and neighbours that would break the thickness gradient, to their last valid state. A
+/// vertex that gets the share back that it had is restored from the snapshot, since its rail may have the height of
+/// that share at several points. Returns all vertices that were moved.
 Indices LayerGrower::take_back(const std::vector<double>& before, const Snapshot& snapshot) {
   const auto stays = [&](std::uint32_t v) { return !(stack_.share[v] > before[v]); };
   Indices taken;
   while (true) {
-    Indices moved = wrong_vertices();
+    Indices moved = vertices_to_thin();
     std::erase_if(moved, stays);
     if (moved.empty()) return taken;
     for (const auto v : moved) stack_.share[v] = before[v];
@@ -290,6 +304,7 @@ Indices LayerGrower::take_back(const std::vector<double>& before, const Snapshot
   }
 }
 
+/// Notes down in the paths where the outermost layer is, and counts.
 void LayerGrower::finish() {
   for (const auto v : straightened_) stack_.statistics.straightened += stack_.share[v] > 0;
   for (std::uint32_t v = 0; v < source_.size(); ++v) {
@@ -298,7 +313,7 @@ void LayerGrower::finish() {
     if (stack_.share[v] == 1) continue;
     ++stack_.statistics.thinned_vertices;
     stack_.statistics.flat_vertices += stack_.share[v] == 0;
-    if (is_at_end(v)) continue;  // as far as its path went
+    if (is_at_end(v)) continue;  // the path tells its distance and state
     paths_.achieved[v] = stack_.share[v] > 0 ? distance_of(v) : 0;
     paths_.state[v] = VertexState::Limited;
   }

@@ -6,22 +6,26 @@
 #include "vdb_offset/mesh/point_triangle.h"
 #include "vdb_offset/polygons.h"
 
-/// What layers over surfaces and over curves have in common.
+/// The curves that layers stand on, over surfaces and over curves.
 namespace vdb_offset {
 
-// What the way up must have at least of each face's normal at the wall.
+// The least cosine between the way up from a vertex and the normal of each face around it, at the wall: no cell starts
+// flatter than 0.6 degrees. Not measured.
 inline constexpr double kLeastSlope = 1e-2;
-// The way up leans towards the sides of a cell by no less than this sine.
+// The least sine of the angle between the way up from one layer to the next and a face of the cell below or above it:
+// cells that are flatter are valid by rounding alone. Not measured.
 inline constexpr double kLeastLean = 1e-3;
 
-/// The curve that a vertex's layers stand on: x(eta) = whole eta + bend eta (1 - eta)^2, from 0 at the surface to 1.
+/// The curve that a vertex's layers stand on: x(eta) = whole eta + bend eta (1 - eta)^2, from eta = 0 at the surface to
+/// 1 at the end of the vertex's path.
 struct Rail {
   Vec3d whole, bend;
   Vec3d operator()(double eta) const { return whole * eta + bend * (eta * (1 - eta) * (1 - eta)); }
+  /// The derivative by eta.
   Vec3d along(double eta) const { return whole + bend * ((1 - eta) * (1 - 3 * eta)); }
 };
 
-/// The distance of a point, and the way there from the surface.
+/// The distance of a point, and the vector to it from the closest point of the surface.
 struct Phi {
   double value;
   Vec3d away;
@@ -31,8 +35,9 @@ inline Phi phi_of(const TrianglePoint& nearest, const Vec3d& x) {
 }
 inline Phi phi_of(const Vec3d& away) { return {away.length(), away}; }
 
-/// Distances along a vertex's rail, of points in the front's frame. The closest triangle to one point is likely to be
-/// that of the next: find() looks for it, at() believes it and is never too small.
+/// Distances along a vertex's rail by the exact query, of points in the front's frame. The triangle that is closest to
+/// one point is likely to be closest to the next: find() searches for it; at() takes the distance of the last one
+/// found, which is never too small.
 template <class Query>
 class QueryDistance {
  public:
@@ -50,37 +55,41 @@ class QueryDistance {
   std::uint32_t triangle_;
 };
 
-/// A place on a rail, and its distance.
-struct RailPlace {
+/// A point on a rail, and its distance.
+struct RailPoint {
   double eta;
   Phi phi;
 };
 
-/// Where on the rail, between its start and the place `above`, the distance is `target`, far below the promised 1e-6:
-/// Newton's method on the distance of one triangle, kept between what is known to be below and above; where that does
-/// not lead on, or has led there, on the closest one's. It is the innermost loop: called, it takes a fifteenth longer.
-template <class Field>
-[[gnu::always_inline]] inline RailPlace place_on(const Rail& rail, const Vec3d& origin, const RailPlace& above,
-                                                 double target, Field&& field) {
-  constexpr double kTolerance = 1e-7, kNearlyThere = 2e-4;
+/// The point of the rail, between its start and `above`, whose distance is `target`, to far less than the promised
+/// 1e-6. Newton's method on the distance to one triangle, kept between parameters that are known to be below and above;
+/// where its step leaves these, or has come close, the closest triangle is searched for. It is the innermost loop of
+/// growing: called instead of inlined, growing takes a fifteenth longer.
+template <class Distance>
+[[gnu::always_inline]] inline RailPoint point_on(const Rail& rail, const Vec3d& origin, const RailPoint& above,
+                                                 double target, Distance&& distance) {
+  // Relative error of the distance at which a point is taken: a tenth of the promised 1e-6.
+  constexpr double kTolerance = 1e-7;
+  // Relative error from which one more of Newton's steps gets below kTolerance, as its error is squared: 4e-8.
+  constexpr double kNearlyThere = 2e-4;
+  // The most steps. Halving alone needs 24 for kTolerance; not measured beyond that.
   constexpr int kMost = 60;
   double low = 0, high = above.eta, believed_high = high;
-  RailPlace here = above;
+  RailPoint here = above;
   for (int i = 0; i < kMost; ++i) {
     const double slope = here.phi.away.dot(rail.along(here.eta)) / here.phi.value;
     const double next = here.eta - (here.phi.value - target) / slope;
     const bool leads_on = slope > 0 && next > low && next < believed_high;
-    // Newton's error shrinks to the square of what it was.
     const bool leads_there = leads_on && i > 0 && std::abs(here.phi.value - target) <= kNearlyThere * target;
     here.eta = leads_on ? next : (low + high) / 2;
     const Vec3d x = origin + rail(here.eta);
     if (leads_on && !leads_there) {
-      here.phi = field.at(x);
+      here.phi = distance.at(x);
       if (here.phi.value < target) low = here.eta;
       else believed_high = here.eta;
       continue;
     }
-    here.phi = field.find(x);
+    here.phi = distance.find(x);
     if (std::abs(here.phi.value - target) <= kTolerance * target) break;
     (here.phi.value < target ? low : high) = here.eta;
     believed_high = high;

@@ -7,23 +7,29 @@
 #include <limits>
 
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/layers/fan_field.h"
+#include "vdb_offset/layers/fan_distance.h"
 #include "vdb_offset/layers/layer_grower.h"
 
 namespace vdb_offset {
 namespace {
 
-// Vertices that a thread takes at a time: fewer, if there are not many.
+// Vertices that a thread takes at a time: kSmallBlock if there are fewer than kFewVertices, so that all threads have
+// work. For speed alone; not measured.
 constexpr std::size_t kVertexBlock = 64, kSmallBlock = 16, kFewVertices = 8192;
-// Where more triangles than this may be the closest ones, a tree finds them sooner.
+// The number of triangles in the ball around a rail beyond which exact queries of a tree take over from going through
+// all of them. For speed alone; not measured.
 constexpr std::size_t kMostNear = 2000;
-// How much larger than around a straight rail, along which the distance grows evenly, the ball is that holds all that
-// may be the closest to its layers.
+// The factor by which the ball around a rail, in which triangles are collected, is larger than that of a straight rail
+// along which the distance grows evenly: room for bent rails. Layers for which it is too small are put by exact
+// queries. For speed alone; not measured.
 constexpr double kBallRoom = 1.02;
+// The largest radius around a vertex, as a share of the distance at the end of its path, within which triangles outside
+// of its fan are searched for; where nearer ones may lie farther out, they are collected around the rail instead. For
+// speed alone; not measured.
+constexpr double kFanShare = 0.5;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Where nothing nearer can lie farther from a vertex than this share of its distance, it is looked for there alone.
-constexpr double kFanShare = 0.5;
+
 class SurfaceLayerGrower final : public LayerGrower {
  public:
   SurfaceLayerGrower(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
@@ -40,13 +46,13 @@ class SurfaceLayerGrower final : public LayerGrower {
   bool moves(std::uint32_t v) const override { return constrained_.on_front(v) && heights_.back()[v] != 0; }
   bool is_bound(std::uint32_t v) const override { return constrained_.is_bound(v); }
 
-  bool sees_all_faces(std::uint32_t v, const Vec3d& way) const override {
-    const double length = way.length();
+  bool sees_all_faces(std::uint32_t v, const Vec3d& displacement) const override {
+    const double length = displacement.length();
     for (const auto t : constrained_.surface.triangles_around(v)) {
       const auto& [a, b, c] = constrained_.surface.triangles[t];
       if (!constrained_.is_front(t)) continue;
       const Vec3d n = (source_[b] - source_[a]).cross(source_[c] - source_[a]);
-      if (n.lengthSqr() > 0 && !(side_ * n.dot(way) > kLeastSlope * n.length() * length)) return false;
+      if (n.lengthSqr() > 0 && !(side_ * n.dot(displacement) > kLeastSlope * n.length() * length)) return false;
     }
     return true;
   }
@@ -61,15 +67,15 @@ class SurfaceLayerGrower final : public LayerGrower {
     return columns_.are_valid(column, other, stack_.stacks, side_);
   }
 
-  void look(const Indices& vertices) override {
+  void find_faults(const Indices& vertices) override {
     faults_.move(
         vertices, [&](std::uint32_t v) { return outermost(v); }, &paths_);
   }
-  /// What is wrong where paths end is known.
-  void look_first(const Indices& all) override {
+  /// The faults at the ends of paths are known.
+  void find_first_faults(const Indices& all) override {
     Indices back = all;
     std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || is_at_end(v); });
-    look(back);
+    find_faults(back);
   }
   Indices faulty_vertices() const override { return faults_.faulty_vertices(); }
   double distance_of(std::uint32_t v) const override { return faults_.distance_of(v); }
@@ -84,8 +90,8 @@ class SurfaceLayerGrower final : public LayerGrower {
                    1);
   }
 
-  /// Vertices whose layers are put down below the tops of their rails, and the balls that all lies in that these may
-  /// be closest to.
+  /// Vertices whose layers are to be put below the tops of their rails, and the balls that hold all triangles which may
+  /// be the closest to these layers.
   struct Puts {
     std::vector<std::uint32_t> vertices;
     std::vector<double> tops;
@@ -115,30 +121,31 @@ class SurfaceLayerGrower final : public LayerGrower {
     });
     constrained_.front.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
       const std::uint32_t v = by_ball.vertices[i];
-      if (!put_among_few(v, by_ball.tops[i], by_ball.balls[i], fan, near)) put_with_care(v);
+      if (!put_by_near(v, by_ball.tops[i], by_ball.balls[i], fan, near)) put_by_query(v);
     });
   }
 
-  /// What may be the closest triangle to one of a vertex's layers is no farther from that than its height, and heights
-  /// fall towards the vertex as the way there does: all lies in the ball whose diameter goes from the vertex through
-  /// the top of the rail to as far beyond as the outermost height.
+  /// The ball that holds all triangles which may be the closest to a layer of a vertex. Such a triangle is no farther
+  /// from a layer than its height, and heights fall towards the vertex as the lengths of the rail do: all of them lie
+  /// in the ball whose diameter goes from the vertex through the top of the rail, and beyond it by the outermost
+  /// height.
   ClosestQuery::Ball ball_of_rail(std::uint32_t v, double top) const {
-    const Vec3d way = rail_of(v)(top), foot = source_[v] - front_.origin;
-    const double length = way.length(), radius = (length + std::min(length, stack_.share[v] * asked(v))) / 2;
+    const Vec3d to_top = rail_of(v)(top), foot = source_[v] - front_.origin;
+    const double length = to_top.length(), radius = (length + std::min(length, stack_.share[v] * asked(v))) / 2;
     if (!(length > 0)) return {foot, 0};
-    return {foot + way * (radius / length), radius * kBallRoom};
+    return {foot + to_top * (radius / length), radius * kBallRoom};
   }
 
-  /// False if a vertex gets to one of its heights not by sliding there.
+  /// Puts the layers of a border vertex where it slides to. Returns false if it does not reach one of its heights so.
   bool put_along_border(std::uint32_t v) {
     if (!slides_->lead(v)) return false;
     const auto stack = stack_.stacks.of(v);
     for (std::size_t k = heights_.size(); k-- > 0;) {
       const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
       const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
-      const Vec3d way = at_end ? paths_.displacement[v]
-                               : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
-      stack[k + 1] = source_[v] + way;
+      const Vec3d displacement =
+          at_end ? paths_.displacement[v] : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
+      stack[k + 1] = source_[v] + displacement;
       stack_.first_achieved[v] = constrained_.front(stack[k + 1] - front_.origin, constrained_.hint(v)).distance;
       if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
     }
@@ -149,9 +156,9 @@ class SurfaceLayerGrower final : public LayerGrower {
     return constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
   }
 
-  /// Puts layers where the triangles around the vertex have their distances. What is nearer to some of them lies within
-  /// the radius around the vertex that this returns, as the ball around the end of its path holds nothing. It is
-  /// infinite where that tells little, or where the layers' closest triangles are clearly others.
+  /// Puts layers where their distances from the vertex's fan are the heights. Returns the radius around the vertex
+  /// within which all triangles lie that may be nearer to some of them: the ball around the end of its path is empty.
+  /// The radius is infinite where it would be large, or where a closest triangle is clearly not in the fan.
   double put_on_fan(std::uint32_t v, double top, VertexFan& fan, std::vector<double>& distances) {
     fan.begin(front_, on_front(v));
     const double free = paths_.achieved[v] - 2 * faults_.rounding(v);
@@ -163,7 +170,7 @@ class SurfaceLayerGrower final : public LayerGrower {
     const bool there = put_down(v, top, FanDistance(fan), [&](std::size_t k, double phi) {
       distances[before + k] = phi;
       if (!is_at_height(v, k, phi)) return false;
-      // How far a path's end is, is known.
+      // The distance at the end of a path is known to be exact.
       const bool at_end = k + 1 == heights_.size() && is_at_end(v);
       return at_end || beside.add(stack[k + 1], phi, kFanShare * free);
     });
@@ -171,7 +178,7 @@ class SurfaceLayerGrower final : public LayerGrower {
     distances.resize(before);
     return kInfinity;
   }
-  /// Whether none of the triangles near a vertex are nearer to its layers than those around it.
+  /// Whether no triangle near a vertex is nearer to its layers than its fan. `distances` are those of the layers.
   bool is_on_fan(std::uint32_t v, std::span<const double> distances, NearTriangles& near) const {
     near.remove_if([&](std::uint32_t t) {
       const auto& corners = front_.triangles[t];
@@ -191,9 +198,10 @@ class SurfaceLayerGrower final : public LayerGrower {
     return holds;
   }
 
-  /// The triangles near a rail are few, and collected once for all layers. False if one of the layers turns out to be
-  /// where others may be nearer, or is not at its height.
-  bool put_among_few(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
+  /// Puts layers by the vertex's fan and the triangles in the ball around its rail, which are collected once for all
+  /// layers. Returns false if they are many, or if a layer turns out to be outside of what the ball is large enough
+  /// for, or not at its height.
+  bool put_by_near(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
     const auto stack = stack_.stacks.of(v);
     if (near.size() > kMostNear) return false;
     fan.begin(front_, on_front(v));
@@ -209,7 +217,8 @@ class SurfaceLayerGrower final : public LayerGrower {
     return std::abs(distance - height) <= kReachedTolerance * height;
   }
 
-  void put_with_care(std::uint32_t v) {
+  /// Puts layers by exact queries: slower than any other way, and always right.
+  void put_by_query(std::uint32_t v) {
     put_down(v, 1, QueryDistance<ClosestQuery>(constrained_.front, constrained_.hint(v)),
              [](std::size_t, double) { return true; });
   }
@@ -226,6 +235,7 @@ class SurfaceLayerGrower final : public LayerGrower {
 LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& callback) {
+  // Rounds after which progress is told to be complete; more of them are told as that. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   return SurfaceLayerGrower(constrained, slides, columns, source, heights, faults, paths).run(progress);
@@ -238,13 +248,13 @@ void round_layers(std::span<const Vec3d> source, const Rounding& precision,
   if (precision.kind == Rounding::Kind::Double && precision.scale == Vec3d(1.0)) return;
   for_each_index(source.size(), [&](std::size_t i) {
     const auto v = static_cast<std::uint32_t>(i);
-    // Layers that are not there stay on the wall.
+    // Flat stacks stay on the wall.
     if (!is_written(v) || stack.stacks.is_flat(v)) return;
-    const auto places = stack.stacks.of(v);
-    for (Vec3d& place : places.subspan(1)) place = precision(source[v], place);
-    paths.displacement[v] = places.back() - source[v];
-    if (const auto first = distance_at(v, places[1])) stack.first_achieved[v] = *first;
-    if (const auto last = distance_at(v, places.back())) paths.achieved[v] = *last;
+    const auto positions = stack.stacks.of(v);
+    for (Vec3d& position : positions.subspan(1)) position = precision(source[v], position);
+    paths.displacement[v] = positions.back() - source[v];
+    if (const auto first = distance_at(v, positions[1])) stack.first_achieved[v] = *first;
+    if (const auto last = distance_at(v, positions.back())) paths.achieved[v] = *last;
   });
 }
 

@@ -16,38 +16,43 @@
 
 namespace vdb_offset {
 
-/// Layers over a body's vertices.
+/// Layers over the vertices of a constrained surface, or of a polyline.
 struct LayerStack {
   VertexStacks stacks;
-  std::vector<double> share;           ///< Of its heights that each vertex keeps, 0 .. 1.
+  std::vector<double> share;           ///< Of each vertex: the share of its heights that it keeps, 0 .. 1.
   std::vector<double> first_achieved;  ///< Exact distance of the first layer's vertices, world units.
   LayerStatistics statistics;
 };
 
-/// VertexStacks layers between a body's vertices and where these ended up, of which `paths` tells; what is still wrong
-/// with the outermost surface, `faults` does. `heights` are those of the body's vertices, one set for each layer.
+/// Stacks layers between a surface and the ends of its vertices' paths.
 ///
 /// The layers of a vertex lie on a curve that leaves the surface in the vertex's own direction, as nearly at right
-/// angles as validity allows, and bends towards its end; there, where the exact distance is what was asked for. Those
-/// of a bound vertex lie where `slides`, if there are any, lead it. Layers
-/// are thinned by one share for all layers of a vertex until every cell is valid (GrowthColumns) and nothing is wrong
-/// with the outermost surface; so are neighbours, so that no thickness differs by more than half the length of the edge
-/// between them. Then they are let out again as far as all stays so. `paths` receives what became of the outermost
-/// surface. The result does not depend on the number of threads.
+/// angles as validity allows, and bends towards the end of the path: on it, at the points whose exact distances are the
+/// heights. The layers of a bound vertex lie where `slides` lead it, if there are any. Layers are thinned, by one share
+/// for all layers of a vertex, until every cell is valid (GrowthColumns) and the outermost surface has no fault; so are
+/// those of neighbours, so that no thickness differs by more than half the length of the edge between them. Then they
+/// are let out again as far as all that holds. The result does not depend on the number of threads.
+/// \param slides how border vertices slide; nullptr if none does
+/// \param source positions of the surface's vertices, world coordinates
+/// \param heights of the surface's vertices, one set for each layer
+/// \param faults of the surface with its vertices at the ends of their paths; receives those that are left
+/// \param paths of the surface's vertices; receive what became of the outermost surface
 LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& progress = {});
 
-/// Puts layers where a file has them that keeps coordinates so precisely, and tells their first and last distances
-/// there, by distance_at(vertex, place), which is called in parallel; not of vertices that it has none for. The wall
-/// stays, and what is not written.
+/// Rounds layers to the coordinates that a file keeps, and measures the distances of the first and the last of them
+/// there. The wall stays as it is, and so do vertices that are not written.
+/// \param distance_at the exact distance of a vertex at a position, or none if it is not to be measured. Called in
+/// parallel.
 void round_layers(std::span<const Vec3d> source, const Rounding& precision,
                   const std::function<bool(std::uint32_t)>& is_written,
                   const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
                   LayerStack& stack, Paths& paths);
 
-/// Tells once layers are grown how many vertices of their outermost surface are held back, and what was taken from them
-/// since they had gone these `distances_before` that.
+/// Counts the vertices of the outermost surface that are held back, once layers are grown, and the thickness that they
+/// have lost for that.
+/// \param distances_before the distances of all vertices after the march
 void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,
                      LimitStatistics& statistics);
 

@@ -5,9 +5,9 @@
 namespace vdb_offset {
 
 std::vector<Vec3d> SharedStacks::surface(std::size_t layer) const {
-  std::vector<Vec3d> places(vertices());
-  for_each_index(vertices(), [&](std::size_t v) { places[v] = of(v)[layer]; });
-  return places;
+  std::vector<Vec3d> positions(vertices());
+  for_each_index(vertices(), [&](std::size_t v) { positions[v] = of(v)[layer]; });
+  return positions;
 }
 
 }  // namespace vdb_offset

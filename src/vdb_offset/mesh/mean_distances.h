@@ -16,7 +16,8 @@ struct MeanDistances {
 };
 
 /// Averages the distances of vertices that move together. Where all of a group agree, their distance is kept to the
-/// last bit. \param group of each vertex; kNone for a vertex in none
+/// last bit.
+/// \param group of each vertex; kNone for a vertex in none
 /// \param first of each group the vertex that the others are compared with; kNone for a group without vertices
 MeanDistances mean_distances(const Distances& of_vertices, std::span<const std::uint32_t> group,
                              std::span<const std::uint32_t> first);

@@ -9,6 +9,7 @@
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/validity/face_error.h"
 #include "vdb_offset/validity/fault_finder.h"
@@ -34,16 +35,17 @@ void require_usable(PolygonView source, std::span<const Vec3d> positions, const 
                        " vertices, got " + std::to_string(options.distance->count()));
 }
 
-/// Where the body's vertices stand in the offset; what is no part of the mesh stays.
-std::vector<Vec3d> places_of(const Surface& surface, std::span<const Vec3d> source, std::span<const Vec3d> positions) {
-  std::vector<Vec3d> places(source.begin(), source.end());
-  for (std::size_t w = 0; w < places.size(); ++w)
-    if (surface.representative[w] != kNone) places[w] = positions[surface.representative[w]];
-  return places;
+/// The positions of all vertices in the offset; obstacles stay where they are.
+std::vector<Vec3d> positions_in_offset(const Surface& surface, std::span<const Vec3d> source,
+                                       std::span<const Vec3d> positions) {
+  std::vector<Vec3d> moved(source.begin(), source.end());
+  for (std::size_t w = 0; w < moved.size(); ++w)
+    if (surface.representative[w] != kNone) moved[w] = positions[surface.representative[w]];
+  return moved;
 }
 
-/// Vertices that stand elsewhere than the one that they are to move with. What has been welded with a tolerance keeps
-/// its own place where it stays.
+/// Counts the vertices that have another position than the one that they are welded to. Where both stay, vertices that
+/// are welded with a tolerance keep positions of their own.
 std::size_t count_torn(const Surface& surface, PolygonView source, std::span<const Vec3d> positions,
                        const Rounding& precision) {
   std::size_t torn = 0;
@@ -59,11 +61,11 @@ std::size_t count_torn(const Surface& surface, PolygonView source, std::span<con
 }
 
 /// The median distance of the front's vertices, with the sign of the side that most of them lie on.
-double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3d> places) {
+double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3d> positions) {
   const Surface& front = constrained.front.surface();
   std::vector<Vec3d> points;
-  for (std::uint32_t v = 0; v < places.size(); ++v)
-    if (constrained.on_front(v)) points.push_back(places[v] - front.origin);
+  for (std::uint32_t v = 0; v < positions.size(); ++v)
+    if (constrained.on_front(v)) points.push_back(positions[v] - front.origin);
   const std::vector<Closest> closest = closest_points(constrained.front, points);
   std::vector<double> distance;
   distance.reserve(closest.size());
@@ -78,7 +80,7 @@ double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3
   return outside < 0 ? -*middle : *middle;
 }
 
-/// States and distances of the input's vertices.
+/// Judges the states and distances of the input's vertices.
 void judge_vertices(const Surface& surface, const FaultFinder& finder, const Distances& distances,
                     const Rounding& precision, CheckResult& result) {
   const double epsilon = precision.epsilon();
@@ -86,7 +88,7 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Dis
     const std::uint32_t w = surface.welded[v];
     if (w == kNone) continue;
     const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
-                 tolerance = 1e-6 * target + epsilon * finder.positions()[w].length();
+                 tolerance = kReachedTolerance * target + epsilon * finder.positions()[w].length();
     result.achieved[v] = finder.distance_of(w);
     result.states[v] = std::abs(error) <= tolerance ? VertexState::Reached : VertexState::Limited;
     result.beyond += error > tolerance;
@@ -99,19 +101,20 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
   result.facts =
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
-  to_local_frame(parts, parts.surface().facts.diagonal / 256, {.find = false, .planes = {}}, 0);
+  to_local_frame(parts, frame_voxel_size(parts.surface().facts), {.find = false, .planes = {}}, 0);
   const Surface& surface = parts.surface();
   const ClosestQuery query(parts.front);
   const std::vector<Vec3d> source = parts.source(space.view()),
-                           places = places_of(surface, source, moved.view().positions), in_file = parts.source(mesh),
-                           placed_in_file = places_of(surface, in_file, positions);
+                           places = positions_in_offset(surface, source, moved.view().positions),
+                           in_file = parts.source(mesh),
+                           moved_in_file = positions_in_offset(surface, in_file, positions);
   std::optional<Surroundings> surroundings;
   if (parts.obstacles) {
     surroundings.emplace(parts, source, options.clearance);
     result.obstacles = surroundings->facts(places);
   }
   ConstrainedSurface constrained = parts.constrained(query, surroundings ? &surroundings->obstacles() : nullptr, false);
-  const FileFrame file{space, in_file, placed_in_file};
+  const FileFrame file{space, in_file, moved_in_file};
   if (!options.metric.even()) constrained.file = &file;
   result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, places));

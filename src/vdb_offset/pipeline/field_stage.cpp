@@ -9,6 +9,16 @@
 #include "vdb_offset/field/sweep.h"
 
 namespace vdb_offset {
+namespace {
+
+// The number of voxels along the diagonal of a surface that no field is made for. Its only effect is where the origin
+// of the frame lies. A power of two, so that scaling a mesh by one changes no digit; not measured.
+constexpr double kFrameVoxels = 256;
+// World units: the diagonal that is taken for a surface without any size, so that its frame has voxels. Any number
+// above 0 would do; this is far below all coordinates that a format keeps.
+constexpr double kLeastSize = 1e-100;
+
+}  // namespace
 
 Reach farthest_of(std::span<const Distances> distances) {
   Reach farthest{0, 0};
@@ -18,6 +28,8 @@ Reach farthest_of(std::span<const Distances> distances) {
 }
 
 bool goes_anywhere(const Reach& farthest) { return farthest.inside > 0 || farthest.outside > 0; }
+
+double frame_voxel_size(const MeshFacts& facts) { return std::max(facts.diagonal, kLeastSize) / kFrameVoxels; }
 
 DistanceField make_field(const Surface& surface, const GridPlan& plan, bool slab, const OffsetOptions& options,
                          OffsetStatistics& statistics) {

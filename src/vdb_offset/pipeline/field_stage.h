@@ -42,6 +42,9 @@ Ridges ridges_of(const OffsetOptions& options);
 /// The options of propagate() in a run.
 PathOptions march_options(const OffsetOptions& options, Ridges ridges);
 
+/// The voxel size of the frame of a surface that no field is made for (see place()), world units, above 0.
+double frame_voxel_size(const MeshFacts& facts);
+
 /// Runs `work(threads)` in an arena of its own, which keeps the number of threads a matter of this call alone.
 /// \param asked number of threads; 0 for as many as the machine has. \throw InvalidInput below 0
 template <class Work>

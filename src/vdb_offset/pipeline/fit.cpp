@@ -11,20 +11,24 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/validity/clearance.h"
 
 namespace vdb_offset {
 namespace {
 
-constexpr std::size_t kMostOffsets = 24, kPatience = 4;
-
-// Aimed at beyond the clearance, as a share of it, and what counts as far enough: so that rounding does not matter.
+// The most rounds, each of which is an offset. Not measured.
+constexpr std::size_t kMostOffsets = 24;
+// The number of rounds without progress after which fitting ends. Not measured.
+constexpr std::size_t kPatience = 4;
+// The gap that is aimed at, and the gap that counts as far enough, relative to the clearance: above it by the first,
+// and below it by no more than the second, so that rounding does not decide.
 constexpr double kBeyond = 3e-7, kFarEnough = 1e-6;
-
-// What a vertex gains of what it goes is taken for no less than this.
+// The least gain of a vertex, as a share of what it goes farther inward, that the next round reckons with: what a
+// vertex goes at once is at most seven times what it lacks. Not measured.
 constexpr double kLeastGain = 0.15;
 
-/// The other mesh, and how far a place is from it.
+/// The other mesh, and distances from it.
 class Other {
  public:
   Other(PolygonView mesh, double clearance)
@@ -36,7 +40,7 @@ class Other {
   const Surface& surface() const { return surface_; }
   bool is_solid() const { return surface_.facts.closed() && surface_.facts.oriented(); }
 
-  /// Signed, if it is a solid.
+  /// The distance of a position from the mesh; negative inside, if the mesh is a solid.
   double gap_at(const Vec3d& world, std::uint32_t hint = 0) const {
     const Vec3d x = world - surface_.origin;
     const auto [distance, triangle, feature, tied, point] = query_(x, hint);
@@ -44,10 +48,10 @@ class Other {
   }
 
   struct Near {
-    double gap;   ///< No more than the limit that was asked for.
-    Vec3d share;  ///< Of the triangle's corners, at its nearest point.
+    double gap;   ///< The least distance, but no more than the limit that was asked for.
+    Vec3d share;  ///< Barycentric coordinates of the triangle's nearest point.
   };
-  /// Of a triangle whose corners have these gaps: where it is nearest, or its corner that is deepest inside.
+  /// The nearest point of a triangle, or its corner that is deepest inside. `at_corners` are the gaps of its corners.
   Near near(const TriangleCorners& world, const std::array<double, 3>& at_corners, double limit) const {
     const TriangleCorners local = {world[0] - surface_.origin, world[1] - surface_.origin, world[2] - surface_.origin};
     Vec3d where(0.0);
@@ -66,11 +70,11 @@ class Other {
  private:
   static Surface placed(PolygonView mesh) {
     Surface surface = build_surface(mesh, {}, Orient::FixDirectionOnly);
-    place(surface, std::max(surface.facts.diagonal, 1e-100) / 256);
+    place(surface, frame_voxel_size(surface.facts));
     return surface;
   }
 
-  /// Barycentric coordinates.
+  /// The barycentric coordinates of a point.
   static Vec3d shares(const TriangleCorners& t, const Vec3d& x) {
     const Vec3d n = (t[1] - t[0]).cross(t[2] - t[0]);
     Vec3d share(1.0 / 3);
@@ -88,7 +92,7 @@ class Other {
   ClearanceFinder finder_;
 };
 
-/// Offsets, each from what the last one lacked.
+/// Rounds of offsets, each of which goes farther by what the last one lacked.
 class Fitting {
  public:
   Fitting(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options)
@@ -118,7 +122,7 @@ class Fitting {
 
   OffsetResult run() {
     OffsetResult best = offset_by_depths();
-    look(best.positions);
+    measure_gaps(best.positions);
     FitFacts facts;
     facts.clearance = clearance_;
     facts.is_signed = other_.is_solid();
@@ -126,11 +130,11 @@ class Fitting {
     facts.near_at_start = short_;
     auto best_so_far = std::pair(short_, -gap_);
     std::size_t fruitless = 0;
-    while (short_ > 0 && facts.rounds < kMostOffsets && fruitless < kPatience && deepen()) {
+    for (std::size_t round = 0; short_ > 0 && round < kMostOffsets && fruitless < kPatience && deepen(); ++round) {
       OffsetResult next = offset_by_depths();
-      ++facts.rounds;
+      facts.rounds = round + 1;
       find_stuck(next);
-      look(next.positions);
+      measure_gaps(next.positions);
       if (const auto is = std::pair(short_, -gap_); is < best_so_far) {
         best_so_far = is;
         best = std::move(next);
@@ -160,24 +164,25 @@ class Fitting {
     return offset(mesh_, options);
   }
 
-  /// What is too near where vertices stand, as they will be written.
-  void look(std::span<const Vec3d> positions) {
-    places_.resize(surface_.vertices.size());
-    for (std::size_t w = 0; w < places_.size(); ++w) {
+  /// Measures the gaps of triangles and vertices at positions as they will be written, and how far they have grown of
+  /// what they were to grow.
+  void measure_gaps(std::span<const Vec3d> positions) {
+    positions_.resize(surface_.vertices.size());
+    for (std::size_t w = 0; w < positions_.size(); ++w) {
       const auto v = surface_.representative[w];
-      places_[w] = Rounding(options_.precision)(mesh_.positions[v], positions[v]);
+      positions_[w] = Rounding(options_.precision)(mesh_.positions[v], positions[v]);
     }
     std::vector<double> before(near_.size());
     for (std::size_t t = 0; t < near_.size(); ++t) before[t] = near_[t].gap;
-    std::vector<double> gaps(places_.size());
+    std::vector<double> gaps(positions_.size());
     for_each_index(
-        gaps.size(), [&](std::size_t w) { gaps[w] = other_.gap_at(places_[w]); }, 64);
+        gaps.size(), [&](std::size_t w) { gaps[w] = other_.gap_at(positions_[w]); }, 64);
     std::vector<Other::Near> now(near_.size());
     for_each_index(
         now.size(),
         [&](std::size_t t) {
           const auto& [a, b, c] = surface_.triangles[t];
-          now[t] = other_.near({places_[a], places_[b], places_[c]}, {gaps[a], gaps[b], gaps[c]}, wanted_);
+          now[t] = other_.near({positions_[a], positions_[b], positions_[c]}, {gaps[a], gaps[b], gaps[c]}, wanted_);
         },
         64);
     for (std::size_t t = 0; t < now.size(); ++t) gain_[t] = gain_of(now[t].gap - before[t], told_[t]);
@@ -196,8 +201,8 @@ class Fitting {
     return told > 0 ? std::clamp(gained / told, kLeastGain, 1.0) : 1;
   }
 
-  /// Each vertex goes farther by what it lacks itself; then corners of faces by what their nearest point lacks still:
-  /// least squares. False if nothing can.
+  /// Lets each vertex go farther inward by what it lacks itself, then the corners of faces by what the faces' nearest
+  /// points still lack, in the sense of least squares. Returns false if no vertex can go farther.
   bool deepen() {
     std::vector<double> own(depth_.size(), 0.0);
     for (std::size_t w = 0; w < own.size(); ++w)
@@ -210,7 +215,7 @@ class Fitting {
     return std::any_of(vertex_told_.begin(), vertex_told_.end(), [](double more) { return more > 0; });
   }
 
-  /// What the nearest point of a triangle gets if its corners get so much.
+  /// How much farther the nearest point of a triangle goes if the vertices go this much farther.
   double sum_at(std::size_t t, const std::vector<double>& more) const {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += near_[t].share[static_cast<int>(k)] * more[surface_.triangles[t][k]];
@@ -229,7 +234,7 @@ class Fitting {
     }
   }
 
-  /// What did not get as far as it was to go need not be told to go farther.
+  /// Marks vertices that did not get as far as they were to go: they are not asked to go farther.
   void find_stuck(const OffsetResult& result) {
     for (std::size_t w = 0; w < depth_.size(); ++w) {
       const auto v = surface_.representative[w];
@@ -249,7 +254,7 @@ class Fitting {
     best.statistics.fit = facts;
   }
 
-  /// Not cut off at the clearance.
+  /// The least gap of all, even if it is above the clearance.
   double least_gap(std::span<const Vec3d> positions) const {
     const auto at = [&](std::uint32_t w) {
       const auto v = surface_.representative[w];
@@ -263,11 +268,11 @@ class Fitting {
     return least;
   }
 
-  /// Components of the other mesh, one vertex of each of which lies in the result's solid.
+  /// Counts the components of the other mesh that lie in the result's solid, by one vertex of each.
   std::size_t count_enclosed(std::span<const Vec3d> positions) const {
     Surface result = build_surface({positions, mesh_.corners, mesh_.face_begin}, options_.weld, options_.orient);
     if (!result.facts.closed() || !result.facts.oriented()) return 0;
-    place(result, std::max(result.facts.diagonal, 1e-100) / 256);
+    place(result, frame_voxel_size(result.facts));
     const ClosestQuery query(result);
     const Surface& other = other_.surface();
     std::vector<std::uint8_t> seen(other.facts.components, 0);
@@ -286,14 +291,15 @@ class Fitting {
   OffsetOptions options_;
   Surface surface_;
   Other other_;
-  std::vector<double> depth_;        // of each vertex, inward
-  std::vector<std::uint8_t> stuck_;  // of each vertex: it cannot go any farther, or is not to
+  std::vector<double> depth_;        // of each vertex: the distance that it goes inward
+  std::vector<std::uint8_t> stuck_;  // of each vertex: 1 if it cannot go any farther, or is not to
   std::vector<Other::Near> near_;    // of each triangle
-  std::vector<double> told_, gain_;  // of each triangle: how far its nearest point was to go, and what it got of that
-  std::vector<double> vertex_gap_, vertex_told_, vertex_gain_;  // the same of each vertex
-  std::vector<Vec3d> places_;
-  std::size_t short_ = 0;  // triangles that are too near
-  double gap_ = 0;         // least of those, or what was wanted
+  std::vector<double> told_,
+      gain_;  // of each triangle: how far its nearest point was to go, and the share it got of that
+  std::vector<double> vertex_gap_, vertex_told_, vertex_gain_;  // of each vertex: its gap, and these two
+  std::vector<Vec3d> positions_;                                // of each vertex
+  std::size_t short_ = 0;                                       // triangles that are too near
+  double gap_ = 0;  // the least gap of a triangle, but no more than what was wanted
 };
 
 }  // namespace

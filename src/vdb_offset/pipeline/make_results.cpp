@@ -151,7 +151,8 @@ class ResultMaker {
            (draft.faults->any() || std::find(states.begin(), states.end(), VertexState::Collision) != states.end());
   }
 
-  /// Makes a draft valid whose faults have been looked for. \param start what it begins with, or nullptr
+  /// Makes a draft valid whose faults have been looked for.
+  /// \param start what it begins with, or nullptr
   /// \param to_start receives what other results begin with; nullptr if none does
   void make_valid(Draft& draft, const ProgressCallback& progress, const WarmStart* start, WarmStart* to_start) const {
     if (!draft.faults) return;

@@ -15,13 +15,6 @@
 namespace vdb_offset {
 namespace {
 
-// The frame of a mesh that does not move is laid on voxels of its diagonal over this: no field is made of them. Its
-// effect is only where the origin lies. A power of two; not measured.
-constexpr double kFrameVoxels = 256;
-// World units: the diagonal that is taken for a mesh without any size, so that the voxels of its frame have one. Any
-// number above 0 would do; this is far below all coordinates that a format keeps.
-constexpr double kLeastSize = 1e-100;
-
 // Bytes that a vertex takes while a result in which much is held back is made valid; measured: up to 430.
 constexpr std::size_t kLimitBytes = 500;
 
@@ -93,7 +86,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
       plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
       to_local_frame(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
     } else if (parts_.obstacles) {
-      to_local_frame(parts_, std::max(parts_.front.facts.diagonal, kLeastSize) / kFrameVoxels, options.symmetry, 0);
+      to_local_frame(parts_, frame_voxel_size(parts_.front.facts), options.symmetry, 0);
     }
   }
   statistics_.plan = plan;

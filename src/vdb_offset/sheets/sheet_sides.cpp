@@ -16,10 +16,11 @@
 namespace vdb_offset {
 namespace {
 
-// Sheets that meet at less are on one plane: where they are thick on different sides there is no place for a common
-// corner (radians).
+// The largest angle, in radians, between two sheets that count as being on one plane: if these are thick on different
+// sides, a common corner would be far away. Not measured.
 constexpr double kOneLevel = 0.6;
-// Faces at an edge that are no farther apart lie on each other.
+// The largest distance between the unit vectors from an edge into two faces that lie on each other. Far above rounding,
+// far below all angles that are meant; not measured.
 constexpr double kOnEachOther = 1e-6;
 
 /// Union-find.
@@ -30,13 +31,13 @@ class JoinedSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// The smaller one stands for both, so that the order of joins does not matter.
+  /// Joins two sets, of which the smaller member stands for both, so that the order of joins does not matter.
   void join(std::uint32_t a, std::uint32_t b) {
     a = find(a);
     b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
-  /// \pre all that are joined with it part as well
+  /// Makes a member a set of its own. \pre all other members of its set are parted as well
   void part(std::uint32_t i) { parent_[i] = i; }
 
  private:
@@ -49,7 +50,7 @@ struct Leaf {
   bool forwards;     // it runs through the edge from the smaller place to the larger one
   Vec3d into{0.0};   // unit vector from the edge into the face
   double angle = 0;  // around the edge
-  /// The side that faces the leaf at the next larger angle.
+  /// The side towards the leaf at the next larger angle.
   std::uint8_t next_side() const { return forwards ? 0 : 1; }
   std::uint8_t previous_side() const { return 1 - next_side(); }
 };
@@ -72,7 +73,7 @@ class SideFinder {
   }
 
  private:
-  /// One of the sectors at an edge of three faces or more, at one of its ends.
+  /// A sector at an edge of three faces or more, at one of its ends.
   struct Sector {
     std::uint32_t edge, place, corner;  // as 2 c + s
   };
@@ -87,7 +88,7 @@ class SideFinder {
     });
   }
 
-  /// Wedges that come by one edge twice: see find_cuts().
+  /// Cuts wedges that come by one edge twice (see find_cuts()).
   void cut_wedges() {
     for (Sector& sector : sectors_) sector.corner = joined_.find(sector.corner);
     const auto key = [](const Sector& s) { return std::tuple(s.edge, s.place, s.corner); };
@@ -127,13 +128,14 @@ class SideFinder {
   Leaf leaf_of(std::uint32_t smaller, const EdgeSide& side) const {
     return {side.corner, face_of_[side.corner], sheets_.place[mesh_.corners[side.corner]] == smaller};
   }
-  /// The leaf's corners at the smaller and the larger place.
+  /// The leaf's corners at the smaller and the larger position.
   std::array<std::uint32_t, 2> ends(const Leaf& leaf) const {
     const std::uint32_t other = next(leaf.corner);
     return leaf.forwards ? std::array{leaf.corner, other} : std::array{other, leaf.corner};
   }
 
-  /// Or, when all are, keeps links of wedges that may be cut.
+  /// Joins two sides at both ends of their edge. In the second pass, when all are joined, notes the links of wedges
+  /// that may have to be cut instead.
   void join(const Leaf& a, std::uint8_t side_of_a, const Leaf& b, std::uint8_t side_of_b, bool is_sector = false) {
     const auto at_a = ends(a), at_b = ends(b);
     for (std::size_t end = 0; end < 2; ++end) {
@@ -175,7 +177,7 @@ class SideFinder {
     for (const Leaf& repeat : repeats) follow(repeat, leaves);
   }
 
-  /// A repeated face goes as the one below it.
+  /// Joins the sides of a repeated face to those of the face that it repeats.
   void follow(const Leaf& repeat, const std::vector<Leaf>& leaves) {
     const auto vertices = [&](const Leaf& leaf) {
       std::vector<std::uint32_t> all;
@@ -218,7 +220,8 @@ class SideFinder {
     }
   }
 
-  /// Where two sides on one plane lie at different heights: half of the difference, from the thicker to the thinner.
+  /// Half of the difference in height of two sides on one plane, as a vector from the thicker sheet to the thinner;
+  /// none if they have one height.
   std::optional<Vec3d> find_step(const Leaf& a, std::uint8_t side_of_a, const Leaf& b, std::uint8_t side_of_b) const {
     double difference = 0;
     const auto at_a = ends(a), at_b = ends(b);
@@ -245,15 +248,15 @@ class SideFinder {
   PolygonView mesh_;
   JoinedSets joined_;
   std::vector<std::uint32_t> face_of_;  // of each corner
-  std::uint32_t edge_ = 0;              // the how manieth is being looked at
+  std::uint32_t edge_ = 0;              // number of the edge that is being looked at
   std::vector<Sector> sectors_;
   bool is_joined_ = false;
-  std::map<std::uint32_t, std::vector<WedgeLink>> links_;  // of wedges that come by an edge twice
-  std::set<std::pair<std::uint32_t, std::uint8_t>> cut_;   // a gap's first corner and side
+  std::map<std::uint32_t, std::vector<WedgeLink>> links_;  // by wedge, of wedges that come by an edge twice
+  std::set<std::pair<std::uint32_t, std::uint8_t>> cut_;   // first corners and sides of the gaps of cuts
   SheetSides found_;
 };
 
-/// Around one vertex of a surface.
+/// The sheets around one vertex of a surface.
 class VertexSheets {
  public:
   VertexSheets(const Surface& surface, std::uint32_t vertex)
@@ -278,24 +281,24 @@ class VertexSheets {
   }
 
  private:
-  /// Whether the faces at an edge all leave it in ways of their own.
+  /// Whether the faces at an edge all leave it in different directions.
   bool branches(std::uint32_t half_edge) const {
     const Vec3d& a = surface_.vertices[surface_.from(half_edge)];
     Vec3d axis = surface_.vertices[surface_.to(half_edge)] - a;
     if (!(axis.lengthSqr() > 0)) return false;
     axis.normalize();
-    std::vector<Vec3d> ways;
+    std::vector<Vec3d> directions;
     std::uint32_t h = half_edge;
     do {
-      Vec3d way = surface_.vertices[surface_.triangles[h / 3][(h % 3 + 2) % 3]] - a;
-      way -= axis * way.dot(axis);
-      if (!(way.lengthSqr() > 0)) return false;
-      ways.push_back(way.unit());
+      Vec3d into = surface_.vertices[surface_.triangles[h / 3][(h % 3 + 2) % 3]] - a;
+      into -= axis * into.dot(axis);
+      if (!(into.lengthSqr() > 0)) return false;
+      directions.push_back(into.unit());
       h = surface_.next_around_edge[h];
     } while (h != half_edge);
-    for (std::size_t i = 0; i < ways.size(); ++i)
+    for (std::size_t i = 0; i < directions.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        if ((ways[i] - ways[j]).lengthSqr() < kOnEachOther * kOnEachOther) return false;
+        if ((directions[i] - directions[j]).lengthSqr() < kOnEachOther * kOnEachOther) return false;
     return true;
   }
 
@@ -319,6 +322,7 @@ SheetSides find_sides(const Sheets& sheets) { return SideFinder(sheets).find(); 
 
 namespace {
 
+/// Takes the marks off vertices of faces that the surface leaves out.
 void leave_out_repeats(const Surface& surface, PolygonView mesh, std::span<const std::uint8_t> only,
                        std::vector<std::uint8_t>& junctions) {
   if (surface.facts.repeated_faces + surface.facts.folded_triangles == 0) return;

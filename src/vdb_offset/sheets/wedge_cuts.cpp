@@ -6,7 +6,7 @@
 namespace vdb_offset {
 namespace {
 
-// Faces whose normals are no farther apart (cosine of the angle) are one side.
+// The least cosine of the angle between the normals of two faces that count as one side: 0.8 degrees. Not measured.
 constexpr double kOneSide = 0.9999;
 
 class WedgeWalk {
@@ -23,18 +23,18 @@ class WedgeWalk {
     for (std::size_t i = 0; i < visits.size(); ++i) {
       const bool last = i + 1 == visits.size();
       if (last && !is_ring_) break;
-      const std::size_t from = visits[i], to = last ? visits[0] + way_.size() : visits[i + 1];
+      const std::size_t from = visits[i], to = last ? visits[0] + steps_.size() : visits[i + 1];
       if (link(from).edge == link(to).edge && to - from > 1) found.push_back(cut_between(from, to));
     }
     return found;
   }
 
  private:
-  const WedgeLink& link(std::size_t step) const { return links_[way_[step % way_.size()]]; }
-  /// The corner between a step and the one before.
-  std::uint32_t corner(std::size_t step) const { return corners_[is_ring_ ? step % way_.size() : step]; }
+  const WedgeLink& link(std::size_t step) const { return links_[steps_[step % steps_.size()]]; }
+  /// The corner between a step and the step before.
+  std::uint32_t corner(std::size_t step) const { return corners_[is_ring_ ? step % steps_.size() : step]; }
 
-  /// From side to side, once around or from end to end. False if it branches.
+  /// Goes through the wedge from side to side, once around or from end to end. Returns false if it branches.
   bool walk() {
     std::uint32_t at = links_[0].corners[0];
     for (const auto& [own, links] : at_) {
@@ -51,19 +51,19 @@ class WedgeWalk {
       for (const auto i : at_[at]) {
         if (gone[i]) continue;
         gone[i] = any = true;
-        way_.push_back(i);
+        steps_.push_back(i);
         at = links_[i].corners[0] == at ? links_[i].corners[1] : links_[i].corners[0];
         break;
       }
     }
-    return way_.size() == links_.size();
+    return steps_.size() == links_.size();
   }
 
   std::vector<std::size_t> repeated_visits() const {
     std::map<std::uint32_t, std::size_t> count;
     for (const WedgeLink& l : links_) ++count[l.edge];
     std::vector<std::size_t> visits;
-    for (std::size_t step = 0; step < way_.size(); ++step)
+    for (std::size_t step = 0; step < steps_.size(); ++step)
       if (link(step).edge != kNone && count[link(step).edge] > 1) visits.push_back(step);
     return visits;
   }
@@ -78,12 +78,13 @@ class WedgeWalk {
     return at_a.dot(at_b) * (a % 2 == b % 2 ? 1 : -1) > kOneSide;
   }
 
-  /// Between two visits of one edge lie the side of the first, that of the second, and whatever is between these.
+  /// The cut between two visits of one edge. Between them are the side at the first, the side at the second, and the
+  /// sides in between, which belong to both pieces.
   WedgeCut cut_between(std::size_t from, std::size_t to) const {
-    std::size_t first = from + 1, last = to;  // corners of these sides that are farthest from the edge
+    std::size_t first = from + 1, last = to;  // the corners of those two sides that are farthest from the edge
     while (first + 1 < last && is_one_side(corner(first), corner(first + 1))) ++first;
     while (last > first + 1 && is_one_side(corner(last), corner(last - 1))) --last;
-    WedgeCut cut{way_[first % way_.size()], {}};
+    WedgeCut cut{steps_[first % steps_.size()], {}};
     for (std::size_t step = first + 1; step < last; ++step) cut.shared.push_back({corner(step), corner(first)});
     return cut;
   }
@@ -91,8 +92,8 @@ class WedgeWalk {
   PolygonView mesh_;
   std::span<const WedgeLink> links_;
   std::map<std::uint32_t, std::vector<std::size_t>> at_;  // by corner
-  std::vector<std::size_t> way_;                          // links
-  std::vector<std::uint32_t> corners_;                    // before each of them, and behind the last
+  std::vector<std::size_t> steps_;                        // the links in the order in which they are gone through
+  std::vector<std::uint32_t> corners_;                    // before each of these, and behind the last
   bool is_ring_ = true;
 };
 

@@ -43,7 +43,7 @@ void count_edges(Hollow& hollow) {
   });
 }
 
-/// By the divergence theorem, from a vertex, so that far-away solids keep their digits.
+/// The volume by the divergence theorem, relative to a vertex, so that solids far from the origin lose no digits.
 double volume_of(const Surface& surface) {
   const Vec3d origin = surface.vertices.front();
   double six_times = 0;

@@ -5,35 +5,39 @@
 
 #include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/shell/shell_facts.h"
-#include "vdb_offset/shell/wedge_places.h"
+#include "vdb_offset/shell/wedge_positions.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 
 namespace vdb_offset {
 namespace {
 
-// What is in the way of a corner takes it back by this share of its way, and to the start when little is left.
-constexpr double kBack = 0.6, kLittle = 0.02;
+// The share of its displacement that a corner of a faulty face keeps in each round. Larger shares take more rounds,
+// each of which searches all crossings; smaller ones leave sheets thinner than they have to be. Not measured.
+constexpr double kBack = 0.6;
+// The share of its displacement below which a corner goes back to its start: eight rounds. Not measured.
+constexpr double kLittle = 0.02;
+// The most rounds: a corner needs no more than eight, but each may wake its neighbours. Not measured.
 constexpr int kMostRounds = 60;
 
 class JunctionShell {
  public:
   explicit JunctionShell(const JunctionInput& input)
       : input_(input), mesh_(input.sheets.mesh), sides_(find_sides(input.sheets)) {
-    WedgePlaces places = place_wedges(input_.sheets, sides_, input_.junctions);
-    is_near_ = std::move(places.is_near);
+    WedgePositions positions = find_wedge_positions(input_.sheets, sides_, input_.junctions);
+    is_near_ = std::move(positions.is_near);
     place_vertices();
-    find_ways(places);
+    find_displacements(positions);
   }
 
   Shell make() {
     assemble();
     if (input_.to_be_valid && make_valid()) let_out();
-    tell_of_junctions();
+    count_junctions();
     return std::move(shell_);
   }
 
  private:
-  void tell_of_junctions() {
+  void count_junctions() {
     shell_.kept = kept();
     shell_.is_junction.assign(input_.junctions.begin(), input_.junctions.end());
     for (std::size_t v = 0; v < shell_.kept.size(); ++v) {
@@ -43,7 +47,7 @@ class JunctionShell {
     }
   }
 
-  /// The least of each vertex's wedges.
+  /// Of each vertex of the mesh the least share that its wedges keep; below 0 if none of them is near a junction.
   std::vector<double> kept() const {
     std::vector<double> least(mesh_.positions.size(), -1.0);
     for (std::uint32_t i = 0; i < sides_.wedge.size(); ++i) {
@@ -57,7 +61,7 @@ class JunctionShell {
 
   // --- vertices
 
-  /// Which vertex of the shell each side has at each corner. Away from junctions those of the skins.
+  /// Assigns a vertex of the shell to each side at each corner. Away from junctions it is that of the skin.
   void place_vertices() {
     const auto count = static_cast<std::uint32_t>(mesh_.positions.size());
     vertex_.resize(sides_.wedge.size());
@@ -88,21 +92,21 @@ class JunctionShell {
     return known->second = 2 * count + static_cast<std::uint32_t>(splits_.size()) - 1;
   }
 
-  // --- places
+  // --- positions
 
-  void find_ways(const WedgePlaces& places) {
+  void find_displacements(const WedgePositions& positions) {
     start_.resize(sides_.wedges);
-    way_.assign(sides_.wedges, Vec3d(0.0));
+    displacement_.assign(sides_.wedges, Vec3d(0.0));
     share_.assign(sides_.wedges, 1.0);
     const std::size_t count = mesh_.positions.size();
     for (std::uint32_t i = 0; i < vertex_.size(); ++i) {
       const std::uint32_t v = mesh_.corners[i / 2], w = sides_.wedge[i], own = vertex_[i];
       start_[w] = input_.junctions[v] ? mesh_.positions[v] : own < count ? input_.outer[v] : input_.inner[v];
-      if (is_near_[w]) way_[w] = (places.place[w] - start_[w]) * places.weight[w];
+      if (is_near_[w]) displacement_[w] = (positions.position[w] - start_[w]) * positions.weight[w];
     }
   }
 
-  Vec3d place_of(std::uint32_t wedge) const { return start_[wedge] + way_[wedge] * share_[wedge]; }
+  Vec3d position_of(std::uint32_t wedge) const { return start_[wedge] + displacement_[wedge] * share_[wedge]; }
 
   void assemble() {
     shell_ = {};
@@ -116,7 +120,7 @@ class JunctionShell {
       if (w == kNone) {
         if (input_.junctions[of_mesh]) polygons.positions[v] = mesh_.positions[of_mesh];
       } else if (is_near_[w]) {
-        polygons.positions[v] = place_of(w);
+        polygons.positions[v] = position_of(w);
       }
     }
     for (const std::uint32_t side : {0u, 1u})
@@ -185,7 +189,7 @@ class JunctionShell {
     ends[input_.sheets.place[v]].push_back({from, to, face, at_start ? corner : next});
   }
 
-  /// Rims that meet at a vertex leave a hole there, if they do not end on each other.
+  /// Fills the holes that rims which meet at a vertex leave there, if they do not end on each other.
   void close(std::vector<End>& ends, std::vector<RimFace>& faces) const {
     for (std::size_t i = 0; i < ends.size(); ++i)
       for (std::size_t j = i + 1; j < ends.size(); ++j)
@@ -212,7 +216,7 @@ class JunctionShell {
     }
   }
 
-  /// Into triangles that cover it once, if it is flat.
+  /// Splits a hole into triangles, which cover it once if it is flat.
   void split(std::vector<std::uint32_t> hole, const Shell::RimOrigin& origin, std::vector<RimFace>& faces) const {
     const std::vector<Vec3d>& at = shell_.polygons.positions;
     if (hole.size() < 3) return;
@@ -227,7 +231,7 @@ class JunctionShell {
     for (const auto& [a, b, c] : triangles) faces.push_back({{a, b, c}, origin});
   }
 
-  /// What has no extent is left out.
+  /// Appends a face of the rim, without corners at equal positions; a face of fewer than three others is left out.
   void append(const RimFace& face) {
     const std::vector<Vec3d>& at = shell_.polygons.positions;
     std::vector<std::uint32_t> corners;
@@ -241,17 +245,17 @@ class JunctionShell {
     ++(corners.size() == 4 ? shell_.facts.rim_quads : shell_.facts.rim_triangles);
   }
 
-  // --- what is in the way
+  // --- validity
 
-  /// The wedges at the corners of faces that fold or meet others, as far as these can give way.
-  std::vector<std::uint32_t> find_wrong() {
-    std::vector<std::uint8_t> wrong(shell_.polygons.face_count(), 0);
+  /// The wedges at the corners of faces that fold or meet others, as far as they can go back.
+  std::vector<std::uint32_t> find_faulty() {
+    std::vector<std::uint8_t> faulty(shell_.polygons.face_count(), 0);
     const std::vector<Vec3d> written = written_positions(mesh_, shell_, input_.precision);
-    mark_crossing(written, wrong);
-    mark_inverted(written, wrong);
+    mark_crossing(written, faulty);
+    mark_inverted(written, faulty);
     std::vector<std::uint8_t> back(sides_.wedges, 0);
-    for (std::size_t f = 0; f < wrong.size(); ++f)
-      if (wrong[f])
+    for (std::size_t f = 0; f < faulty.size(); ++f)
+      if (faulty[f])
         for (const auto v : shell_.polygons.view().face(f)) back[wedge_[v]] = 1;
     std::vector<std::uint32_t> wedges;
     for (std::uint32_t w = 0; w < back.size(); ++w)
@@ -259,12 +263,12 @@ class JunctionShell {
     return wedges;
   }
 
-  /// True if anything had to go back.
+  /// Takes corners back until no face is faulty. Returns true if that was reached, and any corner had to go back.
   bool make_valid() {
     for (int round = 0; round < kMostRounds; ++round) {
-      const std::vector<std::uint32_t> wrong = find_wrong();
-      if (wrong.empty()) return round > 0;
-      for (const auto w : wrong) {
+      const std::vector<std::uint32_t> faulty = find_faulty();
+      if (faulty.empty()) return round > 0;
+      for (const auto w : faulty) {
         share_[w] *= kBack;
         if (share_[w] < kLittle) share_[w] = 0;
       }
@@ -273,8 +277,8 @@ class JunctionShell {
     return false;
   }
 
-  /// What is beside junctions may have been in the way of these alone: all of it at once, then those that still cannot
-  /// go there back to where they were, which was valid.
+  /// Lets corners beside junctions out again, since they may have been in the way of junctions alone: all of them at
+  /// once; then those that are still faulty go back to where they were, which was valid.
   void let_out() {
     const std::vector<double> held = share_;
     std::vector<std::uint8_t> is_held(share_.size(), 0);
@@ -285,22 +289,23 @@ class JunctionShell {
     assemble();
     for (bool any = true; any;) {
       any = false;
-      for (const auto w : find_wrong()) {
+      for (const auto w : find_faulty()) {
         any = any || share_[w] != held[w];
         share_[w] = held[w];
       }
       if (any) assemble();
     }
-    if (find_wrong().empty()) return;
+    if (find_faulty().empty()) return;
     share_ = held;
     assemble();
   }
 
   bool can_go_back(std::uint32_t wedge) const {
-    return is_near_[wedge] && share_[wedge] > 0 && way_[wedge].lengthSqr() > 0;
+    return is_near_[wedge] && share_[wedge] > 0 && displacement_[wedge].lengthSqr() > 0;
   }
 
-  void mark_crossing(std::span<const Vec3d> written, std::vector<std::uint8_t>& wrong) {
+  /// Marks faces that meet others, away from where the mesh crosses itself.
+  void mark_crossing(std::span<const Vec3d> written, std::vector<std::uint8_t>& faulty) {
     const Surface surface = build_surface({written, shell_.polygons.corners, shell_.polygons.face_begin}, {});
     const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
     if (pairs.empty()) return;
@@ -310,12 +315,12 @@ class JunctionShell {
       for (const auto t : {pair.first, pair.second})
         for (const auto v : shell_.polygons.view().face(surface.face[t]))
           excused = excused || near_crossings_[shell_.source_vertex(v)];
-      if (!excused) wrong[surface.face[pair.first]] = wrong[surface.face[pair.second]] = 1;
+      if (!excused) faulty[surface.face[pair.first]] = faulty[surface.face[pair.second]] = 1;
     }
   }
 
-  /// Faces of the skins of which a triangle faces against its own.
-  void mark_inverted(std::span<const Vec3d> written, std::vector<std::uint8_t>& wrong) const {
+  /// Marks faces of the skins with a triangle that faces against its triangle in the mesh.
+  void mark_inverted(std::span<const Vec3d> written, std::vector<std::uint8_t>& faulty) const {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (std::size_t f = 0; f < 2 * shell_.skin_faces(); ++f) {
       const auto face = shell_.polygons.view().face(f);
@@ -325,7 +330,7 @@ class JunctionShell {
       for (const auto& [a, b, c] : triangles) {
         const Vec3d now = (written[b] - written[a]).cross(written[c] - written[a]);
         const auto before = [&](std::uint32_t v) { return mesh_.positions[shell_.source_vertex(v)]; };
-        if (now.dot((before(b) - before(a)).cross(before(c) - before(a))) < 0) wrong[f] = 1;
+        if (now.dot((before(b) - before(a)).cross(before(c) - before(a))) < 0) faulty[f] = 1;
       }
     }
   }
@@ -334,8 +339,9 @@ class JunctionShell {
   PolygonView mesh_;
   SheetSides sides_;
   std::vector<std::uint8_t> is_near_;  // of each wedge
-  std::vector<Vec3d> start_, way_;     // of each wedge: where it is if it stays, and from there to where it should be
-  std::vector<double> share_;          // of that way that it goes
+  std::vector<Vec3d> start_;           // of each wedge: its position if it goes back altogether
+  std::vector<Vec3d> displacement_;    // of each wedge: from there to where it should be
+  std::vector<double> share_;          // of each wedge: the share of its displacement that it keeps
   std::vector<std::uint32_t> vertex_;  // of the shell, for each side at each corner
   std::vector<std::uint32_t> wedge_;   // of each vertex of the shell; kNone for one without faces
   std::vector<Shell::Split> splits_;

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::ui
   return corners;
 }
 
-/// The faces of a mesh that a shell is made of.
+/// The faces of a mesh that a shell is made from.
 class Part {
  public:
   Part(PolygonView mesh, std::span<const std::uint8_t> only) : mesh_(mesh), all_(only.empty()) {
@@ -45,7 +45,7 @@ class Part {
 
   PolygonView view() const { return all_ ? mesh_ : PolygonView{mesh_.positions, corners_, face_begin_}; }
   const std::vector<std::uint32_t>& faces() const { return faces_; }
-  /// Of the mesh, instead of the part.
+  /// An edge of the part as one of the mesh.
   Shell::RimOrigin in_mesh(Shell::RimOrigin edge) const {
     if (all_) return edge;
     edge.corner += mesh_.face_begin[faces_[edge.face]] - face_begin_[edge.face];
@@ -81,8 +81,8 @@ Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
   return shell;
 }
 
-/// Where the shell's vertices stand if those that are one in the mesh are at one place: with a tolerance, or at a seam,
-/// one that has not moved keeps its own.
+/// The positions of the shell's vertices if vertices that are welded in the mesh have one position in each skin. In the
+/// shell they may have several: where vertices are welded with a tolerance, or at a seam, those that do not move stay.
 std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uint32_t> place_in_mesh) {
   const std::size_t count = shell.source_vertices();
   std::vector<Vec3d> positions = shell.polygons.positions;
@@ -93,8 +93,8 @@ std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uin
   return positions;
 }
 
-/// For each vertex of the shell one that stands for its place; kNone for one in no face. Vertices that are one in the
-/// mesh are one in each skin; whether others are, both skins' positions decide, so far as vertices are welded at all.
+/// For each vertex of the shell the first vertex that counts as one with it; kNone for a vertex in no face. Vertices
+/// that are welded in the mesh are one in each skin; others are by their positions, if vertices are welded at all.
 std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::uint32_t> place_in_mesh,
                                      bool by_position) {
   const std::size_t count = shell.source_vertices();
@@ -107,8 +107,8 @@ std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::ui
   return place;
 }
 
-/// Runs through each border edge against its face on the outer skin, and so with the face's own direction on the inner
-/// one, where faces are reversed.
+/// Adds a rim face at each border edge. It runs against the edge's face on the outer skin, and so along that face's own
+/// direction on the inner skin, where faces are reversed.
 void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<const std::uint32_t> place,
              Shell& shell) {
   const auto inner = static_cast<std::uint32_t>(mesh.positions.size());
@@ -156,8 +156,8 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
 
 namespace {
 
-/// How the faces of a part were taken: turned round, or as lying over others; and which of its vertices stayed, as
-/// sheets meet there.
+/// How building the surface has taken the faces of a part: turned round, or left out as repeating others; and which of
+/// its vertices are at junctions.
 struct TakenFaces {
   std::vector<std::uint8_t> turned, repeats, junctions;
 
@@ -175,14 +175,14 @@ struct TakenFaces {
   }
 };
 
-/// Whether there is anything that two skins with a vertex each cannot tell: sheets that meet, where vertices stay, or
-/// faces that were turned round.
+/// Whether two skins of one vertex each are not enough: sheets meet, or faces were turned round.
 bool needs_sides(const OffsetResult& result, const TakenFaces& taken) {
   const auto any = [](const std::vector<std::uint8_t>& marks) {
     return std::find(marks.begin(), marks.end(), 1) != marks.end();
   };
   return any(taken.junctions) || (result.has_turned_faces && any(taken.turned));
 }
+/// Whether needs_sides() may hold, judged without building the surface.
 bool may_need_sides(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options) {
   if (result.has_turned_faces) return true;
   for (std::size_t v = 0; options.off_source && v < result.states.size(); ++v)
@@ -226,7 +226,7 @@ Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions
   if (!needs_sides(result, taken)) return plain();
   Shell shell = junction_shell_of(part, taken, out, in, result, options, inner);
   if (shell.facts.closed && shell.facts.oriented) return shell;
-  // Of sheets too tangled for that, both skins go on through the junctions, where they are in the mesh.
+  // If the sheets are too tangled for that, both skins go on through the junctions, which stay where they are.
   Shell simple = plain();
   simple.facts.junction_vertices = simple.facts.short_junctions = shell.facts.junction_vertices;
   return simple;

@@ -25,7 +25,8 @@ void count_edges(std::span<const std::uint32_t> place, Shell& shell) {
   });
 }
 
-/// By the divergence theorem, from a corner of the shell so that far-away solids keep their digits.
+/// The volume by the divergence theorem, relative to a corner of the shell, so that solids far from the origin lose no
+/// digits.
 double enclosed_volume(PolygonView mesh) {
   const Vec3d origin = mesh.positions[mesh.corners[0]];
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -39,7 +40,7 @@ double enclosed_volume(PolygonView mesh) {
   return six_times / 6;
 }
 
-/// Vertices of the mesh at which the skins touch on some face, and whether there are others.
+/// Counts the vertices of the mesh at which the skins touch on some face, and notes whether there are others.
 void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shell) {
   std::vector<std::uint8_t> pinched(mesh.positions.size(), 0);
   const std::size_t faces = shell.skin_faces();
@@ -52,7 +53,8 @@ void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shel
   shell.facts.pinched_vertices = static_cast<std::size_t>(std::count(pinched.begin(), pinched.end(), 1));
 }
 
-/// Vertices at one place count as one there, though one that has not moved keeps its own coordinates.
+/// Counts the crossings. Vertices that count as one are judged at one position, although those that have not moved keep
+/// their own coordinates.
 void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written,
                      std::span<const std::uint32_t> place, const Rounding& precision, Shell& shell) {
   std::vector<Vec3d> joined(written.begin(), written.end());

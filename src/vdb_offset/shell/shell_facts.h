@@ -9,14 +9,15 @@
 
 namespace vdb_offset {
 
-/// A shell's vertices as they will be written: what has not moved keeps its bytes.
+/// The positions of a shell's vertices as they will be written. Vertices that have not moved keep their bytes.
 std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Rounding& precision);
 
-/// For each vertex of the mesh: 1 within two rings of where it crosses itself.
+/// For each vertex of the mesh: 1 if it is within two rings of where the mesh crosses itself.
 std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld);
 
-/// Counts all facts of a shell but its rim's, by what will be written of it. `mesh` holds the faces that it is made of,
-/// `place` is of each vertex of the shell (see weld_by_position()).
+/// Counts all facts of a shell but those of its rim, on positions as they will be written.
+/// \param mesh the faces that the shell is made from
+/// \param place of each vertex of the shell the first vertex that counts as one with it (see weld_by_position())
 void count_facts(PolygonView mesh, const WeldOptions& weld, const Rounding& precision,
                  std::span<const std::uint32_t> place, Shell& shell);
 

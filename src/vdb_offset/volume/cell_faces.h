@@ -7,11 +7,12 @@
 
 namespace vdb_offset {
 
-/// A face of a cell: places of its corners among the cell's, ccw seen from outside.
+/// A face of a cell: the positions of its corners in the list of the cell's corners, ccw seen from outside.
 struct LocalFace {
   std::uint8_t size;
   std::uint8_t places[4];
 };
+/// The faces of a type of cells.
 struct LocalFaces {
   std::uint8_t count;
   LocalFace faces[6];

@@ -14,7 +14,7 @@
 namespace vdb_offset {
 namespace {
 
-/// Points of a cell by the numbers of its corners.
+/// The positions of a cell's corners.
 struct CellPoints {
   const VolumeMesh& mesh;
   std::span<const std::uint32_t> corners;
@@ -26,14 +26,15 @@ struct CellPoints {
   }
 };
 
-/// All corners have one sign, and the longest edges have the least product, below 0 as well.
+/// The scaled Jacobian of a tetrahedron: the products at all corners have one sign, and the least size is at the corner
+/// with the longest edges, below 0 as well.
 double tetrahedron_jacobian(const CellPoints& x, std::size_t a, std::size_t b, std::size_t c, std::size_t apex) {
   return std::numbers::sqrt2 * std::min({x.at_corner(a, b, c, apex), x.at_corner(b, c, a, apex),
                                          x.at_corner(c, a, b, apex), x.at_corner(apex, b, a, c)},
                                         [](double p, double q) { return std::abs(p) < std::abs(q); });
 }
 
-/// Each tetrahedron reaches 1 / sqrt 2 if all edges are of one length.
+/// The scaled Jacobian of a pyramid. Each of its four tetrahedra has 1 / sqrt 2 if all edges are of one length.
 double pyramid_jacobian(const CellPoints& x) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 4; ++k) least = std::min(least, tetrahedron_jacobian(x, k, (k + 1) % 4, (k + 2) % 4, 4));
@@ -41,7 +42,7 @@ double pyramid_jacobian(const CellPoints& x) {
   return least < 1 ? least : 2 - least;
 }
 
-/// The lengths of a cell's edges that have been looked at, squared.
+/// The least and the largest squared length of a cell's edges.
 struct EdgeLengths {
   double least = std::numeric_limits<double>::infinity(), most = 0;
 
@@ -65,7 +66,7 @@ Vec3Of<double2> ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from
           double2{to[2] - from[2], other_to[2] - other_from[2]}};
 }
 
-/// Of the base and of the top at once.
+/// The quality of a hexahedron, with its base and its top at once in two lanes.
 CellQuality hexahedron_quality(const CellPoints& x) {
   EdgeLengths lengths;
   Vec3Of<double2> along[4], up[4];
@@ -92,7 +93,7 @@ CellQuality hexahedron_quality(const CellPoints& x) {
   return {std::min(unit_triple(u, v, w), corners.jacobian), corners.aspect};
 }
 
-/// Of a face with so many corners, at(0), at(1) ...
+/// Twice the area vector of a face with so many corners at(0), at(1) ...
 template <class At>
 Vec3d twice_area(std::size_t corners, At&& at) {
   Vec3d sum(0.0);
@@ -100,8 +101,8 @@ Vec3d twice_area(std::size_t corners, At&& at) {
   return sum;
 }
 
-/// The faces of a prism over a polygon: the base seen from below, the top, and sides that stand on the base's edges.
-/// Corners that are in both base and top are flat.
+/// The scaled Jacobian of a polyhedron: a prism over a polygon, whose faces are the base seen from below, the top, and
+/// sides on the base's edges. Corners that are in both base and top are flat.
 double polyhedron_jacobian(const VolumeMesh& mesh, std::span<const std::uint32_t> cell) {
   const auto base = cell.subspan(2, cell[1]), top = cell.subspan(3 + cell[1], cell[2 + cell[1]]);
   thread_local PolygonPrism prism;
@@ -116,7 +117,8 @@ double polyhedron_jacobian(const VolumeMesh& mesh, std::span<const std::uint32_t
   return scaled_jacobian(prism);
 }
 
-/// Least sine of the corners, and the same for triangles as for a regular one.
+/// The scaled Jacobian of a cell of a plane mesh: the least sine of its corners, for triangles relative to a regular
+/// one.
 double plane_jacobian(const CellPoints& x, const Vec3d& normal) {
   const std::size_t n = x.corners.size();
   double least = std::numeric_limits<double>::infinity();
@@ -128,7 +130,7 @@ double plane_jacobian(const CellPoints& x, const Vec3d& normal) {
   return n == 3 ? least * 2 / std::numbers::sqrt3 : least;
 }
 
-/// Twice the area, signed, that edges enclose.
+/// Twice the signed area between an edge and `origin`: the sum over a closed boundary is twice the area inside it.
 double twice_area_below(const VolumeMesh& mesh, std::span<const std::uint32_t> edge, const Vec3d& origin) {
   return (mesh.points[edge[0]] - origin).cross(mesh.points[edge[1]] - origin).dot(mesh.normal);
 }
@@ -196,7 +198,8 @@ std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
 }
 
 double enclosed_volume(const VolumeMesh& mesh) {
-  constexpr std::size_t kBlock = 4096;  // of faces that are summed in order
+  // Faces that are summed up in order by one thread. For speed alone; not measured.
+  constexpr std::size_t kBlock = 4096;
   double sum = 0;
   for (const BoundaryPatch& patch : mesh.patches) {
     std::vector<double> sums((patch.face_count() + kBlock - 1) / kBlock, 0);
@@ -219,7 +222,7 @@ double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first) {
   for (std::size_t k = 0; k < wall.size(); ++k) rise += first[k] - wall[k];
   const bool edge = wall.size() == 2;
   const Vec3d axis = edge ? wall[1] - wall[0] : twice_area(wall.size(), [&](std::size_t k) { return wall[k]; });
-  // By the tangent, which knows small angles.
+  // By the tangent, since the cosine is too flat to tell small angles.
   double along = std::abs(axis.dot(rise)), across = axis.cross(rise).length();
   if (edge) std::swap(along, across);
   return along > 0 ? std::atan2(across, along) * 180 / std::numbers::pi : 90;

@@ -11,10 +11,11 @@
 namespace vdb_offset {
 namespace {
 
-// OpenFOAM's, for double precision.
+// OpenFOAM's own limits for double precision (doubleScalar.H, ROOTVSMALL and VSMALL): areas, lengths and volumes below
+// them count as 0.
 constexpr double kRootVerySmall = 1e-150, kVerySmall = 1e-300;
 
-/// `at(k)` is the place of corner k.
+/// Measures a face. `at(k)` is the position of corner k.
 template <class At>
 FoamFace foam_face_of(std::size_t size, At&& at) {
   if (size == 3) return {(at(0) + at(1) + at(2)) / 3, (at(1) - at(0)).cross(at(2) - at(0)) / 2};
@@ -61,16 +62,20 @@ Vec3d centre_of(std::span<const FoamFace> faces) {
 
 double degrees_of(double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi; }
 
-/// With room for rounding.
+/// Whether the pyramid from a cell's centre to a face has a positive volume, by more than rounding.
 bool is_seen_from_inside(const FoamFace& face, const Vec3d& centre) {
-  constexpr double kLeast = 1e-9;  // cosine
+  // The least cosine between the face's area vector and the direction from the centre: what OpenFOAM computes in
+  // another order may be off by a few 1e-16. Not measured.
+  constexpr double kLeast = 1e-9;
   const Vec3d way = face.centre - centre;
   const double volume = face.area.dot(way);
   return volume > 0 && volume * volume > kLeast * kLeast * face.area.lengthSqr() * way.lengthSqr();
 }
 
-/// How far from a face's centre the way between two cells' centres goes through it, by the face's size on that side.
-/// `least_size` is of the way between the centres.
+/// The distance of a face's centre from the line between two cells' centres, in the face, divided by the face's size in
+/// that direction.
+/// \param way from the one centre to the other
+/// \param least_size of the face, as a share of `way`
 double skewness_of(const VolumeMesh& mesh, std::span<const std::uint32_t> corners, const FoamFace& face,
                    const Vec3d& centre, const Vec3d& way, double least_size) {
   const Vec3d to_face = face.centre - centre;
@@ -82,7 +87,7 @@ double skewness_of(const VolumeMesh& mesh, std::span<const std::uint32_t> corner
   return length / size;
 }
 
-/// What is summed up over faces, in blocks whose order is theirs.
+/// Sums over faces, which are added up block by block in order.
 struct Sums {
   FoamQuality quality;
   double cosines = 0;
@@ -118,6 +123,7 @@ class FoamMeasurer {
  private:
   template <class Add>
   static Sums sum_up(std::size_t count, Add&& add) {
+    // Cells, or faces, that are summed up in order by one thread. For speed alone; not measured.
     constexpr std::size_t kFoamBlock = 2048;
     std::vector<Sums> blocks((count + kFoamBlock - 1) / kFoamBlock);
     for_each_index(

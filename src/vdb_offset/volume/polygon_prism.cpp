@@ -12,10 +12,11 @@ namespace vdb_offset {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-// Polygons of up to so many corners are split in the best way.
+// The number of corners up to which all splits of a polygon are searched, at O(corners^3); polygons of more have one
+// split. Not measured.
 constexpr std::size_t kFewCorners = 32;
 
-/// Twice the area that a polygon has as its back shows it.
+/// Twice the area vector of a polygon, as seen from behind.
 Vec3d area_from_below(const std::vector<Vec3d>& ring) {
   Vec3d sum(0.0);
   for (std::size_t k = ring.size() - 1; k > 1; --k) sum += (ring[k] - ring[0]).cross(ring[k - 1] - ring[0]);
@@ -28,13 +29,15 @@ struct Corner {
       : previous(ring[(k + ring.size() - 1) % ring.size()]), at(ring[k]), next(ring[(k + 1) % ring.size()]) {}
 
   bool turns_outwards(const Vec3d& from_below) const {
-    constexpr double kStraight = 1e-6;  // sine of the angle by which it has to turn
+    // The least sine of the angle by which a corner has to turn: corners that are straight but for rounding say nothing
+    // about the prism. Far above rounding, far below all corners that are meant; not measured.
+    constexpr double kStraight = 1e-6;
     return unit_triple(at - next, previous - at, from_below) >= kStraight;
   }
   const Vec3d &previous, &at, &next;
 };
 
-/// Over the corners that turn outwards in base and top; infinite if none does.
+/// The least triple product over the corners that turn outwards in base and top; infinite if none does.
 double least_at_corners(const PolygonPrism& prism) {
   const Vec3d base = area_from_below(prism.below), top = area_from_below(prism.above);
   double least = kUnbounded;
@@ -47,7 +50,7 @@ double least_at_corners(const PolygonPrism& prism) {
   return least;
 }
 
-/// How much the edges upwards of the prism over three corners lean at least towards its triangles' normals; infinite if
+/// The least cosine between the edges upwards and the triangles' normals of the prism over three corners; infinite if
 /// all three are flat.
 double least_lean(const PolygonPrism& prism, const std::array<std::size_t, 3>& corners) {
   const auto normal = [&](const std::vector<Vec3d>& ring) {
@@ -66,7 +69,7 @@ double least_lean(const PolygonPrism& prism, const std::array<std::size_t, 3>& c
   return least;
 }
 
-/// The least lean in the split where that is largest: best[i][j] of the polygon that goes from corner i to j and back.
+/// The least lean in the split in which it is largest. best[i][j] is that of the polygon from corner i to j and back.
 double best_split(const PolygonPrism& prism) {
   const std::size_t n = prism.size();
   std::vector<double> best(n * n, kUnbounded);
@@ -82,6 +85,7 @@ double best_split(const PolygonPrism& prism) {
   return best[n - 1];
 }
 
+/// The least lean in the split of the base that triangulate() makes.
 double base_split(const PolygonPrism& prism) {
   std::vector<std::uint32_t> ring(prism.size());
   std::iota(ring.begin(), ring.end(), 0);

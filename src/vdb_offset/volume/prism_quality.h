@@ -16,16 +16,17 @@ struct QualityOf {
 };
 using CellQuality = QualityOf<double>;
 
-/// The square, with its sign, of a triple product of unit vectors, by that of the vectors and the product of their
-/// squared lengths; 0 where one of these is.
+/// The square, with its sign, of the triple product of unit vectors.
+/// \param triple the product of the vectors themselves
+/// \param squares the product of their squared lengths; where it is 0, so is the result
 template <class Real>
 Real unit_square(const Real& triple, const Real& squares) {
   const Real size = greater(triple, -triple), least = Real{} + std::numeric_limits<double>::min();
   return triple * size / greater(squares, least);
 }
 
-/// What a cell's quality is found from: the least square of a triple product over its corners, and the squared lengths
-/// of its shortest and its longest edge.
+/// Squares that a cell's quality follows from: the least square of a triple product over its corners, and the squared
+/// lengths of its shortest and its longest edge.
 template <class Real>
 struct QualitySquares {
   Real triple, shortest, longest;
@@ -38,12 +39,12 @@ QualityOf<Real> quality_of(const QualitySquares<Real>& squares) {
   return {triple < 0 ? -jacobian : jacobian, shortest > 0 ? root(longest / (shortest > 0 ? shortest : one)) : infinite};
 }
 
-/// A triangle on which a prism stands, or which lies on one, or both.
+/// A triangle between two prisms, or at the end of one.
 template <class Real>
 struct PrismLevel {
   PrismLevel() = default;
   explicit PrismLevel(const std::array<Vec3Of<Real>, 3>& corners) : corner(corners) { measure(); }
-  /// To be called when the corners are others.
+  /// Measures the corners. To be called after they have been set.
   void measure() {
     Vec3Of<Real> side[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -62,7 +63,7 @@ struct PrismLevel {
   Real shortest, longest;
 };
 
-/// Of the prism between two triangles.
+/// The squares of the prism between two triangles.
 template <class Real>
 QualitySquares<Real> prism_squares(const PrismLevel<Real>& below, const PrismLevel<Real>& above) {
   QualitySquares<Real> found{Real{} + std::numeric_limits<double>::infinity(), lesser(below.shortest, above.shortest),
@@ -78,7 +79,7 @@ QualitySquares<Real> prism_squares(const PrismLevel<Real>& below, const PrismLev
   return found;
 }
 
-/// As quality_of(); a prism over a regular triangle has 1.
+/// The quality of a prism: its Jacobian is 1 over a regular triangle.
 template <class Real>
 QualityOf<Real> prism_quality_of(const QualitySquares<Real>& squares) {
   const QualityOf<Real> quality = quality_of(squares);

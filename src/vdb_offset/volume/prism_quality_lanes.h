@@ -9,11 +9,11 @@
 
 namespace vdb_offset {
 
-/// The angle in degrees between the directions of two lengths, both at least 0, at a right angle to each other and the
-/// first of them: 90 if that is 0. By a polynomial that is off by 7e-11 at most, relative: a float is not that exact.
+/// The angle in degrees between the first of two perpendicular vectors and their sum, from their lengths, both at least
+/// 0: 90 if the first is 0. By a polynomial with a relative error of at most 7e-11, far below what a float can tell.
 template <class Real>
 Real degrees_between(const Real& along, const Real& across) {
-  // Of atan(x) / x in x^2, at the Chebyshev points of 0 .. 1.
+  // Coefficients of atan(x) / x in x^2, interpolated at the Chebyshev points of 0 .. 1.
   constexpr double kArctangent[] = {0.9999999999293041,    -0.333333312908918,   0.19999901102188253,
                                     -0.14283813255520292,  0.11091922959166298,  -0.0897417192738338,
                                     0.07228278231631463,   -0.05395667806911865, 0.03382621554931744,
@@ -26,7 +26,7 @@ Real degrees_between(const Real& along, const Real& across) {
   return along > 0 ? (across > along ? right - degrees : degrees) : right;
 }
 
-/// measure_prism_columns() of as many columns, from the first of which, as Real has numbers.
+/// measure_prism_columns() for as many columns as Real has lanes, from column `first` on.
 template <class Real>
 class PrismLanes {
  public:
@@ -37,7 +37,7 @@ class PrismLanes {
   }
 
   void measure(double* six_volumes) {
-    // The levels above and below take turns: they are too large to be copied.
+    // The levels above and below swap roles instead of being copied, as they are large.
     look_at(0, levels_[0]);
     for (std::size_t layer = 0; layer < columns_.layers; ++layer) {
       PrismLevel<Real>&above = levels_[(layer + 1) % 2], &below = levels_[layer % 2];
@@ -57,9 +57,9 @@ class PrismLanes {
   static constexpr std::size_t kLanes = sizeof(Real) / sizeof(double);
 
   static Vec3Of<Real> gather(const double* const* stacks, std::size_t layer) {
-    Vec3Of<Real> way;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) way.set(lane, stacks[lane] + 3 * layer);
-    return way;
+    Vec3Of<Real> position;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) position.set(lane, stacks[lane] + 3 * layer);
+    return position;
   }
   void look_at(std::size_t layer, PrismLevel<Real>& level) const {
     for (std::size_t k = 0; k < 3; ++k) level.corner[k] = gather(columns_.stack[k] + first_, layer);

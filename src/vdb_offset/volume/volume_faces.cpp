@@ -21,7 +21,7 @@ std::uint32_t lowest_corner(const Face& face, std::size_t size) {
   return lowest;
 }
 
-/// Visits all faces of a cell; a polyhedron's stream is walked once.
+/// Calls visit(local, face) for all faces of a cell. The stream of a polyhedron is gone through once.
 template <class Visit>
 void for_each_face(const VolumeMesh& mesh, std::size_t c, Visit&& visit) {
   const auto corners = mesh.cell(c);
@@ -35,8 +35,8 @@ void for_each_face(const VolumeMesh& mesh, std::size_t c, Visit&& visit) {
     visit(local, CellFace{&corners[at + 1], nullptr, corners[at]});
 }
 
-/// The sides of all cells by the lowest corner of their faces: those of point p are at begin[p] .. begin[p + 1] - 1,
-/// in an order that depends on the threads.
+/// The sides of all cells, sorted by the lowest corner of their faces: those of point p are at begin[p] ..
+/// begin[p + 1] - 1, in an order that depends on the threads.
 struct SidesByPoint {
   std::vector<std::uint64_t> begin;
   std::vector<VolumeFaces::Side> sides;
@@ -63,7 +63,7 @@ SidesByPoint by_lowest_corner(const VolumeMesh& mesh, std::size_t side_count) {
   return result;
 }
 
-/// One side of a face with what tells faces of one lowest corner apart, but for faces of more corners than three.
+/// A side with a key that tells faces with the same lowest corner apart if they have three corners.
 struct KeyedSide {
   std::uint64_t key;
   VolumeFaces::Side side;
@@ -73,7 +73,7 @@ struct KeyedSide {
   }
 };
 
-/// What a thread needs, kept from point to point.
+/// Buffers of a thread, kept from point to point.
 struct MatchBuffers {
   std::vector<KeyedSide> sides;
   std::vector<std::uint32_t> first, second;

@@ -10,18 +10,19 @@
 
 namespace vdb_offset {
 
-/// A face of a cell, seen from outside ccw.
+/// A face of a cell, ccw seen from outside.
 struct CellFace {
-  const std::uint32_t* corners;  ///< The cell's, or those of a polyhedron's face.
-  const std::uint8_t* places;    ///< Of the face's corners among the cell's; null if these are the face's.
+  const std::uint32_t* corners;  ///< The corners of the cell, or of a polyhedron's face.
+  const std::uint8_t* places;  ///< Positions of the face's corners among the cell's; null if `corners` are the face's.
   std::size_t size;
 
   std::uint32_t operator[](std::size_t k) const { return places ? corners[places[k]] : corners[k]; }
 };
 
+/// Number of faces of a cell.
 std::size_t face_count(CellType type, std::span<const std::uint32_t> corners);
 
-/// A face's corners by their numbers, as what tells it from others.
+/// Sorts the corners of a face by their numbers, by which it is told from others.
 template <class Face>
 void sort_corners(const Face& face, std::size_t size, std::vector<std::uint32_t>& corners) {
   corners.clear();
@@ -32,10 +33,10 @@ void sort_corners(const Face& face, std::size_t size, std::vector<std::uint32_t>
 /// Face `local` of cell c, counted from 0. Cost of a polyhedron's: O(local).
 CellFace face(const VolumeMesh& mesh, std::size_t c, std::size_t local);
 
-/// What lies behind each face of each cell.
+/// The cell behind each face of each cell.
 class VolumeFaces {
  public:
-  /// Where a face has no cell behind it.
+  /// Instead of a cell, behind a face on the boundary.
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   /// A face of a cell and the cell behind it.
@@ -52,10 +53,10 @@ class VolumeFaces {
   std::span<const std::uint32_t> behind(std::size_t c) const {
     return std::span(behind_).subspan(begin_[c], begin_[c + 1] - begin_[c]);
   }
-  /// Of cell c towards cells of higher numbers, by these in rising order.
+  /// The faces of cell c with cells of higher numbers behind them, in the order of these numbers.
   void upper_faces(std::size_t c, std::vector<Side>& sides) const;
 
-  /// The face of cell c that has these corners, here sorted, and that cell or kNone behind it; kNone if none has.
+  /// The face of cell c with these sorted corners and this cell, or kNone, behind it; kNone if there is none.
   std::uint32_t local_of(const VolumeMesh& mesh, std::uint32_t c, std::uint32_t behind,
                          std::span<const std::uint32_t> sorted_corners) const;
 

@@ -41,7 +41,7 @@ FacesByPatch sort_faces(std::size_t count, const WallNames& names) {
   return sorted;
 }
 
-/// Of a segment its length.
+/// The area of a face; of a segment its length.
 double area_of(std::span<const Vec3d> points, std::span<const std::uint32_t> face) {
   if (face.size() == 2) return (points[face[1]] - points[face[0]]).length();
   Vec3d sum(0.0);
@@ -50,10 +50,11 @@ double area_of(std::span<const Vec3d> points, std::span<const std::uint32_t> fac
   return sum.length() / 2;
 }
 
-/// What the figures of all parts are read from.
-class Source {
+/// Collects the figures of parts of the wall.
+class FigureCollector {
  public:
-  Source(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const LayerQuality& quality)
+  FigureCollector(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts,
+                  const LayerQuality& quality)
       : mesh_(mesh), layers_(layers), facts_(facts), quality_(quality), first_cell_(mesh.face_count() + 1, 0) {
     for (std::size_t f = 0; f < mesh.face_count(); ++f) first_cell_[f + 1] = first_cell_[f] + facts.cells[f];
   }
@@ -63,7 +64,7 @@ class Source {
     figures.name = std::move(name);
     for (const auto f : faces) ++figures.faces_by_role[static_cast<std::size_t>(facts_.role[f])];
     if (layers_.count() == 0) return figures;
-    // Each has figures of its own to fill in, and a part that takes one thread.
+    // These fill in different figures, and each has a part that keeps one thread busy.
     tbb::parallel_invoke([&] { add_cells(faces, figures); }, [&] { add_thickness(faces, figures); },
                          [&] { add_first_heights(faces, figures); });
     return figures;
@@ -72,7 +73,7 @@ class Source {
  private:
   bool full(std::uint32_t v) const { return layers_.share[v] == 1 && layers_.states[v] == VertexState::Reached; }
 
-  /// Means over a face's corners.
+  /// A face's area, and means over its corners.
   struct OnFace {
     double area, to_reach, achieved, share;
     bool full;
@@ -90,13 +91,15 @@ class Source {
     return of;
   }
 
-  /// Areas of some faces: all, times the share of heights that they keep, and what has all of them.
+  /// Areas of some faces: in all; times the share of heights that they keep; of the faces that keep all of them.
   struct Areas {
     double all = 0, kept = 0, full = 0;
   };
 
-  /// Of faces that were to carry layers and can: those that repeat others, or are none, have no area of their own.
+  /// Adds the figures of area and thickness, of faces that were asked to carry layers. Repeated and degenerate faces do
+  /// not count, since they have no area of their own.
   void add_thickness(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
+    // Faces whose areas are summed up in order by one thread. For speed alone; not measured.
     constexpr std::size_t kBlock = 4096;
     std::vector<std::uint32_t> of;
     of.reserve(faces.size());
@@ -183,7 +186,7 @@ class Source {
     }
   }
 
-  /// Of so many cells in each layer: number(i) is that of a layer's i-th one, or one in a layer further out.
+  /// Adds the figures of quality, of so many cells in each layer. number(i) is that of the i-th of them in all layers.
   template <class Number>
   void add_quality(std::size_t in_layer, Number&& number, LayerFigures& figures) const {
     figures.inverted_cells = tbb::parallel_reduce(
@@ -227,19 +230,19 @@ std::size_t left_out(const LayerFigures& figures) {
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
                           const LayerCellFacts& facts, const LayerQuality& quality) {
   require_names(names, mesh.face_count());
-  const Source source(mesh, layers, facts, quality);
+  const FigureCollector collector(mesh, layers, facts, quality);
   const FacesByPatch faces = sort_faces(mesh.face_count(), names);
   const std::vector<std::string> patches = patch_names(names);
   LayerReport report;
   report.layers = layers.count();
-  report.all = source.figures("all", faces.faces);
+  report.all = collector.figures("all", faces.faces);
   if (patches.size() == 1) {
     report.patches.push_back(report.all);
     report.patches[0].name = patches[0];
   } else {
     report.patches.resize(patches.size());
     for_each_index(
-        patches.size(), [&](std::size_t p) { report.patches[p] = source.figures(patches[p], faces.of(p)); }, 1);
+        patches.size(), [&](std::size_t p) { report.patches[p] = collector.figures(patches[p], faces.of(p)); }, 1);
   }
   report.volume = quality.volume;
   report.plane = quality.plane;

@@ -19,24 +19,26 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// The distance of a layer's vertex: as measured at the lowest and the outermost, what its share asks for between.
+/// The distance of a vertex in a layer: as measured in the first and the last layer; in between, its height times the
+/// share that it keeps.
 double achieved(const LayersResult& layers, std::size_t layer, Index v) {
   if (layer == 0) return 0;
   if (layer == layers.count()) return layers.achieved[v];
   return layer == 1 ? layers.first_achieved[v] : layers.share[v] * std::abs(layers.heights[layer - 1][v]);
 }
 
-/// In blocks whose stacks stay at hand from layer to layer.
-void place_points(const LayersResult& layers, const LayerCells& cells, VolumeMesh& volume) {
+/// Fills in the points and their fields, in blocks whose stacks stay in the cache from layer to layer.
+void fill_points(const LayersResult& layers, const LayerCells& cells, VolumeMesh& volume) {
+  // Points of the wall in a block. For speed alone; not measured.
   constexpr std::size_t kBlock = 512;
   const LayerPoints& points = cells.points;
   volume.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"achieved", {}}, {"state", {}}};
-  // The first touch of so much memory takes as long as filling it, on one thread.
+  // The first touch of this memory by one thread would take as long as filling it.
   tbb::parallel_invoke([&] { volume.points.resize(cells.point_count()); },
                        [&] {
                          for (VolumeField& field : volume.point_fields) field.values.resize(cells.point_count());
                        });
-  const auto place = [&](Index p, std::size_t layer) {
+  const auto fill = [&](Index p, std::size_t layer) {
     const Index at = points.at(p, layer), v = points.vertex[p];
     volume.points[at] = layers.stacks.of(v)[layer];
     const double height = layer > 0 ? layers.heights[layer - 1][v] : 0;
@@ -51,7 +53,7 @@ void place_points(const LayersResult& layers, const LayerCells& cells, VolumeMes
                               end = std::min<Index>(points.wall(), begin + kBlock);
                    for (std::size_t layer = 0; layer <= layers.count(); ++layer)
                      for (Index p = begin; p < end; ++p)
-                       if (layer == 0 || !points.flat(p)) place(p, layer);
+                       if (layer == 0 || !points.flat(p)) fill(p, layer);
                  },
                  1);
 }
@@ -74,7 +76,7 @@ void fill_cells(const LayerPoints& points, const NumberedColumns& columns, const
       const Index face = columns.face[c];
       const float values[] = {static_cast<float>(layer + 1), static_cast<float>(face),
                               names.of_face.empty() ? 0.0F : static_cast<float>(names.of_face[face])};
-      CellStack(points, columns.ring(c), layer)
+      ColumnCells(points, columns.ring(c), layer)
           .visit_cells(
               [&](CellType type) {
                 for (std::size_t i = 0; i < std::size(values); ++i) volume.cell_fields[i].values[cell] = values[i];
@@ -97,7 +99,7 @@ void add_walls(const LayerPoints& points, const NumberedColumns& columns, const 
   std::vector<Index> scratch;
   for (std::size_t c = 0; c < columns.count(); ++c) {
     BoundaryPatch& patch = volume.patches[names.of_face.empty() ? 0 : names.of_face[columns.face[c]]];
-    CellStack(points, columns.ring(c), 0).visit_below(scratch, [&](std::span<const Index> face, Index cell) {
+    ColumnCells(points, columns.ring(c), 0).visit_below(scratch, [&](std::span<const Index> face, Index cell) {
       add_face(face, columns.cells[c] + cell, patch);
     });
   }
@@ -113,20 +115,20 @@ void add_outer(const LayerPoints& points, const NumberedColumns& columns, std::s
   const std::size_t below = (layers - 1) * columns.cells.back();
   std::vector<Index> scratch;
   for (std::size_t c = 0; c < columns.count(); ++c)
-    CellStack(points, columns.ring(c), layers - 1).visit_above(scratch, [&](std::span<const Index> face, Index cell) {
+    ColumnCells(points, columns.ring(c), layers - 1).visit_above(scratch, [&](std::span<const Index> face, Index cell) {
       add_face(face, below + columns.cells[c] + cell, patch);
     });
 }
 
-/// A side of a column on the boundary.
+/// A side of a column that is on the boundary.
 struct OpenSide {
   std::size_t column;
   Index corner;
   Index opening = 0;
 };
 
-/// The sides on the boundary, and to which opening of the surface each belongs: those of one hang together at their
-/// points. Openings are numbered in the order of columns. Returns how many there are.
+/// Finds the sides on the boundary, and the opening of the surface that each belongs to: sides with a common point
+/// belong to one. Openings are numbered in the order of columns. Returns their number.
 std::size_t find_openings(const LayerPoints& points, const NumberedColumns& columns, std::vector<OpenSide>& sides) {
   std::vector<Index> first(points.wall());
   std::iota(first.begin(), first.end(), 0);
@@ -151,8 +153,10 @@ std::size_t find_openings(const LayerPoints& points, const NumberedColumns& colu
   return count;
 }
 
-/// A surface may be torn to pieces: openings beyond the largest few are one, the last.
+/// Joins all openings but the largest few into the last one. Returns the number of openings.
 std::size_t keep_largest(std::size_t openings, std::vector<OpenSide>& sides) {
+  // The largest number of side patches: a surface that is torn to pieces has thousands of openings, which solvers would
+  // have to be told of one by one. Not measured.
   constexpr std::size_t kMost = 64;
   if (openings <= kMost) return openings;
   std::vector<Index> size(openings, 0), by_size(openings), number(openings, kMost - 1);
@@ -165,7 +169,7 @@ std::size_t keep_largest(std::size_t openings, std::vector<OpenSide>& sides) {
   return kMost;
 }
 
-/// `sides`, or of several openings `sides_1`, `sides_2` ... without the walls' names.
+/// The name of an opening's patch: "sides", or "sides_1", "sides_2" ... of several, without those that are taken.
 std::string side_name(std::size_t openings, std::set<std::string>& taken) {
   if (openings == 1) return "sides";
   for (std::size_t n = 1;; ++n)
@@ -185,7 +189,7 @@ void add_sides(const LayerPoints& points, const NumberedColumns& columns, std::s
   }
   for (std::size_t layer = 0; layer < layers; ++layer)
     for (const auto& [c, k, opening] : sides) {
-      const CellStack stack(points, columns.ring(c), layer);
+      const ColumnCells stack(points, columns.ring(c), layer);
       std::array<Index, 4> face;
       const Index size = stack.side(k, face);
       add_face(std::span(face).first(size), layer * columns.cells.back() + columns.cells[c] + stack.cell_at_side(k),
@@ -206,7 +210,7 @@ VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const
                       LayerQuality quality) {
   require_names(names, cells.facts.role.size());
   VolumeMesh volume;
-  place_points(layers, cells, volume);
+  fill_points(layers, cells, volume);
   tbb::parallel_invoke([&] { fill_cells(cells.points, cells.columns, names, layers.count(), volume); },
                        [&] {
                          if (layers.count() > 0)

@@ -6,8 +6,8 @@
 
 namespace vdb_offset {
 
-/// Makes the cells that have been numbered and measured (see layer_cells.h).
-/// \pre `cells` are those of `layers`, and `quality` is theirs. \throw InvalidInput as require_names()
+/// Makes cells that have been numbered and measured (see layer_cells.h). \pre `cells` are those of `layers`, and
+/// `quality` is that of `cells`. \throw InvalidInput as require_names()
 VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,
                       LayerQuality quality);
 

@@ -43,11 +43,12 @@ class CellMeasurer {
   }
 
  private:
+  // Columns whose volumes are summed up in order by one thread. For speed alone; not measured.
   static constexpr std::size_t kBlock = 1024;
 
   const Vec3d* stack(Index point) const { return layers_.stacks.of(cells_.points.vertex[point]).data(); }
 
-  /// Six times the volume of the cells of columns begin .. end - 1.
+  /// Measures the columns begin .. end - 1. Returns six times the volume of their cells.
   double measure_columns(std::size_t begin, std::size_t end, ColumnMesh& column) {
     double six_volumes = 0;
     while (begin < end) {
@@ -105,8 +106,8 @@ class CellMeasurer {
     std::vector<Index> face;
     double six_volumes = six_volumes_at_sides(c);
     const auto add = [&](std::span<const Index> corners, Index) { six_volumes += six_volumes_under(corners); };
-    CellStack(cells_.points, ring, 0).visit_below(face, add);
-    CellStack(cells_.points, ring, cells_.layers - 1).visit_above(face, add);
+    ColumnCells(cells_.points, ring, 0).visit_below(face, add);
+    ColumnCells(cells_.points, ring, cells_.layers - 1).visit_above(face, add);
     return six_volumes;
   }
 
@@ -123,7 +124,7 @@ class CellMeasurer {
       if (cells_.columns.open[cells_.columns.begin[c] + k] == 0) continue;
       for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
         std::array<Index, 4> face;
-        const Index size = CellStack(cells_.points, ring, layer).side(k, face);
+        const Index size = ColumnCells(cells_.points, ring, layer).side(k, face);
         if (size > 0) sum += six_volumes_under(std::span(face).first(size));
       }
     }
@@ -141,7 +142,7 @@ class CellMeasurer {
 
   const LayersResult& layers_;
   const LayerCells& cells_;
-  Vec3d origin_{0.0};  // volumes are those below the boundary's faces from here
+  Vec3d origin_{0.0};  // volumes are summed up between here and the faces of the boundary
   LayerQuality result_;
 };
 

@@ -8,9 +8,9 @@
 
 namespace vdb_offset {
 
-/// Measures cells as they follow from their columns, without making them: where prisms stand on each other, each
-/// triangle is looked at once for that above and that below it, in four columns at once. The result does not depend on
-/// the number of threads. Cost: O(cells). \pre `cells` are those of `layers`.
+/// Measures the cells of columns without making them. Where prisms stand on each other, each triangle is looked at
+/// once, for the prism above and the one below it, in four columns at once. The result does not depend on the number of
+/// threads. Cost: O(cells). \pre `cells` are those of `layers`.
 LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells);
 
 }  // namespace vdb_offset

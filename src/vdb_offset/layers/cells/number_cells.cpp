@@ -23,21 +23,21 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// The face's places without those that repeat the one before. False if these are no polygon.
+/// The positions of a face's corners without those that repeat the one before. Returns false if they are no polygon.
 bool clean_ring(std::span<const Index> face, std::span<const Index> place, std::vector<Index>& ring,
                 std::vector<Index>& sorted) {
   ring.clear();
   for (const Index v : face)
     if (ring.empty() || ring.back() != place[v]) ring.push_back(place[v]);
   while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
-  if (ring.size() <= 3) return ring.size() == 3;  // none of which is the next one
+  if (ring.size() <= 3) return ring.size() == 3;  // neighbours differ, and all three are neighbours
   sorted.assign(ring.begin(), ring.end());
   std::sort(sorted.begin(), sorted.end());
   return ring.size() > 2 && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
-/// On which side of a face its first layer lies: above 0 if its normal points there. Farther out, a face may have
-/// turned its back to where it came from.
+/// The side of a face that its first layer lies on: above 0 if its normal points there. Farther layers may have turned
+/// their backs to the wall.
 double rises(const LayersResult& layers, std::span<const Index> ring) {
   const auto at = [&](Index v, std::size_t layer) -> const Vec3d& { return layers.stacks.of(v)[layer]; };
   Vec3d normal(0.0), rise(0.0);
@@ -47,14 +47,14 @@ double rises(const LayersResult& layers, std::span<const Index> ring) {
   return normal.dot(rise);
 }
 
-/// A quad that carries two columns: the corner that its diagonal starts at; kNone of other faces.
+/// The corner at which the diagonal of a quad with two columns starts; kNone for other faces.
 Index split_from(const LayersResult& layers, std::size_t f, std::size_t corners) {
   return !layers.carries.empty() && layers.carries[f] > 1 && corners == 4 ? layers.carries[f] - 2u : kNone;
 }
 
-/// Faces that are polygons; facts know what became of the others.
+/// Makes columns on the faces that are polygons, and notes down the roles of faces.
 NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCellFacts& facts) {
-  // Of each face how many columns and how many corners it has, and so what is before it.
+  // Of each face the numbers of its columns and corners, then the sums of those before it.
   std::vector<Index> columns_before(mesh.face_count() + 1, 0), corners_before(mesh.face_count() + 1, 0);
   const auto visit_rings = [&](auto&& visit) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.face_count(), 1024), [&](const auto& range) {
@@ -94,14 +94,15 @@ NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, Laye
   return columns;
 }
 
-/// What becomes of a column, and whether it lies on the other side.
+/// What becomes of a column.
 struct ColumnRole {
   FaceRole role;
-  bool turned;
+  bool turned;  // it lies on the side opposite to the sign of the heights
 };
 std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const std::uint8_t> flat, bool inward,
                                    const NumberedColumns& columns) {
-  constexpr std::size_t kAhead = 8;  // columns whose stacks, far apart in memory, are asked for before their turn
+  // Columns ahead whose stacks, which are far apart in memory, are prefetched. For speed alone; not measured.
+  constexpr std::size_t kAhead = 8;
   std::vector<std::uint8_t> repeated(columns.count(), 0);
   if (!layers.known.paired) repeated = find_repeated_faces(columns.corners, columns.begin);
   const bool none_turned = layers.known.none_turned;
@@ -126,7 +127,7 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
   return roles;
 }
 
-/// Leaves out what gives no cell, and turns what lies on the other side. False if any column is turned.
+/// Removes columns without cells, and turns those on the other side round. Returns false if any was turned.
 bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, NumberedColumns& columns,
                   LayerCellFacts& facts) {
   const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
@@ -139,7 +140,7 @@ bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
     begin = columns.begin[c + 1];
     const Index face = columns.face[c];
     const auto [role, turned] = roles[c];
-    // The second of a split quad's columns: where they differ, layers end in it.
+    // If the roles of a split quad's two columns differ, layers end in the quad.
     const bool second = face == last_face;
     last_face = face;
     FaceRole& of_face = facts.role[face];
@@ -159,7 +160,7 @@ bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
   return none_turned;
 }
 
-/// Corners at one point of the wall, where some places have several.
+/// Sets of corners that share a point of the wall, where a position has several points.
 class CornerSets {
  public:
   explicit CornerSets(std::size_t corners) : parent_(corners) {
@@ -178,13 +179,13 @@ class CornerSets {
   std::vector<Index> parent_;
 };
 
-/// Two sides of opposite directions, by the corners at which they start.
+/// Two sides of an edge with opposite directions, by the corners at which they start.
 struct SidePair {
   Index forwards, backwards;
 };
 
-/// Calls pair(SidePair) for sides of an edge that belong together, the first with the first, and left(corner) for
-/// those that stay single. `sides` are sorted by corner.
+/// Calls pair(SidePair) for the sides of an edge, the first forwards with the first backwards and so on, and
+/// left(corner) for the sides that are left. `sides` are sorted by corner.
 template <class Pair, class Left>
 void pair_sides(std::span<const EdgeSide> sides, std::span<const Index> corners, Index smaller, Pair&& pair,
                 Left&& left) {
@@ -199,7 +200,7 @@ void pair_sides(std::span<const EdgeSide> sides, std::span<const Index> corners,
   for (; b < sides.size(); b = seek(b + 1, false)) left(sides[b].corner);
 }
 
-/// Finds the sides on the boundary, and the places that have a side too many.
+/// Finds the sides on the boundary, and the positions at which a side is left without a partner.
 class SideMatch {
  public:
   SideMatch(std::size_t vertices, std::span<const std::uint8_t> flat, NumberedColumns& columns, LayerCellFacts& facts)
@@ -222,10 +223,13 @@ class SideMatch {
     });
     facts.border_sides = border_sides;
     facts.unpaired_sides = unpaired_sides;
+    has_unpaired_ = unpaired_sides > 0;
   }
+  /// Whether any side that is no border is left without a partner.
+  bool has_unpaired() const { return has_unpaired_; }
   bool crowded(Index place) const { return crowded_[place] != 0; }
 
-  /// The corners at crowded places that paired sides join.
+  /// Joins corners at crowded positions over paired sides.
   CornerSets join_fans() const {
     CornerSets sets(columns_.corners.size());
     for_edges([&](Index a, Index b, std::span<const EdgeSide> sides) {
@@ -241,7 +245,7 @@ class SideMatch {
     return sets;
   }
 
-  /// Unpaired sides that have the points of other ones. \pre none of them is a border.
+  /// Counts the unpaired sides that have the points of other sides. \pre no unpaired side is a border
   std::size_t count_coincident(CornerSets& sets) const {
     std::size_t count = 0;
     for_edges([&](Index a, Index, std::span<const EdgeSide> sides) {
@@ -282,12 +286,14 @@ class SideMatch {
   NumberedColumns& columns_;
   std::span<const std::uint8_t> flat_;
   EdgeSides edges_;
-  std::vector<std::uint8_t> crowded_;
+  std::vector<std::uint8_t> crowded_;  // of each vertex: 1 if a side there is left without a partner
+  bool has_unpaired_ = false;
 };
 
-/// The faces over which layers rise, on the side where they do, with the first vertex at each corner's place; facts
-/// know what became of the others. `flat` tells of each vertex whether it rises in no layer. `all_paired` becomes
-/// true if each side that rises is known to have one partner. (Faces that are flat have none that does.)
+/// Makes the columns of faces over which layers rise, on the side where they do, with the first vertex at each corner's
+/// position, and notes down the roles of all faces.
+/// \param flat of each vertex: 1 if it rises in no layer
+/// \param all_paired becomes true if each side that rises is known to have one partner; sides of flat faces do not rise
 NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
                              LayerCellFacts& facts, bool& all_paired) {
   NumberedColumns columns = find_polygons(mesh, layers, facts);
@@ -298,8 +304,8 @@ NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::
   return columns;
 }
 
-/// Numbers the points, and replaces the columns' places by those of the wall, where sides that have no partner get
-/// points of their own. Tells the columns which of their sides are open.
+/// Numbers the points, of which sides without a partner get some of their own, makes the corners of columns points of
+/// the wall instead of vertices, and marks the open sides of columns.
 LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, NumberedColumns& columns,
                           LayerCellFacts& facts) {
   columns.open.assign(columns.corners.size(), 0);
@@ -317,7 +323,7 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, N
     }
   std::vector<Index> point(columns.corners.size());
   for_each_index(point.size(), [&](std::size_t c) { point[c] = of_place[columns.corners[c]]; });
-  if (facts.unpaired_sides > 0) {
+  if (sides && sides->has_unpaired()) {
     CornerSets fans = sides->join_fans();
     facts.coincident_sides = sides->count_coincident(fans);
     std::vector<std::uint8_t> taken(flat.size(), 0);
@@ -353,12 +359,12 @@ std::vector<std::uint8_t> find_flat(const SharedStacks& stacks) {
   return flat;
 }
 
-/// Counts what a layer has, and so where each column's cells are.
+/// Counts the cells of each column, and their corners, and so numbers them.
 void count_cells(const LayerPoints& points, NumberedColumns& columns, LayerCellFacts& facts) {
   columns.cells.assign(columns.count() + 1, 0);
   columns.size.assign(columns.count() + 1, 0);
   for_each_index(columns.count(), [&](std::size_t c) {
-    CellStack(points, columns.ring(c), 0)
+    ColumnCells(points, columns.ring(c), 0)
         .visit_cells([&](CellType) { ++columns.cells[c + 1]; }, [&](Index) { ++columns.size[c + 1]; });
   });
   for (std::size_t c = 0; c < columns.count(); ++c)
@@ -401,7 +407,7 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
     });
     return found.load();
   };
-  // Vertices come in their order, corners do not; but those of no face need no place.
+  // Checking vertices is faster, as they are in order; only vertices of faces need a position.
   if (!all(layers.place.size(), [&](std::size_t v) { return is_placed(static_cast<Index>(v)); }) &&
       !all(mesh.corners.size(), [&](std::size_t c) { return is_placed(mesh.corners[c]); }))
     throw InvalidInput("layers: expected layers of this mesh, got some that lack places of its corners");
@@ -413,7 +419,7 @@ const char* name(FaceRole role) {
 }
 
 bool LayerCells::is_of_prisms(std::size_t column) const {
-  // With fewer corners, it would have flat ones.
+  // A triangle's cells have six corners in all only if none of its corners is flat.
   return columns.ring(column).size() == 3 && columns.size[column + 1] - columns.size[column] == 6;
 }
 

@@ -12,25 +12,26 @@
 
 namespace vdb_offset {
 
-/// The faces that carry cells, which run so that their normals point into the layers.
+/// The columns of cells, on faces that run so that their normals point into the layers.
 struct NumberedColumns {
-  std::vector<std::uint32_t> corners;  ///< Points of the wall.
+  std::vector<std::uint32_t> corners;  ///< Of all columns: points of the wall.
   std::vector<std::uint32_t> begin{0};
-  std::vector<std::uint32_t> face;      ///< Of the input.
+  std::vector<std::uint32_t> face;      ///< Of each column: the input's face that it is on.
   std::vector<std::uint8_t> open;       ///< Of each corner: 1 if the side from it to the next one is on the boundary.
-  std::vector<std::uint32_t> cells{0};  ///< Of a layer, before each column; one more than columns.
-  std::vector<std::uint64_t> size;      ///< The same of the cells' corners.
+  std::vector<std::uint32_t> cells{0};  ///< Number of a layer's cells before each column; one more than columns.
+  std::vector<std::uint64_t> size;      ///< Number of corners of those cells; one more than columns.
 
   std::size_t count() const { return face.size(); }
   std::span<const std::uint32_t> ring(std::size_t c) const {
     return std::span(corners).subspan(begin[c], begin[c + 1] - begin[c]);
   }
+  /// The corner of column c that follows a corner, both as indices into `corners`.
   std::uint32_t next(std::size_t c, std::uint32_t corner) const {
     return corner + 1 < begin[c + 1] ? corner + 1 : begin[c];
   }
 };
 
-/// The cells over the faces of a mesh, numbered: each follows from its column and its layer.
+/// The numbers of the cells over the faces of a mesh: a cell's number follows from its column and its layer.
 struct LayerCells {
   std::size_t layers = 0;
   NumberedColumns columns;
@@ -44,11 +45,12 @@ struct LayerCells {
   bool is_of_prisms(std::size_t column) const;
 };
 
-/// \throw InvalidInput for polygons that are none, and layers that cannot be this mesh's, by their counts and places.
+/// \throw InvalidInput for faces that are no polygons, and for layers that cannot be this mesh's, by their counts and
+/// positions.
 void require_layers_of(PolygonView mesh, const LayersResult& layers);
 
-/// Finds the cells that stand on a mesh's faces, in an order that does not depend on the number of threads: see
-/// make_cells(). \throw InvalidInput as require_layers_of(), and for more than 2^32 points or cells.
+/// Numbers the cells that stand on a mesh's faces (see make_cells()), in an order that does not depend on the number of
+/// threads. \throw InvalidInput as require_layers_of(), and for more than 2^32 points or cells.
 LayerCells number_cells(PolygonView mesh, const LayersResult& layers);
 
 }  // namespace vdb_offset

@@ -14,13 +14,14 @@
 namespace vdb_offset {
 namespace {
 
-/// A quad seen from one of its corners: that one is at the low end of i and j, the next along i, the last along j.
+/// A quad seen from one of its corners, which is at the low end of i and j. The next corner is along i from there, the
+/// last along j.
 struct View {
   std::uint32_t face, corner;
   bool operator==(const View&) const = default;
 };
 
-/// A grid of quads, by the places of its vertices.
+/// A grid of quads, connected by the positions of its vertices.
 class QuadGrid {
  public:
   QuadGrid(PolygonView mesh, const LayersResult& layers) {
@@ -41,7 +42,7 @@ class QuadGrid {
     for (std::uint32_t c = 0; c < corners_.size(); ++c) around_[begin_[corners_[c] + 1]++] = c;
   }
 
-  /// Vertices row by row; all rows have `width()`.
+  /// The vertices row by row; each row has `width()` of them.
   std::vector<std::uint32_t> rows() {
     View first = start();
     const std::uint32_t faces_in_row = count(first, &QuadGrid::next_in_row);
@@ -84,7 +85,7 @@ class QuadGrid {
 
   std::size_t faces_around(std::uint32_t v) const { return begin_[v + 1] - begin_[v]; }
 
-  /// The quad that runs from a to b along its side, as its corner a.
+  /// The corner at a of the quad that has a side from a to b; kNone if there is none.
   std::uint32_t side(std::uint32_t a, std::uint32_t b) const {
     for (std::uint32_t i = begin_[a]; i < begin_[a + 1]; ++i) {
       const std::uint32_t c = around_[i];
@@ -94,19 +95,19 @@ class QuadGrid {
   }
 
   bool next_in_row(View& quad) const {
-    const std::uint32_t c = side(at(quad, 2), at(quad, 1));  // of the next, from its last corner to its first
+    const std::uint32_t c = side(at(quad, 2), at(quad, 1));  // from the last corner of the next quad to its first
     if (c == kNone) return false;
     quad = {c / 4, (c + 1) % 4};
     return true;
   }
   bool next_in_column(View& quad) const {
-    const std::uint32_t c = side(at(quad, 3), at(quad, 2));  // of the next, from its first corner on
+    const std::uint32_t c = side(at(quad, 3), at(quad, 2));  // from the first corner of the next quad to its second
     if (c == kNone) return false;
     quad = {c / 4, c % 4};
     return true;
   }
 
-  /// At a corner of the grid, or else at its border, or else anywhere.
+  /// Where to start: at a corner of the grid; if it has none, at its border; else anywhere.
   View start() const {
     std::uint32_t best = kNone;
     int rank = 3;
@@ -140,7 +141,7 @@ StructuredBlock make_block(PolygonView mesh, const LayersResult& layers) {
   const bool inward = layers.heights.back().farthest() < 0;
   const auto width = grid.width(), height = static_cast<std::uint32_t>(rows.size() / width);
   StructuredBlock block;
-  // The other way round, if layers go to the back of the grid.
+  // i and j are swapped if layers go to the back of the grid, so that cells have positive volumes.
   block.ni = inward ? height : width;
   block.nj = inward ? width : height;
   block.nk = static_cast<std::uint32_t>(layers.count() + 1);

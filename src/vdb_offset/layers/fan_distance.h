@@ -11,18 +11,19 @@
 
 namespace vdb_offset {
 
-// Distances that differ by less are the same.
+// Distances that differ by less than this share are taken as equal: far below the promised 1e-6, far above rounding.
 inline constexpr double kSameDistance = 1e-9;
 
-/// Around the end of a vertex's path lies a ball that holds nothing of the front. What is nearer to a place x than some
-/// distance is in the ball around x, and outside of that one: nothing of it is farther than where both their surfaces
-/// meet from the pole of the ball around x, on the way from the end through x. Around the vertex, all of that lies
-/// within a radius.
+/// Bounds where the front can be nearer to some points than their known distances. Around the end of a vertex's path
+/// lies a ball that holds nothing of the front. Whatever is nearer to a point x than its distance lies in the ball
+/// around x, and outside of the empty one: no farther from the pole of the ball around x, in the direction from the
+/// path's end through x, than the circle in which both balls' surfaces meet. All of that lies within radius() of the
+/// vertex.
 class SpaceBesideBall {
  public:
   SpaceBesideBall(const Vec3d& vertex, const Vec3d& end, double radius) : vertex_(vertex), end_(end), radius_(radius) {}
 
-  /// False if the radius is now beyond `most`.
+  /// Adds a point with its distance. Returns false if the radius is beyond `most` now, or cannot be told.
   bool add(const Vec3d& x, double distance, double most) {
     const Vec3d away = x - end_;
     const double way = away.length(), beyond = way + distance - radius_ * (1 - kSameDistance);
@@ -38,10 +39,10 @@ class SpaceBesideBall {
  private:
   Vec3d vertex_, end_;
   double radius_;
-  double rim_ = 0, pole_ = 0;  // how far rims are from their poles, and these from the vertex, squared
+  double rim_ = 0, pole_ = 0;  // largest squared distances: of circles from their poles, and of poles from the vertex
 };
 
-/// As QueryDistance, where the closest triangle is one of those around the vertex.
+/// Distances along a vertex's rail (see QueryDistance) where the closest triangle is one of the vertex's fan.
 class FanDistance {
  public:
   explicit FanDistance(VertexFan& fan) : fan_(fan) {}
@@ -53,7 +54,8 @@ class FanDistance {
   VertexFan& fan_;
 };
 
-/// The same, where it is one of those, or of a few others.
+/// Distances along a vertex's rail (see QueryDistance) where the closest triangle is one of the vertex's fan, or of a
+/// few near triangles that are not in it.
 class NearDistance {
  public:
   NearDistance(const Surface& front, VertexFan& fan, NearTriangles& others)
@@ -87,7 +89,7 @@ class NearDistance {
   const Surface& front_;
   VertexFan& fan_;
   NearTriangles& others_;
-  std::uint32_t believed_ = kNone;  // of the others
+  std::uint32_t believed_ = kNone;  // the one of the others that was closest last; kNone: one of the fan
 };
 
 }  // namespace vdb_offset

@@ -1,4 +1,4 @@
-#include "vdb_offset/shell/wedge_places.h"
+#include "vdb_offset/shell/wedge_positions.h"
 
 #include <openvdb/math/Mat3.h>
 
@@ -11,19 +11,36 @@
 namespace vdb_offset {
 namespace {
 
-// In thicknesses: how far a mitre leads at most; how far around a junction vertices make room for it, and up to where
-// they are entirely on their faces' planes.
-constexpr double kLongestMitre = 4, kRoom = 6, kOnPlanes = 3;
-// Faces across an edge whose normals are no farther apart (sine of the angle) are one.
+// The longest mitre, in thicknesses: sheets at less than 29 degrees get a blunt corner instead of a long spike. Not
+// measured.
+constexpr double kLongestMitre = 4;
+// The distance from a junction, in thicknesses, within which vertices make room for it: beyond the longest mitre, with
+// some room to fade out. Not measured.
+constexpr double kRoom = 6;
+// The distance from a junction, in thicknesses, within which vertices are entirely on the planes of their faces; from
+// there to kRoom they fade to where the offset is. Not measured.
+constexpr double kOnPlanes = 3;
+// The largest sine of the angle between the normals of two faces across an edge that are on one plane. Far above the
+// rounding of single precision, far below all bends that are meant. Not measured.
 constexpr double kSamePlane = 1e-4;
-// Planes' normals span no more than what has this share of their sum of squares.
+// The share of the sum of squared normals that an axis must have for the planes to say where a corner is along it:
+// normals that are 7 degrees apart have less. Not measured.
 constexpr double kFlatCorner = 0.004;
-// With more than this of it they make a crease, as two do that meet at 30 degrees.
+// The share of the sum of squared normals from which on an axis counts as one across a crease: two planes that meet at
+// 30 degrees have it.
 constexpr double kCrease = 0.065;
-// Rounds of spreading what junctions are moved by.
+// The least weight of a side's plane, in radians of its angle at the vertex: narrow faces still count. Not measured.
+constexpr double kLeastAngle = 0.2;
+// The weight of the plane that keeps two ends of sheets on one plane together, in radians as those of sides. Not
+// measured.
+constexpr double kStepWeight = 0.5;
+// The largest cosine between the two border edges at a vertex that may move along the border: it is straight to 26
+// degrees. Not measured.
+constexpr double kStraightBorder = -0.9;
+// Rounds of relaxation that spread the displacements of junctions over the sheets around. Not measured.
 constexpr int kSpreadRounds = 200;
 
-/// Planes that a vertex is to lie on, as n . x = t.
+/// The planes n . x = t that a vertex is to lie on.
 class Planes {
  public:
   void add(const Vec3d& n, double t, double weight) {
@@ -33,7 +50,8 @@ class Planes {
     weight_ += weight;
   }
 
-  /// The shortest x that is nearest to all, and what is free to move along all of them.
+  /// Finds the shortest x that is nearest to all planes, in the sense of least squares, and the directions that lead
+  /// along all of them.
   void solve() {
     if (!(weight_ > 0)) return;
     openvdb::math::Mat3d axes;
@@ -48,9 +66,10 @@ class Planes {
   }
   const Vec3d& solution() const { return solution_; }
   bool is_crease() const { return creases_ > 1; }
-  Vec3d along(const Vec3d& way) const {
+  /// The part of a displacement that leads along all planes.
+  Vec3d along(const Vec3d& displacement) const {
     Vec3d sum(0.0);
-    for (const Vec3d& axis : free_) sum += axis * axis.dot(way);
+    for (const Vec3d& axis : free_) sum += axis * axis.dot(displacement);
     return sum;
   }
 
@@ -62,25 +81,25 @@ class Planes {
   std::vector<Vec3d> free_;
 };
 
-class WedgePlacer {
+class WedgePositionFinder {
  public:
-  WedgePlacer(const Sheets& sheets, const SheetSides& sides, std::span<const std::uint8_t> junctions)
+  WedgePositionFinder(const Sheets& sheets, const SheetSides& sides, std::span<const std::uint8_t> junctions)
       : sheets_(sheets), mesh_(sheets.mesh), sides_(sides) {
     find_wedges(junctions);
     find_neighbours();
     mark_flat_sheets();
-    way_ = measure_ways(at_junction_);
+    distance_ = measure_distances(at_junction_);
   }
 
-  WedgePlaces place() {
+  WedgePositions find() {
     result_.is_near.assign(sides_.wedges, 0);
-    result_.place.assign(sides_.wedges, Vec3d(0.0));
+    result_.position.assign(sides_.wedges, Vec3d(0.0));
     result_.weight.assign(sides_.wedges, 0.0);
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.weight[w] = weight_of(w);
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.is_near[w] = result_.weight[w] > 0;
     mitre();
     make_room();
-    for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.place[w] += origin(w);
+    for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.position[w] += origin(w);
     return std::move(result_);
   }
 
@@ -99,7 +118,7 @@ class WedgePlacer {
     }
   }
 
-  /// Those that a side's edges lead to.
+  /// Finds the wedges that the edges of a wedge's sides lead to.
   void find_neighbours() {
     neighbours_.resize(sides_.wedges);
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
@@ -124,7 +143,7 @@ class WedgePlacer {
     return normal.lengthSqr() > 0 ? normal.unit() : Vec3d(0.0);
   }
 
-  /// Pairs of faces on one plane, across edges that have no others.
+  /// Of each face the faces on its plane, across edges of two faces.
   std::vector<std::vector<std::uint32_t>> find_planes() const {
     std::vector<std::vector<std::uint32_t>> others(mesh_.face_count());
     visit_edges(mesh_, sheets_.place, [&](auto, std::span<const EdgeSide> sides) {
@@ -137,7 +156,7 @@ class WedgePlacer {
     return others;
   }
 
-  /// Flat sheets that end at a junction are as thick as they should be all over, up to their corners.
+  /// Marks all of each flat sheet that ends at a junction: it gets the thickness that it should have all over.
   void mark_flat_sheets() {
     on_sheet_ = at_junction_;
     const auto others = find_planes();
@@ -161,32 +180,32 @@ class WedgePlacer {
     return static_cast<std::uint32_t>(next - mesh_.face_begin.begin()) - 1;
   }
 
-  /// How far it is to the nearest of some, in thicknesses; no farther than matters.
-  std::vector<double> measure_ways(const std::vector<std::uint8_t>& starts) const {
-    constexpr double kUnreached = 1e300;
-    std::vector<double> ways(sides_.wedges, kUnreached);
+  /// The distance along edges from each wedge to the nearest of `starts`, in thicknesses, where it is below kRoom.
+  std::vector<double> measure_distances(const std::vector<std::uint8_t>& starts) const {
+    constexpr double kUnreached = 1e300;  // stands for any distance above kRoom
+    std::vector<double> distances(sides_.wedges, kUnreached);
     using Entry = std::pair<double, std::uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) {
-      if (starts[w]) queue.emplace(ways[w] = 0, w);
+      if (starts[w]) queue.emplace(distances[w] = 0, w);
     }
     while (!queue.empty()) {
-      const auto [way, w] = queue.top();
+      const auto [distance, w] = queue.top();
       queue.pop();
-      if (way > ways[w]) continue;
+      if (distance > distances[w]) continue;
       for (const auto n : neighbours_[w]) {
         const double scale = std::max(thickness_[w], thickness_[n]);
         if (!(scale > 0)) continue;
-        const double there = way + (origin(n) - origin(w)).length() / scale;
-        if (there < kRoom && there < ways[n]) queue.emplace(ways[n] = there, n);
+        const double there = distance + (origin(n) - origin(w)).length() / scale;
+        if (there < kRoom && there < distances[n]) queue.emplace(distances[n] = there, n);
       }
     }
-    return ways;
+    return distances;
   }
 
   double weight_of(std::uint32_t w) const {
     if (on_sheet_[w]) return 1;
-    return way_[w] < kRoom ? std::min(1.0, (kRoom - way_[w]) / (kRoom - kOnPlanes)) : 0;
+    return distance_[w] < kRoom ? std::min(1.0, (kRoom - distance_[w]) / (kRoom - kOnPlanes)) : 0;
   }
 
   double angle_at(std::size_t f, std::uint32_t corner) const {
@@ -196,6 +215,7 @@ class WedgePlacer {
     return std::atan2(next.cross(previous).length(), next.dot(previous));
   }
 
+  /// Puts each wedge that is near a junction onto the planes of its sides.
   void mitre() {
     slot_.assign(sides_.wedges, 0);
     std::uint32_t near = 0;
@@ -211,11 +231,11 @@ class WedgePlacer {
         if (normal.lengthSqr() == 0) normal = newell_normal(mesh_, f);
         if (!(normal.lengthSqr() > 0)) break;
         normal.normalize();
-        const double weight = std::max(angle_at(f, c), 0.2);
+        const double weight = std::max(angle_at(f, c), kLeastAngle);
         const std::uint32_t v = mesh_.corners[c];
         planes_[slot_[front]].add(normal, sheets_.thickness_on(f, 0, v), weight);
         planes_[slot_[back]].add(-normal, sheets_.thickness_on(f, 1, v), weight);
-        if (front == back) has_first_side[front] = 1;  // no room on either side
+        if (front == back) has_first_side[front] = 1;  // the face ends there, and both of its sides are one wedge
       }
     }
     add_steps();
@@ -224,26 +244,29 @@ class WedgePlacer {
       if (!result_.is_near[w] || has_first_side[w]) continue;
       planes_[slot_[w]].solve();
       const double length = planes_[slot_[w]].solution().length(), most = kLongestMitre * thickness_[w];
-      result_.place[w] = length > most ? planes_[slot_[w]].solution() * (most / length) : planes_[slot_[w]].solution();
+      result_.position[w] =
+          length > most ? planes_[slot_[w]].solution() * (most / length) : planes_[slot_[w]].solution();
     }
   }
 
+  /// Adds planes that keep the ends of sheets on one plane, but of different thickness, together.
   void add_steps() {
     for (const SheetSides::Gap& gap : sides_.gaps) {
       const double length = gap.shift.length();
       if (!(length > 0)) continue;
       for (std::size_t i = 0; i < 2; ++i)
         for (const std::uint32_t corner : {gap.corner[i], next(gap.corner[i])})
-          planes_[slot_[sides_.wedge[2 * corner + gap.side[i]]]].add(gap.shift / length, length, 0.5);
+          planes_[slot_[sides_.wedge[2 * corner + gap.side[i]]]].add(gap.shift / length, length, kStepWeight);
     }
   }
+  /// Adds the planes of sides that reach to two pieces of a wedge that was cut.
   void add_shared() {
     for (const auto& [side, corner] : sides_.shared) {
       const std::uint32_t c = side / 2, f = face_of(c);
       const Vec3d normal = unit_normal(f);
       planes_[slot_[sides_.wedge[corner]]].add(side % 2 == 0 ? normal : -normal,
                                                sheets_.thickness_on(f, side % 2, mesh_.corners[c]),
-                                               std::max(angle_at(f, c), 0.2));
+                                               std::max(angle_at(f, c), kLeastAngle));
     }
   }
   std::uint32_t next(std::uint32_t corner) const {
@@ -251,23 +274,23 @@ class WedgePlacer {
     return corner + 1 < mesh_.face_begin[f + 1] ? corner + 1 : mesh_.face_begin[f];
   }
 
-  /// What junctions, and corners of flat sheets, are moved by dies away over the sheets: harmonic, by the lengths of
-  /// edges.
+  /// Spreads the displacements of junctions, and of corners of flat sheets, over the sheets around, where they fade
+  /// away: harmonic, weighted by the inverse lengths of edges.
   void make_room() {
     std::vector<std::uint8_t> starts = at_junction_;
     for (std::uint32_t w = 0; w < sides_.wedges; ++w)
       starts[w] |= static_cast<std::uint8_t>(on_sheet_[w] && planes_[slot_[w]].is_crease());
-    const std::vector<double> ways = measure_ways(starts);
+    const std::vector<double> distances = measure_distances(starts);
     std::vector<std::uint32_t> within;
     std::vector<Vec3d> moved(sides_.wedges, Vec3d(0.0));
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) {
-      if (starts[w]) moved[w] = result_.place[w];
-      else if (ways[w] < kRoom && result_.is_near[w]) within.push_back(w);
+      if (starts[w]) moved[w] = result_.position[w];
+      else if (distances[w] < kRoom && result_.is_near[w]) within.push_back(w);
     }
-    std::stable_sort(within.begin(), within.end(), [&](auto a, auto b) { return ways[a] < ways[b]; });
+    std::stable_sort(within.begin(), within.end(), [&](auto a, auto b) { return distances[a] < distances[b]; });
     for (int round = 0; round < kSpreadRounds && !within.empty(); ++round)
       for (const auto w : within) moved[w] = mean_around(w, moved);
-    for (const auto w : within) result_.place[w] += on_border(w, planes_[slot_[w]].along(moved[w]));
+    for (const auto w : within) result_.position[w] += on_border(w, planes_[slot_[w]].along(moved[w]));
   }
 
   Vec3d mean_around(std::uint32_t w, const std::vector<Vec3d>& moved) const {
@@ -282,16 +305,16 @@ class WedgePlacer {
     return weight > 0 ? sum / weight : sum;
   }
 
-  /// A vertex at the border of the mesh stays on it.
-  Vec3d on_border(std::uint32_t w, const Vec3d& way) {
+  /// The part of a displacement that keeps a vertex at the border of the mesh on it.
+  Vec3d on_border(std::uint32_t w, const Vec3d& displacement) {
     if (border_.empty()) find_border();
     const auto& ends = border_[w];
-    if (ends.empty()) return way;
+    if (ends.empty()) return displacement;
     if (ends.size() != 2) return Vec3d(0.0);
     const Vec3d a = (mesh_.positions[ends[0]] - origin(w)).unit(), b = (mesh_.positions[ends[1]] - origin(w)).unit();
-    if (a.dot(b) > -0.9) return Vec3d(0.0);
+    if (a.dot(b) > kStraightBorder) return Vec3d(0.0);
     const Vec3d along = (a - b).unit();
-    return along * along.dot(way);
+    return along * along.dot(displacement);
   }
 
   void find_border() {
@@ -309,20 +332,22 @@ class WedgePlacer {
   const Sheets& sheets_;
   PolygonView mesh_;
   const SheetSides& sides_;
-  WedgePlaces result_;
-  // All of each wedge.
+  WedgePositions result_;
+  // All of these are of each wedge.
   std::vector<std::uint32_t> vertex_;
-  std::vector<double> thickness_, way_;
+  std::vector<double> thickness_, distance_;  // the distance to the nearest junction, in thicknesses
   std::vector<std::uint8_t> at_junction_, on_sheet_;
   std::vector<std::vector<std::uint32_t>> neighbours_, border_;
-  std::vector<std::uint32_t> slot_;  // where the planes of one that is near are; the first stand for those that are not
+  std::vector<std::uint32_t>
+      slot_;  // the index of its planes if it is near a junction; else 0, whose planes are not used
   std::vector<Planes> planes_;
 };
 
 }  // namespace
 
-WedgePlaces place_wedges(const Sheets& sheets, const SheetSides& sides, std::span<const std::uint8_t> junctions) {
-  return WedgePlacer(sheets, sides, junctions).place();
+WedgePositions find_wedge_positions(const Sheets& sheets, const SheetSides& sides,
+                                    std::span<const std::uint8_t> junctions) {
+  return WedgePositionFinder(sheets, sides, junctions).find();
 }
 
 }  // namespace vdb_offset
