@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/curve/ribbon.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/volume/cell_quality.h"
@@ -132,6 +133,7 @@ CurveCells make_curve_cells(CurvesView curves, const LayersResult& layers) {
 }
 
 LayerQuality measure_curve_cells(const CurveCells& cells, const LayersResult& layers) {
+  VDB_OFFSET_ASSERT(layers.count() > 0 && cells.mesh.cell_count() % layers.count() == 0);
   auto [jacobian, aspect] = quality_fields(cells.mesh);
   LayerQuality quality{.scaled_jacobian = std::move(jacobian.values),
                        .aspect_ratio = std::move(aspect.values),

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/paths/propagate.h"
 
@@ -42,6 +43,8 @@ CurveFaults::CurveFaults(const PlaneCurves& curves)
       misplaced_at_(curves.source.size(), 0),
       fault_(curves.line().segments.size(), Fault::None),
       finder_(curves.line().segments, position_) {
+  VDB_OFFSET_ASSERT(curves.source.size() == curves.line().vertices.size());
+  VDB_OFFSET_ASSERT(curves.distances.uniform() || curves.distances.count() == curves.source.size());
   crossing_.of.resize(fault_.size());
   slid_.of.resize(fault_.size());
   auto found = finder_.all(kMostListedCrossings);
@@ -145,6 +148,8 @@ bool CurveFaults::is_new(const SegmentPair& pair) const {
 }
 
 void CurveFaults::move(const Indices& points, std::span<const Vec2d> positions) {
+  VDB_OFFSET_ASSERT(points.size() == positions.size());
+  VDB_OFFSET_ASSERT(std::is_sorted(points.begin(), points.end(), std::less_equal<>()));
   constexpr std::size_t kGrain =
       64;  // points or segments that a thread takes at a time. For speed alone; not measured.
   const Indices segments = segments_around(points);

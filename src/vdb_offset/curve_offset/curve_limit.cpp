@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/curve_offset/restore_order.h"
 
@@ -263,6 +264,7 @@ class CurveLimiter {
 
 LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress,
                              Spacing spacing) {
+  VDB_OFFSET_ASSERT(paths.displacement.size() == curves.source.size() && paths.state.size() == curves.source.size());
   return CurveLimiter(curves, paths, progress, spacing).run();
 }
 

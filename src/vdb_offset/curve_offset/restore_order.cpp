@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
@@ -265,6 +266,7 @@ std::optional<Vec2d> position_on_front(const PlaneCurves& curves, Vec2d x, std::
 
 std::size_t put_in_order(const PlaneCurves& curves, const Paths& paths, std::span<Vec2d> displacement,
                          Spacing spacing) {
+  VDB_OFFSET_ASSERT(displacement.size() == curves.source.size() && paths.state.size() == curves.source.size());
   std::size_t moved = 0;
   for (const Chain& chain : chains_of(curves.line()))
     moved += ChainOrder(curves, paths, chain, displacement, spacing).run();

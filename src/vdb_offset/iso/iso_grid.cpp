@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
 
@@ -157,6 +158,7 @@ class IsoRasteriser {
 
 IsoGrid rasterise_iso(const ClosestQuery& query, const Inside& inside, double level, const Lattice& lattice,
                       std::size_t most_leaf_nodes, const ProgressCallback& callback) {
+  VDB_OFFSET_ASSERT(lattice.voxel_size > 0 && level != 0);
   const IsoRasteriser rasteriser(query, inside, level, lattice);
   const std::vector<Cube> leaves = rasteriser.find_leaves(most_leaf_nodes);
   const auto beyond = static_cast<float>(lattice.voxel_size);

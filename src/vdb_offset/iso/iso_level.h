@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/surface/inside.h"
 
@@ -14,7 +15,9 @@ class IsoLevel {
  public:
   /// Keeps references to `query` and `inside`. `voxel_size` is the spacing of the points that are asked for.
   IsoLevel(const ClosestQuery& query, const Inside& inside, double level, double voxel_size)
-      : query_(query), inside_(inside), level_(level), h_(voxel_size) {}
+      : query_(query), inside_(inside), level_(level), h_(voxel_size) {
+    VDB_OFFSET_ASSERT(level != 0 && voxel_size > 0);
+  }
 
   const ClosestQuery& query() const { return query_; }
   double level() const { return level_; }

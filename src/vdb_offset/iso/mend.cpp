@@ -5,6 +5,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 
 namespace vdb_offset {
@@ -271,6 +272,7 @@ MeshFaults find_faults(const Surface& mesh) {
 }
 
 std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std::uint32_t> some) {
+  VDB_OFFSET_ASSERT(std::is_sorted(some.begin(), some.end()));
   CrossingFinder finder(mesh, mesh.vertices);
   finder.update(some);
   TriangleList faulty;
@@ -282,6 +284,7 @@ std::vector<std::uint32_t> find_faulty(const Surface& mesh, std::span<const std:
 }
 
 MendStatistics mend(Surface& mesh, const Onto& onto) {
+  VDB_OFFSET_ASSERT(mesh.incident.size() == 3 * mesh.triangles.size());  // it is built
   MendStatistics statistics, kept;
   std::optional<std::size_t> fewest;  // faults of any mesh so far
   std::vector<Vec3d> positions;       // of the mesh with the fewest faults

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/iso/mend.h"
 
@@ -321,6 +322,8 @@ void widen(std::vector<std::uint8_t>& marked, const Surface& mesh, int edges) {
 }  // namespace
 
 MergedFlats merge_flats(Surface& mesh, double tolerance, std::span<const std::uint8_t> stays) {
+  VDB_OFFSET_ASSERT(tolerance >= 0 && (stays.empty() || stays.size() == mesh.vertices.size()));
+  VDB_OFFSET_ASSERT(mesh.incident.size() == 3 * mesh.triangles.size());  // it is built
   return FlatMerger(mesh, tolerance, stays).run();
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
@@ -164,6 +165,7 @@ class CreaseFinder {
 
 std::vector<std::uint8_t> put_on_creases(const IsoLevel& level, const VoxelMesh& mesh, std::vector<Vec3d>& positions,
                                          std::vector<std::uint32_t>& closest) {
+  VDB_OFFSET_ASSERT(positions.size() == mesh.points.size() && closest.size() == mesh.points.size());
   const CreaseFinder finder(level, mesh, positions, closest);
   std::vector<std::uint8_t> on_crease(positions.size(), 0);
   std::vector<std::optional<std::pair<Vec3d, std::uint32_t>>> found(positions.size());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 
@@ -312,6 +313,7 @@ class BoundaryFinder {
 
 std::optional<Boundary> find_boundary(const Surface& given, const Inside& inside, std::span<const Hole> holes,
                                       bool look_for_buried) {
+  VDB_OFFSET_ASSERT(given.triangle_normals.size() == given.triangles.size());  // it is placed
   if (holes.empty() && !look_for_buried) return std::nullopt;
   return BoundaryFinder(given, inside).find(holes, look_for_buried);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/mesh/point_triangle.h"
 #include "vdb_offset/query/closest_query.h"
@@ -62,6 +63,7 @@ std::uint32_t SourceLookup::corner_at(std::uint32_t triangle, std::size_t k) con
 }
 
 void SourceLookup::cut_into_charts(std::span<const std::uint32_t> value_of_corner) {
+  VDB_OFFSET_ASSERT(value_of_corner.size() == mesh_.corners.size());
   chart_.resize(source().triangles.size());
   std::iota(chart_.begin(), chart_.end(), 0u);
   for (std::uint32_t edge = 0; edge < source().next_around_edge.size(); ++edge) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/layers/layer_points.h"
 #include "vdb_offset/volume_mesh.h"
 
@@ -15,7 +16,9 @@ namespace vdb_offset {
 class ColumnCells {
  public:
   ColumnCells(const LayerPoints& points, std::span<const std::uint32_t> ring, std::size_t layer)
-      : points_(points), ring_(ring), n_(static_cast<std::uint32_t>(ring.size())), layer_(layer), apex_(find_apex()) {}
+      : points_(points), ring_(ring), n_(static_cast<std::uint32_t>(ring.size())), layer_(layer), apex_(find_apex()) {
+    VDB_OFFSET_ASSERT(n_ > 2);
+  }
 
   std::uint32_t corner(std::uint32_t k) const {
     while (k >= n_) k -= n_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/double_lanes.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/layers/column_mesh.h"
@@ -161,6 +162,8 @@ std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
 GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
                              CellRules rules)
     : rules_(rules), place_(constrained.surface.vertices.size(), kNone) {
+  VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
+  VDB_OFFSET_ASSERT(constrained.surface.welded.size() == mesh.positions.size());
   for (auto v = static_cast<std::uint32_t>(constrained.surface.welded.size()); v-- > 0;)
     if (constrained.surface.welded[v] != kNone) place_[constrained.surface.welded[v]] = v;
   if (take_all(mesh, constrained, source)) return;
@@ -220,6 +223,7 @@ void GrowthColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t 
     if (polygon.empty() || polygon.back() != w) polygon.push_back(w);
   }
   while (polygon.size() > 1 && polygon.back() == polygon.front()) polygon.pop_back();
+  VDB_OFFSET_ASSERT(polygon.size() > 2);
   // At least one side of a triangle is a side of its polygon, and tells whether the triangle runs as the polygon does.
   const bool turned = follows(polygon, b, a) || follows(polygon, c, b) || follows(polygon, a, c);
   const auto take = [&](std::vector<std::uint32_t> base) {
@@ -248,6 +252,7 @@ Vec3d GrowthColumns::normal(std::size_t column, std::size_t k, const VertexStack
 }
 
 bool GrowthColumns::is_valid(std::size_t column, const VertexStacks& stacks, int side) const {
+  VDB_OFFSET_ASSERT(column < size() && (side == 1 || side == -1));
   if (is_of_prisms(column, stacks))
     return are_upright({base(column), base(column)}, stacks, place_, side)[0] &&
            (rules_ != CellRules::OpenFoam || has_valid_cells(column, stacks, side));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
@@ -44,6 +45,11 @@ LayerGrower::LayerGrower(std::span<const Vec3d> source, const Vec3d& front_origi
       last_put_(source.size()),
       bend_(source.size(), Vec3d(0.0)),
       thinned_(source.size(), 0) {
+  VDB_OFFSET_ASSERT(!heights.empty());
+  VDB_OFFSET_ASSERT(paths.displacement.size() == source.size() && paths.achieved.size() == source.size());
+  VDB_OFFSET_ASSERT(std::all_of(heights.begin(), heights.end(), [&](const Distances& each) {
+    return each.uniform() || each.count() >= source.size();
+  }));
   stack_.stacks = VertexStacks(source.size(), heights.size());
   stack_.first_achieved.assign(source.size(), 0.0);
 }
@@ -164,6 +170,7 @@ void LayerGrower::check_columns(const Indices& moved) {
 }
 
 LayerGrower::Snapshot LayerGrower::snapshot(const Indices& vertices) const {
+  VDB_OFFSET_ASSERT(std::is_sorted(vertices.begin(), vertices.end()));
   Snapshot taken{vertices, {}, {}, {}};
   taken.positions.reserve(vertices.size() * (heights_.size() + 1));
   taken.first_achieved.reserve(vertices.size());
@@ -306,6 +313,8 @@ Indices LayerGrower::take_back(const std::vector<double>& before, const Snapshot
 
 /// Notes down in the paths where the outermost layer is, and counts.
 void LayerGrower::finish() {
+  VDB_OFFSET_ASSERT(
+      std::all_of(stack_.share.begin(), stack_.share.end(), [](double share) { return share >= 0 && share <= 1; }));
   for (const auto v : straightened_) stack_.statistics.straightened += stack_.share[v] > 0;
   for (std::uint32_t v = 0; v < source_.size(); ++v) {
     if (!moves(v)) continue;

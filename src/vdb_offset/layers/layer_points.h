@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/vec.h"
 
 namespace vdb_offset {
@@ -21,6 +22,7 @@ struct LayerPoints {
   bool flat(std::uint32_t point) const { return in_layer[point] == kNone; }
   /// The point of a layer (0 for the wall) above a point of the wall.
   std::uint32_t at(std::uint32_t point, std::size_t layer) const {
+    VDB_OFFSET_ASSERT(point < wall());
     return layer == 0 || flat(point) ? point
                                      : wall() + static_cast<std::uint32_t>(layer - 1) * risen() + in_layer[point];
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/layers/fan_distance.h"
 #include "vdb_offset/layers/layer_grower.h"
@@ -238,6 +239,7 @@ LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlide
   // Rounds after which progress is told to be complete; more of them are told as that. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
+  VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
   return SurfaceLayerGrower(constrained, slides, columns, source, heights, faults, paths).run(progress);
 }
 
@@ -245,6 +247,7 @@ void round_layers(std::span<const Vec3d> source, const Rounding& precision,
                   const std::function<bool(std::uint32_t)>& is_written,
                   const std::function<std::optional<double>(std::uint32_t, const Vec3d&)>& distance_at,
                   LayerStack& stack, Paths& paths) {
+  VDB_OFFSET_ASSERT(stack.stacks.vertices() == source.size() && paths.displacement.size() == source.size());
   if (precision.kind == Rounding::Kind::Double && precision.scale == Vec3d(1.0)) return;
   for_each_index(source.size(), [&](std::size_t i) {
     const auto v = static_cast<std::uint32_t>(i);
@@ -260,6 +263,7 @@ void round_layers(std::span<const Vec3d> source, const Rounding& precision,
 
 void count_held_back(const Paths& paths, const Distances& asked, std::span<const double> distances_before,
                      LimitStatistics& statistics) {
+  VDB_OFFSET_ASSERT(distances_before.size() == paths.state.size());
   double lost = 0;
   std::size_t moving = 0;
   statistics.limited_vertices = 0;

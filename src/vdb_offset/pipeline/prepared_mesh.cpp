@@ -112,6 +112,9 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   VDB_OFFSET_ASSERT(query_.has_value());
   const DirectionField directions = find_directions(field_, is_open(parts_.front.facts), statistics_);
   const StageTimer timer(statistics_.seconds, Stage::Propagate);
+  VDB_OFFSET_ASSERT(std::all_of(distances.begin(), distances.end(), [&](const Distances& each) {
+    return each.uniform() || each.count() == surface().vertices.size();
+  }));
   std::vector<Distances> on_front;
   for (const Distances& each : distances) on_front.push_back(distances_on_front(parts_, each));
   std::vector<Paths> of_front =
@@ -130,6 +133,8 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
 }
 
 ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_source, std::size_t resting_faces) const {
+  VDB_OFFSET_ASSERT(query_ && marched.paths.displacement.size() == surface().vertices.size());
+  VDB_OFFSET_ASSERT(marched.bound.empty() || marched.bound.size() == surface().vertices.size());
   ConstrainedSurface constrained = parts_.constrained(*query_, obstacles(), off_source, resting_faces);
   constrained.bound = marched.bound;
   return constrained;

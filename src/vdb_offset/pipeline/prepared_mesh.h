@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/mesh/in_metric.h"
@@ -44,7 +45,10 @@ class PreparedMesh {
   /// Positions of all vertices, world coordinates. Empty if no vertex moves, and there are no obstacles.
   const std::vector<Vec3d>& source() const { return source_; }
   /// \pre some vertex moves
-  const ClosestQuery& query() const { return *query_; }
+  const ClosestQuery& query() const {
+    VDB_OFFSET_ASSERT(query_.has_value());
+    return *query_;
+  }
   DistanceField& field() { return field_; }
   /// The mesh beside its obstacles; nullptr without any.
   const Surroundings* surroundings() const { return surroundings_ ? &*surroundings_ : nullptr; }

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/mesh/edge_sides.h"
 #include "vdb_offset/sheets/wedge_cuts.h"
@@ -318,7 +319,12 @@ Vec3d newell_normal(PolygonView mesh, std::size_t f) {
   return sum;
 }
 
-SheetSides find_sides(const Sheets& sheets) { return SideFinder(sheets).find(); }
+SheetSides find_sides(const Sheets& sheets) {
+  VDB_OFFSET_ASSERT(sheets.place.size() == sheets.mesh.positions.size());
+  VDB_OFFSET_ASSERT(sheets.turned.size() == sheets.mesh.face_count());
+  VDB_OFFSET_ASSERT(sheets.repeats.size() == sheets.mesh.face_count());
+  return SideFinder(sheets).find();
+}
 
 namespace {
 
@@ -339,6 +345,7 @@ void leave_out_repeats(const Surface& surface, PolygonView mesh, std::span<const
 }  // namespace
 
 std::vector<std::uint8_t> find_junctions(const Surface& surface, PolygonView mesh, std::span<const std::uint8_t> only) {
+  VDB_OFFSET_ASSERT(only.empty() || only.size() == mesh.face_count());
   std::vector<std::uint8_t> found(surface.vertices.size(), 0);
   for_each_index(found.size(),
                  [&](std::size_t v) { found[v] = VertexSheets(surface, static_cast<std::uint32_t>(v)).is_junction(); });

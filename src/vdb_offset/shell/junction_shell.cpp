@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/shell/shell_facts.h"
 #include "vdb_offset/shell/wedge_positions.h"
@@ -352,6 +353,11 @@ class JunctionShell {
 
 }  // namespace
 
-Shell make_junction_shell(const JunctionInput& input) { return JunctionShell(input).make(); }
+Shell make_junction_shell(const JunctionInput& input) {
+  VDB_OFFSET_ASSERT(input.outer.size() == input.sheets.mesh.positions.size());
+  VDB_OFFSET_ASSERT(input.inner.size() == input.sheets.mesh.positions.size());
+  VDB_OFFSET_ASSERT(input.junctions.size() == input.sheets.mesh.positions.size());
+  return JunctionShell(input).make();
+}
 
 }  // namespace vdb_offset

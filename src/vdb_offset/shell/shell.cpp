@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/base/thread_count.h"
@@ -216,6 +217,8 @@ Shell junction_shell_of(const Part& part, const TakenFaces& taken, std::span<con
 }  // namespace
 
 Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options, const OffsetResult* inner) {
+  VDB_OFFSET_ASSERT(result.positions.size() == mesh.positions.size());
+  VDB_OFFSET_ASSERT(!inner || inner->positions.size() == mesh.positions.size());
   std::vector<Vec3d> out(mesh.positions.begin(), mesh.positions.end()), in = out;
   for (std::size_t v = 0; v < out.size(); ++v) (result.distances[v] < 0 ? in : out)[v] = result.positions[v];
   if (inner) in = inner->positions;
@@ -234,6 +237,7 @@ Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions
 
 void tell_states(const Shell& shell, OffsetResult& result) {
   if (shell.kept.empty()) return;
+  VDB_OFFSET_ASSERT(shell.kept.size() == result.states.size() && shell.is_junction.size() == shell.kept.size());
   for (std::size_t v = 0; v < shell.kept.size(); ++v) {
     const double kept = shell.kept[v], asked = std::abs(result.distances[v]);
     if (kept < 0 || asked == 0) continue;

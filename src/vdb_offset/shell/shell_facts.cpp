@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/mesh/edge_sides.h"
 #include "vdb_offset/mesh/triangulate.h"
@@ -100,6 +101,7 @@ std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOption
 
 void count_facts(PolygonView mesh, const WeldOptions& weld, const Rounding& precision,
                  std::span<const std::uint32_t> place, Shell& shell) {
+  VDB_OFFSET_ASSERT(place.size() == shell.polygons.positions.size());
   const std::vector<Vec3d> written = written_positions(mesh, shell, precision);
   count_edges(place, shell);
   count_pinched(mesh, written, shell);

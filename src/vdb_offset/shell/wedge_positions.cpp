@@ -6,6 +6,7 @@
 #include <cmath>
 #include <queue>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/mesh/edge_sides.h"
 
 namespace vdb_offset {
@@ -347,6 +348,8 @@ class WedgePositionFinder {
 
 WedgePositions find_wedge_positions(const Sheets& sheets, const SheetSides& sides,
                                     std::span<const std::uint8_t> junctions) {
+  VDB_OFFSET_ASSERT(junctions.size() == sheets.mesh.positions.size());
+  VDB_OFFSET_ASSERT(sides.wedge.size() == 2 * sheets.mesh.corners.size());
   return WedgePositionFinder(sheets, sides, junctions).find();
 }
 

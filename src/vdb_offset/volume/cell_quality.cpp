@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/volume/cell_faces.h"
 #include "vdb_offset/volume/polygon_prism.h"
@@ -138,6 +139,7 @@ double twice_area_below(const VolumeMesh& mesh, std::span<const std::uint32_t> e
 }  // namespace
 
 double scaled_jacobian(const VolumeMesh& mesh, std::size_t cell) {
+  VDB_OFFSET_ASSERT(cell < mesh.cell_count() && mesh.cell_begin.size() == mesh.cell_count() + 1);
   const CellPoints x{mesh, mesh.cell(cell)};
   switch (mesh.cell_types[cell]) {
     case CellType::Tetrahedron:
@@ -167,6 +169,7 @@ double aspect_ratio(const VolumeMesh& mesh, std::size_t cell) {
 }
 
 double cell_volume(const VolumeMesh& mesh, std::size_t cell) {
+  VDB_OFFSET_ASSERT(cell < mesh.cell_count());
   const auto corners = mesh.cell(cell);
   const CellType type = mesh.cell_types[cell];
   const Vec3d origin = mesh.points[corners[type == CellType::Polyhedron ? 2 : 0]];
@@ -218,6 +221,7 @@ double enclosed_volume(const VolumeMesh& mesh) {
 }
 
 double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first) {
+  VDB_OFFSET_ASSERT(wall.size() > 1 && first.size() == wall.size());
   Vec3d rise(0.0);
   for (std::size_t k = 0; k < wall.size(); ++k) rise += first[k] - wall[k];
   const bool edge = wall.size() == 2;

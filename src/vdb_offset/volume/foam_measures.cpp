@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/volume/cell_faces.h"
 
@@ -198,6 +199,7 @@ bool has_foam_pyramids(const VolumeMesh& mesh, std::size_t cell) {
 }
 
 FoamQuality measure_foam(const VolumeMesh& mesh, const VolumeFaces& faces) {
+  VDB_OFFSET_ASSERT(!mesh.plane());
   return FoamMeasurer(mesh, faces).measure();
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/mesh/triangulate.h"
 
 namespace vdb_offset {
@@ -99,6 +100,7 @@ double base_split(const PolygonPrism& prism) {
 }  // namespace
 
 double scaled_jacobian(const PolygonPrism& prism) {
+  VDB_OFFSET_ASSERT(prism.size() > 2 && prism.above.size() == prism.size() && prism.flat.size() == prism.size());
   const double corners = least_at_corners(prism);
   const double split = prism.size() > kFewCorners ? base_split(prism) : best_split(prism);
   if (!(split > 0)) return std::min(corners, split);

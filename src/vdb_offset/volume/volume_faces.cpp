@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/volume/cell_faces.h"
@@ -87,6 +88,7 @@ std::size_t face_count(CellType type, std::span<const std::uint32_t> corners) {
 
 CellFace face(const VolumeMesh& mesh, std::size_t c, std::size_t local) {
   const auto corners = mesh.cell(c);
+  VDB_OFFSET_ASSERT(local < face_count(mesh.cell_types[c], corners));
   if (mesh.cell_types[c] != CellType::Polyhedron) {
     const LocalFace& known = kCellFaces[static_cast<std::size_t>(mesh.cell_types[c])].faces[local];
     return {corners.data(), known.places, known.size};
@@ -141,6 +143,7 @@ void VolumeFaces::match(const VolumeMesh& mesh) {
 
 std::uint32_t VolumeFaces::local_of(const VolumeMesh& mesh, std::uint32_t c, std::uint32_t behind,
                                     std::span<const std::uint32_t> sorted_corners) const {
+  VDB_OFFSET_ASSERT(std::is_sorted(sorted_corners.begin(), sorted_corners.end()));
   thread_local std::vector<std::uint32_t> corners;
   const auto cells = this->behind(c);
   for (std::uint32_t local = 0; local < cells.size(); ++local) {

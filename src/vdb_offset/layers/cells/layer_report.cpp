@@ -11,6 +11,7 @@
 #include <functional>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/quantiles.h"
 #include "vdb_offset/volume/cell_quality.h"
@@ -229,6 +230,7 @@ std::size_t left_out(const LayerFigures& figures) {
 
 LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
                           const LayerCellFacts& facts, const LayerQuality& quality) {
+  VDB_OFFSET_ASSERT(facts.role.size() == mesh.face_count() && facts.cells.size() == mesh.face_count());
   require_names(names, mesh.face_count());
   const FigureCollector collector(mesh, layers, facts, quality);
   const FacesByPatch faces = sort_faces(mesh.face_count(), names);

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/layers/column_cells.h"
 
@@ -208,6 +209,8 @@ void add_patches(const LayerPoints& points, const NumberedColumns& columns, cons
 
 VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,
                       LayerQuality quality) {
+  VDB_OFFSET_ASSERT(cells.layers == layers.count());
+  VDB_OFFSET_ASSERT(quality.scaled_jacobian.size() == cells.count() && quality.aspect_ratio.size() == cells.count());
   require_names(names, cells.facts.role.size());
   VolumeMesh volume;
   fill_points(layers, cells, volume);

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/layers/column_cells.h"
 #include "vdb_offset/layers/column_mesh.h"
@@ -149,6 +150,7 @@ class CellMeasurer {
 }  // namespace
 
 LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells) {
+  VDB_OFFSET_ASSERT(cells.layers == layers.count());
   return CellMeasurer(layers, cells).measure();
 }
 

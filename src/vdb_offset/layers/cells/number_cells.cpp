@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/layers/column_cells.h"
@@ -433,6 +434,9 @@ LayerCells number_cells(PolygonView mesh, const LayersResult& layers) {
   bool all_paired = false;
   cells.columns = find_columns(mesh, layers, flat, cells.facts, all_paired);
   cells.points = number_points(flat, all_paired, cells.columns, cells.facts);
+  VDB_OFFSET_ASSERT(std::is_sorted(cells.columns.begin.begin(), cells.columns.begin.end()));
+  VDB_OFFSET_ASSERT(std::all_of(cells.columns.corners.begin(), cells.columns.corners.end(),
+                                [&](Index p) { return p < cells.points.wall(); }));
   count_cells(cells.points, cells.columns, cells.facts);
   require_countable(cells.points, cells.columns, layers.count());
   return cells;

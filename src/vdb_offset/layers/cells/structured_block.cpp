@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/layers/cells/number_cells.h"
@@ -162,6 +163,8 @@ StructuredBlock make_block(PolygonView mesh, const LayersResult& layers) {
 }
 
 std::size_t inverted_cells(const StructuredBlock& block) {
+  VDB_OFFSET_ASSERT(block.ni > 1 && block.nj > 1 && block.nk > 1);
+  VDB_OFFSET_ASSERT(block.points.size() == std::size_t{block.ni} * block.nj * block.nk);
   const std::size_t row = block.ni, sheet = row * block.nj;
   const auto cells_in_row = static_cast<std::size_t>(block.ni - 1), cells_in_sheet = cells_in_row * (block.nj - 1);
   std::atomic<std::size_t> count = 0;
