@@ -145,7 +145,8 @@ class SurfaceLayerGrower final : public LayerGrower {
       const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
       const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
       const Vec3d displacement =
-          at_end ? paths_.displacement[v] : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
+          at_end ? paths_.displacement[v]
+                 : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
       stack[k + 1] = source_[v] + displacement;
       stack_.first_achieved[v] = constrained_.front(stack[k + 1] - front_.origin, constrained_.hint(v)).distance;
       if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
