@@ -180,7 +180,7 @@ bool meet(const Surface& surface, std::span<const Vec3d> positions, std::uint32_
 
 CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> positions)
     : surface_(surface), positions_(positions), is_updated_(surface.triangles.size(), 0) {
-  VDB_OFFSET_ASSERT(positions.size() == surface.vertices.size());
+  VDB_OFFSET_ASSERT(surface.vertices.empty() || positions.size() == surface.vertices.size());
   build();
 }
 

@@ -37,7 +37,8 @@ inline std::size_t SelfCrossings::count() const { return more ? kMostListedPairs
 /// number of threads.
 class CrossingFinder {
  public:
-  /// Keeps references to both. \param positions of the surface's vertices; they may lie anywhere
+  /// Keeps references to both. Of the surface, its triangles and its frame are used alone.
+  /// \param positions of the surface's vertices; they may lie anywhere
   CrossingFinder(const Surface& surface, std::span<const Vec3d> positions);
 
   /// To be told of triangles whose corners have moved. \pre sorted, each once

@@ -1,6 +1,7 @@
 #include "vdb_offset/validity/vertex_positions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -28,6 +29,12 @@ void for_each_block(std::span<const std::uint32_t> vertices, Work&& work) {
                    work(vertices.subspan(block * kBlock, std::min(kBlock, vertices.size() - block * kBlock)));
                  },
                  1);
+}
+
+/// The side that a triangle goes to: 1 outward, -1 inward.
+int side_of(const Distances& distances, const std::array<std::uint32_t, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  return distances[a] + distances[b] + distances[c] < 0 ? -1 : 1;
 }
 
 /// Whether a direction turns from another by more than a right angle, and more than rounding.
@@ -162,7 +169,7 @@ void VertexPositions::find_ties_around(const Indices& triangles) {
         }))
       continue;
     // The corner where the triangle most clearly is the right way round, as far as is known.
-    const Vec3d outward = twice_area(surface_, t, position_) * side(t);
+    const Vec3d outward = twice_area(surface_, t, position_) * side_of(distances_, surface_.triangles[t]);
     std::uint32_t best = kNone;
     double most = 0;
     for (const auto v : corners) {
@@ -209,12 +216,6 @@ bool VertexPositions::is_beyond_wall(std::uint32_t v) const {
   return vdb_offset::is_beyond_wall(front, constrained_.front_vertex_of(v), position_[v] - front.origin, rounding(v));
 }
 
-/// The side that a triangle goes to: 1 outward, -1 inward.
-int VertexPositions::side(std::uint32_t t) const {
-  const auto& [a, b, c] = surface_.triangles[t];
-  return distances_[a] + distances_[b] + distances_[c] < 0 ? -1 : 1;
-}
-
 /// Whether a direction turns from no point of the moving part that is as near to x as the closest.
 bool VertexPositions::looks_away(const Vec3d& outward, const Vec3d& x, const Vec3d& away, double distance,
                                  bool tied) const {
@@ -235,7 +236,7 @@ bool VertexPositions::looks_away(const Vec3d& outward, std::uint32_t v) const {
 
 bool VertexPositions::faces_against_front(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
-  const Vec3d now = twice_area(surface_, t, position_), outward = now * side(t);
+  const Vec3d now = twice_area(surface_, t, position_), outward = now * side_of(distances_, surface_.triangles[t]);
   bool any = false;
   // Corners of which ties are known cost next to nothing, and go first.
   for (const bool known : {true, false})

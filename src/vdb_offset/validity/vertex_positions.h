@@ -87,7 +87,6 @@ class VertexPositions {
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest, Nearness nearness);
   bool is_beyond_wall(std::uint32_t vertex) const;
   Vec3d in_frame(std::uint32_t vertex) const { return position_[vertex] - constrained_.front.surface().origin; }
-  int side(std::uint32_t triangle) const;
   bool looks_away(const Vec3d& outward, const Vec3d& x, const Vec3d& away, double distance, bool tied) const;
   bool looks_away(const Vec3d& outward, std::uint32_t vertex) const;
 
