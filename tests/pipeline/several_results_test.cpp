@@ -63,8 +63,8 @@ TEST_CASE("several: layers count the vertices of the height at which most disagr
 }
 
 TEST_CASE("several: what is bound at one distance is not at another", "[offset]") {
-  // A sheet that lies on its obstacle with half of it: its vertices there stay bound where they are to move into that,
-  // and are free where they are not to move at all.
+  // A sheet that lies on its obstacle with half of it: its vertices there are bound if they are to move into that,
+  // and free if they are not to move at all.
   Polygons sheet, floor;
   constexpr std::uint32_t kAcross = 9;
   for (std::uint32_t j = 0; j < kAcross; ++j)
@@ -78,7 +78,7 @@ TEST_CASE("several: what is bound at one distance is not at another", "[offset]"
   floor.positions = {{-9, -9, 0}, {19, -9, 0}, {19, 19, 0}, {-9, 19, 0}};
   floor.add_face({0, 1, 2, 3});
   std::vector<double> far_half(sheet.positions.size(), 0.0);
-  for (std::size_t v = 0; v < far_half.size(); ++v) far_half[v] = sheet.positions[v][0] > kAcross / 2 + 1 ? -0.2 : 0;
+  for (std::size_t v = 0; v < far_half.size(); ++v) far_half[v] = sheet.positions[v][0] > kAcross / 2 + 1 ? 0.2 : 0;
   OffsetOptions options;
   options.obstacles = floor.view();
   const InMetric space(sheet.view(), {});
@@ -92,7 +92,7 @@ TEST_CASE("several: what is bound at one distance is not at another", "[offset]"
       counts.push_back(static_cast<std::size_t>(std::count(each.bound.begin(), each.bound.end(), 1)));
     return counts;
   };
-  const Distances all(-0.2), some(far_half);
+  const Distances all(0.2), some(far_half);
   const std::size_t many = bound({all}).front(), few = bound({some}).front();
   CHECK(many > 0);
   CHECK(few < many);
