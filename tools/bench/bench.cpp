@@ -19,6 +19,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/direction_field.h"
 #include "vdb_offset/field/rasterise.h"
+#include "vdb_offset/field/sweep.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/offset.h"
