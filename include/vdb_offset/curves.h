@@ -23,13 +23,15 @@ struct OpenCurve {
 
   /// Whether the ends are so near each other that a base may have been left out between them.
   bool is_nearly_closed() const;
+  /// Share of the length up to which a gap between ends counts as a base that was left out. Blunt trailing edges are a
+  /// percent or so of an airfoil's length; not measured beside other shares.
   static constexpr double kNearlyClosed = 0.1;
 };
 
-/// Those with two ends, in the order of their chains. \throw as chains_in_plane()
+/// The curves with two ends, in the order of their chains. \throw as chains_in_plane()
 std::vector<OpenCurve> open_curves(CurvesView curves);
 
-/// Closes those that are nearly closed, by a straight segment. Returns which.
+/// Closes the curves that are nearly closed, by a straight segment. Returns these, as they were.
 std::vector<OpenCurve> close_curves(Curves& curves);
 
 }  // namespace vdb_offset

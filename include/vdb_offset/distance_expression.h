@@ -14,7 +14,7 @@ struct VertexVariables {
   std::span<const Vec3d> positions;  ///< x, y, z: world units.
   std::span<const Vec3d> normals;    ///< nx, ny, nz: unit length (see vertex_normals() in surface.h).
   std::span<const Vec2d> texture;    ///< u, v (see io::vertex_texture() in io/attributes.h).
-  double diagonal = 0;               ///< Of the bounding box of the vertices in use, which percentages refer to.
+  double diagonal = 0;  ///< Diagonal of the bounding box of the vertices in use, which percentages refer to.
 };
 
 /// A distance that differs from vertex to vertex, as users write it: world units ("0.1 + 0.05*sin(4*pi*z)"), or with a
@@ -30,7 +30,7 @@ class DistanceExpression {
 
   const std::string& text() const { return text_; }
   bool is_percent() const { return percent_; }
-  /// The name of a variable or a constant occurs.
+  /// Whether the name of a variable or a constant occurs.
   bool uses(std::string_view name) const;
   bool uses_normals() const { return uses("nx") || uses("ny") || uses("nz"); }
   bool uses_texture() const { return uses("u") || uses("v"); }
@@ -42,7 +42,7 @@ class DistanceExpression {
 
  private:
   std::string text_;
-  std::string code_;                // the same for muParser, without the percent sign
+  std::string code_;                // the text as muParser takes it, without the percent sign
   std::vector<std::string> names_;  // of variables and constants, as they occur
   bool percent_ = false;
 };

@@ -9,7 +9,7 @@
 
 namespace vdb_offset {
 
-/// What the stages that make a field share: phi (signed, < 0 inside, at voxel centres) and the index of the
+/// The grids of a field: phi (signed, < 0 inside, at voxel centres) and the index of the
 /// closest triangle, with the same active voxels. Index (0, 0, 0) lies at the surface's origin.
 struct FieldGrids {
   openvdb::FloatGrid::Ptr phi;
@@ -18,7 +18,7 @@ struct FieldGrids {
   bool slab = false;  ///< One leaf node thick in z: phi is taken to be the same above and below, as by a ribbon it is.
 };
 
-/// The field out to its reach.
+/// A field that is complete out to its reach.
 struct DistanceField : FieldGrids {
   Reach reach{};
 };

@@ -6,7 +6,7 @@
 
 namespace vdb_offset {
 
-/// How far vertices are to go: all as far, or each its own distance. World units; negative is inward, 0 stays put.
+/// Distances of vertices: one for all, or one for each. World units; negative is inward, 0 leaves a vertex where it is.
 class Distances {
  public:
   Distances(double uniform = 0);  // NOLINT(google-explicit-constructor): one number is the usual case
@@ -15,15 +15,15 @@ class Distances {
 
   double operator[](std::size_t vertex) const { return each_.empty() ? uniform_ : each_[vertex]; }
   bool uniform() const { return each_.empty(); }
-  /// Of vertices with a distance of their own.
+  /// How many vertices have a distance of their own; 0 if all have the same.
   std::size_t count() const { return each_.size(); }
 
-  /// The farthest that any goes outward, and inward; both at least 0.
+  /// The largest distance outward, and inward; both at least 0.
   double outward() const { return outward_; }
   double inward() const { return inward_; }
-  /// The farthest that any goes: what is small is small compared to this.
+  /// The largest distance without its sign: what is small is small compared to this.
   double scale() const { return outward_ > inward_ ? outward_ : inward_; }
-  /// The distance that goes farthest, with its sign.
+  /// The largest distance with its sign.
   double farthest() const { return outward_ >= inward_ ? outward_ : -inward_; }
 
  private:

@@ -10,7 +10,7 @@ namespace vdb_offset {
 /// Which vertices move as one. Bit-equal positions (hard edges, UV seams, STL corners) by default.
 struct WeldOptions {
   bool enabled = true;
-  double tolerance = 0;  ///< World units, >= 0. Vertices closer than this are taken to stand where the first stands.
+  double tolerance = 0;      ///< World units, >= 0. Vertices closer than this get the position of the first one.
   bool close_seams = false;  ///< Without a tolerance: also borders that are one but for rounding (see seams.h).
   double precision = 0;      ///< For that: of a coordinate, relative to the largest; 0: as the coordinates have it.
 
@@ -18,10 +18,10 @@ struct WeldOptions {
   static WeldOptions automatic() { return {true, 0, true, 0}; }
 };
 
-/// What was done about borders that all but meet, see seams.h. Lengths in world units.
+/// Borders that all but meet, and what was done about them: see seams.h. Lengths in world units.
 struct SeamFacts {
-  std::size_t vertices = 0;       ///< Positions on borders that went to another one.
-  double widest = 0;              ///< The farthest that one of them was away from that.
+  std::size_t vertices = 0;       ///< Positions on borders that were moved to another one.
+  double widest = 0;              ///< The largest distance by which one was moved.
   std::size_t near_vertices = 0;  ///< Positions on borders that run along another one, close by, and stay.
   double widest_near = 0;         ///< How far apart these are at most.
 };
@@ -34,7 +34,7 @@ enum class Orient {
 
 /// What a mesh is made of, counted on its polygons after welding.
 struct MeshFacts {
-  std::size_t vertices = 0;         ///< As in the input.
+  std::size_t vertices = 0;         ///< Vertices of the input.
   std::size_t unused_vertices = 0;  ///< In no face.
   std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.
   SeamFacts seams;
@@ -47,10 +47,10 @@ struct MeshFacts {
   std::size_t boundary_left = 0;       ///< Boundary and non-manifold edges without all these.
   std::size_t non_manifold_left = 0;
   std::size_t degenerate_faces = 0;       ///< With a repeated corner or no area.
-  std::size_t orientation_conflicts = 0;  ///< Edges whose two faces run through it in the same direction.
+  std::size_t orientation_conflicts = 0;  ///< Edges that both faces run through in the same direction.
   std::size_t turned_triangles = 0;       ///< Turned round, for the distance's sign alone, to settle such conflicts.
   std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
-  std::size_t closed_components = 0;      ///< Those whose edges all have two faces, which agree about the outside.
+  std::size_t closed_components = 0;  ///< Components in which all edges have two faces that agree about the outside.
   std::size_t inside_out_components = 0;  ///< Closed ones that face the wrong way as a whole (see orientation.h).
   Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
   double diagonal = 0;                    ///< Of that box.
@@ -59,9 +59,11 @@ struct MeshFacts {
   std::size_t sliver_edges = 0;  ///< Shorter than kSliver of that.
   double longest_sliver = 0;     ///< The longest of those edges.
 
+  /// Share of the median edge below which an edge counts as a sliver: such edges hold back what is around them. Not
+  /// measured beside other shares.
   static constexpr double kSliver = 1e-5;
 
-  /// A tolerance (a power of ten) that makes one place of what is no farther apart than that.
+  /// A tolerance (a power of ten) that welds vertices no farther apart than `length`.
   static double tolerance_above(double length);
 
   bool closed() const { return boundary_left == 0 && non_manifold_left == 0; }

@@ -13,7 +13,7 @@ struct Metric {
   static Metric of_half_axes(double xy, double z);
 
   bool even() const;
-  /// Of a place in the file and back.
+  /// From a position in the file to the metric's space, and back.
   Vec3d to(const Vec3d& p) const;
   Vec3d from(const Vec3d& q) const;
 };

@@ -24,7 +24,7 @@ enum class Solver {
 enum class Border {
   Slide,  ///< It slides along the rest of the surface, or along that surface's extension.
   Fixed,  ///< It stays where it is.
-  Free,   ///< It goes as the part alone asks for.
+  Free,   ///< It moves as if the rest of the mesh were not there.
 };
 
 /// What happens where fronts meet.
@@ -35,20 +35,21 @@ enum class Collision {
 
 struct OffsetOptions {
   /// World units, one for all or one for each vertex of the input; negative is inward, 0 leaves a vertex where it is.
-  /// Vertices that move as one go their numbers' mean.
+  /// Vertices welded together use the mean of their distances.
   Distances distance;
   GridOptions grid;
-  /// Of each face: 1 for those that are offset; the others stay, and are in the way. Distances are those from the part.
-  /// Empty: all are.
+  /// One number a face: 1 for faces that are offset; the others stay, and are in the way. Distances are measured from
+  /// the part. Empty: all faces are offset.
   std::vector<std::uint8_t> only;
   Border border = Border::Slide;  ///< What the edge of that part does.
   SymmetryOptions symmetry;       ///< Which vertices stay in planes.
-  PolygonView obstacles;          ///< Other geometry that nothing may touch, or come nearer to than `clearance`.
+  PolygonView obstacles;          ///< Meshes that the offset must not touch, or come nearer to than `clearance`.
   double clearance = 0;           ///< World units, >= 0.
   bool off_source = false;        ///< For shells: neither the result nor the rim may meet the surface they come from.
-  bool inner_skin_last = false;   ///< For shells of two offsets: the last of several is one that the others keep off.
-  /// Distances are measured in its space, and so are states and all else that is told of them; not with obstacles,
-  /// shells or layers. Positions are the file's.
+  bool inner_skin_last = false;  ///< For shells of two offsets: the last of several is the inner skin, which the others
+                                 ///< must not meet.
+  /// The space in which distances are measured, and all figures about them; not with obstacles, shells or layers.
+  /// Positions are the file's.
   Metric metric;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
@@ -60,7 +61,7 @@ struct OffsetOptions {
   /// of the process (set_memory_limit in memory.h).
   std::size_t max_memory = 0;
   bool keep_field = false;    ///< Hand the distance field out with the result.
-  bool keep_paths = false;    ///< The same for the vertices' paths; not for layers.
+  bool keep_paths = false;    ///< Hand the vertices' paths out with the result; not for layers.
   ProgressCallback progress;  ///< See progress.h; may cancel.
 };
 

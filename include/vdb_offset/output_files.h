@@ -26,8 +26,8 @@ class OutputFiles {
   OutputFiles& operator=(const OutputFiles&) = delete;
   ~OutputFiles();
 
-  /// A new file for `target`, until then. `path` is what messages call it. Returns the temporary name. \throw
-  /// WriteError
+  /// Adds a new file for `target`, under a temporary name until commit(), which it returns. `path` is what messages
+  /// call it. \throw WriteError
   const std::string& add_file(const std::filesystem::path& target, const std::string& path);
   /// Makes the folders of a path that are not there yet; they stay if this is committed. \throw WriteError
   void add_folders(const std::filesystem::path& folder);
@@ -67,7 +67,7 @@ using Sink = std::function<void(std::string_view)>;
 /// Writes what `produce` hands to its sink to `path` through replace_file(). "-" is standard output. \throw WriteError
 void write_file(const std::string& path, const std::function<void(const Sink&)>& produce);
 
-/// The same for bytes that are all there.
+/// Writes bytes to `path` through replace_file(). "-" is standard output. \throw WriteError
 void write_file(const std::string& path, std::string_view bytes);
 
 /// Removes all temporary files and folders that are there now; no others can be put in place from then on. For signal

@@ -10,9 +10,9 @@ struct Precision {
 
   Kind kind = Kind::Double;
   int digits = 17;  ///< Significant decimal digits; for Kind::Digits, 1 .. 17.
-  /// Places are so many times as large as the file has them.
+  /// Positions are so many times as large as the file has them.
   Vec3d scale{1.0};
-  /// What has not moved is written anew as well, as in a file of another format; else it keeps its bytes.
+  /// Vertices that have not moved are written anew as well, as in a file of another format; else they keep their bytes.
   bool rounds_all = false;
 };
 

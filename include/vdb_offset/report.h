@@ -11,7 +11,7 @@
 
 namespace vdb_offset {
 
-/// How near the vertices in use came to the target.
+/// How near the vertices in use are to their target distances.
 struct AchievedSummary {
   std::size_t vertices = 0;  ///< In use.
   double share_reached = 0;
@@ -27,23 +27,23 @@ AchievedSummary summarise(const OffsetResult& result);
 /// What a report adds to a result: what was asked for, and where.
 struct RunFacts {
   std::string input, output;
-  std::string distance_text;  ///< As given.
+  std::string distance_text;  ///< The distance as the user gave it.
   double total_seconds = 0;
-  std::optional<ShellFacts> shell;                           ///< Of what was written, if it is one.
-  std::optional<IsoStatistics> inner_surface;                ///< Of a hollow solid, both skins of which were captured.
-  std::optional<LayerReport> layers;                         ///< The same, of cells in layers.
+  std::optional<ShellFacts> shell;             ///< If a shell was written.
+  std::optional<IsoStatistics> inner_surface;  ///< If a hollow solid was written that has two captured skins.
+  std::optional<LayerReport> layers;           ///< If layers were written.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };
 
 /// The report of a run as JSON text; the keys are documented in the README.
 std::string report_json(const OffsetResult& result, const RunFacts& run);
-/// The same for layers: what is said of vertices is that of the outermost surface.
+/// The report of layers as JSON text: figures about vertices are those of the outermost surface.
 std::string report_json(const LayersResult& result, const RunFacts& run);
 
-/// The same for a captured surface.
+/// The report of an iso-surface as JSON text.
 std::string report_json(const IsoStatistics& statistics, const RunFacts& run);
 
-/// What a check found, as JSON text; the same keys where they mean the same.
+/// The findings of a check as JSON text, with the keys of report_json() where they mean the same.
 std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);
 
 }  // namespace vdb_offset

@@ -20,8 +20,8 @@ struct OffsetResult {
   bool has_turned_faces = false;
   OffsetStatistics statistics;
   std::shared_ptr<DistanceField> field;  ///< Only with keep_field and a distance other than 0.
-  /// Only with keep_paths: the places that each input vertex came by on its march, from where it stood to where that
-  /// ended; after that, if it has been moved to keep the result valid, its position.
+  /// Only with keep_paths: the positions of each input vertex on its march, from that in the source to the last; and
+  /// behind these its final position, if it has been moved to keep the result valid.
   std::vector<std::vector<Vec3d>> paths;
 };
 

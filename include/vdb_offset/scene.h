@@ -16,13 +16,13 @@ namespace vdb_offset::scene {
 struct Distance {
   double value = 0;
   bool percent = false;
-  std::optional<DistanceExpression> expression;  ///< Then the two above do not count.
+  std::optional<DistanceExpression> expression;  ///< If set, value and percent do not count.
 
   double in_world_units(double diagonal) const;
 };
 /// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
 Distance parse_distance(const std::string& text);
-/// The same, or an expression. \throw InvalidExpression
+/// Parses a number as parse_distance() does, or else an expression. \throw InvalidExpression
 Distance parse_distance_or_expression(const std::string& text);
 
 /// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
@@ -41,7 +41,7 @@ struct Answer {
     Shift,   ///< The source vertex plus `shift`.
     Ray,     ///< At the vertex's own distance from the source vertex, on the ray from the origin.
     Lift,    ///< Over the square of half side `radius` around the origin in the plane z = 0: see Answer::lifted.
-    Under,   ///< As Ray, but on the way there no higher than z = `shift[2]`.
+    Under,   ///< On the ray of Ray, but no higher than z = `shift[2]`.
   };
   Form form = Form::Sphere;
   double radius = 0, major = 0, minor = 0;
@@ -51,8 +51,8 @@ struct Answer {
   Vec3d operator()(const Vec3d& source, double distance) const;
 
  private:
-  /// What lies in the square goes up by its distance; its edge, if `shift` is (1, 1, 0), as far out within the plane,
-  /// if (0, 0, 1), up as well, and if zero it stays. What lies beyond stays, too.
+  /// Vertices inside the square go up by their distance. Vertices on its edge go as far outward within the plane if
+  /// `shift` is (1, 1, 0), up if it is (0, 0, 1), and stay if it is zero. Vertices outside stay.
   Vec3d lifted(const Vec3d& source, double distance) const;
 };
 
@@ -62,10 +62,10 @@ struct Expectations {
   std::optional<Answer> answer;
   std::optional<double> min_gap, max_gap;  ///< Of a fit, world units: the least one that is left.
   std::optional<double> volume;            ///< Of a shell, world units^3.
-  std::optional<double> max_volume_error;  ///< As a share of that; needs it.
+  std::optional<double> max_volume_error;  ///< As a share of the volume; needs a volume.
 };
 
-/// A shape or a file, an offset, a grid, and what is expected: `scenes/*.json`, described in the README.
+/// A shape or a file, an offset, a grid, and expectations: `scenes/*.json`, described in the guide about scenes.
 struct Scene {
   std::string path, description;
   std::string mesh_path;  ///< Of a scene that names a file; else empty and `shape` holds the mesh.
@@ -74,15 +74,15 @@ struct Scene {
   GridOptions grid;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
-  std::vector<std::uint8_t> only;  ///< As in OffsetOptions.
+  std::vector<std::uint8_t> only;  ///< See OffsetOptions::only.
   Border border = Border::Slide;
   Polygons obstacle;
-  Polygons to_fit;  ///< What is nearer to this than the clearance is to give way (see fit()), instead of `distance`.
-  double clearance = 0;  ///< To either.
+  Polygons to_fit;       ///< Instead of `distance`: a mesh that the shape makes room for (see fit()).
+  double clearance = 0;  ///< From the obstacle, or from the mesh to fit.
   bool shell = false;    ///< Source and offset are to be joined into one solid.
   Expectations expect;
 
-  /// Its part of the options: all but the distance, into `options`. They refer to the scene.
+  /// Puts the scene's own options, all but the distance, into `options`, which then refer to the scene.
   void set(OffsetOptions& options) const;
 };
 
@@ -92,10 +92,10 @@ bool is_scene(const std::string& path);
 /// \throw ReadError if the file cannot be opened, InvalidInput (file, key, what was expected) for what is no scene.
 Scene read_scene(const std::string& path);
 
-/// What a result does not fulfil, in words; empty if all is as expected.
+/// The expectations that a result does not meet, in words; empty if it meets all.
 std::vector<std::string> unmet(const Expectations& expect, PolygonView source, const OffsetResult& result);
-/// The same for the shell of a scene that expects a volume: it is to be a solid, too, closed, manifold and oriented,
-/// that does not cross itself.
+/// The expectations that the shell of a scene with a volume does not meet, in words: it must also be closed, manifold
+/// and oriented, and must not cross itself.
 std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell);
 
 }  // namespace vdb_offset::scene

@@ -9,11 +9,11 @@ namespace vdb_offset::scene {
 // Procedural meshes, faces counter-clockwise seen from outside. Lengths in world units. Every count is the number
 // of faces along that direction. All throw InvalidInput for a count below its least or a length that is not positive.
 
-/// Icosahedron whose triangles are split in four `subdivisions` times, on a sphere: 10 * 4^n + 2 vertices.
+/// Icosahedron with its triangles split in four `subdivisions` times, on a sphere: 10 * 4^n + 2 vertices.
 Polygons icosphere(double radius, int subdivisions);
 /// Quads between rings of latitude, triangles at the poles (on the z axis).
 Polygons uv_sphere(double radius, int segments, int rings);
-/// Open: the upper half of such a sphere, whose border is a circle in the plane z = 0.
+/// Open: the upper half of uv_sphere(), with a circle in the plane z = 0 as its border.
 Polygons hemisphere(double radius, int segments, int rings);
 /// Axis-aligned box centred at the origin, `divisions` faces along each edge: quads, or triangles by pairs.
 Polygons box(const Vec3d& size, int divisions, bool triangles);
@@ -21,8 +21,8 @@ Polygons box(const Vec3d& size, int divisions, bool triangles);
 Polygons torus(double major, double minor, int segments, int sides);
 /// Along z, closed by flat caps of `rings` rings.
 Polygons cylinder(double radius, double height, int segments, int stacks, int rings);
-/// Along z, closed: a round block with a hole into it from above, whose floor is at z = 0 and whose mouth is at
-/// z = `depth`; `wall` thick around and below.
+/// Along z, closed: a round block with a hole from above; the hole has its floor at z = 0 and its mouth at z = `depth`;
+/// the block is `wall` thick around and below it.
 Polygons socket(double radius, double depth, double wall, int segments, int stacks);
 /// Two square boxes, one above the other, `gap` apart along z; the gap is centred at z = 0.
 Polygons plates(double width, double thickness, double gap, int divisions);

@@ -13,7 +13,7 @@
 
 namespace vdb_offset {
 
-/// What may be wrong with a result.
+/// Faults of a result, counted.
 struct FaultCounts {
   std::size_t inverted = 0, collapsed = 0;  ///< Faces.
   std::size_t crowded = 0;                  ///< Faces nearer to an obstacle than may be, or through the source.
@@ -29,7 +29,7 @@ struct LimitStatistics {
   std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
   bool more_source_crossings = false;     ///< There are more of them than these, and what is near is not looked at.
   std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
-  std::size_t followed_vertices = 0;      ///< That have begun with what became of a farther offset.
+  std::size_t followed_vertices = 0;      ///< Vertices with a warm start from a farther offset.
   std::size_t untanglings = 0;            ///< Rounds in which patches were untangled.
   std::size_t rounds = 0;                 ///< Rounds in which vertices were pulled back or let out again.
   std::size_t limited_vertices = 0;
@@ -53,8 +53,8 @@ struct FaceInteriorError {
   double mean = 0, quantile_99 = 0, worst = 0;
 };
 
-/// How much of an open surface, or of open curves, has room for a distance on either side: which of them faces point to
-/// is the file's say alone, and often wrong.
+/// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which
+/// side the faces point to, and is often wrong.
 struct SideRoom {
   bool known = false;          ///< It is looked for where little has reached its distance.
   double here = 1, there = 1;  ///< Shares of the vertices: on the side that was asked for, and on the other one.
@@ -63,7 +63,7 @@ struct SideRoom {
   bool suggests_other() const;
 };
 
-/// What is between a result and its obstacles. World units; triangles of the whole mesh, whether or not they move.
+/// Gaps between a result and its obstacles. World units; triangles of the whole mesh, whether or not they move.
 struct ObstacleFacts {
   double gap = 0, starting_gap = 0;  ///< Least distance to an obstacle: of the result as written, and of the input.
   std::size_t near = 0;              ///< Triangles of the result nearer than the clearance, or that meet an obstacle.
@@ -93,8 +93,8 @@ struct OffsetStatistics {
   std::array<double, kStageCount> seconds{};  ///< By Stage.
   std::array<std::size_t, kVertexStateCount> vertices_by_state{};
   std::size_t straight_vertices = 0;
-  std::size_t disagreeing_distances = 0;  ///< Vertices that move with one of which another distance was asked;
-                                          ///< of layers, at the height at which most do.
+  std::size_t disagreeing_distances = 0;  ///< Vertices welded with one that was given another distance; of
+                                          ///< layers, at the height with the most.
   LimitStatistics limit;
   BorderFacts borders;
   SideRoom room;

@@ -6,11 +6,12 @@
 
 namespace vdb_offset {
 
-/// All x with normal . x = offset; the normal has unit length.
+/// A plane: all x with normal . x = offset; the normal has unit length.
 struct SymmetryPlane {
   Vec3d normal{0.0};
   double offset = 0;
 
+  /// Signed height of a position above the plane, world units.
   double height(const Vec3d& x) const;
 };
 

@@ -11,7 +11,7 @@ namespace vdb_offset {
 using openvdb::math::Vec2d;
 using openvdb::math::Vec3d;
 
-/// Where there is no vertex, face or other thing that has a number.
+/// The number of no vertex, face or other thing.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace vdb_offset

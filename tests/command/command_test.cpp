@@ -337,7 +337,7 @@ TEST_CASE("command: --paths draws a line for each vertex that moves", "[command]
   check_failure(shell, "sphere.obj out2.obj -d 0.1 --paths p.ply", 1, "p.ply: expected a file of paths");
   check_failure(shell, "sphere.obj out2.obj -d 0.1 --paths out2.obj", 1, "file of its own");
   check_failure(shell, "sphere.obj out2.vtu --layers 2 --first-height 0.1 --paths p.obj", 1,
-                "--paths: expected it without --layers");
+                "--paths and --layers exclude each other");
 }
 
 TEST_CASE("command: check measures any two meshes", "[command]") {
@@ -624,7 +624,7 @@ TEST_CASE("command: heights of layers for each vertex from a file", "[command][l
   std::ofstream(shell.file("given/inner.txt")) << "0.01\n0.01\n0.01\n0.02\n0.02\n0.02\n";
   std::ofstream(shell.file("given/seam.txt")) << "@inner.txt\n0.05\n";
   CHECK_THAT(shell("seam.obj s.vtu --heights given/seam.txt").out,
-             Catch::Contains("2 vertices stand with one of which another distance was asked"));
+             Catch::Contains("2 vertices share a position with one that was given a different distance"));
   CHECK_THAT(shell("seam.obj s.vtu --layers 2 --total-thickness 0.05").out, !Catch::Contains("another distance"));
   check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height ply:thickness", 2, "sphere.obj");
   check_failure(shell, "sphere.obj new.vtu --layers 2 --first-height @missing.txt", 2, "missing.txt");
@@ -636,13 +636,13 @@ TEST_CASE("command: options of layers that do not go together", "[command][layer
   const ShellCommand shell;
   for (const auto& [arguments, message] :
        {std::pair{"out.vtu --distance 1", "--layers"},
-        {"out.obj --distance 1 --growth 1.2", "--growth: expected it with --layers"},
+        {"out.obj --distance 1 --growth 1.2", "--growth needs --layers"},
         {"out.vtu --layers 3", "expected one of --first-height"},
         {"out.vtu --layers 3 --first-height 1 --total-thickness 2", "expected one of"},
         {"out.vtu --layers 0 --first-height 1", "--layers: expected 1 to 1000"},
         {"out.vtu --layers 2 --first-height 1 --growth 0", "--growth: expected"},
         {"out.vtu --layers 2 --first-height 'x+' ", "--first-height"},
-        {"out.vtu --layers 2 --first-height 1 --shell", "--shell: expected it without"},
+        {"out.vtu --layers 2 --first-height 1 --shell", "--shell and --layers exclude each other"},
         {"out.vtu --layers 2 --first-height 1 --distance 1", "--distance: expected"},
         {"out.vts --layers 2 --first-height 1", "--structured"},
         {"out.vtu --layers 2 --first-height 1 --structured", "--structured"}})
@@ -708,23 +708,22 @@ TEST_CASE("command: options of captured surfaces that do not go together", "[com
   const ShellCommand shell;
   const std::string iso = "sphere.obj out.obj -d 0.1 --mode iso ";
   check_failure(shell, "sphere.obj out.obj -d 0.1 --mode front", 1, "--mode: expected 'topology' or 'iso'");
-  check_failure(shell, "sphere.obj out.obj -d 0.1 --adaptivity 0.5", 1, "--adaptivity: expected it with --mode iso");
-  check_failure(shell, "sphere.obj out.obj -d 0.1 --transport uv", 1, "--transport: expected it with --mode iso");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --adaptivity 0.5", 1, "--adaptivity needs --mode iso");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --transport uv", 1, "--transport needs --mode iso");
   for (const std::string option :
        {"--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge", "--solver eikonal",
         "--normals keep", "--states a.csv", "--paths a.obj", "--save-vdb a.vdb"})
-    check_failure(shell, iso + option, 1, option.substr(0, option.find(' ')) + ": expected it without --mode iso");
+    check_failure(shell, iso + option, 1, option.substr(0, option.find(' ')) + " and --mode iso exclude each other");
   check_failure(shell, "sphere.obj out.vtu --mode iso --layers 3 --first-height 0.1", 1,
-                "--layers: expected it without");
-  check_failure(shell, "sphere.obj out.obj -d 0.1 --keep-specks", 1, "--keep-specks: expected it with --mode iso");
+                "--layers and --mode iso exclude each other");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --keep-specks", 1, "--keep-specks needs --mode iso");
   check_failure(shell, iso + "--inside out", 1, "--inside: expected 'winding' or 'never'");
   check_failure(shell, iso + "--adaptivity 2", 1, "--adaptivity: expected a number from 0 to 1");
   check_failure(shell, iso + "--transport uv,", 1, "--transport: expected 'uv'");
   check_failure(shell, iso + "--transport uv", 1, "expected texture coordinates");
   check_failure(shell, "sphere.obj out.obj --mode iso -d 'x+1'", 1, "--distance: expected a number");
   check_failure(shell, "sphere.obj out.obj --mode iso -d 0", 1, "--distance: expected one other than 0");
-  check_failure(shell, "sphere.obj out.obj --mode iso --distance-from a.txt", 1,
-                "--distance-from: expected it without");
+  check_failure(shell, "sphere.obj out.obj --mode iso --distance-from a.txt", 1, "--distance-from and ");
   check_failure(shell, "sphere.obj out.obj --mode iso -d -2", 2, "expected a surface at distance -2");
   check_failure(shell, iso + "--voxel-size 0.0001 --max-memory 1G", 3, "a larger voxel size needs less");
   check_failure(shell, "absent.obj out.obj --mode iso -d 1", 2, "absent.obj");

@@ -19,7 +19,7 @@ struct Fixture {
   Surface surface;
   double h;
   Fixture(const Polygons& mesh, double voxel_size) : surface(build_surface(mesh.view(), {})), h(voxel_size) {
-    place(surface, h);
+    to_local_frame(surface, h);
   }
   Front front() const { return rasterise(surface, {h, 1.01 * h}); }
   DistanceField field(Reach reach, Solver solver = Solver::Closest) const {

@@ -106,7 +106,7 @@ TEST_CASE("plan: leaf nodes are estimated within a factor of two", "[plan]") {
                         {debris(), 0.004}}) {
     Surface surface = surface_of(c.mesh);
     const GridPlan plan = plan_grid(surface, c.distance, {}, 0, 1);
-    place(surface, plan.voxel_size);
+    to_local_frame(surface, plan.voxel_size);
     const DistanceField field =
         sweep(rasterise(surface, {plan.voxel_size, plan.band}), surface, {Solver::Closest, plan.reach});
     const auto truth = static_cast<double>(field.phi->tree().leafCount());

@@ -419,7 +419,7 @@ TEST_CASE("iso grid: phi is exact where an edge may cross, and has the right sig
   Surface surface = build_surface(scene::box({1, 0.7, 0.5}, 2, true).view(), {});
   constexpr double kVoxel = 0.05;
   const double level = GENERATE(0.12, -0.12);
-  place(surface, kVoxel);
+  to_local_frame(surface, kVoxel);
   const ClosestQuery query(surface);
   const Inside inside(surface);
   const Lattice lattice{kVoxel, GENERATE(Vec3d(0.0), Vec3d(-0.02, -0.01, -0.03))};
@@ -519,7 +519,7 @@ TEST_CASE("transport: texture, colours and materials are those of the closest po
 
   // The values are linear in the place, on every face; so those at the closest point are those of its place.
   Surface surface = build_surface(source.polygons.view(), {});
-  place(surface, 0.1);
+  to_local_frame(surface, 0.1);
   const auto closest_to = [&](const Vec3d& x) {
     TrianglePoint best = surface.closest_on(0, x - surface.origin);
     std::uint32_t face = surface.face[0];

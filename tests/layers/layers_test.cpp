@@ -255,7 +255,7 @@ TEST_CASE("layers: a hexahedron that is inside out in its middle alone is not va
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   mesh.add_face({0, 1, 2, 3});
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, 0.5);
+  to_local_frame(surface, 0.5);
   const ClosestQuery query(surface);
   const ConstrainedSurface constrained{query, surface, {}, {}, {}};
   std::vector<Vec3d> source;

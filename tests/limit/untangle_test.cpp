@@ -35,7 +35,7 @@ struct PlaneOffset {
   std::vector<Vec3d> displacement;
 
   PlaneOffset() : surface(build_surface(plane_grid().view(), {})) {
-    place(surface, 1);
+    to_local_frame(surface, 1);
     displacement.assign(surface.vertices.size(), Vec3d(0, 0, kDistance));
   }
   std::uint32_t vertex_at(double x, double y) const {

@@ -46,7 +46,7 @@ TEST_CASE("warm start: uneven distances follow what is nowhere nearer or on anot
 TEST_CASE("warm start: a way to a distance ends there exactly, on the straight way", "[warm_start][oracle]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 2, 5, 3);
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, 0.05);
+  to_local_frame(surface, 0.05);
   const ClosestQuery query(surface);
   const ConstrainedSurface constrained{query, surface, {}, {}, {}};
   double worst = 0;

@@ -234,7 +234,7 @@ TEST_CASE("part: what stays is in the way", "[part]") {
   CHECK(result.statistics.limit.left.total() == 0);
   for (const Vec3d& p : result.positions) CHECK(p[2] <= 0.2 + 1e-12);
   Surface surface = build_surface(Polygons{result.positions, plates.corners, plates.face_begin}.view(), {});
-  place(surface, 0.01);
+  to_local_frame(surface, 0.01);
   CHECK(CrossingFinder(surface, surface.vertices).all().empty());
 }
 

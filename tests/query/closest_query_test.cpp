@@ -16,7 +16,7 @@ namespace {
 /// Largest difference from brute force at random points in and around the mesh, with random hints.
 double worst_difference(const Polygons& mesh, int points, double margin) {
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, surface.facts.diagonal / 50);
+  to_local_frame(surface, surface.facts.diagonal / 50);
   const ClosestQuery query(surface);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -56,7 +56,7 @@ TEST_CASE("closest: equals brute force at any scale and place", "[closest]") {
 
 TEST_CASE("closest: many points at once have the answers of one by one, for any number of threads", "[closest]") {
   Surface surface = build_surface(scene::bumpy_sphere(1, 0.3, 1.5, 3, 4).view(), {});
-  place(surface, 0.05);
+  to_local_frame(surface, 0.05);
   const ClosestQuery query(surface);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(-1, 3);
@@ -79,7 +79,7 @@ TEST_CASE("closest: many points at once have the answers of one by one, for any 
 
 TEST_CASE("closest: points on ways up from the surface have the answers of one by one", "[closest]") {
   Surface surface = build_surface(scene::bumpy_sphere(1, 0.5, 2.5, 3, 4).view(), {});
-  place(surface, 0.05);
+  to_local_frame(surface, 0.05);
   const ClosestQuery query(surface);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -97,7 +97,7 @@ TEST_CASE("closest: points on ways up from the surface have the answers of one b
     begin.push_back(points.size());
   }
   std::vector<Closest> answers(points.size());
-  query.answer_along_ways(points, begin, hints, answers);
+  query.answer_along_paths(points, begin, hints, answers);
   double worst = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [distance, triangle, feature, tied, point] = answers[i];
@@ -118,7 +118,7 @@ struct Planes {
 };
 Planes try_planes(const Polygons& mesh, double size) {
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, surface.facts.diagonal / 50);
+  to_local_frame(surface, surface.facts.diagonal / 50);
   const ClosestQuery query(surface);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> signed_unit(-1, 1);
@@ -176,7 +176,7 @@ struct Fans {
 };
 Fans try_fans(const Polygons& mesh) {
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, surface.facts.diagonal / 50);
+  to_local_frame(surface, surface.facts.diagonal / 50);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> signed_unit(-1, 1);
   VertexFan fan;

@@ -18,7 +18,7 @@ struct Cuts {
 /// Cuts random ways out from near a mesh to beyond a distance, where they come to be at it.
 Cuts cut_ways(const Polygons& mesh, double distance) {
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, 0.05);
+  to_local_frame(surface, 0.05);
   const ClosestQuery query(surface);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> signed_unit(-1, 1);

@@ -119,7 +119,7 @@ TEST_CASE("shapes: closed ones are closed, oriented outwards and of the right vo
 TEST_CASE("shapes: open ones face the way they say", "[scene]") {
   const auto faces_towards = [](const Polygons& mesh, const Vec3d& inside) {
     Surface surface = build_surface(mesh.view(), {});
-    place(surface, surface.facts.diagonal / 64);
+    to_local_frame(surface, surface.facts.diagonal / 64);
     std::size_t away = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       away += surface.triangle_normals[t].dot(inside - surface.origin - surface.vertices[surface.triangles[t][0]]) <= 0;

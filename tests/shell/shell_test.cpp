@@ -296,7 +296,7 @@ TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way 
     }
     Surface surface = build_surface(mesh.view(), {});
     REQUIRE(surface.facts.turned_triangles > 0);
-    place(surface, 0.1);
+    to_local_frame(surface, 0.1);
     std::vector<Vec3d> source;
     for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
     std::vector<Vec3d> places = source;

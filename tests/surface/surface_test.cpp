@@ -184,8 +184,8 @@ TEST_CASE("surface: a few faces turned the wrong way are turned back, inside onl
   CHECK(mended.facts.orientation_conflicts > 0);
   CHECK(mended.facts.turned_triangles == (cube.face_count() + 4) / 5);
   CHECK(mended.facts.oriented());
-  place(good, 0.1);
-  place(mended, 0.1);
+  to_local_frame(good, 0.1);
+  to_local_frame(mended, 0.1);
   for (std::size_t t = 0; t < good.triangles.size(); ++t)
     CHECK((good.triangle_normals[t] - mended.triangle_normals[t]).length() < 1e-12);
   for (std::uint32_t e = 0; e < mended.next_around_edge.size(); ++e) {
@@ -278,7 +278,7 @@ TEST_CASE("surface: faces with a repeated corner leave a closed mesh closed", "[
 
 TEST_CASE("surface: pseudonormals tell the side at faces, edges and vertices", "[surface]") {
   Surface cube = build_surface(scene::box(Vec3d(2), 2, true).view(), {});
-  place(cube, 0.1);
+  to_local_frame(cube, 0.1);
   for (const Vec3d& outside : {Vec3d(3, 0.1, 0.2), Vec3d(2, 2, 0.1), Vec3d(2, 2, 2), Vec3d(1.1, -1.1, 1.05)})
     for (const double scale : {1.0, 0.3}) {  // outside, and the same direction inside
       const Vec3d x = outside * scale - cube.origin;

@@ -49,7 +49,7 @@ struct Scene {
   Scene() {
     const Polygons mesh = scene::bumpy_sphere(1, 0.4, 2.5, 5, 3);
     surface = build_surface(mesh.view(), {});
-    place(surface, 0.05);
+    to_local_frame(surface, 0.05);
     for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
   }
   double random() { return engine() / 4294967296.0 - 0.5; }
@@ -131,7 +131,7 @@ TEST_CASE("fault finder: an inverted, a collapsed and a misplaced one of a plate
   mesh.add_face({0, 1, 2});
   mesh.add_face({0, 2, 3});
   Surface surface = build_surface(mesh.view(), {});
-  place(surface, 0.5);
+  to_local_frame(surface, 0.5);
   std::vector<Vec3d> source;
   for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
   const auto of_input = [&](std::uint32_t v) { return surface.welded[v]; };

@@ -144,7 +144,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
     build.push_back(seconds_of([&] { surface = build_surface(mesh.view(), {}); }));
     const double h = surface.facts.diagonal / options.voxels_per_diagonal,
                  distance = surface.facts.diagonal * options.percent / 100, far = std::abs(distance) + 2 * h;
-    build.back() += seconds_of([&] { place(surface, h); });
+    build.back() += seconds_of([&] { to_local_frame(surface, h); });
     const std::size_t memory = current_memory();
     Front front;
     raster.push_back(seconds_of([&] { front = rasterise(surface, {h, 1.01 * h}); }));

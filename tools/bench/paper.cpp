@@ -106,7 +106,7 @@ void cut_at_surface(DistanceField& field) {
 Row paper_method(Surface surface, std::vector<Vec3d> points, double h, bool slab, const Answer& answer,
                  bool tight = false, std::vector<Vec3d>* arrived = nullptr) {
   Row row;
-  place(surface, h);
+  to_local_frame(surface, h);
   Front front;
   row.initialise = seconds_of([&] { front = rasterise(surface, {h, 1.01 * h, slab}); });
   const Reach reach{kDistance + 3 * h, 1.01 * h};

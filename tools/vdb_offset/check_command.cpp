@@ -11,9 +11,9 @@
 
 #include "job.h"
 #include "messages.h"
-#include "places.h"
 #include "request/command_line.h"
 #include "request/option_values.h"
+#include "run_files.h"
 #include "source.h"
 #include "terminal.h"
 #include "vdb_offset/check.h"
@@ -57,7 +57,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
               "expression [the median of what is found]",
               request.distance);
   line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", distance_xy);
-  line.option("--distance-z", "B", "The same along z", distance_z);
+  line.option("--distance-z", "B", "The distance along z, with --distance-xy", distance_z);
   line.option("--distance-from", "FILE",
               "Instead: a number for each vertex, as text or .npy, or ply:NAME, a vertex property of SOURCE",
               request.distance_from);
@@ -104,12 +104,11 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   line.flag("--json", "Print JSON, not text", request.json);
   line.flag("--strict", "Exit with 3 if a vertex in use is not at the distance", made.strict);
   if (!line.parse(argc, argv)) return std::nullopt;
-  require(!line.has("--clearance") || line.has("--obstacle"), "--clearance: expected it with --obstacle");
-  require(!line.has("--distance") || !line.has("--distance-from"),
-          "--distance-from: expected it or --distance, got both");
+  require(!line.has("--clearance") || line.has("--obstacle"), "--clearance needs --obstacle");
+  require(!line.has("--distance") || !line.has("--distance-from"), "--distance-from and --distance exclude each other");
   request.axes = parse_axes(distance_xy, distance_z);
-  require(!request.axes || !line.has("--distance"), "--distance: expected it without --distance-xy");
-  require(!request.axes || !line.has("--obstacle"), "--obstacle: expected it without --distance-xy");
+  require(!request.axes || !line.has("--distance"), "--distance and --distance-xy exclude each other");
+  require(!request.axes || !line.has("--obstacle"), "--obstacle and --distance-xy exclude each other");
   return request;
 }
 
@@ -126,10 +125,10 @@ void take_distances_of_meshes(CheckRequest& request) {
 void require_report_apart(const CheckRequest& request) {
   const Request& made = request.made;
   if (made.report.empty()) return;
-  std::vector<Place> read = surroundings_of(made);
+  std::vector<RunFile> read = surroundings_of(made);
   read.push_back({"SOURCE", made.input});
   read.push_back({"OFFSET", made.output});
-  require_apart(read, std::vector<Place>{{"--report", made.report}});
+  require_apart(read, std::vector<RunFile>{{"--report", made.report}});
   if (request.json && is_standard_output(made.report))
     throw UsageError("--report: expected a file of its own, got " + made.report +
                      ", which is that of --json (standard output)");
@@ -140,7 +139,7 @@ std::vector<Vec3d> positions_in_offset(const Request& made, const Polygons& sour
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
     return offset.positions;
-  if (auto places = io::places_in_triangles(source.view(), offset.view())) return std::move(*places);
+  if (auto places = io::positions_in_triangles(source.view(), offset.view())) return std::move(*places);
   throw InvalidInput(
       fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),

@@ -19,7 +19,7 @@ namespace {
 // Neither of the two below may be instrumented: it runs before the sanitizers do.
 
 /// A file that is opened later must not get the number of a standard stream that the caller has closed: messages would
-/// go into it. What holds the number instead fails whoever reads or writes, as the closed one would.
+/// go into it. What holds the number instead fails all reading and writing, as the closed one would.
 [[gnu::no_sanitize_address]] void fill_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)

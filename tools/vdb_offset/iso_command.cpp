@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "places.h"
+#include "run_files.h"
 #include "summary.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/iso_file.h"

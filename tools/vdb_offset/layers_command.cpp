@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "places.h"
+#include "run_files.h"
 #include "summary.h"
 #include "vdb_offset/curve_cells.h"
 #include "vdb_offset/curve_offset.h"

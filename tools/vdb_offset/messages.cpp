@@ -13,7 +13,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Of a line that is read, not searched; a name is known by less.
+// Bytes of a line that is read, not searched, and of a word in it; a name is known by less.
 constexpr std::size_t kLongestMessage = 500, kLongestWord = 160;
 
 // Why standard output did not take what was printed, or 0.
@@ -65,8 +65,7 @@ std::string shortened(std::string_view text, std::size_t most) {
 }
 
 std::string readable(std::string_view message) {
-  // What is far too long is not looked through.
-  constexpr std::size_t kMostLookedAt = 1 << 16;
+  constexpr std::size_t kMostLookedAt = 1 << 16;  // bytes; what is far too long is not looked through
   const std::string whole = shortened(message, kMostLookedAt);
   std::string line;
   for (std::size_t begin = 0; begin < whole.size();) {

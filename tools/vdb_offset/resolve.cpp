@@ -130,7 +130,7 @@ std::vector<Distances> geometric_heights(const Job& job) {
   return heights;
 }
 
-constexpr std::size_t kLongestHeight = 4096;
+constexpr std::size_t kLongestHeight = 4096;  // characters: twice the longest expression, or the longest path
 
 /// One height a line; empty lines and what is behind a # do not count. Other files are looked for beside this one.
 std::vector<Distances> read_heights(Job& job) {

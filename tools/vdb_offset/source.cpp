@@ -20,7 +20,7 @@ void add(Polygons& to, const Polygons& from) {
   }
 }
 
-/// \throw InvalidInput if there are open curves, but none whose ends are near each other
+/// Closes the curves with ends near each other. \throw InvalidInput if there are open curves, but none of this kind
 void close_curves(const Request& request, Source& source) {
   Curves curves = source.curves->file.polygons;
   const std::vector<OpenCurve> open = open_curves(curves.view());

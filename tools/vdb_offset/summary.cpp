@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "messages.h"
-#include "places.h"
+#include "run_files.h"
 #include "vdb_offset/curves.h"
 #include "vdb_offset/hollow.h"
 #include "vdb_offset/report.h"
@@ -67,7 +67,7 @@ void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
                "{} vertices at borders are one with others but for rounding, {:.2g} apart at most, and count as welded "
                "(--weld exact leaves these borders open)\n",
                seams.vertices, seams.widest);
-  constexpr double kFarBelow = 0.1;  // of the distance
+  constexpr double kFarBelow = 0.1;  // of the distance: nearer borders hold it back; not measured
   if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)
     fmt::print(out,
                "{} vertices are at borders that run along each other, {:.2g} apart at most: --weld {:g} closes them if "
@@ -112,7 +112,7 @@ std::string text_of(const SymmetryPlane& plane) {
 }
 
 void print_planes(std::FILE* out, const BorderFacts& borders) {
-  constexpr std::size_t kMostNamed = 6;
+  constexpr std::size_t kMostNamed = 6;  // planes on a line
   if (borders.planes.empty()) return;
   fmt::print(out, "planes     {} vertices stay in", borders.held_vertices);
   for (std::size_t i = 0; i < std::min(borders.planes.size(), kMostNamed); ++i)
@@ -183,7 +183,7 @@ void print_curve_ends(std::FILE* out, const Source& source) {
 
 void print_disagreeing(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
   if (statistics.disagreeing_distances > 0)
-    fmt::print(out, "{} {} stand with one of which another distance was asked; they go the mean\n",
+    fmt::print(out, "{} {} share a position with one that was given a different distance; the mean is used\n",
                statistics.disagreeing_distances, job.curves() ? "points" : "vertices");
 }
 
@@ -302,9 +302,11 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
   const AchievedSummary achieved = summarise(result);
   const char* const vertices = job.curves() ? "points" : "vertices";
   if (job.request.verbose) print_details(out, result.statistics, result.distances, job.curves());
-  const std::string asked = result.distances.uniform()
-                                ? fmt::format("{:.6g}", result.distances[0])
-                                : fmt::format("{:.6g} to {:.6g}", achieved.asked_least, achieved.asked_most);
+  const std::string least = fmt::format("{:.6g}", achieved.asked_least),
+                    most = fmt::format("{:.6g}", achieved.asked_most);
+  const std::string asked = result.distances.uniform() ? fmt::format("{:.6g}", result.distances[0])
+                            : least == most            ? least
+                                                       : fmt::format("{} to {}", least, most);
   fmt::print(out, "{}: {} {} at {}: {:.3f} % reached", outcome.to.mesh, achieved.vertices, vertices, asked,
              100 * achieved.share_reached);
   print_states(out, result);

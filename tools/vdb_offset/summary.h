@@ -27,11 +27,11 @@ void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double d
 void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds);
 
-/// The same of a hollow solid; `inner` is its inner skin if that was captured beside the outer one.
+/// What is printed of a hollow solid; `inner` is its inner skin if that was captured beside the outer one.
 void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
                           const IsoResult& captured, const IsoResult* inner, double total_seconds);
 
-/// The same of layers.
+/// What is printed of layers.
 void print_layers_summary(const Job& job, const LayersResult& result, const LayerReport& report, double total_seconds);
 
 }  // namespace vdb_offset::tool

@@ -47,7 +47,7 @@ ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::show(Stage stage, double share) {
   if (!active_) return;
-  constexpr int kWidth = 40;
+  constexpr int kWidth = 40;  // characters of the bar
   const int filled = static_cast<int>(share * kWidth);
   std::string line =
       fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);

@@ -30,7 +30,7 @@ struct Attributes {
   std::vector<std::string> lost;  ///< All that the file holds besides, in words; malformed attributes among it.
 };
 
-/// Goes over the file again for them, so that reading a mesh does not have to.
+/// Reads the attributes in a pass of their own, so that reading a mesh does not have to.
 Attributes read_attributes(const MeshFile& source);
 
 /// What faces are made of, by the name of their material.

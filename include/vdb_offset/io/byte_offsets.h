@@ -13,7 +13,8 @@ struct NumberTriple {
   std::uint64_t at[3];
 };
 
-/// Where many of them stand, in ascending order: one by one in a text, at equal distances in a binary file.
+/// Where the numbers of many points or normals stand, in ascending order: one by one in a text, at equal distances in a
+/// binary file.
 class ByteOffsets {
  public:
   ByteOffsets() = default;

@@ -51,15 +51,15 @@ struct CurveFile {
 /// for that; one that is compressed, or no regular file, is taken for a mesh. \throw ReadError
 bool holds_curves(const std::string& path);
 
-/// Text: a first line that is not two or three numbers is a title; behind # is a comment. A curve is closed if it ends
-/// where it begins, or if a comment before its first point holds the word "closed". With a title and, on the first line
-/// of numbers, the counts of the two lists that follow, each from the nose on, it is an airfoil in Lednicer's order:
-/// one curve, from the end of the first list over the nose to the end of the second. OBJ: an `l` element is a curve.
-/// SVG: see parse_svg().
-/// \throw ReadError if the file cannot be opened, InvalidInput (file, line, what was expected, what was found).
+/// Reads curves. Text: a first line that is not two or three numbers is a title; behind # is a comment. A curve is
+/// closed if it ends where it begins, or if a comment before its first point holds the word "closed". With a title and,
+/// on the first line of numbers, the counts of the two lists that follow, each from the nose on, it is an airfoil in
+/// Lednicer's order: one curve, from the end of the first list over the nose to the end of the second. OBJ: an `l`
+/// element is a curve. SVG: see parse_svg(). \throw ReadError if the file cannot be opened, InvalidInput (file, line,
+/// what was expected, what was found).
 CurveFile read_curves(const std::string& path);
 
-/// The same for bytes that are at hand; `name` is for messages.
+/// Reads curves as read_curves() does from bytes in memory; `name` is for messages.
 CurveFile parse_curves(const std::string& name, CurveFormat format, std::string bytes);
 
 /// Writes the curves with other positions to `path`, as write_mesh() does: in the source's own format every byte stays
@@ -71,7 +71,7 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
 /// Writes curves that come from no file: line elements in an OBJ, paths in an SVG, or text. \throw as the other one
 void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options = {});
 
-/// What write_curves() would keep of coordinates.
+/// The precision of coordinates that write_curves() writes.
 Precision precision_of_curves(const WriteOptions& options);
 
 }  // namespace vdb_offset::io

@@ -22,7 +22,7 @@ struct Transported {
 /// \throw InvalidOption for something required that the source does not have, or the format no place for.
 Transported read_transported(const MeshFile& source, const TransportRequest& request, Format target);
 
-/// What write_iso_surface() would keep of coordinates.
+/// The precision of coordinates that write_iso_surface() writes.
 Precision precision_of_iso(const std::string& path, const WriteOptions& options = {});
 
 /// Writes a captured mesh: triangles, normals (OBJ, OFF, PLY), and what it takes of the source.
@@ -36,7 +36,7 @@ Precision precision_of_iso(const std::string& path, const WriteOptions& options 
 WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
                               const IsoResult& captured, const WriteOptions& options = {});
 
-/// The same of a mesh that comes from no file.
+/// Writes an iso-surface of a mesh that comes from no file: triangles and normals. \throw as write_mesh()
 void write_iso_surface(const std::string& path, const IsoResult& captured, const WriteOptions& options = {});
 
 /// Writes a hollow solid: the skin that is its source with the source's faces in their order and all that the format

@@ -36,7 +36,8 @@ struct MeshFile {
 
   /// First byte of each coordinate of each vertex, in the order of `polygons.positions`.
   ByteOffsets position_at;
-  /// The same for the file's normals, in their own order. OBJ: `vn` lines; OFF, PLY: one a vertex; STL: one a facet.
+  /// First byte of each number of each of the file's normals, in their own order. OBJ: `vn` lines; OFF, PLY: one a
+  /// vertex; STL: one a facet.
   ByteOffsets normal_at;
   /// OBJ: the normal that each face corner names, kNoNormal where it names none. Empty if no corner does.
   std::vector<std::uint32_t> corner_normal;
@@ -57,7 +58,7 @@ inline constexpr std::uint32_t kNoNormal = 0xffffffff;
 /// found) for content that is no mesh. Never allocates more than a small multiple of the file's size.
 MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
 
-/// The same for bytes that are at hand; `name` is for messages.
+/// Reads a mesh as read_mesh() does from bytes in memory; `name` is for messages.
 MeshFile parse_mesh(const std::string& name, Format format, std::string bytes);
 
 /// What becomes of a file's normals where a face moved.
@@ -71,7 +72,7 @@ struct WriteOptions {
 
 struct WriteResult {
   std::string lost;                     ///< What the target cannot hold, in words; empty if nothing.
-  std::size_t disagreeing_normals = 0;  ///< OBJ normals whose vertices ask for different ones now; they get the mean.
+  std::size_t disagreeing_normals = 0;  ///< OBJ normals shared by vertices with different ones now; they get the mean.
 };
 
 /// Writes the mesh with other positions to `path`, through a temporary file that is renamed at the end; "-" is standard
@@ -84,10 +85,10 @@ struct WriteResult {
 WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
                        const WriteOptions& options = {});
 
-/// What write_mesh() would write in the source's own format.
+/// The bytes that write_mesh() writes in the source's own format.
 std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions);
 
-/// What write_mesh() would keep of coordinates.
+/// The precision of coordinates that write_mesh() writes.
 Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options = {});
 
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.

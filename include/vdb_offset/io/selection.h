@@ -23,8 +23,8 @@ struct Selector {
 /// \throw InvalidOption unless the text is `group=NAME`, `material=NAME` or `faces=FILE`.
 Selector parse_selector(const std::string& text);
 
-/// Of each face: 1 if any of the selectors names it. \throw InvalidOption for a name that no face has; it tells those
-/// that there are. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this mesh.
+/// One number a face: 1 if any of the selectors names it. \throw InvalidOption for a name that no face has; it tells
+/// those that there are. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this mesh.
 std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors);
 
 }  // namespace vdb_offset::io

@@ -22,7 +22,7 @@ namespace vdb_offset::io {
 WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
                         const WriteOptions& options = {});
 
-/// The same for a shell of plain polygons: positions, faces and, in OBJ and PLY, the parts.
+/// Writes a shell of plain polygons: positions, faces and, in OBJ and PLY, the parts. \throw as write_mesh()
 WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options = {});
 
 }  // namespace vdb_offset::io

@@ -10,6 +10,6 @@ namespace vdb_offset::io {
 /// Where a mesh's vertices stand in a file of its triangles alone, as STL is written of it: three vertices for each,
 /// face by face. Vertices of no face are where they are in the mesh. None if these are not its triangles, or if the
 /// corners of a vertex are apart.
-std::optional<std::vector<Vec3d>> places_in_triangles(PolygonView mesh, PolygonView triangles);
+std::optional<std::vector<Vec3d>> positions_in_triangles(PolygonView mesh, PolygonView triangles);
 
 }  // namespace vdb_offset::io

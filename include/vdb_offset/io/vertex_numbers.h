@@ -16,7 +16,7 @@ namespace vdb_offset::io {
 /// counted from 0). Never allocates more than a small multiple of `count`, or of the file's size if that is less.
 std::vector<double> read_vertex_numbers(const std::string& path, std::size_t count);
 
-/// The same for bytes that are at hand; `name` is for messages.
+/// Reads numbers as read_vertex_numbers() does from bytes in memory; `name` is for messages.
 std::vector<double> parse_vertex_numbers(const std::string& name, std::string_view bytes, std::size_t count);
 
 /// The numbers that a PLY file holds for its vertices under that name.

@@ -13,8 +13,8 @@ namespace vdb_offset::io {
 
 enum class VolumeFormat : std::uint8_t { Vtu, Msh, Cgns, Su2, Foam };
 
-/// The format that a path stands for: by the ending .vtu, .msh, .cgns or .su2, in any case; a path whose last component
-/// is `polyMesh` is a folder of OpenFOAM's.
+/// The format that a path stands for: by the ending .vtu, .msh, .cgns or .su2, in any case; a path with the last
+/// component `polyMesh` is a folder of OpenFOAM's.
 std::optional<VolumeFormat> volume_format_of(std::string_view path);
 
 /// What is written into a polyMesh.
@@ -47,7 +47,7 @@ VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh);
 
 enum class StructuredFormat : std::uint8_t { Vts, Plot3d };
 
-/// By the ending .vts or .xyz, in any case.
+/// The format that a path's ending stands for: .vts or .xyz, in any case.
 std::optional<StructuredFormat> structured_format_of(std::string_view path);
 
 /// Writes the block in the path's format.
@@ -55,7 +55,7 @@ std::optional<StructuredFormat> structured_format_of(std::string_view path);
 /// - .xyz: Plot3D, text, one block without a number of blocks, whole, three-dimensional, no blanking: ni nj nk, then
 /// all
 ///   x, all y and all z, with as many digits as read back to the same double. No fields.
-/// \throw InvalidInput for an unknown ending, or arrays whose lengths do not fit the block's; WriteError.
+/// \throw InvalidInput for an unknown ending, or arrays with lengths that do not fit the block's; WriteError.
 void write_structured(const std::string& path, const StructuredBlock& block);
 
 }  // namespace vdb_offset::io

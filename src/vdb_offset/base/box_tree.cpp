@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/index_set.h"
+
 namespace vdb_offset {
 namespace {
 
@@ -28,6 +31,7 @@ FloatBox BoxTree::around(const Siblings& siblings) {
 }
 
 void BoxTree::build(std::size_t count, const std::function<FloatBox(std::size_t)>& box_of) {
+  VDB_OFFSET_ASSERT(count > 0);
   levels_.clear();
   do {
     const bool lowest = levels_.empty();
@@ -45,6 +49,7 @@ void BoxTree::build(std::size_t count, const std::function<FloatBox(std::size_t)
 }
 
 void BoxTree::refit(std::span<const std::uint32_t> changed, const std::function<FloatBox(std::size_t)>& box_of) {
+  VDB_OFFSET_ASSERT(is_sorted_unique(changed));
   std::vector<std::uint32_t> nodes(changed.begin(), changed.end());
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     for (const auto child : nodes)

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/float_lanes.h"
 
 namespace vdb_offset {
@@ -32,7 +33,7 @@ struct FloatBox {
 /// level l - 1, those of level 0 being the boxes given.
 class BoxTree {
  public:
-  static constexpr int kWidth = 8;
+  static constexpr int kWidth = 8;  ///< Children of a box: two rows of lanes.
 
   /// Eight siblings' boxes, coordinate by coordinate. Boxes beyond the last are empty.
   struct Siblings {
@@ -42,17 +43,17 @@ class BoxTree {
   /// Builds the tree over box_of(0 .. count - 1), which is called in parallel. \pre count > 0
   void build(std::size_t count, const std::function<FloatBox(std::size_t)>& box_of);
 
-  /// Takes the boxes of these children of level 0 anew, and those above them. Sorted, no two the same.
+  /// Takes the boxes of some children of level 0 anew, and those above them. \pre `changed` is sorted, no two the same
   void refit(std::span<const std::uint32_t> changed, const std::function<FloatBox(std::size_t)>& box_of);
 
   /// Level 0 holds the boxes given, back() a single block.
   const std::vector<std::vector<Siblings>>& levels() const { return levels_; }
 
   /// Calls visit(i) for every box of a level (0: every box given) that meets `box`; touching counts. Box i of level
-  /// l > 0 is around the block levels()[l - 1][i].
+  /// l > 0 is around the block levels()[l - 1][i]. \pre `box` is bounded along one axis: else it meets empty boxes, too
   template <class Visit>
   void for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t of_level = 0) const;
-  /// The same until one is what is looked for; whether one is.
+  /// Calls is_it(i) for boxes of a level that meet `box`, until it returns true. Whether it did.
   template <class IsIt>
   bool any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level = 0) const;
   /// The same of the boxes given, without begin .. end - 1.
@@ -120,6 +121,7 @@ bool BoxTree::any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&&
   struct Node {
     std::uint32_t level, node;
   };
+  VDB_OFFSET_ASSERT(of_level < levels_.size());
   std::array<Node, kWidth * 12> stack;  // 8^12 boxes are more than can be
   std::size_t depth = 0;
   stack[depth++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};

@@ -6,22 +6,30 @@
 #include <numeric>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
+
 namespace vdb_offset {
 
 /// Sorts things into numbered buckets, from any number of threads: first each is counted, then each is given its place.
-/// Which of a bucket's places it is given depends on the threads; whoever needs an order sorts each bucket.
+/// The order within a bucket depends on the threads; where it matters, each bucket is sorted afterwards.
 class Buckets {
  public:
   explicit Buckets(std::size_t count) : begin_(count + 2, 0) {}
 
-  void count(std::size_t bucket) { std::atomic_ref(begin_[bucket + 2]).fetch_add(1, std::memory_order_relaxed); }
-  /// After all have been counted; returns how many.
+  void count(std::size_t bucket) {
+    VDB_OFFSET_ASSERT(bucket + 2 < begin_.size());
+    std::atomic_ref(begin_[bucket + 2]).fetch_add(1, std::memory_order_relaxed);
+  }
+  /// Ends the counting; returns how many things there are.
   std::uint32_t close() {
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     return begin_.back();
   }
+  /// A place for one thing of a bucket. \pre close() was called, and no more things than were counted ask for one
   std::uint32_t next(std::size_t bucket) {
-    return std::atomic_ref(begin_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
+    const std::uint32_t place = std::atomic_ref(begin_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
+    VDB_OFFSET_ASSERT(place < begin_.back());
+    return place;
   }
   /// Where each bucket begins, once all have been given their places; one more than buckets.
   std::vector<std::uint32_t> take() {

@@ -46,16 +46,16 @@ Real greater(const Real& a, const Real& b) {
   return b > a ? b : a;
 }
 
-/// A vector of so many dimensions as space has, of one number each or of several: what is a template over Real is then
-/// done for several things at once.
+/// A 3-D vector with lanes: a component is one number, or two or four of them. A function that is a template over Real
+/// then works on several things at once.
 template <class Real>
 struct Vec3Of {
   Real x, y, z;
 
-  /// `way` has an x, y and z at 0, 1 and 2.
-  template <class Place>
-  void set(std::size_t lane, const Place& way) {
-    x[lane] = way[0], y[lane] = way[1], z[lane] = way[2];
+  /// Sets one lane to a vector that has x, y and z at 0, 1 and 2.
+  template <class Vector>
+  void set(std::size_t lane, const Vector& v) {
+    x[lane] = v[0], y[lane] = v[1], z[lane] = v[2];
   }
   Real dot(const Vec3Of& o) const { return x * o.x + y * o.y + z * o.z; }
   Vec3Of cross(const Vec3Of& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }

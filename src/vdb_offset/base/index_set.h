@@ -3,13 +3,22 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "vdb_offset/base/assert.h"
 
 namespace vdb_offset {
 
 /// Indices of vertices or triangles: sorted, no two the same.
 using Indices = std::vector<std::uint32_t>;
+
+/// Whether indices are sorted, no two the same.
+inline bool is_sorted_unique(std::span<const std::uint32_t> indices) {
+  return std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>()) == indices.end();
+}
 
 inline void sort_unique(Indices& indices) {
   std::sort(indices.begin(), indices.end());
@@ -24,13 +33,14 @@ class IndexGatherer {
   explicit IndexGatherer(std::size_t count) : has_(count, 0) {}
 
   void add(std::uint32_t i) {
+    VDB_OFFSET_ASSERT(i < has_.size());
     if (has_[i]) return;
     has_[i] = 1;
     gathered_.push_back(i);
   }
-  /// In the order in which they came; grows by add().
+  /// The indices so far, in the order in which they came; add() makes it grow.
   const std::vector<std::uint32_t>& so_far() const { return gathered_; }
-  /// Hands them over, and begins anew.
+  /// Hands the indices over, sorted, and begins anew.
   Indices take() {
     for (const auto i : gathered_) has_[i] = 0;
     std::sort(gathered_.begin(), gathered_.end());

@@ -7,7 +7,7 @@
 #include "vdb_offset/memory_limit.h"
 namespace vdb_offset {
 
-/// Bytes that this process holds now (the same).
+/// Bytes that this process holds now (its resident set).
 std::size_t held_memory();
 
 /// Whether so many more bytes keep within the limit.
@@ -17,7 +17,7 @@ bool fits_memory(std::size_t bytes);
 /// the message.
 void require_memory(std::size_t bytes, const std::string& place);
 
-/// Appends to a list of which nobody knows how long it gets. \throw OutOfBudget before it passes the limit
+/// Appends to a list of unknown final length. \throw OutOfBudget before it passes the limit
 template <class T>
 void append_within_limit(std::vector<T>& list, const T& item, const char* place) {
   constexpr std::size_t kSmall = std::size_t{1} << 20;  // bytes that are not worth a question

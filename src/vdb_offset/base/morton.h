@@ -7,7 +7,7 @@
 
 namespace vdb_offset {
 
-/// Places of points along the Morton curve through a cube: near along the curve is near in space, for the caches' sake.
+/// Keys of points along the Morton curve through a cube: near along the curve is near in space, for the caches' sake.
 class MortonCurve {
  public:
   /// The cube from `lower` with the longest extent of the box; points outside are clamped.
@@ -25,7 +25,7 @@ class MortonCurve {
   }
 
  private:
-  static constexpr double kCells = 2097152;
+  static constexpr double kCells = 2097152;  // along each axis: 2^21, as 63 bits have room for
 
   /// Two zeros after each of 21 bits.
   static std::uint64_t spread(std::uint64_t x) {

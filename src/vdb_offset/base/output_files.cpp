@@ -62,7 +62,7 @@ struct OutputFiles::File {
 };
 
 std::filesystem::path replaced_path(const std::string& path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMostLinks = 40;  // in a row, as Linux follows at most
   std::error_code failed;
   std::filesystem::path target = std::filesystem::absolute(path, failed);
   const auto leads_nowhere = [&] {

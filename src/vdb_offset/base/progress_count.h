@@ -15,7 +15,7 @@ class JointProgress {
   /// Keeps a reference to the callback.
   JointProgress(const ProgressCallback& callback, std::size_t pieces) : callback_(callback), share_(pieces, 0.0) {}
 
-  /// What a piece of the work is to call. Empty if the callback is.
+  /// The callback for one piece of the work. Empty if the joint one is.
   ProgressCallback of(std::size_t piece);
 
  private:

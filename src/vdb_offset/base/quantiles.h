@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/spread.h"
 
@@ -27,21 +28,26 @@ struct Ranked {
 template <class Rank, class Term>
 class Quantiles {
  public:
+  /// The shares of a Spread, in its order.
   static constexpr std::array kShares = {0.0, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0};
   std::array<std::uint32_t, kShares.size()> keys{};
   double sum = 0;
 
   /// \pre count > 0
   Quantiles(std::size_t count, Rank ranked, Term term) : count_(count), ranked_(ranked), term_(term) {
-    // Fewer are sorted sooner than their halves are counted.
+    VDB_OFFSET_ASSERT(count > 0);
+    // Up to so many numbers are sorted sooner than the halves of their keys are counted, for which 2^16 counters have
+    // to be cleared and added up; not measured more closely.
     constexpr std::size_t kFew = 10000;
     if (count <= kFew) sort();
     else count_halves();
   }
 
  private:
+  // Values of half a key; and numbers in a block, which is counted by one thread: as many as there are counters to
+  // clear. Not measured beside other blocks.
   static constexpr std::size_t kHalf = std::size_t{1} << 16, kBlock = std::size_t{1} << 16;
-  static constexpr std::uint8_t kNoSlot = 255;
+  static constexpr std::uint8_t kNoSlot = 255;  // of an upper half that no quantile lies in
   using Counts = std::vector<std::uint64_t>;
 
   void sort() {
@@ -56,6 +62,7 @@ class Quantiles {
       std::uint64_t at = rank(kShares[i]);
       auto found = all.begin();
       for (; at >= found->times; ++found) at -= found->times;
+      VDB_OFFSET_ASSERT(found != all.end());
       keys[i] = found->key;
     }
   }
@@ -127,11 +134,11 @@ struct Weighted {
   double value, weight;
 };
 
-/// Of numbers that count by their weights, at least 0; those without any weight count alike. Values are found to 2^-32
-/// of the range that they take. Cost: O(values).
+/// Quantiles of numbers that count by their weights, at least 0; if all weights are 0, the numbers count alike. Values
+/// are found to 2^-32 of the range that they take. Cost: O(values).
 Spread spread_of(std::span<const Weighted> values);
 
-/// Of so many numbers, value(i) each, none of which is NaN. Cost: O(values).
+/// Quantiles of `count` numbers value(i), none of which is NaN. Cost: O(values).
 template <class Value>
 Spread spread_of(std::size_t count, Value&& value) {
   if (count == 0) return {};

@@ -25,18 +25,18 @@ struct Rounding : Precision {
     return in_file(p) * scale;
   }
 
-  /// What the file has of a place, without the scale.
+  /// The position as the file has it, without the scale.
   Vec3d in_file(const Vec3d& p) const {
     const Vec3d q = p / scale;
     return {(*this)(q[0]), (*this)(q[1]), (*this)(q[2])};
   }
 
-  /// What is kept of a place that something has gone to from `source`.
+  /// What is kept of the position of a vertex that was at `source` before.
   Vec3d operator()(const Vec3d& source, const Vec3d& place) const {
     return place == source && !rounds_all ? place : (*this)(place);
   }
 
-  /// Whether `stored` is what is written of a place that has not moved.
+  /// Whether `stored` is what is written for a vertex that has not moved from `place`.
   bool stays(const Vec3d& place, const Vec3d& stored) const {
     if (!rounds_all) return place == stored;
     if (scale != Vec3d(1.0)) return (*this)(place) == stored;

@@ -7,7 +7,7 @@
 
 namespace vdb_offset {
 
-/// Adds the time that it lives to one stage's seconds.
+/// Adds the time between its construction and its destruction to one stage's seconds.
 class StageTimer {
  public:
   StageTimer(std::array<double, kStageCount>& seconds, Stage stage)

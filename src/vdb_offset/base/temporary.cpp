@@ -34,8 +34,11 @@ std::atomic<Temporary::Known*> Temporary::first_known = nullptr;
 
 namespace {
 
+// Names of temporary files: hidden, and known again if a run is killed.
 constexpr std::string_view kPrefix = ".vdb_offset-";
+// Bytes of a target's ending that are kept; known endings, compressed ones among them, have 9 at most.
 constexpr std::size_t kLongestEnding = 16;
+// Random names that are tried before the folder is held to be at fault. One is enough but for chance.
 constexpr int kMostNames = 100;
 
 enum class Phase { Writing, PuttingInPlace, Ending };

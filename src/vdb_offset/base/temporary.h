@@ -20,7 +20,7 @@ class Temporary {
   ~Temporary();
 
   const std::string& path() const;
-  /// It stays.
+  /// The file or folder stays.
   void keep();
 
  private:
@@ -34,8 +34,9 @@ class Temporary {
 };
 
 /// Makes an empty file beside `target`, of a name that nobody can guess and that was not there before. It is as long as
-/// any other: what the file system takes for the target it takes for it. The target's ending stays last, as writers
-/// choose a format by it. Who may read and write it is up to the process's mask. \throw WriteError, which names `path`
+/// the target's own name: where the file system takes that one, it takes this one. The target's ending stays last, as
+/// writers choose a format by it. Who may read and write it is up to the process's mask. \throw WriteError, which names
+/// `path`
 Temporary new_temporary_file(const std::filesystem::path& target, const std::string& path);
 
 /// Removes files of new_temporary_file() that runs on this machine have left in a folder as they were killed.

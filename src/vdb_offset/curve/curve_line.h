@@ -7,20 +7,21 @@
 #include "vdb_offset/curve/polyline.h"
 #include "vdb_offset/curve/ribbon.h"
 
-/// From curves to the polyline that distances are measured from, for what offsets them and what checks that.
+/// From curves to the polyline that distances are measured from, for offsets of curves and for their check.
 namespace vdb_offset {
 
 /// Curves in their plane, joined.
 struct PlaneChains {
   PlaneFrame frame;
-  std::vector<Vec2d> points;  ///< Of the input.
+  std::vector<Vec2d> points;  ///< The input's, in the plane.
   CurveChains chains;
 };
-/// \throw InvalidInput for curves that do not lie in one plane, or have no segment
+/// Finds the curves' plane, and joins them in it. \throw InvalidInput for curves that do not lie in one plane, or have
+/// no segment
 PlaneChains chains_in_plane(CurvesView curves);
 
-/// What a mesh's facts are to it: "faces" are segments, components curves from end to end, boundary edges their ends,
-/// and non-manifold edges the points where more than two segments meet.
+/// Facts about curves in the terms of a mesh: "faces" are segments, components curves from end to end, boundary edges
+/// their ends, and non-manifold edges the points where more than two segments meet.
 MeshFacts facts_of(CurvesView curves, const PlaneChains& plane);
 
 /// A polyline, and how its vertices are related to the curves' points.
@@ -29,7 +30,7 @@ struct DrawnLine {
   std::vector<std::uint32_t> vertex;  ///< Of each point; kNone if it is on no curve.
   std::vector<Vec2d> source;          ///< Of each vertex, in the plane.
 };
-/// Puts the line into a frame whose origin is this, at so much of its z.
+/// Puts the line into the frame with this origin, at the height z.
 DrawnLine draw_line(const PlaneChains& plane, const Vec3d& origin, double z);
 
 }  // namespace vdb_offset

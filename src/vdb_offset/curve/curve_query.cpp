@@ -130,8 +130,8 @@ void CurveQuery::answer_together(std::span<const Vec3d> points, std::span<const 
   for (std::size_t i = 0; i < points.size(); ++i) answers[i] = (*this)(points[i], hints[i]);
 }
 
-void CurveQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t>,
-                                   std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
+void CurveQuery::answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t>,
+                                    std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
   answer_together(points, hints, answers);
 }
 

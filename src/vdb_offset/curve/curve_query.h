@@ -33,8 +33,8 @@ class CurveQuery {
                        std::span<Closest> answers) const;
 
   /// The same for points on ways up from the curves: see ClosestQuery.
-  void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
-                         std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
+  void answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                          std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 
   const Polyline& surface() const { return line_; }
 

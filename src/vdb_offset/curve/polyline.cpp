@@ -65,8 +65,8 @@ TrianglePoint Polyline::closest_on(std::uint32_t segment, const Vec3d& x) const 
   return detail::closest_on_segment(x, vertices[a], vertices[b], Feature::Vertex0, Feature::Vertex1, Feature::Face);
 }
 
-Vec3d Polyline::across(std::uint32_t, Feature feature, const Vec3d& away, const Vec3d& way) const {
-  return feature == Feature::Face ? away * (away.dot(way) / away.lengthSqr()) : way;
+Vec3d Polyline::across(std::uint32_t, Feature feature, const Vec3d& away, const Vec3d& displacement) const {
+  return feature == Feature::Face ? away * (away.dot(displacement) / away.lengthSqr()) : displacement;
 }
 
 Vec3d Polyline::pseudonormal(std::uint32_t segment, Feature feature) const {

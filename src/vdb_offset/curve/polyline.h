@@ -11,15 +11,15 @@
 
 namespace vdb_offset {
 
-/// Plane curves as the stages see them: what a Surface is to a mesh, with segments for triangles and the same names, so
-/// that what is written for one serves the other. Vertices stand in the frame of the ribbon that the field is made
-/// from, half way up it.
+/// Plane curves as the stages see them: what a Surface is to a mesh. Segments take the part of triangles, under the
+/// same names, so that one template serves both. Vertices are in the frame of the ribbon that the field is made from,
+/// half way up it.
 struct Polyline {
   Vec3d origin{0.0};
-  std::vector<Vec3d> vertices;          ///< Of the curves' points, those that segments use.
+  std::vector<Vec3d> vertices;          ///< The curves' points that segments use.
   std::vector<Segment> segments;        ///< Between vertices, in the order of the chains.
   std::vector<Vec3d> triangle_normals;  ///< Of each segment: unit length, to its right, outward.
-  std::vector<Vec3d> vertex_normals;    ///< Sum of those of the segments there.
+  std::vector<Vec3d> vertex_normals;    ///< Sum of the normals of the vertex's segments.
   std::vector<Vec3d> conormals;         ///< Along the curve at its ends, zero elsewhere; empty if nothing ends.
   std::vector<std::uint32_t> incident, incident_begin;  ///< Segments around vertices.
   std::vector<std::uint32_t> component;                 ///< Chain of each vertex; one of them where several meet.
@@ -48,7 +48,7 @@ struct Polyline {
     return off > 0 && off * off > kShare * squared_distance * (dx * dx + dy * dy);
   }
   /// See Surface::across.
-  Vec3d across(std::uint32_t segment, Feature feature, const Vec3d& away, const Vec3d& way) const;
+  Vec3d across(std::uint32_t segment, Feature feature, const Vec3d& away, const Vec3d& displacement) const;
   /// See Surface::pseudonormal.
   Vec3d pseudonormal(std::uint32_t segment, Feature feature) const;
 };

@@ -53,8 +53,8 @@ PlaneFrame tilted_frame(CurvesView curves, const UsedPoints& used) {
   const Vec3d along = p[farthest(used, [&](auto i) { return (p[i] - frame.origin).lengthSqr(); })] - frame.origin;
   frame.u = along.unit();
   const auto across = [&](std::uint32_t i) {
-    const Vec3d way = p[i] - frame.origin;
-    return way - frame.u * frame.u.dot(way);
+    const Vec3d from_origin = p[i] - frame.origin;
+    return from_origin - frame.u * frame.u.dot(from_origin);
   };
   Vec3d side = across(farthest(used, [&](auto i) { return across(i).lengthSqr(); }));
   if (!(side.length() > kFlat * along.length())) {

@@ -10,26 +10,26 @@
 
 namespace vdb_offset {
 
-/// The plane that curves lie in, with axes of its own. Those of a plane z = constant are x and y; a plane across
-/// another axis has the other two, so that coordinates are the input's to the last bit; any other has unit vectors.
+/// The plane that curves lie in, with two axes. A plane z = constant has the axes x and y; one across another axis has
+/// the other two, so that coordinates are the input's to the last bit; any other plane has unit vectors.
 struct PlaneFrame {
   Vec3d origin{0.0}, u{1, 0, 0}, v{0, 1, 0};
   Vec2d to_plane(const Vec3d& p) const { return {u.dot(p - origin), v.dot(p - origin)}; }
-  Vec3d to_space(const Vec2d& way) const { return u * way[0] + v * way[1]; }
+  Vec3d to_space(const Vec2d& vector) const { return u * vector[0] + v * vector[1]; }
 };
 
-/// \throw InvalidInput if points that curves use do not lie in one plane, to 1e-9 of their extent, by the point that is
-/// farthest off; or if one is not finite or an index is out of range.
+/// Finds the plane of curves. \throw InvalidInput if points that curves use do not lie in one plane, to 1e-9 of their
+/// extent, by the point that is farthest off; or if one is not finite or an index is out of range.
 PlaneFrame plane_of(CurvesView curves);
 
 /// A segment of a curve between two points, by their numbers: its right side, as one looks along it, is outward.
 using Segment = std::array<std::uint32_t, 2>;
 
-/// What curves are made of, once they are joined.
+/// Curves joined end to end.
 struct CurveChains {
-  std::vector<Segment> segments;  ///< In the order of the chains. Between the first points that stand at their places;
-                                  ///< none without a length.
-  std::vector<std::uint32_t> place;  ///< Of each point the first that stands where it does; kNone if no curve uses it.
+  std::vector<Segment> segments;       ///< In the order of the chains, between the first points at each position; none
+                                       ///< without a length.
+  std::vector<std::uint32_t> place;    ///< For each point the first one at its position; kNone if no curve uses it.
   std::size_t chains = 0, closed = 0;  ///< Curves from end to end; those among them that are closed.
   std::size_t ends = 0;                ///< Points where one segment ends, and no other begins.
   std::size_t branchings = 0;          ///< Points where more than two segments meet.
@@ -41,8 +41,8 @@ struct CurveChains {
 /// of a closed curve that runs counterclockwise.
 CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points);
 
-/// The ribbon that stands on segments, from z = 0 up to `height`: what is at a height in between is as far from it as
-/// from the curve in its plane, exactly. Point p becomes the vertices 2 p, below, and 2 p + 1.
+/// The ribbon that stands on segments, from z = 0 up to `height`: a point at a height in between is exactly as far from
+/// the ribbon as from the curve in its plane. Point p becomes the vertices 2 p, below, and 2 p + 1.
 Polygons make_ribbon(std::span<const Segment> segments, std::span<const Vec2d> points, double height);
 
 }  // namespace vdb_offset

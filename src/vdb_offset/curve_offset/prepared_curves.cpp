@@ -66,7 +66,7 @@ PreparedCurves::PreparedCurves(CurvesView curves, const OffsetOptions& options, 
   VDB_OFFSET_ASSERT(voxel_size > 0);
   {
     const StageTimer timer(statistics_.seconds, Stage::Rasterise);
-    place(ribbon_, voxel_size);
+    to_local_frame(ribbon_, voxel_size);
   }
   field_ = make_field(ribbon_, plan.grid, true, options, statistics_);
   drawn_ = draw_line(plane_, ribbon_.origin, kRibbonVoxels / 2 * voxel_size - ribbon_.origin[2]);

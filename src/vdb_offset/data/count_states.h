@@ -6,7 +6,7 @@
 
 namespace vdb_offset {
 
-/// Adds up what became of vertices.
+/// Adds the numbers of vertices in each state to the statistics.
 void count_states(std::span<const VertexState> states, OffsetStatistics& statistics);
 
 }  // namespace vdb_offset

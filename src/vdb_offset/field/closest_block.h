@@ -20,14 +20,15 @@ struct ClosestPoints {
   float p[3][kLeafVoxels];
 };
 
-/// What a leaf node's voxels hand on: closest points and, in the leaf node's own buffer, their triangles. A look at a
-/// neighbour would else wait for its leaf node to come from memory, just to learn where its buffer is.
+/// What the voxels of a leaf node hand on: closest points and, in the leaf node's own buffer, the triangles that these
+/// are on. The pointer to that buffer is kept here, as reading a neighbour would else wait for its leaf node to come
+/// from memory first.
 struct LeafPoints {
   ClosestPoints* points = nullptr;
   std::int32_t* id = nullptr;
 };
 
-/// A triangle and the side of it: as it is for phi >= 0, its complement for phi < 0.
+/// A triangle's index with the side of it: the index itself for phi >= 0, its complement for phi < 0.
 inline std::int32_t with_side(std::uint32_t triangle, bool inside) {
   const auto index = static_cast<std::int32_t>(triangle);
   return inside ? ~index : index;

@@ -10,9 +10,9 @@
 
 namespace vdb_offset {
 
-/// What a plan depends on beside the surface and its field.
+/// Further sizes that a plan depends on.
 struct PlanContext {
-  std::size_t bytes_beside = 0;  ///< That the run needs for other things.
+  std::size_t bytes_beside = 0;  ///< Bytes that the run needs for other things.
   bool slab = false;             ///< The surface is a ribbon, and its field one leaf node thick (see ribbon.h).
 };
 
@@ -21,43 +21,45 @@ struct PlanContext {
 /// The grid serves directions only, distances are exact without it, so its voxel size is a smoothing length: the
 /// distance itself (the farthest, where they differ), no finer than half the median edge or diagonal / 1024, no coarser
 /// than diagonal / 64 or distance / 16, whichever is larger, and coarser still where `max_memory` (bytes; 0 for no
-/// limit) asks for it. A size that the caller gives is taken as it is. `farthest` is how far vertices go on each side,
-/// world units; not 0 on both.
-/// \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
+/// limit) asks for it. A size that the caller gives is taken as it is. `farthest` is the largest distance on each side,
+/// world units; not 0 on both. \throw InvalidInput for options out of range, OutOfBudget if the run would not fit.
 GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOptions& options, std::size_t max_memory,
                    int threads, const PlanContext& context = {});
-/// The same for one distance, negative inward.
+/// Plans the grid for one distance, negative inward.
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
                    int threads);
 
 /// \throw InvalidInput for a diagonal, a distance (world units, > 0) or a grid that no field can be made for.
 void require_plannable(double diagonal, double distance, const GridOptions& options);
 
-/// As a share of the distance, or of a voxel of a new surface: by no more may coordinates be rounded.
+/// Share of the distance, or of a voxel of an iso-surface, by which coordinates may be rounded at most: with more, the
+/// result would be a matter of rounding. Not measured.
 inline constexpr double kMostRounding = 0.25;
-/// \throw InvalidInput, with both figures, if coordinates are rounded by more than that share of a length.
+/// Refuses a length that coordinates are too coarse for. \throw InvalidInput, with both figures, if they are rounded by
+/// more than kMostRounding of it
 void require_fine_coordinates(double rounding, double length, const char* of_what);
-/// The largest absolute value of any coordinate.
+/// The largest absolute value of a coordinate of the surface.
 double farthest_coordinate(const MeshFacts& facts);
 
-/// A voxel size, world units, and why.
+/// A voxel size, world units, and the reason for it.
 struct VoxelSize {
   double size;
   std::string reason;
 };
-/// The same choice, memory aside, for what has this median edge and this diagonal. \throw InvalidInput as plan_grid()
+/// Chooses the voxel size as plan_grid() does, memory aside, for a mesh with this median edge and this diagonal. \throw
+/// InvalidInput as plan_grid()
 VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options);
 
 /// Bytes that a surface takes with all that is made from it.
 std::size_t surface_bytes(const Surface& surface);
 
-/// Bytes of so many layers of cells on a mesh.
+/// Bytes of a number of layers of cells on a mesh.
 std::size_t layers_bytes(PolygonView mesh, std::size_t layers);
 
-/// So many results are made valid at the same time; each takes memory.
+/// Results that are made valid at the same time; each takes memory. Not measured beside other numbers.
 inline constexpr std::size_t kResultsTogether = 4;
 
-/// What a vertex's path takes that is kept, handed out and written; measured: 1,300 with the file's text.
+/// Bytes of a vertex's path that is kept, handed out and written; measured: 1,300 with the file's text.
 inline constexpr std::size_t kPathBytes = 1300;
 
 /// Bytes of results beside the first.

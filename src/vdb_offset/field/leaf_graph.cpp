@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
@@ -23,6 +24,7 @@ void LeafIndex::reserve(std::size_t count) {
 }
 
 std::int32_t LeafIndex::find_or_insert(const openvdb::Coord& origin, std::int32_t leaf) {
+  VDB_OFFSET_ASSERT(leaf >= 0);
   reserve(taken_ + 1);
   Slot& slot = slots_[slot_of(origin)];
   if (slot.leaf >= 0) return slot.leaf;
@@ -37,16 +39,19 @@ std::size_t LeafIndex::slot_of(const openvdb::Coord& origin) const {
   std::uint64_t hash = 0;
   for (int k = 0; k < 3; ++k)
     hash = (hash ^ static_cast<std::uint32_t>(origin[k] / kLeafWidth)) * 0x9e3779b97f4a7c15ULL;
+  VDB_OFFSET_ASSERT(std::has_single_bit(slots_.size()) && 2 * taken_ <= slots_.size() + 1);
   std::size_t slot = (hash ^ hash >> 32) & (slots_.size() - 1);
   while (slots_[slot].leaf >= 0 && slots_[slot].origin != origin) slot = (slot + 1) & (slots_.size() - 1);
   return slot;
 }
 
 LeafGraph::LeafGraph(FieldGrids& grids) : grids_(grids), grid_leaves_(grids.phi->tree().leafCount()) {
+  VDB_OFFSET_ASSERT(grids.closest->tree().leafCount() == grid_leaves_);
   leaves_.reserve(grid_leaves_);
   index_.reserve(2 * grid_leaves_);
   auto closest = grids.closest->tree().beginLeaf();
   for (auto phi = grids.phi->tree().beginLeaf(); phi; ++phi, ++closest) {
+    VDB_OFFSET_ASSERT(phi->origin() == closest->origin());
     index_.find_or_insert(phi->origin(), static_cast<std::int32_t>(leaves_.size()));
     leaves_.push_back({phi->origin(), phi.getLeaf(), closest.getLeaf()});
   }
@@ -55,6 +60,7 @@ LeafGraph::LeafGraph(FieldGrids& grids) : grids_(grids), grid_leaves_(grids.phi-
 }
 
 std::int32_t LeafGraph::touch_neighbour(std::int32_t leaf, int face) {
+  VDB_OFFSET_ASSERT(static_cast<std::size_t>(leaf) < leaves_.size() && face < open_faces());
   const GraphLeaf& from = leaves_[static_cast<std::size_t>(leaf)];
   const auto known = from.neighbour[static_cast<std::size_t>(face)];
   if (known >= 0) return known;
@@ -83,7 +89,7 @@ void LeafGraph::make_new_leaves() {
       64);
 }
 
-/// Tells a leaf node who its neighbours are, and tells these, unless they are new themselves and find out on their own.
+/// Links a leaf node to its neighbours, and these to it, unless they are new themselves and are linked on their own.
 void LeafGraph::link(std::size_t leaf, std::size_t first_new) {
   for (int face = 0; face < kFaces; ++face) {
     const std::int32_t found = index_.find(step(leaves_[leaf].origin, face));

@@ -28,9 +28,9 @@ struct GraphLeaf {
 class LeafIndex {
  public:
   void reserve(std::size_t count);
-  /// The leaf node that stands there already, or else `leaf`, which does now.
+  /// The leaf node that has this origin already, or else `leaf`, which is inserted.
   std::int32_t find_or_insert(const openvdb::Coord& origin, std::int32_t leaf);
-  /// -1 if there is none.
+  /// The leaf node with this origin, or -1.
   std::int32_t find(const openvdb::Coord& origin) const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 using openvdb::Coord;
 
-constexpr std::int64_t kKeyBias = 1 << 20;
+constexpr std::int64_t kKeyBias = 1 << 20;  // makes coordinates of leaf nodes, 21 bits each, positive
 
 /// A triangle that may lie within the band of a leaf node.
 struct Entry {
@@ -129,7 +129,7 @@ std::vector<Run> sort_chunk(std::vector<Entry>& entries, std::uint32_t index, Ch
 }
 
 Bins sort_into_leaf_nodes(const Surface& surface, const RasteriseOptions& options, Progress& progress) {
-  constexpr std::size_t kChunk = 1024;
+  constexpr std::size_t kChunk = 1024;  // triangles that one thread sorts; not measured beside other numbers
   const std::size_t count = surface.triangles.size(), chunks = (count + kChunk - 1) / kChunk;
   Bins bins;
   bins.chunks.resize(chunks);
@@ -202,7 +202,7 @@ class LeafCanvas {
   /// Of faces equally near, but for rounding, the input's first wins: where sheets lie back to back, one of them then
   /// decides all along which side is outside.
   bool wins(std::uint32_t triangle, double squared, int n) const {
-    constexpr double kTie = 1e-12;
+    constexpr double kTie = 1e-12;  // relative, of squared distances: what rounding leaves
     if (squared < squared_[n] * (1 - kTie)) return true;
     return squared <= squared_[n] * (1 + kTie) && surface_.face[triangle] < surface_.face[triangle_[n]];
   }

@@ -18,7 +18,7 @@ struct RasteriseOptions {
 ///
 /// Triangles are sorted into leaf nodes, then each leaf node is filled on its own: no locks, and the same result
 /// for any number of threads. Cost: O(voxels of the band times the triangles near each).
-/// \pre the surface is placed for this voxel size.
+/// \pre the surface is in the local frame of this voxel size (to_local_frame()).
 Front rasterise(const Surface& surface, const RasteriseOptions& options, const ProgressCallback& progress = {});
 
 }  // namespace vdb_offset

@@ -25,7 +25,7 @@ constexpr float kWorthAVisit = 0.999f;
 // How much nearer, in voxels, a neighbour's closest point must be for the neighbour's triangle to be tried.
 constexpr double kTolerance = 0.002;
 
-/// Of so many leaf nodes together, to ask for memory more seldom.
+// Leaf nodes for which memory is asked at once; not measured beside other numbers.
 constexpr std::size_t kPool = 16;
 
 class ClosestSweep {
@@ -112,7 +112,7 @@ class ClosestSweep {
   }
 
   /// Hands closest points on within one leaf node, and tells what those across its faces would learn.
-  News relax(std::size_t leaf) {
+  Pending relax(std::size_t leaf) {
     ClosestBlock block;
     prefetch(leaf);
     if (points_[leaf].id == nullptr) {
@@ -134,7 +134,7 @@ class ClosestSweep {
     });
     sweep(block);
     store(leaf, block);
-    return find_news(block);
+    return find_pending(block);
   }
 
   /// From row to row in the four directions along i and j, and along each row both ways whenever it learns something. A
@@ -148,12 +148,13 @@ class ClosestSweep {
           const bool down_i = pass & 2, down_j = pass & 1;
           const int i = down_i ? 7 - a : a, j = down_j ? 7 - b : b, n = padded_index(i, j, 0), row = n / kPaddedWidth;
           const int before_i = down_i ? kPaddedWidth : -kPaddedWidth, before_j = down_j ? 1 : -1;
-          bool news = pass == 0 && block.any_known(n);
+          bool learned = pass == 0 && block.any_known(n);
           // It has been asked along i in the pass before this one, along j two passes before.
-          if (!down_j || changed[row + before_i] >= pass) news |= block.offer_row(i, j, n, n + kPaddedWidth * before_i);
+          if (!down_j || changed[row + before_i] >= pass)
+            learned |= block.offer_row(i, j, n, n + kPaddedWidth * before_i);
           if (!down_i || changed[row + before_j] >= pass - 1)
-            news |= block.offer_row(i, j, n, n + kPaddedWidth * before_j);
-          if (!news) continue;
+            learned |= block.offer_row(i, j, n, n + kPaddedWidth * before_j);
+          if (!learned) continue;
           block.offer_along_row(i, j, n);
           changed[row] = pass;
         }
@@ -210,20 +211,20 @@ class ClosestSweep {
     });
   }
 
-  /// What voxels across the faces would take over from here.
-  News find_news(const ClosestBlock& block) const {
-    News news;
+  /// Distances at which voxels across the faces would take over a closest point from this leaf node.
+  Pending find_pending(const ClosestBlock& block) const {
+    Pending pending;
     for (int face = 0; face < kFaces; ++face) {
-      const float squared = face < 4 ? nearest_row_news(block, face) : nearest_end_news(block, face);
-      news[static_cast<std::size_t>(face)] = std::sqrt(squared);  // of infinity, too
+      const float squared = face < 4 ? nearest_across_rows(block, face) : nearest_across_ends(block, face);
+      pending[static_cast<std::size_t>(face)] = std::sqrt(squared);  // of infinity, too
     }
-    return news;
+    return pending;
   }
 
   /// Across the faces along i and j, where rows lie in the face.
-  float nearest_row_news(const ClosestBlock& block, int face) const {
+  float nearest_across_rows(const ClosestBlock& block, int face) const {
     const int axis = face / 2, out = face % 2 ? kLeafWidth : -1;
-    Lanes nearest = kNoNews + Lanes{};
+    Lanes nearest = kNonePending + Lanes{};
     for (int a = 0; a < kLeafWidth; ++a)
       for (int k = 0; k < kLeafWidth; k += kLanes) {
         const int i = axis == 0 ? out : a, j = axis == 0 ? a : out, theirs = padded_index(i, j, k),
@@ -237,9 +238,9 @@ class ClosestSweep {
   }
 
   /// Across the faces along k, where rows end.
-  float nearest_end_news(const ClosestBlock& block, int face) const {
+  float nearest_across_ends(const ClosestBlock& block, int face) const {
     const int k = face % 2 ? kLeafWidth : -1;
-    float nearest = kNoNews;
+    float nearest = kNonePending;
     for_each_row([&](int i, int j, int, int) {
       const int theirs = padded_index(i, j, k), mine = across(face, theirs);
       const float offered = block.squared(i, j, k, mine);
@@ -295,7 +296,8 @@ class ClosestSweep {
     return x * x + y * y + z * z;
   }
 
-  /// The triangle of voxel (i, j, k) itself, or of one of the three settled before it whose closest point is nearer.
+  /// The triangle of voxel (i, j, k) itself, or of one of the three settled before it, if that one's closest point is
+  /// nearer.
   static std::uint32_t best_start(const float (&p)[3][kLeafVoxels], const std::int32_t* id, int i, int j, int k) {
     const int n = i << 6 | j << 3 | k, ijk[3] = {i, j, k};
     std::uint32_t triangle = triangle_of(id[n]);

@@ -62,7 +62,7 @@ class EikonalSweep {
  private:
   /// Solves one leaf node with its neighbours as they are, in the eight orders of (+-i, +-j, +-k) in turn until one
   /// changes nothing, and tells what those across its faces may learn.
-  News relax(std::size_t leaf) {
+  Pending relax(std::size_t leaf) {
     EikonalBlock block(leaf < front_leaves_ && !visited_[leaf]);
     if (leaf < front_leaves_) visited_[leaf] = 1;
     else if (graph_[leaf].phi->buffer().empty()) allocate(leaf);
@@ -70,7 +70,7 @@ class EikonalSweep {
     for (int order = 0, idle = 0; idle < 8; order = (order + 1) % 8)
       idle = sweep_once(leaf, block, order) ? 0 : idle + 1;
     store(leaf, block);
-    return find_news(block);
+    return find_pending(block);
   }
 
   void allocate(std::size_t leaf) {
@@ -146,11 +146,11 @@ class EikonalSweep {
 
   /// A neighbour may improve if one of its voxels lies farther out than one here that has changed. A voxel that is not
   /// set yet is out of reach if the least step, 1 / sqrt(3) of a voxel, leads beyond it.
-  News find_news(const EikonalBlock& block) const {
-    constexpr float kLeastStep = 0.57f;
-    News news;
+  Pending find_pending(const EikonalBlock& block) const {
+    constexpr float kLeastStep = 0.57f;  // voxels; a little below 1 / sqrt(3)
+    Pending pending;
     for (int face = 0; face < kFaces; ++face) {
-      float nearest = kNoNews;
+      float nearest = kNonePending;
       for_each_halo_voxel(face, [&](int padded, int) {
         const int mine = across(face, padded);
         if (!block.changed[mine] || block.size[mine] == kUnset) return;
@@ -158,9 +158,9 @@ class EikonalSweep {
                                                            : block.size[mine] < block.size[padded];
         if (improves) nearest = std::min(nearest, block.size[mine]);
       });
-      news[static_cast<std::size_t>(face)] = nearest;
+      pending[static_cast<std::size_t>(face)] = nearest;
     }
-    return news;
+    return pending;
   }
 
   LeafGraph graph_;

@@ -11,7 +11,7 @@ namespace {
 std::shared_ptr<const IsoSource> unscaled(const Surface& scaled, const Metric& metric, Orient orient) {
   Surface surface = scaled;
   for (Vec3d& v : surface.vertices) v = metric.from(v + scaled.origin);
-  place_in_frame(surface, metric.from(scaled.origin));
+  to_frame(surface, metric.from(scaled.origin));
   return std::make_shared<const IsoSource>(std::move(surface), std::nullopt, 0.0, orient);
 }
 

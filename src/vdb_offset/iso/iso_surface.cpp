@@ -150,7 +150,7 @@ void IsoSurfaceMaker::prepare() {
   const IsoPlan plan = plan_voxels(surface, options_, solids.has_inside);
   statistics.plan = plan;
   h_ = plan.voxel_size;
-  place(surface, h_);
+  to_local_frame(surface, h_);
   result_.source =
       std::make_shared<const IsoSource>(std::move(surface), solids.solidity, options_.distance, options_.orient);
   if (const auto& boundary = result_.source->boundary) {

@@ -291,7 +291,7 @@ class BoundaryFinder {
 
   void build() {
     boundary_.surface = build_surface(kept_.view(), {});
-    place_in_frame(boundary_.surface, Vec3d(0.0));
+    to_frame(boundary_.surface, Vec3d(0.0));
     boundary_.surface.origin = given_.origin;
     boundary_.surface.facts.lower += given_.origin;
     boundary_.surface.facts.upper += given_.origin;

@@ -256,9 +256,9 @@ class ExpressionReader {
   static std::string shown(std::string_view token) {
     return token.empty() ? "the end" : fmt::format("'{}'", shortened(token));
   }
-  /// As a message of one line can show it.
+  /// The text as a message of one line can show it.
   static std::string shortened(std::string_view text) {
-    constexpr std::size_t kShown = 200;
+    constexpr std::size_t kShown = 200;  // characters, of a line that is read
     std::string line(text.substr(0, kShown));
     std::replace_if(
         line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');

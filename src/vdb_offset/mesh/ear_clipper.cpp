@@ -71,7 +71,7 @@ class CornerTree {
   }
 
  private:
-  static constexpr std::size_t kLeaf = 8;
+  static constexpr std::size_t kLeaf = 8;  // corners in a lowest box; not measured beside other numbers
   struct Node {
     Box2 box;
     std::uint32_t begin = 0, end = 0, left = 0;
@@ -89,8 +89,8 @@ class CornerTree {
     }
     const std::size_t middle = (begin + end) / 2;
     const bool wide = node.box.upper.x - node.box.lower.x > node.box.upper.y - node.box.lower.y;
-    const auto place = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(place(begin), place(middle), place(end), [&](std::uint32_t i, std::uint32_t j) {
+    const auto item_at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(item_at(begin), item_at(middle), item_at(end), [&](std::uint32_t i, std::uint32_t j) {
       return wide ? corners_[i].x < corners_[j].x : corners_[i].y < corners_[j].y;
     });
     build(2 * at + 1, begin, middle);

@@ -7,13 +7,15 @@
 
 namespace vdb_offset {
 
+/// Corners above which a polygon is cut by clipping ears whatever its shape, and ears are taken round it in turn: the
+/// triangles of a fan of so many corners all have to be held against each other later. Not measured more closely.
 inline constexpr std::size_t kLargePolygon = 1000;
 
 struct Point2 {
   double x, y;
 };
 
-/// Above 0 if c lies to the left of the way from a to b: twice the triangle's area.
+/// Twice the signed area of a triangle: above 0 if c lies to the left of the line from a to b.
 inline double cross(Point2 a, Point2 b, Point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
 /// Cuts a polygon, counter-clockwise, into triangles of its corners' numbers: ears, one after the other on the way

@@ -16,12 +16,12 @@ class InMetric {
   InMetric(PolygonView mesh, const Metric& metric);
 
   PolygonView view() const { return metric_.even() ? file_ : PolygonView{scaled_, file_.corners, file_.face_begin}; }
-  /// As it is.
+  /// The mesh in the file's own coordinates.
   PolygonView file() const { return file_; }
   const Metric& metric() const { return metric_; }
 
-  /// Where something is in the file that has moved from one place to another, in this space: what has not moved along
-  /// an axis keeps that coordinate's bits. `file` is where it was.
+  /// The position in the file of a vertex that has moved from `from` to `to` in this space. `file` is its position
+  /// before; a coordinate along which it has not moved keeps its bits.
   Vec3d moved(const Vec3d& file, const Vec3d& from, const Vec3d& to) const {
     return metric_.even() ? to : to == from ? file : file + metric_.from(to - from);
   }

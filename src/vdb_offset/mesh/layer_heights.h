@@ -7,8 +7,8 @@
 
 namespace vdb_offset {
 
-/// \throw InvalidInput unless these can be the heights of layers over so many vertices, as grow_layers() has it. \pre
-/// each is uniform or has one for each vertex
+/// Refuses distances that cannot be heights of layers. \throw InvalidInput unless these can be the heights of layers
+/// over so many vertices, as grow_layers() has it. \pre each is uniform or has one for each vertex
 void require_heights(std::span<const Distances> heights, std::size_t vertices);
 
 }  // namespace vdb_offset

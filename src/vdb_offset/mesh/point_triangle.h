@@ -100,7 +100,8 @@ inline TrianglePoint closest_on_triangle(const Vec3d& x, const Vec3d& a, const V
   const Components from_a = Components::of(a), ab = Components::of(b) - from_a, ac = Components::of(c) - from_a,
                    ax = Components::of(x) - from_a;
   const double ab_ab = ab.dot(ab), ac_ac = ac.dot(ac), ab_ac = ab.dot(ac);
-  // Sub-areas from products of projections lose digits as the square of length over height.
+  // Height over length, as sines: sub-areas from products of projections lose digits as the square of length over
+  // height, here 12 of 16 at most. Not measured beside other bounds.
   constexpr double kSliver = 1e-6;
   const double longest = std::max(std::max(ab_ab, ac_ac), ab_ab + ac_ac - 2 * ab_ac);
   if (!(ab_ab * ac_ac - ab_ac * ab_ac > kSliver * longest * longest)) return detail::closest_on_sliver(x, a, b, c);

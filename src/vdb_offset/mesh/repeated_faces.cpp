@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <tuple>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/bucket_sort.h"
 #include "vdb_offset/base/hash_mix.h"
 #include "vdb_offset/base/parallel.h"
@@ -16,7 +17,7 @@ namespace {
 
 using Corners = std::span<const std::uint32_t>;
 
-/// The same for any order of the corners.
+/// A hash of a face's corners that does not depend on their order.
 std::uint32_t hash(Corners face) {
   std::uint64_t sum = face.size();
   for (const auto v : face) sum += mix(v + 1);
@@ -58,6 +59,7 @@ std::uint32_t greatest(Corners corners) {
 
 std::vector<std::uint8_t> find_repeated_faces(std::span<const std::uint32_t> corners,
                                               std::span<const std::uint32_t> begin) {
+  VDB_OFFSET_ASSERT(!begin.empty() && begin.back() <= corners.size());
   const std::size_t count = begin.size() - 1;
   const auto face = [&](std::size_t f) { return corners.subspan(begin[f], begin[f + 1] - begin[f]); };
   // Those that repeat each other have one smallest corner.

@@ -83,10 +83,10 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
 }
 
 void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
-  place(parts.front, voxel_size);
+  to_local_frame(parts.front, voxel_size);
   hold_in_planes(parts.front, symmetry, reach);
   for (std::optional<Surface>* other : {&parts.whole, &parts.rest, &parts.obstacles})
-    if (*other) place_in_frame(**other, parts.front.origin);
+    if (*other) to_frame(**other, parts.front.origin);
   if (!parts.obstacles) return;
   append(*parts.whole, *parts.obstacles);
   parts.front_vertex.resize(parts.whole->vertices.size(), kNone);

@@ -307,7 +307,7 @@ class Marches {
     const bool one_each = begin.size() == ends.size();
     begin.push_back(ends.size());
     if (one_each) query_.answer_together(points, hints, closest);
-    else query_.answer_along_ways(points, begin, hints, closest);
+    else query_.answer_along_paths(points, begin, hints, closest);
     return closest;
   }
 

@@ -116,7 +116,7 @@ class StraightPaths {
     const bool one_each = begin_.size() == points.size();
     begin_.push_back(points.size());
     if (one_each) query_.answer_together(points_, asked_hints_, closest_);
-    else query_.answer_along_ways(points_, begin_, asked_hints_, closest_);
+    else query_.answer_along_paths(points_, begin_, asked_hints_, closest_);
     for (std::size_t i = 0; i < points.size(); ++i) hints_[points[i].at] = closest_[i].triangle;
     return closest_;
   }

@@ -70,7 +70,7 @@ class Other {
  private:
   static Surface placed(PolygonView mesh) {
     Surface surface = build_surface(mesh, {}, Orient::FixDirectionOnly);
-    place(surface, frame_voxel_size(surface.facts));
+    to_local_frame(surface, frame_voxel_size(surface.facts));
     return surface;
   }
 
@@ -272,7 +272,7 @@ class Fitting {
   std::size_t count_enclosed(std::span<const Vec3d> positions) const {
     Surface result = build_surface({positions, mesh_.corners, mesh_.face_begin}, options_.weld, options_.orient);
     if (!result.facts.closed() || !result.facts.oriented()) return 0;
-    place(result, frame_voxel_size(result.facts));
+    to_local_frame(result, frame_voxel_size(result.facts));
     const ClosestQuery query(result);
     const Surface& other = other_.surface();
     std::vector<std::uint8_t> seen(other.facts.components, 0);

@@ -118,7 +118,7 @@ LayersResult hand_over(const PreparedMesh& mesh, OffsetStatistics statistics, co
     result.first_achieved[v] = stack.first_achieved[w];
   });
   result.stacks = stacks_of_input(mesh, std::move(stack.stacks));
-  result.place = first_at_place(surface);
+  result.place = first_at_position(surface);
   for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
   result.carries = carries(mesh, columns);
   result.known = known_sides(surface.facts);

@@ -9,12 +9,14 @@
 #include <cmath>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/morton.h"
 #include "vdb_offset/query/closest_search.h"
 
 namespace vdb_offset {
 
 ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
+  VDB_OFFSET_ASSERT(!surface.triangles.empty() && surface.triangle_normals.size() == surface.triangles.size());
   const Vec3d lower = surface.facts.lower - surface.origin, upper = surface.facts.upper - surface.origin;
   double reach = 0;
   for (int k = 0; k < 3; ++k) reach = std::max({reach, std::abs(lower[k]), std::abs(upper[k])});
@@ -39,7 +41,7 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
 }
 
 ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
-  constexpr float kNowhere = 1e18f;
+  constexpr float kNowhere = 1e18f;  // where unused lanes are: farther than any limit, and its square is a float
   Rectangles some{};
   for (int i = 0; i < kLeafSize; ++i) {
     const std::size_t t = leaf * kLeafSize + static_cast<std::size_t>(i);
@@ -101,10 +103,10 @@ std::size_t ClosestQuery::find_blocks(std::span<const Ball> balls, Blocks& block
   return count;
 }
 
-/// Some points whose closest points are looked for together.
+/// Some points for which the closest points are looked for together.
 class ClosestQuery::Group {
  public:
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMost = 32;  // points; not measured beside other numbers
 
   Group(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
         std::span<Closest> answers)
@@ -141,6 +143,7 @@ class ClosestQuery::Group {
 
 void ClosestQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                                    std::span<Closest> answers) const {
+  VDB_OFFSET_ASSERT(hints.size() == points.size() && answers.size() == points.size());
   for (std::size_t i = 0; i < points.size(); i += Group::kMost) {
     const std::size_t count = std::min(Group::kMost, points.size() - i);
     Group(*this, points.subspan(i, count), hints.subspan(i, count), answers.subspan(i, count)).answer(0, count);

@@ -17,11 +17,12 @@ struct Closest {
   double distance;  ///< Unsigned, world units.
   std::uint32_t triangle;
   Feature feature;
-  bool tied;  ///< Another point of the surface is as near, but for rounding; not told by answer_along_ways().
+  bool tied;  ///< Another point of the surface is as near, but for rounding; not told by answer_along_paths().
   Vec3d point;
 };
 
-/// The ball of radius phi(x) around x holds no surface; a step from x that is to cross nothing stays in this share.
+/// The ball of radius phi(x) around x holds no surface: a step from x of this share of phi(x) crosses nothing. The rest
+/// makes up for what phi is off; 0.9 is not measured beside other shares.
 inline constexpr double kFreeShare = 0.9;
 
 /// Exact distance to a surface: phi(x) without a grid's error.
@@ -39,20 +40,22 @@ class ClosestQuery {
   /// and the surface. `hint` is any triangle, best one that was close to a point nearby.
   Closest operator()(const Vec3d& x, std::uint32_t hint) const;
 
-  /// Of the triangles around a first one alone: see Surface::walk_to_closest.
+  /// The closest point among the triangles that a walk from a first one comes by: see Surface::walk_to_closest.
   TrianglePoint near(const Vec3d& x, std::uint32_t& triangle) const { return surface_.walk_to_closest(x, triangle); }
 
-  /// The same for points that are near each other, as those of neighbouring vertices are, with a hint each: in a third
-  /// of the time, as what is far from all of them is left out once for all. The answers depend only on the points
-  /// together, the hints and the surface. \pre as many hints and answers as points
+  /// Finds the closest points of several points that are near each other, as those of neighbouring vertices are, with a
+  /// hint each: in a third of the time of single queries, as what is far from all of the points is left out once for
+  /// all. The answers depend only on the points together, the hints and the surface. \pre as many hints and answers as
+  /// points
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
-  /// The same where some of the points lie on one way up from the surface, as the places of a vertex at several
-  /// distances do: what is close to one of them is looked for once. Way i has points begin[i] .. begin[i + 1] - 1. The
-  /// answers depend only on the points together, the hints and the surface.
-  void answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
-                         std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
+  /// Finds the closest points of points on several paths up from the surface, as the positions of a vertex at several
+  /// distances are: what is close to one path is looked for once. Path i has points begin[i] .. begin[i + 1] - 1. The
+  /// answers depend only on the points together, the hints and the surface. \pre as many hints and answers as points,
+  /// and begin ends with that number
+  void answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                          std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 
   /// Calls visit(point) for all points of the surface, one a triangle, that are as near to x as the closest one, but
   /// for what rounding may have made of that: the same ones in each frame that the surface may stand in.
@@ -82,7 +85,7 @@ class ClosestQuery {
 
  private:
   static constexpr int kWidth = BoxTree::kWidth;
-  static constexpr int kLeafSize = 8;  // triangles in a lowest box
+  static constexpr int kLeafSize = 8;  // triangles in a lowest box: as many as a box has children, two rows of lanes
 
   /// What bounds the distance of a lowest box's triangles from below: a rectangle around each, in its plane, along its
   /// longest edge.
@@ -92,12 +95,14 @@ class ClosestQuery {
   class Search;
   class Group;
   class Collector;
-  class Ways;
-  // More blocks of lowest boxes than this are too many to look through for each of some balls.
+  class AlongPaths;
+  // Blocks of lowest boxes that are looked through for each of some balls; with more of them, the balls are taken by
+  // halves, and a ball alone descends from the root. Not measured beside other numbers.
   static constexpr std::size_t kMostBlocks = 48;
   using Blocks = std::array<std::uint32_t, kMostBlocks>;
 
-  /// Far more than what two frames round differently, and far less than what a file's numbers tell apart.
+  /// The distance up to which another point ties with the closest one. 1e-9 of the distance and 2.5e-8 of the slack are
+  /// far more than what two frames round differently, and far less than what a file's numbers tell apart; not measured.
   double farthest_tie(double distance) const {
     return distance * (1 + 1e-9) + 2.5e-8 * static_cast<double>(slack_) / scale_;
   }

@@ -82,7 +82,7 @@ class ClosestQuery::Search {
     best_ = surface_.walk_to_closest(x, triangle_);
     tighten();
   }
-  /// From a point of the surface that is known to be near, on a triangle.
+  /// Begins with a point of the surface that is known to be near, on a triangle.
   Search(const ClosestQuery& query, const Vec3d& x, std::uint32_t triangle, const TrianglePoint& known)
       : query_(query), surface_(query.surface_), x_(x), triangle_(triangle), best_(known) {
     for (int k = 0; k < 3; ++k) local_[k] = static_cast<float>(x[k] * query.scale_);
@@ -121,9 +121,9 @@ class ClosestQuery::Search {
     tie_ = tie * tie;
   }
 
-  /// Whether two points that are as near are not the same, as that of an edge or a corner is on each triangle there.
+  /// Whether two equally near points differ; a point of an edge or a corner is the same on each triangle there.
   static bool are_apart(const TrianglePoint& a, const TrianglePoint& b) {
-    constexpr double kApart = 1e-12;
+    constexpr double kApart = 1e-12;  // squared, by the squared distance: a millionth of it, above what is rounded
     return (a.point - b.point).lengthSqr() > kApart * a.squared_distance;
   }
 

@@ -6,10 +6,10 @@
 
 #include "vdb_offset/query/closest_query.h"
 
-/// Where a straight way comes to be at a distance from a Surface or a Polyline.
+/// Positions on a straight segment at a distance from a Surface or a Polyline.
 namespace vdb_offset {
 
-/// A place, and what is closest to it.
+/// A position, and the closest point of the surface.
 struct Sample {
   Vec3d x;
   double phi;  ///< Unsigned distance, world units.
@@ -26,33 +26,37 @@ inline Sample sample_at(const Vec3d& x, std::uint32_t triangle, const TrianglePo
   return {x, std::sqrt(nearest.squared_distance), x - nearest.point, triangle, nearest.feature};
 }
 
-/// How far along `way`, in ways, what is closest to a place comes to be at a distance, if it ever does on the rise.
+/// The share of a displacement at which the feature that is closest to a position is at a distance from it, if that
+/// distance ever grows to this.
 template <class Shape>
-std::optional<double> share_to_distance(const Shape& shape, const Sample& from, const Vec3d& way, double distance) {
-  const Vec3d across = shape.across(from.triangle, from.feature, from.away, way);
+std::optional<double> share_to_distance(const Shape& shape, const Sample& from, const Vec3d& displacement,
+                                        double distance) {
+  const Vec3d across = shape.across(from.triangle, from.feature, from.away, displacement);
   const double rise = from.away.dot(across), above = (from.phi - distance) * (from.phi + distance),
                root = rise * rise - above * across.lengthSqr();
   if (!(rise > 0 && root >= 0)) return std::nullopt;
   return -above / (rise + std::sqrt(root));
 }
 
-/// Between a place short of a distance and one at or past it: where what is closest to the one that is the nearer to
-/// the distance comes to be there, then the same from that place, as what is closest on the way is one thing, or few;
-/// false position, and by halves, where that leads out of what is left. The last place that measure(x) was asked for a
-/// Sample at, settled(sample) or not.
+/// Finds the position at a distance between one that is short of it and one that is at it or past it: where the feature
+/// that is closest to the better of the two is at the distance, then the same from there, as one feature, or few, are
+/// the closest between both. Where that leads out of the remaining interval, false position and bisection. Returns the
+/// last Sample that measure(x) gave, whether or not settled(sample) accepts it.
 template <class Shape, class Measure, class Settled>
 Sample cut_at_distance(const Shape& shape, const Sample& near, const Sample& far, double distance, Measure&& measure,
                        Settled&& settled) {
+  // Bisection alone gains 100 bits in as many steps, more than a double has; 8 are left to false position, which is
+  // slow where it is one-sided. Not measured.
   constexpr int kMostSteps = 100, kLetFall = 8;
-  const Vec3d way = far.x - near.x;
+  const Vec3d segment = far.x - near.x;
   double low = 0, below = near.phi - distance, high = 1, above = far.phi - distance;
   bool from_low = -below < above;
   Sample at = from_low ? near : far;
   for (int i = 0; i < kMostSteps && !settled(at); ++i) {
-    const auto further = share_to_distance(shape, at, way, distance);
+    const auto further = share_to_distance(shape, at, segment, distance);
     double t = (from_low ? low : high) + further.value_or(high - low);
     if (!(t > low && t < high)) t = i < kLetFall ? (low * above - high * below) / (above - below) : (low + high) / 2;
-    at = measure(near.x + way * t);
+    at = measure(near.x + segment * t);
     from_low = at.phi < distance;
     (from_low ? low : high) = t;
     (from_low ? below : above) = at.phi - distance;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/query/closest_search.h"
 
 namespace vdb_offset {
@@ -14,10 +15,10 @@ struct ClosestQuery::Planes {
   float normal[3][kLeafSize], distance[kLeafSize];
 };
 
-/// As near_rectangles(), with the planes in front of the rectangles. Those in front of the rims of what is longer than
-/// it is far away would not be exact enough: these have their own planes.
+/// Finds near rectangles as near_rectangles() does, and the planes in front of them. In front of the rim of a rectangle
+/// that is longer than it is far away, a plane would not be exact enough: such a rectangle has its own plane.
 unsigned ClosestQuery::planes_before(const Rectangles& some, const float* local, float limit, Planes& planes) {
-  constexpr float kTiny = 1e-30f;
+  constexpr float kTiny = 1e-30f;  // keeps a division by zero away
   unsigned near = 0;
   for (int i = 0; i < kLeafSize; i += kLanes) {
     const RectangleView view = view_rectangles(some, i, local);
@@ -119,13 +120,13 @@ void ClosestQuery::collect_together(std::span<const Ball> balls,
   if (!balls.empty()) Collector(*this, balls, take).collect(0, balls.size());
 }
 
-/// Points on ways up from the surface, whose closest points are looked for together.
-class ClosestQuery::Ways {
+/// Points on paths up from the surface; their closest points are looked for together.
+class ClosestQuery::AlongPaths {
  public:
-  Ways(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::size_t> begin,
-       std::span<const std::uint32_t> hints, std::span<Closest> answers)
+  AlongPaths(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::size_t> begin,
+             std::span<const std::uint32_t> hints, std::span<Closest> answers)
       : query_(query), points_(points), answers_(answers), walked_(points.size()) {
-    for (std::size_t way = 0; way + 1 < begin.size(); ++way) add_way(begin[way], begin[way + 1], hints);
+    for (std::size_t path = 0; path + 1 < begin.size(); ++path) add_path(begin[path], begin[path + 1], hints);
   }
 
   void answer() const {
@@ -137,8 +138,8 @@ class ClosestQuery::Ways {
  private:
   /// Nothing nearer to one of the points than what was found beside it lies outside of the ball around the farthest
   /// that holds all their balls. If that is hardly larger than the largest of them, it serves for all.
-  void add_way(std::size_t first, std::size_t last, std::span<const std::uint32_t> hints) {
-    constexpr double kHardlyLarger = 1.05;
+  void add_path(std::size_t first, std::size_t last, std::span<const std::uint32_t> hints) {
+    constexpr double kHardlyLarger = 1.05;  // share of radii; a larger ball holds more triangles; not measured
     std::size_t farthest = first;
     for (std::size_t p = first; p < last; ++p) {
       std::uint32_t triangle = hints[p];
@@ -183,9 +184,11 @@ class ClosestQuery::Ways {
   std::vector<std::pair<std::size_t, std::size_t>> runs_;  // of points, one for each ball
 };
 
-void ClosestQuery::answer_along_ways(std::span<const Vec3d> points, std::span<const std::size_t> begin,
-                                     std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
-  Ways(*this, points, begin, hints, answers).answer();
+void ClosestQuery::answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,
+                                      std::span<const std::uint32_t> hints, std::span<Closest> answers) const {
+  VDB_OFFSET_ASSERT(hints.size() == points.size() && answers.size() == points.size());
+  VDB_OFFSET_ASSERT(begin.empty() || begin.back() == points.size());
+  AlongPaths(*this, points, begin, hints, answers).answer();
 }
 
 }  // namespace vdb_offset

@@ -13,8 +13,9 @@ namespace vdb_offset {
 /// The triangles around a vertex as points near it see them, two at once. Slivers are not among them: their areas would
 /// lose digits.
 ///
-/// With y the way from the vertex to a point, the squared distance to any place p of a triangle is |y|^2 less a gain of
-/// 2 p.y - p.p; the closest place is the one that gains most: y's foot where that is inside, or a place on an edge.
+/// With y the vector from the vertex to a point, the squared distance to any point p of a triangle, seen from the
+/// vertex, is |y|^2 less a gain of 2 p.y - p.p; the closest point is the one with the largest gain: y's foot where that
+/// is inside, or a point on an edge.
 class VertexFan {
  public:
   void begin(const Surface& surface, std::uint32_t vertex) {
@@ -22,10 +23,10 @@ class VertexFan {
     size_ = believed_ = 0;
     for (const auto t : surface.triangles_around(vertex)) add(surface, t, vertex);
     whole_ = size_ == surface.triangles_around(vertex).size();
-    // An odd one is its own neighbour.
+    // An odd triangle takes both lanes.
     if (size_ % 2 != 0) {
       const std::size_t size = size_;
-      add(surface, couples_[size_ / 2].triangle[0], vertex);
+      add(surface, pairs_[size_ / 2].triangle[0], vertex);
       size_ = size;
     }
   }
@@ -33,77 +34,79 @@ class VertexFan {
   /// Whether no triangle around the vertex is a sliver.
   bool whole() const { return whole_; }
   bool has(std::uint32_t triangle) const {
-    return std::any_of(couples_.begin(), couples_.begin() + static_cast<std::ptrdiff_t>(couple_count()),
-                       [&](const Couple& of) { return of.triangle[0] == triangle || of.triangle[1] == triangle; });
+    return std::any_of(
+        pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(pair_count()),
+        [&](const TrianglePairLanes& of) { return of.triangle[0] == triangle || of.triangle[1] == triangle; });
   }
 
-  /// The way to x from the closest place of all these triangles, of which the vertex is one even if there is no other.
+  /// The vector to x from the closest point of all these triangles, or from the vertex if there are none.
   Vec3d find_away_from(const Vec3d& x) {
     const Vec3d y = x - corner_;
-    Place best;
-    for (std::size_t i = 0; i < couple_count(); ++i) {
-      const Place found = closest_of(couples_[i], y);
+    Point best;
+    for (std::size_t i = 0; i < pair_count(); ++i) {
+      const Point found = closest_of(pairs_[i], y);
       if (!(found.gain > best.gain)) continue;
       best = found;
       believed_ = i;
     }
-    return size_ == 0 ? y : y - couples_[believed_].at(best);
+    return size_ == 0 ? y : y - pairs_[believed_].at(best);
   }
-  /// The same if the closest one is where it was found last, and never a shorter way.
+  /// The vector to x from the closest point of the two triangles among which find_away_from() found it last: never
+  /// shorter than that of all triangles.
   Vec3d away_from(const Vec3d& x) const {
     const Vec3d y = x - corner_;
-    return size_ == 0 ? y : y - couples_[believed_].at(closest_of(couples_[believed_], y));
+    return size_ == 0 ? y : y - pairs_[believed_].at(closest_of(pairs_[believed_], y));
   }
 
  private:
-  /// A place in one of two triangles, by its shares of the edges at the vertex; and what it gains.
-  struct Place {
+  /// A point in one of two triangles, by its shares of the edges at the vertex; and its gain.
+  struct Point {
     double gain = 0, along_b = 0, along_c = 0;
     std::size_t lane = 0;
   };
   /// Two triangles, by their edges b and c from the vertex, the third one e, and products of these.
-  struct Couple {
+  struct TrianglePairLanes {
     Vec3Of<double2> b, c;
     double2 bb, cc, ee, bc, over_bb, over_cc, over_ee, over_area;
     std::uint32_t triangle[2];
 
-    Vec3d at(const Place& place) const {
-      const std::size_t i = place.lane;
-      return {b.x[i] * place.along_b + c.x[i] * place.along_c, b.y[i] * place.along_b + c.y[i] * place.along_c,
-              b.z[i] * place.along_b + c.z[i] * place.along_c};
+    Vec3d at(const Point& point) const {
+      const std::size_t i = point.lane;
+      return {b.x[i] * point.along_b + c.x[i] * point.along_c, b.y[i] * point.along_b + c.y[i] * point.along_c,
+              b.z[i] * point.along_b + c.z[i] * point.along_c};
     }
   };
 
-  std::size_t couple_count() const { return (size_ + 1) / 2; }
+  std::size_t pair_count() const { return (size_ + 1) / 2; }
 
   void add(const Surface& surface, std::uint32_t triangle, std::uint32_t vertex) {
-    constexpr double kSliver = 1e-6;
+    constexpr double kSliver = 1e-6;  // squared sine, as in closest_on_triangle()
     const auto& t = surface.triangles[triangle];
     const std::size_t k = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2, lane = size_ % 2;
     const Vec3d b = surface.vertices[t[(k + 1) % 3]] - corner_, c = surface.vertices[t[(k + 2) % 3]] - corner_;
     const double bb = b.dot(b), cc = c.dot(c), bc = b.dot(c), ee = (c - b).lengthSqr(), area = bb * cc - bc * bc;
     const double longest = std::max({bb, cc, ee});
     if (!(area > kSliver * longest * longest)) return;
-    if (size_ / 2 == couples_.size()) couples_.emplace_back();
-    Couple& couple = couples_[size_++ / 2];
-    couple.triangle[lane] = triangle;
-    couple.b.set(lane, b);
-    couple.c.set(lane, c);
-    couple.bb[lane] = bb;
-    couple.cc[lane] = cc;
-    couple.ee[lane] = ee;
-    couple.bc[lane] = bc;
-    couple.over_bb[lane] = 1 / bb;
-    couple.over_cc[lane] = 1 / cc;
-    couple.over_ee[lane] = 1 / ee;
-    couple.over_area[lane] = 1 / area;
+    if (size_ / 2 == pairs_.size()) pairs_.emplace_back();
+    TrianglePairLanes& pair = pairs_[size_++ / 2];
+    pair.triangle[lane] = triangle;
+    pair.b.set(lane, b);
+    pair.c.set(lane, c);
+    pair.bb[lane] = bb;
+    pair.cc[lane] = cc;
+    pair.ee[lane] = ee;
+    pair.bc[lane] = bc;
+    pair.over_bb[lane] = 1 / bb;
+    pair.over_cc[lane] = 1 / cc;
+    pair.over_ee[lane] = 1 / ee;
+    pair.over_area[lane] = 1 / area;
   }
 
-  static Place closest_of(const Couple& of, const Vec3d& y) {
+  static Point closest_of(const TrianglePairLanes& of, const Vec3d& y) {
     constexpr double2 kZero{}, kOne{1, 1};
-    const Vec3Of<double2> way = both(y, y);
-    const double2 by = of.b.dot(way), cy = of.c.dot(way);
-    // No place on the side that both edges turn away from gains anything.
+    const Vec3Of<double2> both_y = both(y, y);
+    const double2 by = of.b.dot(both_y), cy = of.c.dot(both_y);
+    // Where y leads away from both edges, no point gains anything.
     if (!(std::max({by[0], by[1], cy[0], cy[1]}) > 0)) return {};
     const double2 foot_b = (by * of.cc - cy * of.bc) * of.over_area, foot_c = (cy * of.bb - by * of.bc) * of.over_area;
     const auto inside = (foot_b > kZero) & (foot_c > kZero) & (foot_b + foot_c < kOne);
@@ -126,7 +129,7 @@ class VertexFan {
   Vec3d corner_{0.0};
   std::size_t size_ = 0, believed_ = 0;
   bool whole_ = true;
-  std::vector<Couple> couples_;
+  std::vector<TrianglePairLanes> pairs_;
 };
 
 }  // namespace vdb_offset

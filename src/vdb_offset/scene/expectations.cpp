@@ -10,7 +10,7 @@ namespace vdb_offset::scene {
 
 Vec3d Answer::lifted(const Vec3d& source, double distance) const {
   const double x = std::abs(source[0]), y = std::abs(source[1]);
-  constexpr double kOnEdge = 1e-9;
+  constexpr double kOnEdge = 1e-9;  // world units, of scenes of size 1 or so
   if (std::max(x, y) > radius + kOnEdge) return source;
   if (std::max(x, y) < radius - kOnEdge) return source + Vec3d(0, 0, distance);
   Vec3d way(x < radius - kOnEdge ? 0.0 : std::copysign(shift[0], source[0]),

@@ -137,8 +137,10 @@ json::parser_callback_t require_keys_once(const std::string& path) {
 }
 
 json parse_file(const std::string& path) {
-  constexpr std::size_t kLongestError = 200;                               // the parser repeats what it has read
-  constexpr std::size_t kMostPerByte = 32, kSmall = std::size_t{1} << 20;  // an array of digits, say
+  constexpr std::size_t kLongestError = 200;  // characters; the parser repeats what it has read
+  // Bytes in memory for a byte of text, as an array of digits has them; and size of a text that is not worth a
+  // question.
+  constexpr std::size_t kMostPerByte = 32, kSmall = std::size_t{1} << 20;
   const io::FileBytes bytes = io::FileBytes::open(path);
   if (bytes.view().size() > kSmall) require_memory(kMostPerByte * bytes.view().size(), path);
   try {

@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kMostDivisions = 20000;
+constexpr int kMostDivisions = 20000;  // a mistyped number is not to fill the memory, nor its square an int
 
 void require_count(const char* what, int value, int least) {
   if (value < least || value > kMostDivisions)
@@ -30,7 +30,7 @@ void require_length(const char* what, double value) {
 
 /// \throw OutOfBudget if so many more faces do not fit, with as many points and, of each, its number by its place.
 void require_room(std::size_t faces) {
-  constexpr std::size_t kFaceBytes = 5 * 4, kPointBytes = sizeof(Vec3d) + 80;
+  constexpr std::size_t kFaceBytes = 5 * 4, kPointBytes = sizeof(Vec3d) + 80;  // the map's node, as libstdc++ has it
   require_memory(faces * (kFaceBytes + kPointBytes), "shape");
 }
 

@@ -7,8 +7,8 @@
 
 namespace vdb_offset {
 
-/// Vertices of a border, one after the other: all around an opening, or from one vertex to another where more than two
-/// edges of borders meet.
+/// A border: vertices all around an opening, or from one vertex to another if more than two edges of borders meet at
+/// these.
 struct BorderLoop {
   std::vector<std::uint32_t> vertices;  ///< The first one is not repeated at the end.
   bool closed;

@@ -11,7 +11,7 @@ namespace vdb_offset {
 
 struct Surface;
 
-/// What keeps a vertex on its side of a plane: its places are at heights of 0 or less above that.
+/// Keeps a vertex on its side of a plane: its positions are at heights of 0 or less above the plane.
 struct Wall {
   std::uint32_t vertex;
   SymmetryPlane plane;
@@ -21,16 +21,16 @@ struct Wall {
 /// Decides which vertices of a surface stay in planes, and has its conormals say so: along_border() takes from a vector
 /// what leads out of those planes, exactly where these are at right angles to an axis.
 ///
-/// Without being told, that are the vertices of borders, or of pieces of these, that lie in a plane to the precision of
-/// a file of seven digits, if the faces there rise from that plane by at least 12 degrees, so that ways in it lead off
-/// all of them; of straight pieces, those along which the faces are in one plane, too: they stay in the plane across
-/// that. Where the surface lies on one side of a plane, that becomes a wall: of a border's plane for what hangs
-/// together with it no farther off than `reach`, the farthest that vertices go; of a named plane for all that hangs
-/// together. \pre conormals and normals are those of the surface as it stands. \throw InvalidInput if there is no
-/// vertex on a plane that is named
+/// If no planes are named, these are the vertices of borders, or of pieces of borders, that lie in a plane to the
+/// precision of a file of seven digits, if the faces there rise from that plane by at least 12 degrees, so that
+/// displacements in the plane lead off all of them; of straight pieces, those along which the faces are in one plane,
+/// too: they stay in the plane across that. Where the surface lies on one side of a plane, that becomes a wall: of a
+/// border's plane for what hangs together with it no farther off than `reach`, the farthest that vertices go; of a
+/// named plane for all that hangs together. \pre conormals and normals are those of the surface as it stands. \throw
+/// InvalidInput if there is no vertex on a plane that is named
 void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
 
-/// Whether a place of a vertex is beyond one of its walls, by more than `slack`.
+/// Whether a position of a vertex is beyond one of its walls, by more than `slack`.
 bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack);
 
 }  // namespace vdb_offset

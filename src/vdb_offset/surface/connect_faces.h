@@ -8,11 +8,12 @@
 
 namespace vdb_offset {
 
+/// Whether a triangle has a corner twice.
 inline bool repeats_corner(const std::array<std::uint32_t, 3>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// Keeps the triangles, and the faces they are of, that `is_kept(t)`, in their order.
+/// Removes the triangles for which is_kept(t) is false, and their entries in `face`; the others keep their order.
 template <class IsKept>
 void keep_triangles(Surface& surface, IsKept&& is_kept) {
   std::size_t kept = 0;
@@ -25,8 +26,8 @@ void keep_triangles(Surface& surface, IsKept&& is_kept) {
   surface.face.resize(kept);
 }
 
-/// Joins the triangles and settles which side is outward. Sheets that lie on each other, as doubled faces do, would
-/// join into edges of four faces with no side at all; one of them says where they all go.
+/// Connects the triangles over edges and settles which side is outward. Sheets that lie on each other, as doubled faces
+/// do, would be connected over edges of four faces and have no side at all: one of them stands for all.
 void join_and_settle(PolygonView polygons, Orient orient, Surface& surface);
 
 }  // namespace vdb_offset

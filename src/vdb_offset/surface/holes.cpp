@@ -12,10 +12,12 @@ namespace {
 
 // Shares of a part's area that a hole may have: whatever its rim is like, and where it goes on as the faces around do;
 // and all holes together.
+// Not measured beside other shares.
 constexpr double kTinyHole = 0.002, kFlatHole = 0.05, kAllHoles = 0.1;
-// Mean cosine of the angles at a rim between faces and filling.
+// Mean cosine of the angles at a rim between faces and filling, above which the filling goes on as the faces do: 60
+// degrees. Not measured.
 constexpr double kFlatRim = 0.5;
-// Of the diagonal: how far off its plane a plane loop may be.
+// How far off its plane a plane loop may be, as a share of the diagonal: what a file of seven digits rounds.
 constexpr double kPlane = 1e-6;
 
 /// An edge that lacks a face: it runs as that face would.

@@ -29,11 +29,11 @@ struct Solidity {
 
   std::size_t solid_parts() const;
   bool all_solid() const { return solid_parts() == is_solid.size(); }
-  std::size_t hole_count() const;  ///< Without walls.
-  double hole_area() const;        ///< The same.
+  std::size_t hole_count() const;  ///< Holes that are no walls.
+  double hole_area() const;        ///< Their area.
 };
 
-/// Tells what encloses something, though not each of its edges has two faces.
+/// Finds the parts that enclose something, though some of their edges may not have two faces.
 ///
 /// Where as many faces run through each edge one way as the other, a part winds a whole number of times around each
 /// point, however many meet there. Elsewhere edges that lack faces make loops, and the generalised winding number

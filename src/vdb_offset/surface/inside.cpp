@@ -96,6 +96,8 @@ bool Inside::is_buried(std::uint32_t triangle, const Vec3d& x, double close) con
         (surface_.vertices[b] - surface_.vertices[a]).cross(surface_.vertices[c] - surface_.vertices[a]);
     return normal.lengthSqr() > 0 ? normal.unit() : Vec3d(0.0);
   };
+  // Cosine below which a ray runs along a triangle, and has no side of it; and how far around the point, in `close`,
+  // all triangles are passed, so that each that is close is met however much it leans. Not measured.
   constexpr double kLeastSlope = 1e-6, kAround = 1e3;
   const double slope = normal_of(triangle).dot(RayTree::direction());
   if (sense_ == 0 || std::abs(slope) < kLeastSlope) return false;

@@ -24,12 +24,13 @@ class RayTree {
   template <class Visit>
   void cast(const Vec3d& start, Visit&& visit) const;
 
-  /// The same of the line through a point, from so far behind it on (world units): calls visit(triangle, turn, height),
-  /// height being how far ahead of the point the triangle is, along z.
+  /// Calls visit(triangle, turn, height) for each triangle that the line through a point passes through, from `behind`
+  /// world units behind the point on; `turn` is as for cast(), `height` how far ahead of the point the triangle is,
+  /// along z.
   template <class Visit>
   void cast_from_behind(const Vec3d& x, double behind, Visit&& visit) const;
 
-  /// Not of unit length.
+  /// The direction of all rays, not of unit length.
   static Vec3d direction() { return {0.3819660112501051, 0.2360679774997897, 1}; }
 
  private:
@@ -67,22 +68,22 @@ void RayTree::cast_from_behind(const Vec3d& x, double behind, Visit&& visit) con
 }
 
 /// Tells which points lie inside a closed surface: those around which it winds as its faces say. Solids that overlap,
-/// or lie in each other, are one; cavities, whose faces point inwards, are left out of them.
+/// or lie in each other, are one. Cavities, which have faces that point inwards, are not inside.
 class Inside {
  public:
-  /// Nothing is inside of a surface that is not closed, or whose faces cannot agree about the outside. Keeps a
-  /// reference to the surface. `orient` is what the surface was built with.
+  /// Nothing is inside of a surface that is not closed, or that is not orientable. Keeps a reference to the surface.
+  /// `orient` is what the surface was built with.
   explicit Inside(const Surface& surface, Orient orient = Orient::Keep);
-  /// The same where only parts of a surface are solid, and may have holes, which are filled.
+  /// For a surface of which only parts are solid; these may have holes, which are filled. Keeps references.
   Inside(const Surface& surface, const Solidity& solidity, Orient orient);
 
-  /// Of use for points that are not on the surface.
+  /// Whether a point is inside. \pre the point is not on the surface
   bool operator()(const Vec3d& x) const;
   /// Whether anything can be inside.
   bool has_inside() const { return sense_ != 0; }
   /// All solids are inside out: inside is then where their faces point away from, if these were turned round.
   bool is_turned() const { return is_turned_; }
-  /// Whether some of it ends at fillings of holes.
+  /// Whether the inside ends at fillings of holes somewhere.
   bool has_holes() const { return has_holes_; }
   /// Whether both sides of a triangle are inside at a point on it: then what is inside does not end there. Triangles
   /// that are closer to the point than `close` are at one place with it.

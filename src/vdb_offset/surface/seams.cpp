@@ -119,21 +119,21 @@ class Borders {
 
   const std::vector<std::uint32_t>& vertices() const { return vertices_; }
   double median_edge() const { return median_edge_; }
-  const Vec3d& place(std::size_t i) const { return positions_[vertices_[i]]; }
+  const Vec3d& position(std::size_t i) const { return positions_[vertices_[i]]; }
 
   /// How far apart two borders are at their i-th and j-th vertex and along the shorter of the edges that leave there:
   /// of all such pairs of edges, that of the closest. Infinite if no two run along each other, no farther apart than
   /// that share of their length.
   double gap(std::size_t i, std::size_t j, double most_share) const {
-    const double apart = (place(i) - place(j)).length();
+    const double apart = (position(i) - position(j)).length();
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t p : neighbours(i))
       for (const std::uint32_t q : neighbours(j)) {
         if (p == vertices_[j] || q == vertices_[i]) continue;
-        Vec3d along = positions_[q] - place(j), end = positions_[p] - place(j);
-        if (along.lengthSqr() < (positions_[p] - place(i)).lengthSqr()) {
-          along = positions_[p] - place(i);
-          end = positions_[q] - place(i);
+        Vec3d along = positions_[q] - position(j), end = positions_[p] - position(j);
+        if (along.lengthSqr() < (positions_[p] - position(i)).lengthSqr()) {
+          along = positions_[p] - position(i);
+          end = positions_[q] - position(i);
         }
         // From here `end` is the nearer one, and to be found on the way to the farther one.
         const double length = end.length(), share = along.lengthSqr() > 0 ? along.dot(end) / along.lengthSqr() : 0;
@@ -180,19 +180,20 @@ void for_each_pair(const Borders& borders, double radius, Visit&& visit) {
   const std::size_t count = borders.vertices().size();
   std::vector<std::pair<std::uint64_t, std::uint32_t>> cells(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Cell c = cell_of(borders.place(i));
+    const Cell c = cell_of(borders.position(i));
     cells[i] = {hash(c[0], c[1], c[2]), i};
   }
   std::sort(cells.begin(), cells.end());
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Cell low = cell_of(borders.place(i) - Vec3d(radius)), high = cell_of(borders.place(i) + Vec3d(radius));
+    const Cell low = cell_of(borders.position(i) - Vec3d(radius)), high = cell_of(borders.position(i) + Vec3d(radius));
     for (std::int64_t x = low[0]; x <= high[0]; ++x)
       for (std::int64_t y = low[1]; y <= high[1]; ++y)
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
           const std::uint64_t wanted = hash(x, y, z);
           for (auto at = std::lower_bound(cells.begin(), cells.end(), std::pair(wanted, i + 1));
                at != cells.end() && at->first == wanted; ++at)
-            if ((borders.place(i) - borders.place(at->second)).lengthSqr() <= radius * radius) visit(i, at->second);
+            if ((borders.position(i) - borders.position(at->second)).lengthSqr() <= radius * radius)
+              visit(i, at->second);
         }
   }
 }
@@ -246,7 +247,7 @@ class SeamWelder {
       const std::uint32_t root = clusters_.root(i);
       if (root == i || refused_[root]) continue;
       ++facts.vertices;
-      facts.widest = std::max(facts.widest, (borders_.place(i) - borders_.place(root)).length());
+      facts.widest = std::max(facts.widest, (borders_.position(i) - borders_.position(root)).length());
       target_[borders_.vertices()[i]] = borders_.vertices()[root];
     }
     if (facts.vertices == 0) return;
@@ -264,7 +265,7 @@ class SeamWelder {
     root_at_.assign(first_.size(), kNone);
     for (std::uint32_t i = 0; i < refused_.size(); ++i) {
       const std::uint32_t root = clusters_.root(i);
-      if ((borders_.place(i) - borders_.place(root)).length() > 2 * tolerance) refused_[root] = 1;
+      if ((borders_.position(i) - borders_.position(root)).length() > 2 * tolerance) refused_[root] = 1;
       root_at_[borders_.vertices()[i]] = root;
     }
   }
@@ -332,7 +333,7 @@ double tolerance_of(const Borders& borders, const Extent& extent, double precisi
   if (precision == 0) {
     std::vector<double> numbers;
     for (std::size_t i = 0; i < borders.vertices().size(); ++i)
-      for (int k = 0; k < 3; ++k) numbers.push_back(borders.place(i)[k]);
+      for (int k = 0; k < 3; ++k) numbers.push_back(borders.position(i)[k]);
     unit = unit_in_last_place(numbers, extent.largest);
   }
   return std::max(kUnitsApart * unit, kNothingOfDiagonal * extent.diagonal);

@@ -10,7 +10,7 @@ namespace vdb_offset {
 /// Closes cracks that rounding has left: welds vertices at which two borders begin to run along each other, no farther
 /// apart than the coordinates are precise, four units in the last place of the largest of them (or a billionth of the
 /// diagonal, if that is more: nothing that small is meant). Inner vertices stay as they are, and so do borders that
-/// only touch, edges that short, and faces whose corners would become one.
+/// only touch, edges that short, and faces that would lose a corner.
 /// \param precision of a coordinate, relative to the largest; 0: found out from the coordinates at the borders, which
 ///                  may be those of a file in single precision or with few digits
 /// \param first of each vertex in use the first that it is welded with already, kNone of others; changed

@@ -4,10 +4,10 @@
 
 #include "vdb_offset/surface/surface.h"
 
-/// Where vertices set out to: for those of a Surface and of a Polyline alike.
+/// Start directions of vertices, for those of a Surface and of a Polyline alike.
 namespace vdb_offset {
 
-/// Where a vertex starts to: unit direction, and the least cosine between it and the normals of its faces.
+/// Start direction of a vertex, of unit length, and the least cosine between it and the normals of the vertex's faces.
 struct StartDirection {
   Vec3d direction;
   double slope;
@@ -41,6 +41,8 @@ StartDirection start_of(const Shape& surface, std::uint32_t vertex) {
   }
   n.normalize();
   StartDirection best{n, least_cosine(surface, vertex, n)};
+  // Cosine from which a direction is not looked for further: 73 degrees to the worst face. Not measured; 40 steps of
+  // 1 / 2, 1 / 3 ... turn a direction anywhere.
   constexpr double kWellSeen = 0.3;
   for (int i = 0; i < 40 && best.slope < kWellSeen; ++i) {
     std::uint32_t worst = kNone;

@@ -19,8 +19,8 @@ namespace vdb_offset {
 /// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
 ///
 /// Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t. Lengths are in world units; positions are
-/// relative to `origin`, which place() puts on the voxel grid, so that every later figure is the same for a mesh
-/// that is moved by whole voxels.
+/// relative to `origin`, which to_local_frame() puts on the voxel grid, so that every later figure is the same for a
+/// mesh that is moved by whole voxels.
 struct Surface {
   Vec3d origin{0.0};
   std::vector<Vec3d> vertices;
@@ -46,7 +46,7 @@ struct Surface {
   /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
   std::vector<std::uint32_t> incident, incident_begin;
   std::vector<std::uint32_t> component;       ///< Of each surface vertex, 0 .. facts.components - 1.
-  std::vector<std::uint32_t> representative;  ///< The input vertex whose position each surface vertex has.
+  std::vector<std::uint32_t> representative;  ///< For each surface vertex the input vertex that gives its position.
   std::vector<std::uint32_t> welded;          ///< Surface vertex of each input vertex; kNone if no face uses it.
   MeshFacts facts;
 
@@ -64,7 +64,8 @@ struct Surface {
   /// as that leads nearer to x: a local minimum of the distance. `triangle` is where to start, and becomes where the
   /// walk ended.
   TrianglePoint walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const;
-  /// Takes from a vector at a vertex what leads over the border there, if it is on one, or out of planes that hold it.
+  /// Removes from a vector at a vertex the component that leads over the border there, if the vertex is on one, or out
+  /// of planes that hold it.
   Vec3d along_border(std::uint32_t vertex, const Vec3d& v) const {
     if (conormals.empty()) return v;
     const Vec3d along = v - conormals[vertex] * conormals[vertex].dot(v);
@@ -72,47 +73,52 @@ struct Surface {
   }
   /// Whether a vertex must not leave the plane that along_border() keeps to.
   bool is_held(std::uint32_t vertex) const { return !held.empty() && held[vertex] > 0; }
-  /// What is left of a vector in one of the planes that hold a vertex, in all of them.
+  /// Projects a vector that lies in one of the planes that hold a vertex into all of them.
   Vec3d along_line(std::uint32_t vertex, const Vec3d& v) const;
-  /// The part of a way that changes the distance from what is closest, `away` from there: all of it off a corner, what
-  /// is across an edge, what is along `away` off a face.
-  Vec3d across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& way) const;
+  /// The part of a displacement that changes the distance from the closest feature, from which `away` leads: all of it
+  /// from a corner, what is across an edge, what is along `away` from a face.
+  Vec3d across(std::uint32_t triangle, Feature feature, const Vec3d& away, const Vec3d& displacement) const;
   /// Not normalised; its dot product with x - closest point has the sign of the side that x lies on
   /// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005).
   Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;
 };
 
-/// Welds, triangulates, joins and counts, and settles which side is outward (see orientation.h). Origin and normals are
-/// left to place(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
+/// Builds the surface of polygons: welds, triangulates, connects faces, counts, and settles which side is outward (see
+/// orientation.h). Origin and normals are
+/// left to to_local_frame(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
 /// finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
 /// Which vertices of a mesh are one.
 struct Welding {
-  std::vector<std::uint32_t> first;  ///< Of each vertex the one whose position counts; kNone for one in no face.
+  /// For each vertex the one that gives the position of all that are welded with it; kNone for one in no face.
+  std::vector<std::uint32_t> first;
   SeamFacts seams;
 };
-/// Of polygons with any number of corners. \throw InvalidInput as build_surface(), or for a tolerance or a precision
-/// that cannot be used
+/// Finds which vertices are one, in polygons with any number of corners. \throw InvalidInput as build_surface(), or for
+/// a tolerance or a precision that cannot be used
 Welding find_welding(PolygonView polygons, const WeldOptions& weld);
-/// build_surface() of all or some of a mesh's faces, welded as all of it is.
+/// Builds the surface of all or some of a mesh's faces, welded as the whole mesh is. \throw InvalidInput as
+/// build_surface()
 Surface build_welded(PolygonView faces, const Welding& of_all, Orient orient);
 
-/// For each vertex the first that stands where it does; kNone for one that is in no face.
-std::vector<std::uint32_t> first_at_place(const Surface& surface);
-/// The same of polygons, which may have any number of corners. \throw as build_surface().
+/// For each vertex the first one at its position; kNone for one that is in no face.
+std::vector<std::uint32_t> first_at_position(const Surface& surface);
+/// For each vertex of polygons with any number of corners the first one that is welded with it; kNone for one that is
+/// in no face. \throw InvalidInput as build_surface()
 std::vector<std::uint32_t> weld_by_position(PolygonView polygons, const WeldOptions& weld);
 
 /// Moves the surface into a frame whose origin is the corner of a leaf node (8 voxels) at or below its bounding
 /// box, and computes its normals there. \pre voxel_size > 0, called once.
-void place(Surface& surface, double voxel_size);
-/// The same with the origin of another surface's frame.
-void place_in_frame(Surface& surface, const Vec3d& origin);
+void to_local_frame(Surface& surface, double voxel_size);
+/// Moves the surface into the frame of another one, which has this origin, and computes its normals there. \pre called
+/// once, in place of to_local_frame()
+void to_frame(Surface& surface, const Vec3d& origin);
 
-/// Computes normals of triangles and vertices as they stand.
+/// Computes the normals of triangles and vertices from their present positions.
 void find_normals(Surface& surface);
 
-/// Lists the triangles around each vertex, as they are now.
+/// Lists the triangles around each vertex from the present corners.
 void list_incident_triangles(Surface& surface);
 
 /// Puts another surface beside one, without joining them. \pre both stand in one frame. Facts, and what is said of the

@@ -218,7 +218,7 @@ void give_vertices(PolygonView polygons, const Welding& welding, Surface& surfac
   surface.facts.welded_vertices = surface.vertices.size();
 }
 
-std::vector<std::uint32_t> first_at_place(const Surface& surface) {
+std::vector<std::uint32_t> first_at_position(const Surface& surface) {
   std::vector<std::uint32_t> first(surface.welded.size(), kNone);
   for_each_index(first.size(), [&](std::size_t v) {
     if (surface.welded[v] != kNone) first[v] = surface.representative[surface.welded[v]];

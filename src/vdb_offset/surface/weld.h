@@ -6,18 +6,18 @@
 
 namespace vdb_offset {
 
-/// \throw InvalidInput for polygons that are none: without a face, with fewer corners than that in one, with indices
-/// out of range, coordinates that are not finite, or too many corners
+/// Refuses polygons that no surface can be built of. \throw InvalidInput if there are none: without a face, with fewer
+/// corners than that in one, with indices out of range, coordinates that are not finite, or too many corners
 void require_usable(PolygonView polygons, std::uint32_t least_corners = 3);
 
-/// find_welding() for polygons of which require_usable() has nothing to say.
+/// Does what find_welding() does. \pre require_usable() accepts the polygons
 Welding weld_usable(PolygonView polygons, const WeldOptions& options);
 
 /// The part of a welding that some of the faces have.
 Welding restricted(Welding welding, PolygonView some_faces);
 
-/// Gives the surface its vertices: one for each place that faces use, and for each vertex of the input the one that it
-/// is part of.
+/// Gives the surface its vertices: one for each position that faces use; and for each vertex of the input the surface
+/// vertex that it is part of.
 void give_vertices(PolygonView polygons, const Welding& welding, Surface& surface);
 
 }  // namespace vdb_offset

@@ -14,7 +14,8 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Beyond this, what is told of one axis drowns in the rounding of the other; 0 stands for it.
+// Largest ratio of the two distances; 0 stands for it. Beyond this, the lesser distance drowns in the rounding of the
+// larger one. Not measured.
 constexpr double kMostRatio = 1000;
 
 scene::Distance parse_one(const char* option, const std::string& text) {
@@ -36,7 +37,7 @@ std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string
   if (xy.empty() && z.empty()) return std::nullopt;
   if (xy.empty() || z.empty())
     throw UsageError(
-        fmt::format("--distance-{}: expected it with --distance-{}", xy.empty() ? "z" : "xy", xy.empty() ? "xy" : "z"));
+        fmt::format("--distance-{} needs --distance-{}", xy.empty() ? "z" : "xy", xy.empty() ? "xy" : "z"));
   AxisDistances axes{parse_one("--distance-xy", xy), parse_one("--distance-z", z)};
   if (axes.xy.value == 0 && axes.z.value == 0)
     throw UsageError(fmt::format("--distance-z: expected one that is not 0, as --distance-xy is, got '{}'", z));

@@ -85,7 +85,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
 
 bool CommandLine::has(const char* option) const { return app_->get_option(option)->count() > 0; }
 
-/// As where a script has nothing to say.
+/// An empty value comes of a script with an empty variable, and is never meant.
 void CommandLine::require_values() const {
   for (const CLI::Option* const option : app_->get_options())
     for (const std::string& value : option->results())

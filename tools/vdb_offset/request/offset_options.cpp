@@ -137,7 +137,8 @@ void declare_parts(CommandLine& line, Draft& draft) {
                   if (text == "none") request.symmetry.find = false;
                   else request.symmetry.planes.push_back(parse_plane(text));
                 });
-  line.repeated("--obstacle", "FILE", "A mesh that nothing may touch; may be repeated",
+  line.repeated("--obstacle", "FILE",
+                "A mesh that the offset must not touch; distances are not measured from it; may be repeated",
                 [&request](const std::string& text) { request.obstacles.push_back(text); });
   line.option("--clearance", "C",
               "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]",
@@ -182,7 +183,7 @@ void declare_products(CommandLine& line, Draft& draft) {
             "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
             draft.layers.structured);
   line.flag("--close",
-            "Of curves: close those whose ends are near each other, by a straight segment, as over the base of a "
+            "Of curves: close those with ends near each other, by a straight segment, as over the base of a "
             "blunt trailing edge",
             request.close);
 }
@@ -194,9 +195,10 @@ void declare_method(CommandLine& line, Draft& draft) {
               [&request](const std::string& text) {
                 request.grid.voxel_size = parse_number("--voxel-size", text, "a number above 0", 0, kAny);
               });
-  line.option("--voxels-per-distance", "N", "The same as D / N", [&request](const std::string& text) {
-    request.grid.voxels_per_distance = parse_number("--voxels-per-distance", text, "a number above 0", 0, kAny);
-  });
+  line.option(
+      "--voxels-per-distance", "N", "Voxel size of the direction field as D / N", [&request](const std::string& text) {
+        request.grid.voxels_per_distance = parse_number("--voxels-per-distance", text, "a number above 0", 0, kAny);
+      });
   line.option("--collision", "MODE",
               "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
               "far as the distance grows [limit]",
@@ -258,7 +260,10 @@ void declare_files(CommandLine& line, Draft& draft) {
 void declare_run(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.flag("--no-sync", "Do not wait until outputs are on the disk before they get their names", draft.no_sync);
-  line.flag("--strict", "Exit with 3 if a vertex in use falls short of the distance", request.strict);
+  line.flag("--strict",
+            "Exit with 3 if a vertex in use falls short of its distance, a cell of layers is not valid, or an obstacle "
+            "or the mesh to fit is nearer than asked",
+            request.strict);
   line.flag("--dry-run", "Read the input, print what would be done, write nothing", request.dry_run);
   line.flag("-q,--quiet", "Print nothing but errors", request.quiet);
   line.flag("-v,--verbose", "Print the mesh's facts and the seconds of each stage", request.verbose);

@@ -20,17 +20,17 @@ using Names = std::initializer_list<const char*>;
 /// `by` says in words which option these need.
 void require_with(const CommandLine& line, bool is_given, const char* by, Names options) {
   for (const char* const option : options)
-    require(is_given || !line.has(option), fmt::format("{}: expected it with {}", option, by));
+    require(is_given || !line.has(option), fmt::format("{} needs {}", option, by));
 }
 
 /// `by` says in words which option excludes these.
 void require_without(const CommandLine& line, bool is_given, const char* by, Names options) {
   for (const char* const option : options)
-    require(!is_given || !line.has(option), fmt::format("{}: expected it without {}", option, by));
+    require(!is_given || !line.has(option), fmt::format("{} and {} exclude each other", option, by));
 }
 
 void require_one(const CommandLine& line, const char* option, const char* other) {
-  require(!line.has(option) || !line.has(other), fmt::format("{}: expected it or {}, got both", option, other));
+  require(!line.has(option) || !line.has(other), fmt::format("{} and {} exclude each other", option, other));
 }
 
 /// `as` says in words what is expected where there is one of those that are given.
@@ -47,7 +47,7 @@ void require_structured(const Request& request) {
           request.output + ": expected .vts or .xyz with --structured, and nothing else");
 }
 
-/// Curves stay curves, and know nothing of faces.
+/// Curves stay curves, and have no faces.
 void require_for_curves(const Request& request) {
   const auto volume = io::volume_format_of(request.output);
   const bool cells =
@@ -66,8 +66,7 @@ void require_for_curves(const Request& request) {
                           {"--weld", request.weld_text != "auto" && request.weld_text != "exact"},
                           {"--orient", request.orient_text != "keep"},
                           {"--fit", !request.fit.empty()}});
-  require(!request.axes || request.write.digits == 0,
-          "--precision: expected it without --distance-xy where there are curves");
+  require(!request.axes || request.write.digits == 0, "--precision and --distance-xy exclude each other for curves");
 }
 
 void require_for_mesh(const Request& request) {
@@ -114,28 +113,27 @@ void require_together(const CommandLine& line, bool is_iso) {
   const bool layers = line.has("--layers") || line.has("--heights"), fit = line.has("--fit"),
              axes = line.has("--distance-xy") || line.has("--distance-z");
   require_with(line, is_iso, "--mode iso", {"--adaptivity", "--inside", "--keep-specks", "--transport"});
-  if (is_iso) require(!layers, "--layers: expected it without --mode iso");
+  if (is_iso) require(!layers, "--layers and --mode iso exclude each other");
   require_without(line, is_iso, "--mode iso",
                   {"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--solver",
                    "--states", "--paths", "--save-vdb"});
   require_with(line, layers, "--layers", {"--first-height", "--total-thickness", "--growth", "--structured"});
   if (layers) {
     require(line.has("--heights") + line.has("--first-height") + line.has("--total-thickness") == 1,
-            "--layers: expected one of --first-height, --total-thickness and --heights");
-    require(!line.has("--heights") || !line.has("--growth"),
-            "--growth: expected it with --first-height or --total-thickness");
+            "--layers needs one of --first-height, --total-thickness and --heights");
+    require(!line.has("--heights") || !line.has("--growth"), "--growth needs --first-height or --total-thickness");
   }
   require_without(line, layers, "--layers",
                   {"--distance", "--distance-from", "--shell", "--collision", "--paths", "--save-vdb"});
   const auto instead_of_distance = [&](bool is_given, const char* by) {
     require_without(line, is_given, by, {"--distance", "--distance-from"});
-    require(!is_given || !layers, fmt::format("--layers: expected it without {}", by));
+    require(!is_given || !layers, fmt::format("--layers and {} exclude each other", by));
     require_without(line, is_given, by, {"--shell", "--obstacle", "--save-vdb"});
   };
   instead_of_distance(axes, "--distance-xy");
   require_without(line, axes, "--distance-xy", {"--fit"});
   instead_of_distance(fit, "--fit");
-  require(!fit || !is_iso, "--mode iso: expected it without --fit");
+  require(!fit || !is_iso, "--mode iso and --fit exclude each other");
   require_without(line, fit, "--fit", {"--dry-run", "--collision"});
   require_with(line, line.has("--clearance"), "--clearance", {"--fit"});
   require_with(line, fit || line.has("--obstacle"), "--obstacle or --fit", {"--clearance"});
@@ -146,7 +144,8 @@ void require_together(const CommandLine& line, bool is_iso) {
 }
 
 void require_sound(const Request& request) {
-  require(!request.iso || request.write.normals == io::Normals::Recompute, "--normals: expected it without --mode iso");
+  require(!request.iso || request.write.normals == io::Normals::Recompute,
+          "--normals keep and --mode iso exclude each other");
   require_endings(request);
   require(request.layers || !request.distances.empty() || scene::is_scene(request.input),
           "--distance: expected a distance (a scene alone brings its own)");

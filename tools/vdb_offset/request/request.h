@@ -47,7 +47,7 @@ struct IsoRequest {
   std::optional<double> adaptivity;
   bool use_winding = true, keep_specks = false;
   io::TransportRequest transport;
-  std::string transport_text;  ///< As given; empty: all that there is.
+  std::string transport_text;  ///< The words as given; empty: all that there is.
 };
 
 /// What a command line asks for: options that go together, each with a value that it can have. It depends on the words
@@ -85,7 +85,7 @@ struct Request {
   std::string clearance_text, weld_text = "auto", orient_text = "keep";
 
   std::string report, states, paths, vdb;  ///< Files to write; empty: not asked for.
-  std::optional<io::Format> format;        ///< Of files whose ending names none.
+  std::optional<io::Format> format;        ///< Of files with an ending that names none.
   io::WriteOptions write;                  ///< All but its format, which is the output's alone.
   OutputFiles::Sync sync = OutputFiles::Sync::Yes;
   bool strict = false, dry_run = false, quiet = false, verbose = false;

@@ -9,7 +9,7 @@
 
 namespace vdb_offset::io {
 
-/// The fewest digits that read back to the same number, of its kind; or the digits asked for.
+/// Appends a number with the fewest digits that read back to the same number, of its kind; or the digits asked for.
 inline void append_number(std::string& text, double value, const Rounding& precision = {}) {
   char digits[40];
   char* const first = std::begin(digits);
@@ -26,7 +26,7 @@ inline void append_integer(std::string& text, std::uint64_t value) {
   text.append(digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr);
 }
 
-/// As this machine holds it: little-endian.
+/// Appends the bytes of a number as this machine holds it: little-endian.
 template <class T>
 void append_binary(std::string& bytes, T value) {
   char raw[sizeof value];

@@ -13,11 +13,11 @@
 namespace vdb_offset::io {
 namespace {
 
-// Items of a section in a piece of a file.
+// Items of a section in a piece of a file: a MiB or so. Not measured beside other numbers.
 constexpr std::size_t kPerPiece = 1 << 15;
 
 /// Pieces under way stand in slots of their own: what a pipeline that is broken off holds itself is lost. They leave in
-/// order, so that who comes as many later finds the slot free.
+/// order, so that the piece that comes as many later finds the slot free.
 void produce(const Pieces& pieces, Compression compression, const Sink& sink) {
   const auto under_way = static_cast<std::size_t>(2 * tbb::info::default_concurrency());
   std::vector<std::string> made(under_way);

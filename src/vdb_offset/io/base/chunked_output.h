@@ -26,15 +26,16 @@ Pieces in_sections(const std::string& header, std::vector<Section> sections);
 /// All pieces of the first, then all of the second, and so on.
 Pieces in_a_row(std::vector<Pieces> files);
 
-/// Writes the pieces one behind the other to `path` (file_replace.h), a few of them in memory at a time; compressed,
-/// piece by piece, if the path ends in .gz or .zst. \throw WriteError
+/// Writes the pieces one behind the other to `path` through replace_file() (output_files.h), a few of them in memory at
+/// a time; compressed, piece by piece, if the path ends in .gz or .zst. \throw WriteError
 void write_pieces(const std::string& path, const Pieces& pieces);
 
-/// The same of what was made of the bytes of a file, `source`: if these have changed since, nothing is put in place.
+/// Writes pieces that were made of the bytes of a file, `source`, as write_pieces() does: if these bytes have changed
+/// since, nothing is put in place.
 /// \throw ReadError
 void write_pieces_of(const std::string& source, const FileBytes& bytes, const std::string& path, const Pieces& pieces);
 
-/// All of them in memory.
+/// All pieces behind each other, in memory.
 std::string join(const Pieces& pieces);
 
 }  // namespace vdb_offset::io

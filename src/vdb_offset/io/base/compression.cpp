@@ -17,7 +17,7 @@
 namespace vdb_offset::io {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 20;
+constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes that are decompressed at once
 // Gzip: a window of 32 KiB, in a gzip wrapping.
 constexpr int kGzipWindow = 15 + 16;
 

@@ -7,7 +7,7 @@ namespace vdb_offset::io {
 
 enum class Compression { None, Gzip, Zstd };
 
-/// By the file's ending: .gz, .zst.
+/// The compression that a file's ending stands for: .gz, .zst.
 Compression compression_of(std::string_view path);
 
 /// The path without .gz or .zst.
@@ -17,7 +17,7 @@ std::string_view without_compression(std::string_view path);
 /// if they are damaged, end early, or would not fit into memory, OutOfBudget if they would pass its limit.
 std::string decompress(Compression compression, const std::string& path, std::string_view bytes);
 
-/// One member or frame of its own: several behind each other are a file as well.
+/// Compresses bytes to one member or frame; several behind each other are a file as well.
 std::string compress(Compression compression, const std::string& bytes);
 
 }  // namespace vdb_offset::io

@@ -6,7 +6,8 @@
 namespace vdb_offset::io {
 namespace {
 
-// A run keeps a thread busy for a while and fits its cache. Fuzzers need shorter ones to get at what lies between two.
+// Bytes of a run. One keeps a thread busy for a while and fits its cache; not measured beside other lengths. Fuzzers
+// need shorter ones to get at what lies between two.
 #ifndef VDB_OFFSET_TEXT_RUN
 #define VDB_OFFSET_TEXT_RUN (1 << 19)
 #endif

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "vdb_offset/base/assert.h"
+
 namespace vdb_offset::io {
 
 /// What separates words within a line.
@@ -22,8 +24,8 @@ inline constexpr std::size_t kLongestNumber = 330;
 /// backslash joins to the next one is not cut.
 std::vector<std::size_t> cut_at_lines(std::string_view text, std::size_t begin);
 
-/// Reads the plain forms that nearly all lines have, and nothing else: whoever asks has another way for what is out of
-/// the ordinary, mistakes among it.
+/// Reads the plain forms that nearly all lines have, and nothing else: all that is out of the ordinary, mistakes among
+/// it, is left to a Scanner.
 class FastCursor {
  public:
   FastCursor(const char* at, const char* end) : at_(at), end_(end) {}
@@ -85,7 +87,10 @@ class LineRecords {
 
   bool complete() const { return first_.back() >= count_; }
   /// First byte behind the last record's line. \pre complete()
-  std::size_t end() const { return cuts_.back(); }
+  std::size_t end() const {
+    VDB_OFFSET_ASSERT(complete());
+    return cuts_.back();
+  }
 
   /// Calls read(i, cursor) in parallel for every record i, with a FastCursor at its start. False, and not all need have
   /// been read, if one returned false or did not stop at the end of its line: then the text is of another kind.

@@ -10,8 +10,9 @@
 namespace vdb_offset::io {
 namespace {
 
+// Names in a message: of the ones most like a wanted one; and of a list, all of them if there are so few.
 constexpr std::size_t kHandful = 5, kFew = 12;
-// Names are compared, and shown, up to there.
+// Names are compared, and shown, up to so many characters; and all of them together up to the second number.
 constexpr std::size_t kLongestShown = 48;
 constexpr std::size_t kLongestPhrase = 160;
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/scanner.h"
 
@@ -56,6 +57,7 @@ inline const char* obj_line_end(const char* line, const char* end) {
 template <class Visit>
 void for_each_obj_line(const std::string& path, std::string_view text, std::size_t begin, std::size_t end,
                        Visit&& visit) {
+  VDB_OFFSET_ASSERT(begin <= end && end <= text.size());
   const char* const last = text.data() + end;
   for (const char* line = text.data() + begin; line != last;) {
     const char* const next = obj_line_end(line, last);

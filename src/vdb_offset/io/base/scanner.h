@@ -45,7 +45,7 @@ class Scanner {
   /// Three tokens of this line, whatever they hold: normals, which are replaced and never used.
   void skip_triple(const char* expected, NumberTriple& at);
   std::int64_t integer(const char* expected);
-  /// As integer(), but of a count or index that may stand on a later line.
+  /// A count or an index, which may stand on a later line. \throw InvalidInput as integer()
   std::int64_t integer_anywhere(const char* expected);
   Vec3d triple(const char* expected, NumberTriple& at);
 

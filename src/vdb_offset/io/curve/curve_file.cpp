@@ -316,8 +316,8 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
   const Pieces pieces =
       format != source.format ? in_sections(as_file(format, moved, precision), {})
       : format == CurveFormat::Svg
-          ? in_sections(patch_svg(source.file.text(), source.svg, read.view(), positions, precision), {})
-          : patch(source.file, positions, precision);
+          ? in_sections(rewrite_svg(source.file.text(), source.svg, read.view(), positions, precision), {})
+          : rewrite_in_place(source.file, positions, precision);
   write_pieces_of(source.file.path, source.file.bytes, path, pieces);
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
@@ -37,7 +38,7 @@ class SvgReader {
   SvgLines run() {
     for (const char* const mark : {"\xff\xfe", "\xfe\xff"})
       if (text_.starts_with(mark)) fail_at(0, "a drawing in UTF-8", "UTF-16");
-    constexpr std::size_t kChunk = 1 << 26;
+    constexpr std::size_t kChunk = 1 << 26;  // bytes, as expat takes an int
     for (std::size_t at = 0; at < text_.size() || at == 0; at += kChunk) {
       const std::string_view chunk = text_.substr(at, kChunk);
       const bool last = at + kChunk >= text_.size();
@@ -165,7 +166,7 @@ class SvgReader {
 
   /// Relative coordinates add up to where a curve began but for rounding.
   void join_ends(std::uint32_t first) {
-    constexpr double kRounding = 1e-13;
+    constexpr double kRounding = 1e-13;  // of the largest coordinate: a thousand sums' worth
     double largest = 0;
     for (std::size_t p = first; p < lines_.own.size(); ++p)
       for (int k = 0; k < 2; ++k) largest = std::max(largest, std::abs(lines_.own[p][k]));
@@ -260,9 +261,10 @@ void append_own(std::string& text, const SvgMatrix& to_drawing, const Vec3d& pos
 
 SvgLines parse_svg(const std::string& path, std::string_view text) { return SvgReader(path, text).run(); }
 
-std::string patch_svg(std::string_view text, const SvgLines& lines, CurvesView source, std::span<const Vec3d> positions,
-                      const Rounding& precision) {
-  std::string patched;
+std::string rewrite_svg(std::string_view text, const SvgLines& lines, CurvesView source,
+                        std::span<const Vec3d> positions, const Rounding& precision) {
+  VDB_OFFSET_ASSERT(positions.size() == source.positions.size());
+  std::string rewritten;
   std::size_t copied = 0, curve = 0;
   const auto has_moved = [&](std::uint32_t p) { return positions[p] != source.positions[p]; };
   for (const SvgLines::Shape& shape : lines.shapes) {
@@ -271,23 +273,23 @@ std::string patch_svg(std::string_view text, const SvgLines& lines, CurvesView s
     const auto corners =
         source.corners.subspan(source.face_begin[first], source.face_begin[curve] - source.face_begin[first]);
     if (std::none_of(corners.begin(), corners.end(), has_moved)) continue;
-    patched.append(text, copied, shape.begin - copied);
+    rewritten.append(text, copied, shape.begin - copied);
     copied = shape.end;
     for (std::size_t c = first; c < curve; ++c) {
       const auto points = source.face(c);
       const bool repeats = points.size() > 1 && points.back() == points.front();
-      if (c > first) patched += ' ';
+      if (c > first) rewritten += ' ';
       for (std::size_t k = 0; k < points.size() - repeats; ++k) {
-        if (k > 0) patched += ' ';
-        if (shape.is_path) patched += k == 0 ? 'M' : 'L';
+        if (k > 0) rewritten += ' ';
+        if (shape.is_path) rewritten += k == 0 ? 'M' : 'L';
         const std::uint32_t p = points[k];
-        if (has_moved(p)) append_own(patched, shape.to_drawing, positions[p], precision);
-        else append_point(patched, lines.own[p]);
+        if (has_moved(p)) append_own(rewritten, shape.to_drawing, positions[p], precision);
+        else append_point(rewritten, lines.own[p]);
       }
-      if (shape.is_path && lines.closed[c]) patched += " Z";
+      if (shape.is_path && lines.closed[c]) rewritten += " Z";
     }
   }
-  return patched.append(text, copied);
+  return rewritten.append(text, copied);
 }
 
 std::string as_svg(CurvesView curves, const Rounding& precision) {

@@ -20,10 +20,10 @@ namespace vdb_offset::io {
 /// segments, other shapes and `use`, which would not be offset along with these, and for transforms in a style
 SvgLines parse_svg(const std::string& path, std::string_view text);
 
-/// The same drawing with points at other positions: attributes of shapes of which a point has moved are written anew,
+/// The drawing with points at other positions: attributes of shapes of which a point has moved are written anew,
 /// in absolute coordinates; all other bytes stay. `source` are the curves of `lines`, where they may not be any more.
-std::string patch_svg(std::string_view text, const SvgLines& lines, CurvesView source, std::span<const Vec3d> positions,
-                      const Rounding& precision);
+std::string rewrite_svg(std::string_view text, const SvgLines& lines, CurvesView source,
+                        std::span<const Vec3d> positions, const Rounding& precision);
 
 /// A drawing of curves that come from elsewhere, one path each.
 /// \throw InvalidInput if z is not 0 all over

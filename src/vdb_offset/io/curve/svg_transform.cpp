@@ -8,7 +8,7 @@
 namespace vdb_offset::io {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
+constexpr double kDegree = 0.017453292519943295;  // in radians
 
 double determinant(const SvgMatrix& m) { return m[0] * m[3] - m[1] * m[2]; }
 
@@ -40,6 +40,8 @@ SvgMatrix product(const SvgMatrix& outer, const SvgMatrix& inner) {
 }
 
 bool has_inverse(const SvgMatrix& m) {
+  // Squared scale of which neither square nor inverse leaves a double; and determinant by that scale, below which fewer
+  // than four digits would come back. Not measured.
   constexpr double kLeastSize = 1e-100, kLeastShare = 1e-12;
   const double size = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
   return size > kLeastSize && size < 1 / kLeastSize && std::abs(determinant(m)) > kLeastShare * size &&

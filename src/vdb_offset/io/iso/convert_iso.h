@@ -9,19 +9,19 @@
 
 namespace vdb_offset::io {
 
-/// A captured mesh with what it takes of the source (see iso_file.h); normals are those of phi.
+/// An iso-surface with the attributes that it takes from the source (see iso_file.h); normals are gradients of phi.
 Pieces convert(const MeshFile& source, Format target, const IsoResult& captured, const Transported& transported,
                const Rounding& precision, WriteResult& result);
 
-/// The same of a mesh that comes from no file.
+/// An iso-surface of a mesh that comes from no file.
 Pieces convert(Format target, const IsoResult& captured, const Rounding& precision);
 
-/// A hollow solid; the skin that is the source has all that the format can hold of it, and the other one its colours
-/// and materials where it is closest. `captured` is the other skin.
+/// A hollow solid. The skin that is the source has all attributes that the format can hold; the other one, `captured`,
+/// has the colours and materials of the closest points of the source.
 Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const IsoResult& captured,
                WriteResult& result);
 
-/// A hollow solid without more than that.
+/// A hollow solid of plain polygons.
 Pieces convert(Format target, const Hollow& hollow, WriteResult& result);
 
 }  // namespace vdb_offset::io

@@ -99,7 +99,7 @@ bool take_texture(const Columns& columns, std::size_t first, Attributes& attribu
 /// The words behind the coordinates (and normals) of a text's vertices, NaN for one that is no number. None if the
 /// vertices have different numbers of them, or more than there is a meaning for.
 std::optional<Columns> read_tails(const MeshFile& source) {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMost = 6;  // words: four of a colour and two of texture coordinates
   const ByteOffsets& last =
       source.format == Format::Off && !source.normal_at.empty() ? source.normal_at : source.position_at;
   const auto tail = [&](std::size_t v) {
@@ -208,7 +208,7 @@ void read_binary_off(const MeshFile& source, Attributes& attributes) {
   if (layout.colour && take_colours(columns_of(layout.colour, 4), 4, 1, attributes)) is_kept(attributes, kOffColours);
   if (layout.texture && take_texture(columns_of(layout.texture, 2), 0, attributes)) is_kept(attributes, kOffTexture);
   const std::uint64_t counts = source.polygons.corners.size() + 2 * source.polygons.face_count();
-  const std::vector<std::uint64_t> places = off::face_places(source);
+  const std::vector<std::uint64_t> places = off::face_offsets(source);
   if (places.back() - places.front() > 4 * counts) attributes.lost.emplace_back("face colours");
 }
 
@@ -235,7 +235,7 @@ using Names = std::vector<std::string>;
 Columns read_columns(const MeshFile& source, const ply::Header& header, const ply::Element& wanted,
                      const Names& names) {
   Columns columns{names.size(), std::vector<double>(names.size() * wanted.count)};
-  ply::ConstrainedSurface body(source, header);
+  ply::BodyReader body(source, header);
   body.skip_to(wanted, header);
   std::uint64_t ignored = 0;
   for (std::size_t row = 0; row < wanted.count; ++row)
@@ -313,7 +313,7 @@ void read_ply_texture_lists(const MeshFile& source, const ply::Header& header, A
   if (std::count_if(faces.properties.begin(), faces.properties.end(), is_texture) != 1) return;
   CornerValues<Vec2d> texture;
   TextureIndex index_of(texture.value);
-  ply::ConstrainedSurface body(source, header);
+  ply::BodyReader body(source, header);
   body.skip_to(faces, header);
   std::uint64_t ignored = 0;
   for (std::size_t f = 0; f < faces.count; ++f)

@@ -12,28 +12,29 @@
 
 namespace vdb_offset::io {
 
-/// The source as a file of another format, with other positions and, if asked for, other normals where a face moved:
-/// all that the format can hold. `result` receives the rest. The pieces refer to `source` and `positions`.
+/// The source as a file of another format: other positions, other normals where a face moved if asked for, and all that
+/// the format can hold besides. `result` receives the names of what it cannot hold. The pieces refer to `source` and
+/// `positions`.
 Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Rounding& precision,
                Normals normals, WriteResult& result);
 
 // For all that is made of a mesh file and is to have what that holds:
 
-/// Puts in the normals of faces that moved, which are computed from the coordinates as written, and need no more than
-/// single precision.
+/// Replaces the normals of faces that moved. They are computed from the coordinates as written, in single precision.
 void update_normals(const NewNormals& computed, std::vector<Vec3d>& normals, WriteResult& result);
 
-/// Drops what the format has no place for, and names it in `attributes.lost`.
+/// Drops attributes that the format has no place for, and names them in `attributes.lost`.
 void fit_to_format(Format target, PolygonView mesh, Attributes& attributes);
 
-/// Encodes the content without what would be no number, and what the format has no place for; `result` names that.
+/// Encodes the content without attributes that are no numbers or that the format has no place for; `result` names
+/// these.
 Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
                       WriteResult& result);
 
 /// Whether a format has names or properties of faces, for the parts of a solid.
 bool keeps_parts(Format format);
 
-/// What the others lose.
+/// The name of what the other formats lose.
 inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
 
 }  // namespace vdb_offset::io

@@ -15,9 +15,9 @@ inline std::vector<std::string> words_of_line(Scanner scanner) {
   return words;
 }
 
-/// Tells a listener the names that faces are under, in the order of the file: set_groups(names), set_object(name) and
-/// set_material(name) hold for the faces after them, for each of which add_face() is called. Only OBJ and ASCII STL
-/// (whose solids are groups) have names; for other files nothing is called.
+/// Tells a listener the names of faces, in the order of the file: set_groups(names), set_object(name) and
+/// set_material(name) hold for the faces after them; add_face() is called for each face. Only OBJ and ASCII STL (in
+/// which solids are groups) have names; for other files nothing is called.
 template <class Listener>
 void visit_labels(const MeshFile& mesh, Listener& listener) {
   if (mesh.format == Format::Obj) {

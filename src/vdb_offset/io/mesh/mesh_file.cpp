@@ -103,7 +103,7 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
     NewNormals normals;
     if (options.normals == Normals::Recompute) normals = new_normals(source, positions, precision);
     result.disagreeing_normals = normals.disagreeing;
-    pieces = patch(source, positions, precision, std::move(normals));
+    pieces = rewrite_in_place(source, positions, precision, std::move(normals));
   } else {
     pieces = convert(source, format, positions, precision, options.normals, result);
   }
@@ -112,7 +112,7 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
 }
 
 std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions) {
-  return join(patch(source, positions, source.precision, new_normals(source, positions, source.precision)));
+  return join(rewrite_in_place(source, positions, source.precision, new_normals(source, positions, source.precision)));
 }
 
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {

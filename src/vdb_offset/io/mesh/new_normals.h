@@ -10,20 +10,20 @@ namespace vdb_offset::io {
 
 /// New values for a file's normals.
 struct NewNormals {
-  std::vector<Vec3d> value;     ///< Unit length, one for each of the file's; zero for one that stays as it is.
-  std::size_t disagreeing = 0;  ///< Normals shared by vertices that ask for different ones now.
+  std::vector<Vec3d> value;     ///< One for each normal of the file, of unit length; zero for one that stays as it is.
+  std::size_t disagreeing = 0;  ///< Normals shared by vertices that have different ones now.
 };
 
-/// Whether the file, at its precision, holds another position now.
+/// Whether a position differs from the source's at the file's precision.
 inline bool has_moved(const Vec3d& before, const Vec3d& after, const Rounding& precision) {
   return !(after == before) && !(precision(after) == before);
 }
 
 /// Faces of a file over other vertices than its own. Empty spans: all faces, over the file's vertices.
 struct PlacedFaces {
-  std::span<const std::uint32_t> faces;    ///< Those that count.
-  std::span<const std::uint32_t> corners;  ///< Of each of the file's corners the index of its position.
-  std::span<const std::uint32_t> origin;   ///< Of each position the file's vertex that it comes from.
+  std::span<const std::uint32_t> faces;    ///< The faces that count.
+  std::span<const std::uint32_t> corners;  ///< For each of the file's corners the index of its position.
+  std::span<const std::uint32_t> origin;   ///< For each position the file's vertex that it comes from.
 };
 
 /// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners

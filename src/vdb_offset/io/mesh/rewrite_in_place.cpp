@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
@@ -14,20 +15,22 @@
 namespace vdb_offset::io {
 namespace {
 
-// Size of a piece of a binary file.
+// Bytes of a piece of a binary file. Not measured beside other sizes.
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 
 /// A number of a text that gets another value.
-struct Patch {
+struct ChangedNumber {
   std::uint64_t at;
   double value;
   bool of_normal;
 };
 
-class Patcher {
+class Rewriter {
  public:
-  Patcher(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision, NewNormals normals)
+  Rewriter(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision, NewNormals normals)
       : source_(source), positions_(positions), precision_(precision), normals_(std::move(normals)) {
+    VDB_OFFSET_ASSERT(positions.size() == source.polygons.positions.size());
+    VDB_OFFSET_ASSERT(source.position_at.size() == positions.size());
     cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text(), 0) : cut_between_numbers();
   }
 
@@ -86,27 +89,27 @@ class Patcher {
   }
 
   std::string in_text(std::uint64_t begin, std::uint64_t end) const {
-    const std::vector<Patch> patches = in_order(begin, end);
+    const std::vector<ChangedNumber> changes = in_order(begin, end);
     const std::string_view bytes = source_.text();
     std::string text;
-    text.reserve((end - begin) + patches.size() * 12);
+    text.reserve((end - begin) + changes.size() * 12);
     const Rounding of_normals{Rounding::Kind::Single};  // a normal needs no more
     std::uint64_t copied = begin;
-    for (const Patch& patch : patches) {
-      text.append(bytes, copied, patch.at - copied);
-      append_number(text, patch.value, patch.of_normal ? of_normals : precision_);
-      for (copied = patch.at; copied < end && !ends_number(copied);) ++copied;
+    for (const ChangedNumber& change : changes) {
+      text.append(bytes, copied, change.at - copied);
+      append_number(text, change.value, change.of_normal ? of_normals : precision_);
+      for (copied = change.at; copied < end && !ends_number(copied);) ++copied;
     }
     return text.append(bytes, copied, end - copied);
   }
-  std::vector<Patch> in_order(std::uint64_t begin, std::uint64_t end) const {
-    std::vector<Patch> patches;
+  std::vector<ChangedNumber> in_order(std::uint64_t begin, std::uint64_t end) const {
+    std::vector<ChangedNumber> changes;
     for_each_number(begin, end, [&](std::uint64_t at, double value, bool of_normal) {
-      patches.push_back({at, value, of_normal});
+      changes.push_back({at, value, of_normal});
     });
-    const auto by_place = [](const Patch& a, const Patch& b) { return a.at < b.at; };
-    if (!std::is_sorted(patches.begin(), patches.end(), by_place)) std::sort(patches.begin(), patches.end(), by_place);
-    return patches;
+    const auto by_place = [](const ChangedNumber& a, const ChangedNumber& b) { return a.at < b.at; };
+    if (!std::is_sorted(changes.begin(), changes.end(), by_place)) std::sort(changes.begin(), changes.end(), by_place);
+    return changes;
   }
   /// Where the readers see a word end: at white space, at a comment where the format has them, at a line that goes on.
   bool ends_number(std::uint64_t at) const {
@@ -150,9 +153,11 @@ Pieces with_line_ends_of(const MeshFile& source, Pieces pieces) {
           }};
 }
 
-Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision, NewNormals normals) {
-  const auto patcher = std::make_shared<const Patcher>(source, positions, precision, std::move(normals));
-  return with_line_ends_of(source, {patcher->pieces(), [patcher](std::size_t piece) { return patcher->make(piece); }});
+Pieces rewrite_in_place(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
+                        NewNormals normals) {
+  const auto rewriter = std::make_shared<const Rewriter>(source, positions, precision, std::move(normals));
+  return with_line_ends_of(source,
+                           {rewriter->pieces(), [rewriter](std::size_t piece) { return rewriter->make(piece); }});
 }
 
 }  // namespace vdb_offset::io

@@ -11,8 +11,8 @@ namespace vdb_offset::io {
 
 /// The source's own bytes, with other coordinates where a vertex moved and other normals where there are new ones. The
 /// pieces refer to `source` and `positions`; those of a text begin where cut_at_lines() cuts it.
-Pieces patch(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
-             NewNormals normals = {});
+Pieces rewrite_in_place(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
+                        NewNormals normals = {});
 
 /// A text with line feeds in that source's format as it has its lines end.
 Pieces with_line_ends_of(const MeshFile& source, Pieces pieces);

@@ -38,7 +38,7 @@ class TrianglePlaces {
   }
 
  private:
-  static constexpr std::size_t kQuad = 4;
+  static constexpr std::size_t kQuad = 4;  // corners
 
   /// A polygon is split as it is after the offset, which is not known: around its first corner, or as before. Where
   /// both could be, its corners are where they have gone less far.
@@ -86,7 +86,7 @@ class TrianglePlaces {
 
 }  // namespace
 
-std::optional<std::vector<Vec3d>> places_in_triangles(PolygonView mesh, PolygonView triangles) {
+std::optional<std::vector<Vec3d>> positions_in_triangles(PolygonView mesh, PolygonView triangles) {
   return TrianglePlaces(mesh, triangles).find();
 }
 

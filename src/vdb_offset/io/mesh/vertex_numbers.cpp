@@ -169,9 +169,9 @@ class NpyHeaderReader {
     return text_.substr(begin, end - begin);
   }
 
-  /// As a message can show it.
+  /// The text as a message can show it.
   std::string shown(std::size_t begin, std::size_t end) const {
-    constexpr std::size_t kShown = 24;
+    constexpr std::size_t kShown = 24;  // characters, of a word in a message
     std::string line(text_.substr(begin, std::min(end - begin, kShown)));
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return !std::isprint(c); }, '?');
@@ -280,7 +280,7 @@ std::vector<double> vertex_property(const MeshFile& source, const std::string& n
   if (!vertices || vertices->count != count)
     throw InvalidInput(fmt::format("{}, header: expected {} vertices, as before", source.path, count));
   const ply::Property& wanted = find_scalar(source, *vertices, name);
-  ply::ConstrainedSurface body(source, header);
+  ply::BodyReader body(source, header);
   body.skip_to(*vertices, header);
   std::vector<double> numbers(count);
   for (std::size_t v = 0; v < count; ++v)

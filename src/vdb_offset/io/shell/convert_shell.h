@@ -7,8 +7,8 @@
 
 namespace vdb_offset::io {
 
-/// A shell of the source's mesh in another format: both skins have what the source has; what is the same for all
-/// corners of a vertex, or of a border face, goes to the rim as well. The pieces refer to `source` and `shell`.
+/// A shell of the source's mesh in another format. Both skins have the source's attributes; those that are the same for
+/// all corners of a vertex, or of a border face, go to the rim as well. The pieces refer to `source` and `shell`.
 Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Rounding& precision, Normals normals,
                WriteResult& result);
 

@@ -12,40 +12,40 @@
 
 namespace vdb_offset::io {
 
-/// One skin of a shell, as a file of its source's format has it. Refers to what it is made of.
+/// One skin of a shell, as a file of its source's format has it. Refers to the source and the shell.
 ///
 /// Its vertices are numbered as the source's; behind those come the splits of both skins.
 class Skin {
  public:
   Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision, Normals normals);
 
-  /// What is added to the number of a vertex of the source.
+  /// The number of the skin's first vertex in the shell.
   std::uint32_t first_vertex() const { return first_vertex_; }
   bool is_reversed() const { return first_vertex_ > 0; }
-  /// No vertex has moved.
+  /// Whether no vertex has moved.
   bool is_source() const;
-  /// The vertex of the source that one is, or is a split of.
+  /// The vertex of the source that vertex v is, or is a split of.
   std::size_t source_of(std::size_t v) const { return v < vertices() ? v : shell_.splits[v - vertices()].vertex; }
   /// The source's normals as they are now, not turned round.
   const NewNormals& new_normals() const { return normals_; }
 
-  /// As written.
+  /// The positions as written.
   Vec3d position(std::size_t v) const;
-  /// None for a vertex, or a normal, whose numbers stay as they are, but for an inner normal's sign.
+  /// None for a vertex, or a normal, that keeps its numbers, but for an inner normal's sign.
   std::optional<Vec3d> new_position(std::size_t v) const;
   std::optional<Vec3d> new_normal(std::size_t n) const;
 
-  /// The three numbers of a text, each behind a blank.
+  /// Appends three numbers, each behind a blank.
   void append_position(std::string& text, std::size_t v) const;
   void append_normal(std::string& text, std::size_t n) const;
-  /// One of them; `word` is what the source has.
+  /// Appends one of three numbers; `word` is the source's text of it.
   void append_coordinate(std::string& text, std::size_t v, int k, std::string_view word) const;
   void append_normal_component(std::string& text, std::size_t n, int k, std::string_view word) const;
 
  private:
   std::string_view word_at(std::uint64_t byte) const;
   std::size_t vertices() const { return positions_.size(); }
-  /// Among the shell's.
+  /// The number of a skin's vertex among the shell's.
   std::size_t number(std::size_t v) const { return v < vertices() ? first_vertex_ + v : vertices() + v; }
 
   const MeshFile& source_;
@@ -54,17 +54,17 @@ class Skin {
   std::uint32_t first_vertex_;
   Rounding precision_;
   NewNormals normals_;
-  std::vector<Vec3d> vertex_normals_;  // of the shell's, where splits need some of their own
+  std::vector<Vec3d> vertex_normals_;  // of the shell's vertices, where splits need some of their own
 };
 
 /// The normals of a file's corners, as a skin of its shell has them; not turned round.
 NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision);
 
-/// Those of a shell's vertices, outward: the means of the faces of both skins by angle, without the rim. Zero where
-/// there is none.
+/// Normals of a shell's vertices, outward: means of the faces of both skins by angle, without the rim. Zero where a
+/// vertex has none.
 std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& precision);
 
-/// A shell that is to be a file of its source's format. Refers to what it is made of.
+/// A shell that is to be a file of its source's format. Refers to the source and the shell.
 struct ShellContent {
   const MeshFile& source;
   const Shell& shell;

@@ -158,7 +158,7 @@ class ObjShellWriter {
         source_(content->source),
         shell_(content->shell),
         found_(ObjRunFinder(source_).take()),
-        outer_(patch(source_, shell_.outer(), content->precision, content->outer.new_normals())),
+        outer_(rewrite_in_place(source_, shell_.outer(), content->precision, content->outer.new_normals())),
         elements_inside_(content->inner.is_source() && !content->outer.is_source()),
         has_vertex_data_(std::find(source_.extras.begin(), source_.extras.end(), "vertex weights or colours") !=
                          source_.extras.end()),

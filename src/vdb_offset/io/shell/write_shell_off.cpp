@@ -28,7 +28,7 @@ class BinaryShellWriter {
         source_(content->source),
         shell_(content->shell),
         layout_(off::layout_of(source_)),
-        face_at_(off::face_places(source_)) {}
+        face_at_(off::face_offsets(source_)) {}
 
   std::string start() const {
     std::string bytes(source_.text().substr(0, *off::binary_begin(source_)));

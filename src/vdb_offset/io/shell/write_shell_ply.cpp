@@ -186,7 +186,7 @@ class PlyShellWriter {
 
   /// Where each row of vertices and faces starts, and all other elements.
   void find_rows() {
-    ConstrainedSurface body(source_, header_);
+    BodyReader body(source_, header_);
     for (const Element& element : header_.elements) {
       element_begin_.push_back(body.position());
       std::vector<std::uint64_t>* const rows = &element == &vertices_ ? &vertex_row_

@@ -9,8 +9,8 @@
 
 namespace vdb_offset::io {
 
-// One writer a format, each of a mesh whose arrays fit each other. \throw WriteError, InvalidInput (volume_file.h)
-// VTK's gives cells the order that their corners have there.
+// One writer a format. \pre the mesh's arrays fit each other. \throw WriteError, InvalidInput (volume_file.h). That of
+// VTK changes the order of cells' corners to VTK's.
 void write_vtu(const std::string& path, VolumeMesh& mesh);
 void write_msh(const std::string& path, const VolumeMesh& mesh);
 void write_cgns(const std::string& path, const VolumeMesh& mesh);
@@ -20,7 +20,8 @@ FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh);
 
 bool has_polyhedra(const VolumeMesh& mesh);
 
-/// \throw InvalidInput for polyhedra, and for faces of patches with more than four corners. `ending` is for messages.
+/// Refuses cells that a format has not. \throw InvalidInput for polyhedra, and for faces of patches with more than four
+/// corners. `ending` is for messages.
 void require_standard_cells(const std::string& path, const VolumeMesh& mesh, const char* ending);
 
 /// Words of at most `longest` bytes, no two alike: the later ones end in _2, _3 ...

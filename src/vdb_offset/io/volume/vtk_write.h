@@ -15,7 +15,7 @@ class vtkXMLWriter;
 
 namespace vdb_offset::io {
 
-/// The same memory as VTK's array, which must not be longer-lived, and never writes to it.
+/// A view of numbers as VTK's array. \pre the numbers outlive it; VTK never writes to them.
 template <class Array, class Number>
 vtkSmartPointer<Array> vtk_view(std::span<const Number> numbers) {
   using Value = typename Array::ValueType;
@@ -26,7 +26,9 @@ vtkSmartPointer<Array> vtk_view(std::span<const Number> numbers) {
   return array;
 }
 
+/// Points as VTK has them: a view, as vtk_view().
 vtkSmartPointer<vtkPoints> vtk_points(std::span<const Vec3d> points);
+/// Adds fields to a data set, as views.
 void add_fields(vtkDataSetAttributes& attributes, const std::vector<VolumeField>& fields);
 
 /// Writes `data` to `path` through replace_file(): raw appended, compressed. VTK prints nothing. \throw WriteError

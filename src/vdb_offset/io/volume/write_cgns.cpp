@@ -54,7 +54,7 @@ std::size_t most_bytes(const VolumeMesh& mesh) {
     for (const VolumeField& field : *fields) values += field.values.size();
   // Faces of polyhedra have their own numbers, and those of prisms three times the corners.
   const std::size_t per_corner = sizeof(cgsize_t) * (has_polyhedra(mesh) ? 4 : 1);
-  constexpr std::size_t kNodes = 1 << 20;
+  constexpr std::size_t kNodes = 1 << 20;  // bytes for the nodes of the tree, which are some dozens
   return kNodes + mesh.points.size() * sizeof(Vec3d) + corners * per_corner + values * sizeof(float);
 }
 

@@ -210,7 +210,7 @@ class SideMatch {
         edges_({{}, columns.corners, columns.begin}, numbers_below(vertices)),
         crowded_(vertices, 0) {
     std::atomic<std::size_t> border_sides = 0, unpaired_sides = 0;
-    for_each_index(edges_.places(), [&](std::size_t v) {
+    for_each_index(edges_.positions(), [&](std::size_t v) {
       visit_risen_from(v, [&](Index a, Index b, std::span<const EdgeSide> sides) {
         pair_sides(
             sides, columns_.corners, a, [](SidePair) {},
@@ -277,7 +277,7 @@ class SideMatch {
   }
   template <class Visit>
   void for_edges(Visit&& visit) const {
-    for (std::size_t v = 0; v < edges_.places(); ++v) visit_risen_from(v, visit);
+    for (std::size_t v = 0; v < edges_.positions(); ++v) visit_risen_from(v, visit);
   }
   Index next(Index corner) const {
     const auto column = std::upper_bound(columns_.begin.begin(), columns_.begin.end(), corner) - 1;

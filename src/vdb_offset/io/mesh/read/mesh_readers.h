@@ -4,17 +4,18 @@
 
 namespace vdb_offset::io {
 
-// One reader a format. Each takes a file whose `path` and `bytes` are set and fills in the rest.
+// One reader a format. Each takes a file with `path` and `bytes` set and fills in the rest.
 // \throw InvalidInput for content that is no such mesh.
 void parse_obj(MeshFile& file);
 void parse_off(MeshFile& file);
 void parse_ply(MeshFile& file);
 void parse_stl(MeshFile& file);
 
-/// Has a text whose lines end with carriage returns alone, as those of old Macs, look like any other; see MeshFile.
+/// Gives a text line feeds in the place of carriage returns, if its lines end with these alone, as those of old Macs
+/// do; see MeshFile.
 void use_line_feeds(MeshFile& file);
 
-/// As told, else by the file's ending. \throw InvalidInput for an ending that is unknown.
+/// The format as told, else by the file's ending. \throw InvalidInput for an ending that is unknown.
 Format require_format(const std::string& path, const std::optional<Format>& told);
 
 /// Vertex indices are 32 bits wide; the largest value means "none".

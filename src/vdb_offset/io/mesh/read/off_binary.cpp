@@ -25,7 +25,7 @@ Layout layout_of(const MeshFile& file) {
 
 std::optional<std::size_t> binary_begin(const MeshFile& file) {
   const std::string_view text = file.text();
-  constexpr std::size_t kLongestLine = 80;
+  constexpr std::size_t kLongestLine = 80;  // bytes; "STCN4OFF BINARY" has 15
   const std::size_t end = text.substr(0, kLongestLine).find_first_of("\r\n");
   if (end == std::string_view::npos) return std::nullopt;
   Scanner words(file.path, text.substr(0, end));
@@ -42,7 +42,7 @@ std::int64_t integer_at(const MeshFile& file, std::uint64_t at) {
   return static_cast<std::int64_t>(ply::binary_number(file.text().data() + at, {'i', 4}, Encoding::BigEndian));
 }
 
-std::vector<std::uint64_t> face_places(const MeshFile& file) {
+std::vector<std::uint64_t> face_offsets(const MeshFile& file) {
   const std::size_t vertices = file.polygons.positions.size();
   std::vector<std::uint64_t> places{*binary_begin(file) + 12 + 4 * layout_of(file).width * vertices};
   for (std::size_t f = 0; f < file.polygons.face_count(); ++f) {

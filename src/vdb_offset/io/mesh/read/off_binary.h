@@ -11,7 +11,7 @@
 /// each face its number of corners, these, and a number of colour components, and these.
 namespace vdb_offset::io::off {
 
-/// Where a vertex's numbers stand among those of its record; 0 for what there is none of.
+/// Positions of a vertex's numbers in its record; 0 for an attribute that it has not.
 struct Layout {
   std::size_t normal = 0, colour = 0, texture = 0;
   std::size_t width = 3;
@@ -21,10 +21,11 @@ Layout layout_of(const MeshFile& file);
 /// First byte behind the line of a binary file; none for a text.
 std::optional<std::size_t> binary_begin(const MeshFile& file);
 
+/// The number, or the integer, that begins at a byte of the file.
 double number_at(const MeshFile& file, std::uint64_t at);
 std::int64_t integer_at(const MeshFile& file, std::uint64_t at);
 
-/// Where each face stands, and behind the last one.
-std::vector<std::uint64_t> face_places(const MeshFile& file);
+/// First byte of each face, and the byte behind the last one.
+std::vector<std::uint64_t> face_offsets(const MeshFile& file);
 
 }  // namespace vdb_offset::io::off

@@ -116,7 +116,7 @@ Header read_header(const MeshFile& file) {
   return header;
 }
 
-double ConstrainedSurface::take(Type type, const char* what, std::uint64_t& at) {
+double BodyReader::take(Type type, const char* what, std::uint64_t& at) {
   if (encoding_ == Encoding::Ascii) {
     if (text_.at_text_end()) text_.fail(what);
     Scanner before = text_;
@@ -128,20 +128,20 @@ double ConstrainedSurface::take(Type type, const char* what, std::uint64_t& at) 
   return take_binary(type, what);
 }
 
-double ConstrainedSurface::take_binary(Type type, const char* what) {
+double BodyReader::take_binary(Type type, const char* what) {
   if (file_.text().size() - at_ < type.bytes) truncated(what);
   at_ += type.bytes;
   return binary_number(file_.text().data() + at_ - type.bytes, type, encoding_);
 }
 
-std::size_t ConstrainedSurface::take_length(const Property& list) {
+std::size_t BodyReader::take_length(const Property& list) {
   std::uint64_t at = 0;
   const double count = take(*list.count, "the length of a list", at);
   if (count < 0) fail("a list length from 0 on", fmt::format("{}", count), at);
   return static_cast<std::size_t>(count);
 }
 
-std::uint64_t ConstrainedSurface::place(Type type, const char* what) {
+std::uint64_t BodyReader::place(Type type, const char* what) {
   if (encoding_ == Encoding::Ascii) {
     text_.token_anywhere(what);
     return text_.last_token();
@@ -150,7 +150,7 @@ std::uint64_t ConstrainedSurface::place(Type type, const char* what) {
   return at_ - type.bytes;
 }
 
-void ConstrainedSurface::skip(Type type, std::size_t count, const char* what) {
+void BodyReader::skip(Type type, std::size_t count, const char* what) {
   if (encoding_ == Encoding::Ascii) {
     for (std::size_t i = 0; i < count; ++i) text_.token_anywhere(what);
     return;
@@ -159,28 +159,28 @@ void ConstrainedSurface::skip(Type type, std::size_t count, const char* what) {
   at_ += count * type.bytes;
 }
 
-void ConstrainedSurface::skip(const Property& property) {
+void BodyReader::skip(const Property& property) {
   if (property.count) skip(property.type, take_length(property), "an item of a list");
   else skip(property.type, 1, "a property");
 }
 
-void ConstrainedSurface::skip_to(const Element& element, const Header& header) {
+void BodyReader::skip_to(const Element& element, const Header& header) {
   for (auto before = header.elements.begin(); before->name != element.name; ++before)
     for (std::size_t row = 0; row < before->count && !before->properties.empty(); ++row)
       for (const Property& property : before->properties) skip(property);
 }
 
-void ConstrainedSurface::go_to(std::size_t at) {
+void BodyReader::go_to(std::size_t at) {
   if (encoding_ == Encoding::Ascii) text_ = Scanner(file_.path, file_.text(), at);
   else at_ = at;
 }
 
-void ConstrainedSurface::fail(const std::string& expected, const std::string& found, std::uint64_t at) const {
+void BodyReader::fail(const std::string& expected, const std::string& found, std::uint64_t at) const {
   if (encoding_ == Encoding::Ascii) text_.fail_with(expected, found, at);
   throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", file_.path, at, expected, found));
 }
 
-void ConstrainedSurface::truncated(const char* what) const {
+void BodyReader::truncated(const char* what) const {
   throw InvalidInput(fmt::format("{}, byte {}: expected {}, got the end of the file", file_.path, at_, what));
 }
 

@@ -11,7 +11,7 @@
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh_file.h"
 
-/// What a PLY file says of itself, and the numbers behind it.
+/// The header of a PLY file, and the numbers behind it.
 namespace vdb_offset::io::ply {
 
 struct Type {
@@ -41,7 +41,7 @@ struct Header {
 /// The first element of that name, or none.
 const Element* find(const Header& header, std::string_view element);
 
-/// The property is the list of a face's corners, or of those of strips of triangles.
+/// Whether a property is the list of a face's corners, or of those of strips of triangles.
 bool is_corner_list(const Property& property);
 
 /// The element 'face', if its rows have corners.
@@ -50,7 +50,7 @@ const Element* find_faces(const Header& header);
 /// and -1 ends a strip. None if there are faces.
 const Element* find_strips(const Header& header);
 
-/// \throw InvalidInput
+/// Reads the header of a file. \throw InvalidInput
 Header read_header(const MeshFile& file);
 
 template <class T>
@@ -60,7 +60,7 @@ double load(const char* raw) {
   return static_cast<double>(value);
 }
 
-/// Of eight bytes, too, which integers of a PLY file never have.
+/// A binary number; integers may have eight bytes, though a PLY file has none of those.
 inline double binary_number(const char* at, Type type, Encoding encoding) {
   static_assert(std::endian::native == std::endian::little, "numbers of the other order are turned round");
   char raw[8];
@@ -78,26 +78,26 @@ inline double binary_number(const char* at, Type type, Encoding encoding) {
                            : load<std::int64_t>(raw);
 }
 
-/// Digits that a text has beyond its declared type are not there for anyone who reads it.
+/// Rounds a number of a text to its declared type: other programs read no more digits.
 inline double as_declared(Type type, double value) {
   return type.bytes == 4 ? static_cast<double>(static_cast<float>(value)) : value;
 }
 
-/// Takes numbers of either kind off the body, one after the other. Refers to `file`.
-class ConstrainedSurface {
+/// Reads the numbers of a file's body, text or binary, one after the other. Refers to `file`.
+class BodyReader {
  public:
-  ConstrainedSurface(const MeshFile& file, const Header& header)
+  BodyReader(const MeshFile& file, const Header& header)
       : file_(file), text_(file.path, file.text(), header.end), at_(header.end), encoding_(header.encoding) {}
 
-  /// `at` receives the number's first byte. Numbers above 2^53 do not occur in what is used.
+  /// Reads a number; `at` receives its first byte. Integers above 2^53 are rounded, and do not occur where they matter.
   double take(Type type, const char* what, std::uint64_t& at);
   /// The length of a list, from 0 on.
   std::size_t take_length(const Property& list);
-  /// First byte of a number whose value does not matter: a normal, which may be a NaN.
+  /// First byte of a number that is not read: a normal, which may be a NaN.
   std::uint64_t place(Type type, const char* what);
   void skip(Type type, std::size_t count, const char* what);
   void skip(const Property& property);
-  /// From the start of the body to that of an element's first row.
+  /// Goes from the start of the body to an element's first row.
   void skip_to(const Element& element, const Header& header);
 
   std::size_t position() const { return encoding_ == Encoding::Ascii ? text_.position() : at_; }

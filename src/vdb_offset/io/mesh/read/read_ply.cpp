@@ -348,7 +348,7 @@ class PlyParser {
 
   MeshFile& file_;
   Header header_;
-  ConstrainedSurface body_;
+  BodyReader body_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "places.h"
+#include "run_files.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -35,107 +35,107 @@ std::string identity_of(const std::string& path, int standard_stream) {
   }
   if (is_null_device(file)) return {};
   struct stat stream {};
-  // As /dev/stdout, say.
+  // This is /dev/stdout, say.
   if (!S_ISREG(file.st_mode) && ::fstat(standard_stream, &stream) == 0 && number_of(stream) == number_of(file))
     return fmt::format("-{}", standard_stream);
   return number_of(file);
 }
 
 std::string shown(const std::string& path) {
-  constexpr std::size_t kLongest = 120;
+  constexpr std::size_t kLongest = 120;  // bytes, so that two names fit into a message
   return shortened(path, kLongest);
 }
 
-[[noreturn]] void refuse(const Place& place, const Place& other) {
-  if (place.option == other.option)
+[[noreturn]] void refuse(const RunFile& file, const RunFile& other) {
+  if (file.option == other.option)
     throw UsageError(
-        fmt::format("{}: expected names that differ, got {} twice (use {{i}})", place.option, shown(place.path)));
-  throw UsageError(fmt::format("{}: expected a file of its own, got {}, which is that of {} ({})", place.option,
-                               shown(place.path), other.option, shown(other.path)));
+        fmt::format("{}: expected names that differ, got {} twice (use {{i}})", file.option, shown(file.path)));
+  throw UsageError(fmt::format("{}: expected a file of its own, got {}, which is that of {} ({})", file.option,
+                               shown(file.path), other.option, shown(other.path)));
 }
 
-void add(std::vector<Place>& places, const std::string& option, const std::string& path) {
-  if (!path.empty()) places.push_back({option, path, false});
+void add(std::vector<RunFile>& files, const std::string& option, const std::string& path) {
+  if (!path.empty()) files.push_back({option, path, false});
 }
 
 /// The file that a distance comes from, if it does.
-void add_source_of(std::vector<Place>& places, const std::string& option, const DistanceRequest& request) {
-  if (!request.from.starts_with("ply:")) add(places, option, request.from);
+void add_source_of(std::vector<RunFile>& files, const std::string& option, const DistanceRequest& request) {
+  if (!request.from.starts_with("ply:")) add(files, option, request.from);
 }
 
-std::vector<Place> read_by(const Request& request) {
-  std::vector<Place> places = surroundings_of(request);
-  places.insert(places.begin(), {"INPUT", request.input});
-  add(places, "--fit", request.fit);
-  if (request.inner) add_source_of(places, "--inner", *request.inner);
-  if (!request.layers) return places;
-  add(places, "--heights", request.layers->heights);
-  if (request.layers->first) add_source_of(places, "--first-height", *request.layers->first);
-  if (request.layers->total) add_source_of(places, "--total-thickness", *request.layers->total);
-  return places;
+std::vector<RunFile> read_by(const Request& request) {
+  std::vector<RunFile> files = surroundings_of(request);
+  files.insert(files.begin(), {"INPUT", request.input});
+  add(files, "--fit", request.fit);
+  if (request.inner) add_source_of(files, "--inner", *request.inner);
+  if (!request.layers) return files;
+  add(files, "--heights", request.layers->heights);
+  if (request.layers->first) add_source_of(files, "--first-height", *request.layers->first);
+  if (request.layers->total) add_source_of(files, "--total-thickness", *request.layers->total);
+  return files;
 }
 
 /// `layers`: how many surfaces are written, if the output is no volume mesh.
-std::vector<Place> written_with_layers(const Request& request, std::size_t layers) {
-  std::vector<Place> places;
+std::vector<RunFile> written_with_layers(const Request& request, std::size_t layers) {
+  std::vector<RunFile> files;
   const auto volume = io::volume_format_of(request.output);
   const bool is_one = volume || io::structured_format_of(request.output);
-  if (is_one) places.push_back({"OUTPUT", request.output});
+  if (is_one) files.push_back({"OUTPUT", request.output});
   else
     for (std::size_t k = 1; k <= layers; ++k)
-      places.push_back({"OUTPUT", name_of_layer(request.output, k, layers), layers == 1});
+      files.push_back({"OUTPUT", name_of_layer(request.output, k, layers), layers == 1});
   if (volume == io::VolumeFormat::Foam)
     for (const char* const name : io::kFoamFiles)
-      places.push_back({"OUTPUT", (fs::path(request.output) / name).string()});
-  add(places, "--report", request.report);
-  add(places, "--states", request.states);
-  return places;
+      files.push_back({"OUTPUT", (fs::path(request.output) / name).string()});
+  add(files, "--report", request.report);
+  add(files, "--states", request.states);
+  return files;
 }
 
-std::vector<Place> written_by(const Request& request, std::vector<Destination> destinations) {
-  std::vector<Place> places;
+std::vector<RunFile> written_by(const Request& request, std::vector<Destination> destinations) {
+  std::vector<RunFile> files;
   // A scene alone has not told of its distance yet.
   if (destinations.empty()) destinations.push_back({request.output, request.report, request.states, request.paths, {}});
   // A scene is no mesh, and several outputs that begin to replace the input are an oversight.
   const bool may_be_input = destinations.size() == 1 && !scene::is_scene(request.input);
   for (const Destination& to : destinations) {
-    places.push_back({"OUTPUT", to.mesh, may_be_input});
-    add(places, "--report", to.report);
-    add(places, "--states", to.states);
-    add(places, "--paths", to.paths);
+    files.push_back({"OUTPUT", to.mesh, may_be_input});
+    add(files, "--report", to.report);
+    add(files, "--states", to.states);
+    add(files, "--paths", to.paths);
   }
-  add(places, "--save-vdb", request.vdb);
-  return places;
+  add(files, "--save-vdb", request.vdb);
+  return files;
 }
 
 }  // namespace
 
-void require_apart(std::span<const Place> read, std::span<const Place> written) {
-  std::multimap<std::string, const Place*> readers;
-  for (const Place& place : read) readers.emplace(identity_of(place.path, STDIN_FILENO), &place);
-  std::map<std::string, const Place*> writers;
-  for (const Place& place : written) {
-    const std::string identity = identity_of(place.path, STDOUT_FILENO);
+void require_apart(std::span<const RunFile> read, std::span<const RunFile> written) {
+  std::multimap<std::string, const RunFile*> readers;
+  for (const RunFile& file : read) readers.emplace(identity_of(file.path, STDIN_FILENO), &file);
+  std::map<std::string, const RunFile*> writers;
+  for (const RunFile& file : written) {
+    const std::string identity = identity_of(file.path, STDOUT_FILENO);
     if (identity.empty()) continue;
-    const auto [other, is_first] = writers.emplace(identity, &place);
-    if (!is_first) refuse(place, *other->second);
+    const auto [other, is_first] = writers.emplace(identity, &file);
+    if (!is_first) refuse(file, *other->second);
     const auto [first, last] = readers.equal_range(identity);
     for (auto reader = first; reader != last; ++reader)
-      if (!place.may_be_input || reader->second->option != "INPUT") refuse(place, *reader->second);
+      if (!file.may_be_input || reader->second->option != "INPUT") refuse(file, *reader->second);
   }
 }
 
 void require_apart(const Request& request, const std::string& mesh_of_scene) {
   if (!request.fit.empty() && identity_of(request.fit, STDIN_FILENO) == identity_of(request.input, STDIN_FILENO))
     throw UsageError("--fit: expected a file other than the input, got " + shown(request.fit));
-  std::vector<Place> read = read_by(request);
+  std::vector<RunFile> read = read_by(request);
   add(read, "the scene's file", mesh_of_scene);
   require_apart(read, request.layers ? written_with_layers(request, request.layers->count)
                                      : written_by(request, destinations(request, request.distances)));
 }
 
 void require_apart(const Job& job) {
-  std::vector<Place> read = read_by(job.request);
+  std::vector<RunFile> read = read_by(job.request);
   for (const std::string& path : job.files_of_heights) add(read, "--heights", path);
   require_apart(read, job.request.layers ? written_with_layers(job.request, job.distances.size())
                                          : written_by(job.request, job.outputs));
@@ -145,13 +145,13 @@ bool is_standard_output(const std::string& path) {
   return !path.empty() && identity_of(path, STDOUT_FILENO) == identity_of("-", STDOUT_FILENO);
 }
 
-std::vector<Place> surroundings_of(const Request& request) {
-  std::vector<Place> places;
-  for (const std::string& path : request.obstacles) add(places, "--obstacle", path);
+std::vector<RunFile> surroundings_of(const Request& request) {
+  std::vector<RunFile> files;
+  for (const std::string& path : request.obstacles) add(files, "--obstacle", path);
   for (const io::Selector& part : request.only)
-    if (part.by == io::Selector::By::File) add(places, "--only", part.name);
-  for (const DistanceRequest& each : request.distances) add_source_of(places, request.distance_option, each);
-  return places;
+    if (part.by == io::Selector::By::File) add(files, "--only", part.name);
+  for (const DistanceRequest& each : request.distances) add_source_of(files, request.distance_option, each);
+  return files;
 }
 
 }  // namespace vdb_offset::tool

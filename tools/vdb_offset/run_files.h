@@ -9,26 +9,27 @@
 namespace vdb_offset::tool {
 
 /// A file that a run reads or writes, and the option that names it.
-struct Place {
+struct RunFile {
   std::string option, path;
   bool may_be_input = false;  ///< Of what is written: it may take the place of INPUT, which is complete by then.
 };
 
-/// \throw UsageError, which names both, if anything that is written is also read, or is written twice: by whatever
-/// path, through links and hard links. `-` is standard input or output, whatever these are.
-void require_apart(std::span<const Place> read, std::span<const Place> written);
+/// Refuses files that get in each other's way. \throw UsageError, which names both, if anything that is written is also
+/// read, or is written twice: by whatever path, through links and hard links. `-` is standard input or output, whatever
+/// these are.
+void require_apart(std::span<const RunFile> read, std::span<const RunFile> written);
 
-/// \throw UsageError as above, for all that a request names. It is asked before anything is read; `mesh_of_scene` is
+/// Refuses them among all files that a request names. It is asked before anything is read; `mesh_of_scene` is
 /// the file that a scene names, once that is known.
 void require_apart(const Request& request, const std::string& mesh_of_scene = {});
 
-/// \throw UsageError as above, for all that a job reads and writes. It is asked before anything is written.
+/// Refuses them among all files that a job reads and writes. It is asked before anything is written.
 void require_apart(const Job& job);
 
 /// Whether a path is standard output, as `-` and /dev/stdout are.
 bool is_standard_output(const std::string& path);
 
 /// The files that options name which `check` has as well.
-std::vector<Place> surroundings_of(const Request& request);
+std::vector<RunFile> surroundings_of(const Request& request);
 
 }  // namespace vdb_offset::tool
