@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -6,11 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset {
 
-struct CheckOptions {
+struct VDB_OFFSET_API CheckOptions {
   /// The distance that was asked for, world units, negative inward, one for all vertices or one for each; empty: the
   /// median of the distances found, with the sign of most of them.
   std::optional<Distances> distance;
@@ -51,6 +53,7 @@ struct CheckResult {
 /// made by offset(), rounded as they were stored, these are the faults that offset() has found itself. The result does
 /// not depend on the number of threads. \throw InvalidInput for a source without faces, distances or positions that are
 /// not one for each of its vertices, or positions that are not finite.
-CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options = {});
+VDB_OFFSET_API CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions,
+                                        const CheckOptions& options = {});
 
 }  // namespace vdb_offset

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
@@ -14,10 +16,10 @@ using Curves = Polygons;
 
 /// Unit normals of the points, outward, in the plane: halfway between those of the segments that meet there. Zero for
 /// points on no curve, and where segments turn back on each other. \throw InvalidInput as plane_of()
-std::vector<Vec3d> curve_normals(CurvesView curves);
+VDB_OFFSET_API std::vector<Vec3d> curve_normals(CurvesView curves);
 
 /// An open curve, and how far its ends are apart.
-struct OpenCurve {
+struct VDB_OFFSET_API OpenCurve {
   std::uint32_t first, last;  ///< Points of the input.
   double length, gap;         ///< World units.
 
@@ -29,9 +31,9 @@ struct OpenCurve {
 };
 
 /// The curves with two ends, in the order of their chains. \throw as chains_in_plane()
-std::vector<OpenCurve> open_curves(CurvesView curves);
+VDB_OFFSET_API std::vector<OpenCurve> open_curves(CurvesView curves);
 
 /// Closes the curves that are nearly closed, by a straight segment. Returns these, as they were.
-std::vector<OpenCurve> close_curves(Curves& curves);
+VDB_OFFSET_API std::vector<OpenCurve> close_curves(Curves& curves);
 
 }  // namespace vdb_offset

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -5,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
@@ -23,7 +25,7 @@ struct VertexVariables {
 /// Numbers, the names of VertexVariables, the constants pi and e, + - * / ^ (powers, from the right), comparisons
 /// (1 or 0), && || and `condition ? one : other`; the functions are those of muParser (log is the natural logarithm).
 /// The decimal point is '.' in every locale.
-class DistanceExpression {
+class VDB_OFFSET_API DistanceExpression {
  public:
   /// \throw InvalidExpression with the column, counted from 1, what was expected there and what was found.
   explicit DistanceExpression(std::string text);

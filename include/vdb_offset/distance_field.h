@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -5,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/grid.h"
 
 namespace vdb_offset {
@@ -25,7 +27,7 @@ struct DistanceField : FieldGrids {
 
 /// Writes phi and closest as a .vdb file; `metadata` is added to both grids as strings.
 /// The file is written under a temporary name and renamed. \throw WriteError, also for voxels below 1.5e-5.
-void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
-              const std::vector<std::pair<std::string, std::string>>& metadata);
+VDB_OFFSET_API void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
+                             const std::vector<std::pair<std::string, std::string>>& metadata);
 
 }  // namespace vdb_offset

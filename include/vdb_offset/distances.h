@@ -1,13 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "vdb_offset/api.h"
+
 namespace vdb_offset {
 
 /// Distances of vertices: one for all, or one for each. World units; negative is inward, 0 leaves a vertex where it is.
-class Distances {
+class VDB_OFFSET_API Distances {
  public:
   Distances(double uniform = 0);  // NOLINT(google-explicit-constructor): one number is the usual case
   /// One number a vertex. \throw InvalidInput for one that is not finite, by its index.

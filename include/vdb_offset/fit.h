@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset {
@@ -17,6 +19,6 @@ namespace vdb_offset {
 ///
 /// Of the options, `distance`, `obstacles`, `clearance`, `metric` and those of shells have no effect. \throw
 /// InvalidInput as offset(), and for a clearance that is not above 0 or another mesh without faces.
-OffsetResult fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options);
+VDB_OFFSET_API OffsetResult fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options);
 
 }  // namespace vdb_offset

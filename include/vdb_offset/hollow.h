@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/shell.h"
 
@@ -17,6 +19,6 @@ struct Hollow {
 
 /// Puts two surfaces together, one of which lies within the other, both with faces that point outward. The facts are
 /// those of unrounded positions. \throw InvalidInput for meshes that cannot be used, or too many vertices.
-Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source);
+VDB_OFFSET_API Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source);
 
 }  // namespace vdb_offset

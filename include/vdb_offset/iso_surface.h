@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -5,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/metric.h"
@@ -15,7 +17,7 @@
 
 namespace vdb_offset {
 
-struct IsoOptions {
+struct VDB_OFFSET_API IsoOptions {
   double distance = 0;  ///< World units, not 0; negative is inward.
   GridOptions grid;     ///< The voxel size is an accuracy knob here: the length of the new mesh's edges.
   /// Whether a mesh that is not closed can have an inside, by what its solid parts wind around.
@@ -120,16 +122,17 @@ struct IsoResult {
 /// The result does not depend on the number of threads. \throw InvalidInput for a mesh or an option that cannot be
 /// used, and if there is no surface at that distance; OutOfBudget before work that would not fit; Cancelled when the
 /// progress callback asks for it.
-IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options);
+VDB_OFFSET_API IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options);
 
 /// Tells what make_iso_surface() would do, without doing it.
-IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options);
+VDB_OFFSET_API IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options);
 
 /// Makes an iso-surface with distances in a metric, by make_iso_surface(). Validity is checked on coordinates as they
 /// will be written; distances, and all figures of them, are measured in the metric. \throw as make_iso_surface()
-IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric);
+VDB_OFFSET_API IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric);
 
 /// Tells what make_iso_surface_in_metric() would do, without doing it.
-IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric);
+VDB_OFFSET_API IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options,
+                                                        const Metric& metric);
 
 }  // namespace vdb_offset

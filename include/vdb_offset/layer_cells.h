@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/layer_facts.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/patch_names.h"
@@ -32,11 +34,11 @@ struct LayerCells;
 ///
 /// \throw InvalidInput for faces that are no polygons, for layers that cannot be this mesh's, by their counts and
 /// positions, for more than 2^32 points or cells, and as require_names()
-VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WallNames& names,
-                      LayerCellFacts* facts = nullptr);
+VDB_OFFSET_API VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WallNames& names,
+                                     LayerCellFacts* facts = nullptr);
 
 /// The cells over layers, numbered and measured, but not made: enough for a report, in a third of the memory.
-class MeasuredCells {
+class VDB_OFFSET_API MeasuredCells {
  public:
   /// Keeps a reference to `layers`. The result does not depend on the number of threads. Cost: O(cells).
   /// \throw InvalidInput as make_cells()

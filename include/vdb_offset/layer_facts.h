@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
@@ -21,7 +23,7 @@ enum class FaceRole : std::uint8_t {
 inline constexpr std::size_t kFaceRoleCount = 6;
 
 /// The role's name in reports.
-const char* name(FaceRole role);
+VDB_OFFSET_API const char* name(FaceRole role);
 
 /// What making cells found.
 struct LayerCellFacts {

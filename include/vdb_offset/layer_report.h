@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -5,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/foam_quality.h"
 #include "vdb_offset/layer_facts.h"
 #include "vdb_offset/layers.h"
@@ -48,10 +50,10 @@ struct LayerReport {
 /// Sums up layers and the cells over them, for each boundary patch and for all.
 /// \param names of the faces
 /// \throw InvalidInput as require_names()
-LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
-                          const LayerCellFacts& facts, const LayerQuality& quality);
+VDB_OFFSET_API LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
+                                         const LayerCellFacts& facts, const LayerQuality& quality);
 
 /// A few lines of text for a terminal, each with a line end.
-std::string summary(const LayerReport& report);
+VDB_OFFSET_API std::string summary(const LayerReport& report);
 
 }  // namespace vdb_offset

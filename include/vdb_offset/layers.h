@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/result.h"
 #include "vdb_offset/vertex_stacks.h"
@@ -34,7 +36,7 @@ struct KnownSides {
 };
 
 /// Layers on a mesh: one surface for each height, of the mesh's vertices and faces.
-struct LayersResult {
+struct VDB_OFFSET_API LayersResult {
   SharedStacks stacks;  ///< Of the input's vertices: on the wall, which is the mesh itself, and at each height.
   /// Of each input vertex: the first vertex that it moves with; kNone if it is in no face. Empty on curves.
   std::vector<std::uint32_t> place;
@@ -64,7 +66,7 @@ struct LayersResult {
 /// vertex; 0 in all layers leaves a vertex where it is
 /// \param options without effect: `distance`, `collision` and `keep_paths`
 /// \throw InvalidInput as offset_several(), and for heights that do not rise, or are of both signs.
-LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
-                         CellRules rules = CellRules::AnySolver);
+VDB_OFFSET_API LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights,
+                                        const OffsetOptions& options, CellRules rules = CellRules::AnySolver);
 
 }  // namespace vdb_offset

@@ -1,19 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 
+#include "vdb_offset/api.h"
+
 namespace vdb_offset {
 
 /// Bytes that this process may still take: what the system has free, or its control group leaves, if less.
-std::size_t available_memory();
+VDB_OFFSET_API std::size_t available_memory();
 
 /// Most bytes that this process has held at once since it started (its resident set).
-std::size_t peak_memory();
+VDB_OFFSET_API std::size_t peak_memory();
 
 /// Most bytes that this process is to hold, 0 for no limit, as it is at first. It counts for what is not planned as a
 /// whole: files as they are decompressed and read, scenes as they are built, lists that may grow to anything.
-void set_memory_limit(std::size_t bytes);
+VDB_OFFSET_API void set_memory_limit(std::size_t bytes);
 
-std::size_t memory_limit();
+VDB_OFFSET_API std::size_t memory_limit();
 
 }  // namespace vdb_offset

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <map>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/vec.h"
 
 namespace vdb_offset {
@@ -33,7 +35,7 @@ enum class Orient {
 };
 
 /// What a mesh is made of, counted on its polygons after welding.
-struct MeshFacts {
+struct VDB_OFFSET_API MeshFacts {
   std::size_t vertices = 0;         ///< Vertices of the input.
   std::size_t unused_vertices = 0;  ///< In no face.
   std::size_t welded_vertices = 0;  ///< Distinct positions among the used ones.

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/mesh_measures.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/polygons.h"
@@ -14,20 +16,20 @@ namespace vdb_offset {
 /// as near to that as its state says. The faces need not be manifold, closed or oriented. The result does not depend on
 /// the number of threads. Concurrent calls are independent of each other. \throw InvalidInput for a mesh or an option
 /// that cannot be used, OutOfBudget before work that would not fit, Cancelled when the progress callback asks for it.
-OffsetResult offset(PolygonView mesh, const OffsetOptions& options);
+VDB_OFFSET_API OffsetResult offset(PolygonView mesh, const OffsetOptions& options);
 
 /// Makes several offsets of one mesh, for little more than one: one field and one march serve all. `options.distance`
 /// has no effect. Directions are smoothed as for the farthest distance, and with Collision::Limit nearer offsets that
 /// have to be mended start from the finished farthest offset on their side (see warm_start.h): there, an offset made
 /// alone may have other positions. Results are in the order of `distances`.
-std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
-                                         const OffsetOptions& options);
+VDB_OFFSET_API std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
+                                                        const OffsetOptions& options);
 
 /// Tells what offset() would do, without doing it: the mesh's facts and the plan of the grid.
-OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options);
+VDB_OFFSET_API OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options);
 /// Tells what offset_several() would do, or grow_layers() to the only distance with so many layers, without doing it:
 /// the mesh's facts and the plan of the grid.
-OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options,
-                              std::size_t layers = 0);
+VDB_OFFSET_API OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances,
+                                             const OffsetOptions& options, std::size_t layers = 0);
 
 }  // namespace vdb_offset

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
@@ -33,7 +35,7 @@ enum class Collision {
   Merge,  ///< The paper's weak solution: every vertex goes as far as phi allows; faces there may fold or collapse.
 };
 
-struct OffsetOptions {
+struct VDB_OFFSET_API OffsetOptions {
   /// World units, one for all or one for each vertex of the input; negative is inward, 0 leaves a vertex where it is.
   /// Vertices welded together use the mean of their distances.
   Distances distance;

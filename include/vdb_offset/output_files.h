@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -5,6 +6,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "vdb_offset/api.h"
 
 namespace vdb_offset {
 
@@ -15,7 +18,7 @@ class Temporary;
 /// While one lives, what replace_file() writes on the same thread waits under a temporary name; commit() puts all of it
 /// in place. One that begins while another lives hands over to that one instead. What has not been committed goes with
 /// it: then all is as it was before.
-class OutputFiles {
+class VDB_OFFSET_API OutputFiles {
  public:
   /// Whether what is put in place is on the disk before, so that after a loss of power, too, a file is as it was before
   /// or complete.
@@ -51,27 +54,28 @@ class OutputFiles {
 
 /// The file that is made or replaced for a path, absolute: a link stays a link, and what it leads to is replaced,
 /// whether or not that is there yet.
-std::filesystem::path replaced_path(const std::string& path);
+VDB_OFFSET_API std::filesystem::path replaced_path(const std::string& path);
 
 /// Lets `write` make a file under a temporary name beside `path`, then puts it in the place of `path`. Whatever
 /// happens, `path` is either what it was or complete, and no temporary file stays. `write` gets the temporary name. A
 /// device or a pipe is written to as it is. \throw WriteError, and whatever `write` throws.
-void replace_file(const std::string& path, const std::function<void(const std::string& temporary)>& write);
+VDB_OFFSET_API void replace_file(const std::string& path,
+                                 const std::function<void(const std::string& temporary)>& write);
 
 /// Finds out before a long run whether `path` could be written. \throw WriteError
-void require_writable(const std::string& path);
+VDB_OFFSET_API void require_writable(const std::string& path);
 
 /// Where a file's bytes go, run by run.
 using Sink = std::function<void(std::string_view)>;
 
 /// Writes what `produce` hands to its sink to `path` through replace_file(). "-" is standard output. \throw WriteError
-void write_file(const std::string& path, const std::function<void(const Sink&)>& produce);
+VDB_OFFSET_API void write_file(const std::string& path, const std::function<void(const Sink&)>& produce);
 
 /// Writes bytes to `path` through replace_file(). "-" is standard output. \throw WriteError
-void write_file(const std::string& path, std::string_view bytes);
+VDB_OFFSET_API void write_file(const std::string& path, std::string_view bytes);
 
 /// Removes all temporary files and folders that are there now; no others can be put in place from then on. For signal
 /// handlers that end the process. False, and nothing is removed, if files are being put in place.
-bool remove_temporaries() noexcept;
+VDB_OFFSET_API bool remove_temporaries() noexcept;
 
 }  // namespace vdb_offset

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/vec.h"
 
 namespace vdb_offset {
@@ -13,7 +15,7 @@ namespace vdb_offset {
 /// A polygon mesh as plain spans; nothing is copied and nothing need be manifold.
 /// Face f has the corners `corners[face_begin[f]] .. corners[face_begin[f + 1] - 1]`, each an index into
 /// `positions` (world units). `face_begin` has one entry more than there are faces and starts with 0.
-struct PolygonView {
+struct VDB_OFFSET_API PolygonView {
   std::span<const Vec3d> positions;
   std::span<const std::uint32_t> corners;
   std::span<const std::uint32_t> face_begin;
@@ -25,7 +27,7 @@ struct PolygonView {
 };
 
 /// A polygon mesh that owns its arrays; the layout is that of PolygonView.
-struct Polygons {
+struct VDB_OFFSET_API Polygons {
   std::vector<Vec3d> positions;
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> face_begin{0};

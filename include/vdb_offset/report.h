@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/layer_report.h"
@@ -20,9 +22,9 @@ struct AchievedSummary {
   double quantile_01 = 0, quantile_05 = 0, median = 0, quantile_95 = 0;  ///< Of the achieved distance.
   double worst_reached_error = 0;  ///< Largest |achieved - target| / target among the reached.
 };
-AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> achieved,
-                          const Distances& distances);
-AchievedSummary summarise(const OffsetResult& result);
+VDB_OFFSET_API AchievedSummary summarise(std::span<const VertexState> states, std::span<const double> achieved,
+                                         const Distances& distances);
+VDB_OFFSET_API AchievedSummary summarise(const OffsetResult& result);
 
 /// What a report adds to a result: what was asked for, and where.
 struct RunFacts {
@@ -36,14 +38,14 @@ struct RunFacts {
 };
 
 /// The report of a run as JSON text; the keys are documented in the README.
-std::string report_json(const OffsetResult& result, const RunFacts& run);
+VDB_OFFSET_API std::string report_json(const OffsetResult& result, const RunFacts& run);
 /// The report of layers as JSON text: figures about vertices are those of the outermost surface.
-std::string report_json(const LayersResult& result, const RunFacts& run);
+VDB_OFFSET_API std::string report_json(const LayersResult& result, const RunFacts& run);
 
 /// The report of an iso-surface as JSON text.
-std::string report_json(const IsoStatistics& statistics, const RunFacts& run);
+VDB_OFFSET_API std::string report_json(const IsoStatistics& statistics, const RunFacts& run);
 
 /// The findings of a check as JSON text, with the keys of report_json() where they mean the same.
-std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);
+VDB_OFFSET_API std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);
 
 }  // namespace vdb_offset

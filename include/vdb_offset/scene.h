@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -5,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/distance_expression.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shell.h"
@@ -13,7 +15,7 @@ namespace vdb_offset::scene {
 
 /// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
 /// use ("1.5%"); or an expression that tells each vertex its own.
-struct Distance {
+struct VDB_OFFSET_API Distance {
   double value = 0;
   bool percent = false;
   std::optional<DistanceExpression> expression;  ///< If set, value and percent do not count.
@@ -21,19 +23,19 @@ struct Distance {
   double in_world_units(double diagonal) const;
 };
 /// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
-Distance parse_distance(const std::string& text);
+VDB_OFFSET_API Distance parse_distance(const std::string& text);
 /// Parses a number as parse_distance() does, or else an expression. \throw InvalidExpression
-Distance parse_distance_or_expression(const std::string& text);
+VDB_OFFSET_API Distance parse_distance_or_expression(const std::string& text);
 
 /// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
 /// expression that uses normals or texture coordinates.
 /// \throw InvalidInput, see DistanceExpression
-Distances distances_of(const Distance& distance, PolygonView mesh,
-                       const std::function<std::vector<Vec3d>()>& normals_of,
-                       const std::function<std::vector<Vec2d>()>& texture_of);
+VDB_OFFSET_API Distances distances_of(const Distance& distance, PolygonView mesh,
+                                      const std::function<std::vector<Vec3d>()>& normals_of,
+                                      const std::function<std::vector<Vec2d>()>& texture_of);
 
 /// Where every reached vertex should be, in closed form.
-struct Answer {
+struct VDB_OFFSET_API Answer {
   enum class Form {
     Sphere,  ///< At `radius` from the origin, on the ray from there.
     Box,     ///< The source vertex, clamped to the box of half sizes `half` around the origin.
@@ -66,7 +68,7 @@ struct Expectations {
 };
 
 /// A shape or a file, an offset, a grid, and expectations: `scenes/*.json`, described in the guide about scenes.
-struct Scene {
+struct VDB_OFFSET_API Scene {
   std::string path, description;
   std::string mesh_path;  ///< Of a scene that names a file; else empty and `shape` holds the mesh.
   Polygons shape;
@@ -87,15 +89,16 @@ struct Scene {
 };
 
 /// True of file names that end in .json.
-bool is_scene(const std::string& path);
+VDB_OFFSET_API bool is_scene(const std::string& path);
 
 /// \throw ReadError if the file cannot be opened, InvalidInput (file, key, what was expected) for what is no scene.
-Scene read_scene(const std::string& path);
+VDB_OFFSET_API Scene read_scene(const std::string& path);
 
 /// The expectations that a result does not meet, in words; empty if it meets all.
-std::vector<std::string> unmet(const Expectations& expect, PolygonView source, const OffsetResult& result);
+VDB_OFFSET_API std::vector<std::string> unmet(const Expectations& expect, PolygonView source,
+                                              const OffsetResult& result);
 /// The expectations that the shell of a scene with a volume does not meet, in words: it must also be closed, manifold
 /// and oriented, and must not cross itself.
-std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell);
+VDB_OFFSET_API std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell);
 
 }  // namespace vdb_offset::scene

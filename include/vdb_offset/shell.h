@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -5,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/result.h"
 
@@ -44,7 +46,7 @@ struct ShellFacts {
 /// splits of both behind them. Faces 0 .. m - 1 are the mesh's, m .. 2 m - 1 the mesh's turned round, and behind them
 /// are those of the rim, in the order of the mesh's corners. Without splits, corners of the outer skin's faces are the
 /// mesh's.
-struct Shell {
+struct VDB_OFFSET_API Shell {
   /// The border edge that a face of the rim stands on, as a side of one of the mesh's faces: from a corner to the next.
   struct RimOrigin {
     std::uint32_t face, corner;  ///< `corner` indexes PolygonView::corners.
@@ -133,8 +135,9 @@ inline std::uint32_t Shell::source_corner(PolygonView mesh, std::size_t face, st
 /// \param inner positions of the mesh's vertices on the inner skin; may be the mesh's own
 /// \param only of each face: 1 if the shell is made of it, and has a rim where those faces end; empty: of all
 /// \throw InvalidInput for a mesh that cannot be used, or skins that do not have one position for each of its vertices.
-Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner, const WeldOptions& weld,
-                 const Precision& precision = {}, std::span<const std::uint8_t> only = {});
+VDB_OFFSET_API Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const Vec3d> inner,
+                                const WeldOptions& weld, const Precision& precision = {},
+                                std::span<const std::uint8_t> only = {});
 
 /// Makes the shell between a mesh and its offset, or the offset of a part of it: each vertex is at its position in the
 /// mesh on one skin, and at that in the offset on the other. If the offset was made with OffsetOptions::off_source,
@@ -142,12 +145,12 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
 /// round for the offset are on the skins that they belong to, so that all faces of the shell agree about the outside.
 /// \param inner an offset inward that is the inner skin instead of the mesh
 /// \param options those that the offset was made with
-Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options,
-               const OffsetResult* inner = nullptr);
+VDB_OFFSET_API Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options,
+                              const OffsetResult* inner = nullptr);
 
 /// Updates the states and distances of vertices at junctions, and near them, in a result: they have reached the
 /// distance if all of their corners are where they should be. Else their distance is the share of it that all corners
 /// have kept.
-void tell_states(const Shell& shell, OffsetResult& result);
+VDB_OFFSET_API void tell_states(const Shell& shell, OffsetResult& result);
 
 }  // namespace vdb_offset

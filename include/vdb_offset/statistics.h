@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -5,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/progress.h"
@@ -55,7 +57,7 @@ struct FaceInteriorError {
 
 /// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which
 /// side the faces point to, and is often wrong.
-struct SideRoom {
+struct VDB_OFFSET_API SideRoom {
   bool known = false;          ///< It is looked for where little has reached its distance.
   double here = 1, there = 1;  ///< Shares of the vertices: on the side that was asked for, and on the other one.
 

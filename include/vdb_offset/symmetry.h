@@ -1,13 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/vec.h"
 
 namespace vdb_offset {
 
 /// A plane: all x with normal . x = offset; the normal has unit length.
-struct SymmetryPlane {
+struct VDB_OFFSET_API SymmetryPlane {
   Vec3d normal{0.0};
   double offset = 0;
 

@@ -1,4 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
+
+#include "vdb_offset/api.h"
 
 // Of these headers; the build reads them, too.
 #define VDB_OFFSET_VERSION_MAJOR 0
@@ -9,6 +12,6 @@
 namespace vdb_offset {
 
 /// The version of the library that is linked, "major.minor.patch".
-const char* version();
+VDB_OFFSET_API const char* version();
 
 }  // namespace vdb_offset

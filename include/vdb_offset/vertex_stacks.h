@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -8,12 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 
 /// The positions of vertices in each layer, from the wall outward: one stack for each vertex.
-class VertexStacks {
+class VDB_OFFSET_API VertexStacks {
  public:
   VertexStacks() = default;
   /// Positions are not set: memory is first touched by the threads that set them, in parallel.
@@ -46,7 +48,7 @@ class VertexStacks {
 };
 
 /// The stacks of a mesh's vertices, of which several may share one.
-class SharedStacks {
+class VDB_OFFSET_API SharedStacks {
  public:
   SharedStacks() = default;
   /// \param stack of each vertex: the index of its stack

@@ -1,7 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+
+#include "vdb_offset/api.h"
 
 namespace vdb_offset {
 
@@ -16,7 +19,7 @@ enum class VertexState : std::uint8_t {
 
 inline constexpr std::size_t kVertexStateCount = 5;
 
-const char* name(VertexState state);
+VDB_OFFSET_API const char* name(VertexState state);
 
 /// A vertex has reached its distance if it is off by no more than this share of the distance. Rounding of coordinates
 /// to seven digits is allowed for apart. Not measured: small beside what a mesh is off between its vertices.

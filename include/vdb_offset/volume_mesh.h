@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -5,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
@@ -21,7 +23,7 @@ enum class CellType : std::uint8_t {
 };
 inline constexpr std::size_t kCellTypeCount = 7;
 /// The type's name in reports, in the plural.
-const char* name(CellType type);
+VDB_OFFSET_API const char* name(CellType type);
 
 /// A field of numbers, one for each point, or for each cell.
 struct VolumeField {
@@ -30,7 +32,7 @@ struct VolumeField {
 };
 
 /// A named part of the boundary of a volume mesh.
-struct BoundaryPatch {
+struct VDB_OFFSET_API BoundaryPatch {
   enum class Kind : std::uint8_t { Wall, Outer, Side };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;
@@ -48,7 +50,7 @@ struct BoundaryPatch {
 
 /// Cells of mixed types that share their points and faces, and the boundary, each face of which is in one patch. A
 /// plane mesh has only triangles and quadrilaterals; its faces are edges, and its volume is an area.
-struct VolumeMesh {
+struct VDB_OFFSET_API VolumeMesh {
   std::vector<Vec3d> points;  ///< World units.
   std::vector<CellType> cell_types;
   std::vector<std::uint32_t> corners;        ///< Of all cells, one after the other.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The packages that the components need, for the library's own build and for those who link it.
 #
 # vdb_offset_find_dependencies(COMPONENT): by VDB_OFFSET_EXPRESSIONS, VDB_OFFSET_VTK and VDB_OFFSET_CGNS; a shared library

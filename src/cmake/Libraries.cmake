@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # From objects to libraries, and what is installed of them.
 
 # Of the objects that CMake lists, precompiled headers are none.
@@ -82,7 +83,7 @@ add_library(vdb_offset::vdb_offset ALIAS vdb_offset)
 
 # The public headers: what is not named here is not installed.
 set(public_headers
-  check.h curve_cells.h curve_check.h curve_offset.h curves.h decimal.h distance_expression.h distance_field.h
+  api.h check.h curve_cells.h curve_check.h curve_offset.h curves.h decimal.h distance_expression.h distance_field.h
   distances.h error.h fit.h foam_quality.h grid.h hollow.h iso_surface.h layer_cells.h layer_facts.h layer_report.h
   layers.h memory_limit.h mesh_facts.h mesh_measures.h metric.h offset.h options.h output_files.h patch_names.h
   polygons.h precision.h progress.h report.h result.h scene.h shapes.h shell.h spread.h statistics.h

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Precompiled: the headers that cost most to read. No source relies on it.
 #pragma once
 

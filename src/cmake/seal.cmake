@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Makes one object of those that OUTPUT.objects lists, and what is weak in it is its own: functions are local, so that no program's copy of an
 # inline function takes their place; data stays shared, as there may be one of it only.
 foreach(name LINKER NM OBJCOPY OUTPUT)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an attack is made of: files made on the spot, runs under limits, and what each must give.
 
 A module of this folder holds attacks of one kind: functions marked with @attack, each of which gets a Place. `run` runs

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of plane curves that are cut, lie, or are something else."""
 from hostile import HUGE, attack_files, gzipped
 

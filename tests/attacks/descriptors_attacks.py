@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Standard streams that are closed or full, and no threads or memory to be had."""
 import os
 import resource

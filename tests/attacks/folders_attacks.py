@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders that others write to as well, and files that change under a run."""
 import os
 import signal

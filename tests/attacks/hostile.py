@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hostile files: how each is made, handed to the command, and what has to come of it."""
 import re
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that hold more than they look like, and runs that would: refused before they pass --max-memory."""
 import gzip
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Models that attacks begin with, as text of files."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of files and options that are long, odd, or not text."""
 from attack import attack
 

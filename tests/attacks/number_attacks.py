@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of numbers beside a mesh: distances, heights of layers, faces of a part; and the other meshes a run reads."""
 import struct
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """OBJ files that are cut, lie, or are something else."""
 from hostile import HUGE, OBJ, OBJ_FACES, OBJ_VERTICES, STL, STL_TEXT, attack_files, gzipped
 

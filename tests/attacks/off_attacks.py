@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """OFF files, as text and as Geomview's binary ones, that are cut, lie, or are something else."""
 import struct
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Outputs that would take the place of each other, or of what is read."""
 import os
 

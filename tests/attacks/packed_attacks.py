@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compressed files that are damaged, cut, or hold far more than they seem to."""
 import struct
 import zlib

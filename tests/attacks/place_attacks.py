@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What stands where a file is expected: folders, devices, pipes, links, and files that may not be read."""
 import os
 import signal

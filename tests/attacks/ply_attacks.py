@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """PLY files, as text and binary of both orders, that are cut, lie, or are something else."""
 import struct
 

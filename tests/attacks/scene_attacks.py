@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes that are cut, have keys of other kinds, or ask for what cannot be."""
 import json
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Signals: any phase ends at once, by the signal, and every output is as it was before, or complete."""
 import json
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that take a time out of all proportion to their size."""
 import math
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """STL files, as text and binary, that are cut, lie, or are something else."""
 import struct
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages that are too long to read or not text, numbers that are none, and names that look like options."""
 import os
 import resource

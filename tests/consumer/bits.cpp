@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints what an offset is to the last bit, and uses in its own code what the library's headers bring along: with other
 // flags that has other machine code here, which must not take the place of the library's.
 #include <vdb_offset/curve_offset.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs the build into a prefix of its own, moves that, and uses it the way a stranger would: by CMake and by pkg-config,
 # each header alone, and with flags that the library must not take over.
 set(prefix ${BUILD}/consumer/prefix)

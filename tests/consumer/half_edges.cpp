@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A half-edge mesh whose points are moved to their distance.
 #include <vdb_offset/openmesh.h>
 

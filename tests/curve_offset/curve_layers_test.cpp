@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <vtkCell.h>
 #include <vtkMeshQuality.h>
 #include <vtkUnstructuredGrid.h>

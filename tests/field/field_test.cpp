@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/io/File.h>
 #include <openvdb/tools/Interpolation.h>
 

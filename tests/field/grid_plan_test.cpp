@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/field/grid_plan.h"
 
 #include <catch2/catch.hpp>

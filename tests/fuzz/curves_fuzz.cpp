@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A libFuzzer target for files of curves: the first byte chooses the format; whatever the others are, they are refused
 // with InvalidInput or are curves that keep the promises of io/curve_file.h. What else is thrown ends the process.
 

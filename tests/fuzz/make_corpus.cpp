@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, and numbers of three vertices
 // to FOLDER/numbers, and curves to FOLDER/curves: what fuzzing starts from.
 

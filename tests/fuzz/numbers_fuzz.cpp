@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A libFuzzer target for numbers of vertices: whatever the bytes are, they are refused with InvalidInput or are three
 // finite numbers. What else is thrown ends the process, as do the sanitizers.
 

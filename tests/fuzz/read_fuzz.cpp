@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A libFuzzer target for one format, FUZZ_FORMAT: whatever the bytes are, they are refused with InvalidInput or are a
 // mesh that keeps the promises of io/mesh_file.h. What else is thrown ends the process, as do the sanitizers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/limit/quasi_newton.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/query/cut_at_distance.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "support/curve_oracles.h"
 #include "vdb_offset/curves.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints the README's tables of accuracy: positions of a sphere's and a cube's vertices against closed forms.
 #include <fmt/format.h>
 

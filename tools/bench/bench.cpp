@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times the library's stages on a mesh file or a scene, from outside, and checks nothing but that they ran.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

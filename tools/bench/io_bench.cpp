@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times reading and writing beside OpenMesh's, run by run in turn. Reading is from the file to arrays of positions and
 // faces on both sides: building OpenMesh's half-edges is timed apart.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the tables of Wang, Guibault, Camarero and Tchon (AIAA 2005) as CSV: the circle and the cube, by their
 // method (first-order sweep, stop on interpolated phi) and by this library's. With "circle", where the circle's points
 // go. See scripts/paper_tables.

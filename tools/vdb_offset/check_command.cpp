@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `vdb_offset check`: what it is told, what it measures, and what it prints.
 #include "check_command.h"
 

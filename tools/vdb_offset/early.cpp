@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What has to stand before main(), and before libraries set themselves up: one that this command is linked to starts
 // threads then, and where none are to be had the process would end by a signal, without a word of ours.
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command: a request from the command line, a job of it and the source, and what carries that out.
 #include <tbb/global_control.h>
 

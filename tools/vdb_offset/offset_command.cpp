@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Offsets of meshes and curves, from the job to the files.
 #include "offset_command.h"
 

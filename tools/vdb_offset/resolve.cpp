@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a request to a job: what the mesh, or the scene, settles of what was asked for.
 #include <fmt/format.h>
 

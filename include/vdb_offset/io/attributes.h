@@ -1,16 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 
 /// Values at the corners of faces, several of which may share one.
 template <class Value>
-struct CornerValues {
+struct VDB_OFFSET_API CornerValues {
   std::vector<Value> value;              ///< Empty: there are none.
   std::vector<std::uint32_t> of_corner;  ///< Which of them each corner has, or kNoNormal; empty: each vertex its own.
   bool single = false;                   ///< Stored in single precision.
@@ -31,7 +33,7 @@ struct Attributes {
 };
 
 /// Reads the attributes in a pass of their own, so that reading a mesh does not have to.
-Attributes read_attributes(const MeshFile& source);
+VDB_OFFSET_API Attributes read_attributes(const MeshFile& source);
 
 /// What faces are made of, by the name of their material.
 struct Materials {
@@ -41,10 +43,10 @@ struct Materials {
 };
 
 /// The materials of an OBJ file; other files have none.
-Materials read_materials(const MeshFile& source);
+VDB_OFFSET_API Materials read_materials(const MeshFile& source);
 
 /// Texture coordinates, one for each vertex: those of the first corner at the vertex that has any, NaNs if none has.
 /// Zero for a vertex that no face uses. \throw InvalidInput if the file holds no texture coordinates at all.
-std::vector<Vec2d> vertex_texture(const MeshFile& source);
+VDB_OFFSET_API std::vector<Vec2d> vertex_texture(const MeshFile& source);
 
 }  // namespace vdb_offset::io

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/curves.h"
 #include "vdb_offset/io/mesh_file.h"
 
@@ -21,7 +23,7 @@ enum class CurveFormat {
 
 /// The format that a file name's ending stands for as a file of curves (.dat .txt .xy .obj .svg, any case, also before
 /// .gz or .zst), if it does. Whether an .obj holds curves is for holds_curves() to say.
-std::optional<CurveFormat> curve_format_of(std::string_view path);
+VDB_OFFSET_API std::optional<CurveFormat> curve_format_of(std::string_view path);
 
 /// What an SVG drawing's lines are, and where they stand in the file.
 struct SvgLines {
@@ -49,7 +51,7 @@ struct CurveFile {
 
 /// True for an OBJ without faces but with `l` elements, and for files with another of the endings. An OBJ is opened
 /// for that; one that is compressed, or no regular file, is taken for a mesh. \throw ReadError
-bool holds_curves(const std::string& path);
+VDB_OFFSET_API bool holds_curves(const std::string& path);
 
 /// Reads curves. Text: a first line that is not two or three numbers is a title; behind # is a comment. A curve is
 /// closed if it ends where it begins, or if a comment before its first point holds the word "closed". With a title and,
@@ -57,21 +59,21 @@ bool holds_curves(const std::string& path);
 /// Lednicer's order: one curve, from the end of the first list over the nose to the end of the second. OBJ: an `l`
 /// element is a curve. SVG: see parse_svg(). \throw ReadError if the file cannot be opened, InvalidInput (file, line,
 /// what was expected, what was found).
-CurveFile read_curves(const std::string& path);
+VDB_OFFSET_API CurveFile read_curves(const std::string& path);
 
 /// Reads curves as read_curves() does from bytes in memory; `name` is for messages.
-CurveFile parse_curves(const std::string& name, CurveFormat format, std::string bytes);
+VDB_OFFSET_API CurveFile parse_curves(const std::string& name, CurveFormat format, std::string bytes);
 
 /// Writes the curves with other positions to `path`, as write_mesh() does: in the source's own format every byte stays
 /// but for the coordinates of points that moved; in a drawing for the shapes that they are part of.
 /// \pre one position a point. \throw InvalidInput for an unknown ending, WriteError, ReadError.
-void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
-                  const WriteOptions& options = {});
+VDB_OFFSET_API void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
+                                 const WriteOptions& options = {});
 
 /// Writes curves that come from no file: line elements in an OBJ, paths in an SVG, or text. \throw as the other one
-void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options = {});
+VDB_OFFSET_API void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options = {});
 
 /// The precision of coordinates that write_curves() writes.
-Precision precision_of_curves(const WriteOptions& options);
+VDB_OFFSET_API Precision precision_of_curves(const WriteOptions& options);
 
 }  // namespace vdb_offset::io

@@ -1,14 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "vdb_offset/api.h"
+
 namespace vdb_offset::io {
 
 /// The bytes of a file, shared by its copies: a regular file is mapped, so that its text is in memory once at most and
 /// can be dropped under pressure; a pipe is read to its end; `.gz` and `.zst` are decompressed.
-class FileBytes {
+class VDB_OFFSET_API FileBytes {
  public:
   FileBytes() = default;
   explicit FileBytes(std::string bytes);

@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/hollow.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -20,10 +22,10 @@ struct Transported {
 };
 
 /// \throw InvalidOption for something required that the source does not have, or the format no place for.
-Transported read_transported(const MeshFile& source, const TransportRequest& request, Format target);
+VDB_OFFSET_API Transported read_transported(const MeshFile& source, const TransportRequest& request, Format target);
 
 /// The precision of coordinates that write_iso_surface() writes.
-Precision precision_of_iso(const std::string& path, const WriteOptions& options = {});
+VDB_OFFSET_API Precision precision_of_iso(const std::string& path, const WriteOptions& options = {});
 
 /// Writes a captured mesh: triangles, normals (OBJ, OFF, PLY), and what it takes of the source.
 ///
@@ -33,17 +35,19 @@ Precision precision_of_iso(const std::string& path, const WriteOptions& options 
 /// come along, between triangles and as fine as these; which is why OBJ and PLY may have several texture coordinates
 /// for a vertex. In OBJ the faces come material by material.
 /// `captured` was made of the source's polygons. \throw as write_mesh()
-WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
-                              const IsoResult& captured, const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_iso_surface(const std::string& path, const MeshFile& source,
+                                             const Transported& transported, const IsoResult& captured,
+                                             const WriteOptions& options = {});
 
 /// Writes an iso-surface of a mesh that comes from no file: triangles and normals. \throw as write_mesh()
-void write_iso_surface(const std::string& path, const IsoResult& captured, const WriteOptions& options = {});
+VDB_OFFSET_API void write_iso_surface(const std::string& path, const IsoResult& captured,
+                                      const WriteOptions& options = {});
 
 /// Writes a hollow solid: the skin that is its source with the source's faces in their order and all that the format
 /// can hold of them, the other skin, which was captured, with colours and materials of what is closest. OBJ has groups
 /// `outer` and `inner`, PLY a face property `part`, 0 or 1. Without a source that is one of the skins: plain polygons.
 /// \throw as write_mesh()
-WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
-                         const IsoResult& captured, const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
+                                        const IsoResult& captured, const WriteOptions& options = {});
 
 }  // namespace vdb_offset::io

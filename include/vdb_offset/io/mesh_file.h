@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/io/byte_offsets.h"
 #include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/polygons.h"
@@ -20,14 +22,14 @@ enum class Format { Obj, Off, Ply, Stl };
 
 /// The format that a file name's ending stands for (.obj .off .ply .stl, any case, also before .gz or .zst), if it
 /// does.
-std::optional<Format> format_of(std::string_view path);
-const char* name(Format format);
+VDB_OFFSET_API std::optional<Format> format_of(std::string_view path);
+VDB_OFFSET_API const char* name(Format format);
 
 /// How the numbers of an OFF, PLY or STL file are stored.
 enum class Encoding { Ascii, LittleEndian, BigEndian };
 
 /// A mesh as read, with all that is needed to write the same file again with other coordinates.
-struct MeshFile {
+struct VDB_OFFSET_API MeshFile {
   std::string path;
   Format format = Format::Obj;
   Encoding encoding = Encoding::Ascii;
@@ -56,10 +58,10 @@ inline constexpr std::uint32_t kNoNormal = 0xffffffff;
 /// behind that ending are decompressed; "-" is standard input, and needs to be told its format.
 /// \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was expected, what was
 /// found) for content that is no mesh. Never allocates more than a small multiple of the file's size.
-MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
+VDB_OFFSET_API MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
 
 /// Reads a mesh as read_mesh() does from bytes in memory; `name` is for messages.
-MeshFile parse_mesh(const std::string& name, Format format, std::string bytes);
+VDB_OFFSET_API MeshFile parse_mesh(const std::string& name, Format format, std::string bytes);
 
 /// What becomes of a file's normals where a face moved.
 enum class Normals { Recompute, Keep };
@@ -82,16 +84,17 @@ struct WriteResult {
 /// texture coordinates and normals.
 /// \pre one position a vertex. \throw InvalidInput for an unknown ending, WriteError, ReadError if the source's file
 /// was written to meanwhile.
-WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
-                       const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
+                                      const WriteOptions& options = {});
 
 /// The bytes that write_mesh() writes in the source's own format.
-std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions);
+VDB_OFFSET_API std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions);
 
 /// The precision of coordinates that write_mesh() writes.
-Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options = {});
+VDB_OFFSET_API Precision precision_of(const std::string& path, const MeshFile& source,
+                                      const WriteOptions& options = {});
 
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
-void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
+VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
 
 }  // namespace vdb_offset::io

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -5,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
@@ -21,10 +23,10 @@ struct Selector {
 };
 
 /// \throw InvalidOption unless the text is `group=NAME`, `material=NAME` or `faces=FILE`.
-Selector parse_selector(const std::string& text);
+VDB_OFFSET_API Selector parse_selector(const std::string& text);
 
 /// One number a face: 1 if any of the selectors names it. \throw InvalidOption for a name that no face has; it tells
 /// those that there are. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this mesh.
-std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors);
+VDB_OFFSET_API std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors);
 
 }  // namespace vdb_offset::io

@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/shell.h"
 
@@ -19,10 +21,10 @@ namespace vdb_offset::io {
 /// - OFF: the rim's faces have the colours of those at their border.
 /// \pre the shell was made of the source's polygons. \throw as write_mesh(), and InvalidInput for a shell of another
 /// mesh.
-WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
-                        const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
+                                       const WriteOptions& options = {});
 
 /// Writes a shell of plain polygons: positions, faces and, in OBJ and PLY, the parts. \throw as write_mesh()
-WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options = {});
 
 }  // namespace vdb_offset::io

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
 #include <string>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/vertex_state.h"
@@ -17,11 +19,11 @@ struct VertexStates {
 };
 
 /// True of the endings that write_states() knows: .csv and .ply.
-bool is_states_file(const std::string& path);
+VDB_OFFSET_API bool is_states_file(const std::string& path);
 
 /// Writes one line or one vertex for each of the mesh's: CSV `vertex,state,target,achieved`; or PLY (binary, the mesh
 /// itself with the vertex properties state, 0 to 4 in the order of VertexState, target and achieved), which a viewer
 /// can colour by. \throw WriteError
-void write_states(const std::string& path, PolygonView mesh, const VertexStates& states);
+VDB_OFFSET_API void write_states(const std::string& path, PolygonView mesh, const VertexStates& states);
 
 }  // namespace vdb_offset::io

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
@@ -14,13 +16,14 @@ namespace vdb_offset::io {
 /// "-" is standard input. \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was
 /// expected, what was found) for content that is neither, another count, or a number that is not finite (the vertex,
 /// counted from 0). Never allocates more than a small multiple of `count`, or of the file's size if that is less.
-std::vector<double> read_vertex_numbers(const std::string& path, std::size_t count);
+VDB_OFFSET_API std::vector<double> read_vertex_numbers(const std::string& path, std::size_t count);
 
 /// Reads numbers as read_vertex_numbers() does from bytes in memory; `name` is for messages.
-std::vector<double> parse_vertex_numbers(const std::string& name, std::string_view bytes, std::size_t count);
+VDB_OFFSET_API std::vector<double> parse_vertex_numbers(const std::string& name, std::string_view bytes,
+                                                        std::size_t count);
 
 /// The numbers that a PLY file holds for its vertices under that name.
 /// \throw InvalidInput if the file is no PLY, has no such property of single numbers, or holds one that is not finite.
-std::vector<double> vertex_property(const MeshFile& source, const std::string& name);
+VDB_OFFSET_API std::vector<double> vertex_property(const MeshFile& source, const std::string& name);
 
 }  // namespace vdb_offset::io

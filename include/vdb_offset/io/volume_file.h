@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "vdb_offset/api.h"
 #include "vdb_offset/foam_quality.h"
 #include "vdb_offset/volume_mesh.h"
 
@@ -15,7 +17,7 @@ enum class VolumeFormat : std::uint8_t { Vtu, Msh, Cgns, Su2, Foam };
 
 /// The format that a path stands for: by the ending .vtu, .msh, .cgns or .su2, in any case; a path with the last
 /// component `polyMesh` is a folder of OpenFOAM's.
-std::optional<VolumeFormat> volume_format_of(std::string_view path);
+VDB_OFFSET_API std::optional<VolumeFormat> volume_format_of(std::string_view path);
 
 /// What is written into a polyMesh.
 inline constexpr std::array<const char*, 5> kFoamFiles = {"points", "faces", "owner", "neighbour", "boundary"};
@@ -43,12 +45,12 @@ struct VolumeWriteResult {
 /// .cgns: of 32 bytes. Fields without values are left out. \throw InvalidInput for an unknown ending, polyhedra where
 /// the format has none, a patch that is not the boundary (polyMesh, .cgns with polyhedra), no cells, or arrays that do
 /// not fit each other; WriteError.
-VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh);
+VDB_OFFSET_API VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh);
 
 enum class StructuredFormat : std::uint8_t { Vts, Plot3d };
 
 /// The format that a path's ending stands for: .vts or .xyz, in any case.
-std::optional<StructuredFormat> structured_format_of(std::string_view path);
+VDB_OFFSET_API std::optional<StructuredFormat> structured_format_of(std::string_view path);
 
 /// Writes the block in the path's format.
 /// - .vts: as .vtu.
@@ -56,6 +58,6 @@ std::optional<StructuredFormat> structured_format_of(std::string_view path);
 /// all
 ///   x, all y and all z, with as many digits as read back to the same double. No fields.
 /// \throw InvalidInput for an unknown ending, or arrays with lengths that do not fit the block's; WriteError.
-void write_structured(const std::string& path, const StructuredBlock& block);
+VDB_OFFSET_API void write_structured(const std::string& path, const StructuredBlock& block);
 
 }  // namespace vdb_offset::io

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Checks what must hold whatever the input: an invariant, or what a caller has promised (\pre). A failure is a defect

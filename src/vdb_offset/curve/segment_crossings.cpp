@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/curve/segment_crossings.h"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/curve_offset/curve_layer_grower.h"
 
 #include "vdb_offset/base/progress_count.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/curve_offset/prepared_curves.h"
 
 #include <algorithm>

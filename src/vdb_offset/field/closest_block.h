@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What sweep_closest() holds of one leaf node: closest points, as they are kept between visits, and unpacked with a

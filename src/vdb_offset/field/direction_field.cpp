@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/field/direction_field.h"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/iso/iso_source.h"

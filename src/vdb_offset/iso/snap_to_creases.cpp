@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/iso/snap_to_creases.h"
 
 #include <openvdb/math/Mat3.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/layers/layer_grower.h"
 
 #include "vdb_offset/base/progress_count.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/mesh/mean_distances.h"
 
 #include "vdb_offset/base/assert.h"

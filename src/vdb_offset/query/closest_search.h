@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // The descent of one exact query through the tree of boxes, for the sources of ClosestQuery.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles near balls, and with these the closest points of points along paths.
 #include <array>
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances as users write them: numbers, percent and expressions.
 #include <fmt/format.h>
 

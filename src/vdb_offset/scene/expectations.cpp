@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What scenes expect of a result, and where vertices should be in closed form.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shapes of scenes by their names, with the numbers that each asks for.
 #include <algorithm>
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/shapes.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/shell/wedge_positions.h"
 
 #include <openvdb/math/Mat3.h>

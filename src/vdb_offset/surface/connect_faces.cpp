@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/surface/connect_faces.h"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/validity/obstacle_facts.h"
 
 #include "vdb_offset/base/assert.h"

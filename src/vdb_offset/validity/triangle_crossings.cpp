@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiled with -frounding-math, which CGAL's interval arithmetic needs.
 #include "vdb_offset/validity/triangle_crossings.h"
 

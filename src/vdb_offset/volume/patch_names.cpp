@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/patch_names.h"
 
 #include "vdb_offset/error.h"

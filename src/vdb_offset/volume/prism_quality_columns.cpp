@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/volume/prism_quality_columns.h"
 
 #include "vdb_offset/volume/prism_quality_lanes.h"

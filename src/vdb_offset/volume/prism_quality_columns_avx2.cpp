@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiled for AVX2, and run only where the machine has it. What it includes may not define inline functions with
 // numbers of types that other sources use: the linker keeps one of each, and it could be the one for AVX2.
 #include "vdb_offset/volume/prism_quality_lanes.h"

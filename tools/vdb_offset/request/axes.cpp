@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances by axis: what --distance-xy and --distance-z say.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CLI11, behind CommandLine.
 #include "request/command_line.h"
 

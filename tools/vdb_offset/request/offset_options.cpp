@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of an offset: the words of --help, and what each option sets.
 #include <algorithm>
 #include <limits>

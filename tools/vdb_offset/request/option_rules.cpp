@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which options of an offset go together, and which names of files go with them.
 #include "request/option_rules.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the texts of single options say.
 #include "request/option_values.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // The lines of OBJ files, for all that read them: a keyword and words behind it. `#` starts a comment, and a backslash

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transforms of SVG: their arithmetic, and what attributes say of them.
 #include "vdb_offset/io/curve/svg_transform.h"
 

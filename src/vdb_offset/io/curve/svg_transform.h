@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Values of the attributes of an SVG drawing, and the transforms among them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cgnslib.h>
 #include <fcntl.h>
 #include <fmt/format.h>

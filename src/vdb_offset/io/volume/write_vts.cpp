@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkStructuredGrid.h>

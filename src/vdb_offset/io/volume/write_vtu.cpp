@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/layers/cells/make_cells.h"
 
 #include "vdb_offset/layer_cells.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/io/mesh/read/ply_header.h"
 
 #include <fmt/format.h>
