@@ -26,7 +26,7 @@ constexpr double kPull = 0.85;
 constexpr int kMostPulls = 40;
 // The rounds of letting out, each of which halves what a point lacks: it ends within 0.1 % of its displacement of the
 // farthest valid position between. Not measured.
-constexpr int kLetOuts = 10;
+constexpr int kCurveLetOuts = 10;
 // The numbers of good points that are taken into a run between bad ones, tried one after the other: small windows
 // first, then runs that block each other together. Not measured.
 constexpr int kBridges[] = {0, 2, 8};
@@ -214,7 +214,7 @@ class CurveLimiter {
   void let_out() {
     if (faults_.any()) return;
     std::vector<double> most(share_.size(), 1.0);
-    for (int i = 0; i < kLetOuts; ++i) {
+    for (int i = 0; i < kCurveLetOuts; ++i) {
       bool any = false;
       progress_.advance(0);
       for (const auto p : points_) {

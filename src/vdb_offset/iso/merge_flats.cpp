@@ -23,7 +23,7 @@ constexpr std::size_t kMostAround = 14;
 constexpr double kThin = 0.02;
 // The least sine of the angle between two flat parts (3 degrees): below it, the edge between them is too vague for its
 // vertices to be merged along it. Not measured.
-constexpr double kLeastAngle = 0.05;
+constexpr double kLeastMergedAngle = 0.05;
 // The least cosine between normals of one plane (0.8 degrees), but for triangles with next to no area. For a quick test
 // that leaves out most vertices of curved parts; not measured.
 constexpr double kAlikeNormals = 0.9999;
@@ -33,7 +33,7 @@ constexpr double kClearHeight = 8;
 constexpr double kWorthMerging = 0.02;
 // The most trials of merging. With each, vertices stay in rings twice as wide around crossings: at last 16 edges. Not
 // measured.
-constexpr int kMostTrials = 5;
+constexpr int kMostMergeTrials = 5;
 
 using List = std::vector<std::uint32_t>;
 
@@ -170,7 +170,7 @@ class FlatMerger {
       return flat;
     }
     const auto second = plane_of_largest(rest, v);
-    if (!second || first->normal.cross(second->normal).length() < kLeastAngle) return std::nullopt;
+    if (!second || first->normal.cross(second->normal).length() < kLeastMergedAngle) return std::nullopt;
     for (const auto t : rest)
       if (!is_in(*second, t)) return std::nullopt;
     flat.plane[1] = *second;
@@ -334,7 +334,7 @@ std::size_t merge_flats_soundly(Surface& mesh, double tolerance) {
                        .incident = mesh.incident,
                        .incident_begin = mesh.incident_begin};
   std::vector<std::uint8_t> stays;
-  for (int trial = 0; trial < kMostTrials; ++trial) {
+  for (int trial = 0; trial < kMostMergeTrials; ++trial) {
     const MergedFlats merged = merge_flats(mesh, tolerance, stays);
     const List faulty = merged.vertices > 0 ? find_faulty(mesh, merged.changed) : List();
     if (faulty.empty()) return merged.vertices;

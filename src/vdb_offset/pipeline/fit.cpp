@@ -27,7 +27,7 @@ constexpr std::size_t kPatience = 4;
 constexpr double kBeyond = 3e-7, kFarEnough = 1e-6;
 // The least gain of a vertex, as a share of what it goes farther inward, that the next round reckons with: what a
 // vertex goes at once is at most seven times what it lacks. Not measured.
-constexpr double kLeastGain = 0.15;
+constexpr double kLeastFitGain = 0.15;
 
 /// The other mesh, and distances from it.
 class Other {
@@ -199,7 +199,7 @@ class Fitting {
   }
 
   static double gain_of(double gained, double told) {
-    return told > 0 ? std::clamp(gained / told, kLeastGain, 1.0) : 1;
+    return told > 0 ? std::clamp(gained / told, kLeastFitGain, 1.0) : 1;
   }
 
   /// Lets each vertex go farther inward by what it lacks itself, then the corners of faces by what the faces' nearest
