@@ -24,8 +24,8 @@ constexpr int kSmallSteps = 3, kMostSteps = 4;
 // The number of rounds in which thinned vertices are let out again, each by one step. 0.85^-16 is 13: a vertex that
 // lost six steps of thinning to its neighbours gets all of that back. Not measured.
 constexpr int kLetOuts = 16;
-// The share before a step of letting out, of that after it: what is left between a vertex and the largest height that
-// would be valid is less than a sixth. Not measured.
+// A step of letting out divides the share by this, so that a vertex ends less than a sixth short of its largest valid
+// height. Not measured.
 constexpr double kLetOutFrom = 0.85;
 // The largest difference of thickness between two neighbours, as a share of the length of the edge between them: an
 // angle of 27 degrees between wall and outer surface. Not measured.

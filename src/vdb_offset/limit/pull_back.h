@@ -11,9 +11,9 @@ namespace vdb_offset {
 /// of a shell touch where a vertex has not moved at all.
 inline constexpr double kLastShare = 1e-4;
 
-/// The second step of limit(), and its last, called until it returns false: pulls vertices of faulty faces a step back
-/// towards their source. False if there is no fault, or none of whose vertices any displacement is left. Ends, as a
-/// surface that is pulled back altogether is the source.
+/// Pulls vertices of faulty faces a step back towards their source. To be called until it returns false: then no fault
+/// is left, or no vertex of a fault has any displacement left. That ends, as a surface that is pulled back altogether
+/// is the source. limit() pulls back once patches are untangled, and again at the end.
 bool pull_back(LimitState& state);
 
 /// The vertices that pull_back() pulls: of each fault's corners those with which little live area is lost, and those

@@ -34,7 +34,7 @@ constexpr double kLeastGain = 1e-6, kLeastGainUnfolded = 0.1;
 constexpr double kLongestStep = 0.5;
 
 // chi, by which the energy is divided, is smoothed over this share of the most negative determinant of the faces, and
-// over kLeastSmoothing at least (both squared). Not measured.
+// over a least one; both constants are squares. Not measured.
 constexpr double kSmoothing2 = 0.04, kLeastSmoothing2 = 1e-12;
 
 // Squared length below which a sum of unit normals has cancelled out, and has no direction. Reasoned: rounding.

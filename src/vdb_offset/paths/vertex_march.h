@@ -163,6 +163,8 @@ class VertexMarch {
     Sample before, at, after;
   };
 
+  /// Steps along the direction field until all stops are told: where the distance is a stop's, at an obstacle, or, when
+  /// the distance has not risen for kPatience, at its maximum on the path (climb()).
   template <class Tell>
   void march_on(const Sample& first, std::span<const StopDistance> stops, Tell&& tell) {
     const double last = stops.back().distance;

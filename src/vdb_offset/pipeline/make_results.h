@@ -24,7 +24,7 @@ AskedDistances ask(const PreparedMesh& mesh, std::span<const Distances> of_input
 
 /// Makes a result of each set of paths: valid, with Collision::Limit, and with all its figures.
 ///
-/// A few results are made at the same time. With Collision::Limit those that others begin with (see find_precedents())
+/// A few results are made at the same time. With Collision::Limit those that others begin with (see find_warm_starts())
 /// go first; and with `inner_skin_last` the last of all before them, since the others keep off it. The results do not
 /// depend on the number of threads.
 /// \param marched of each result; used up

@@ -22,8 +22,8 @@ struct Closest {
   Vec3d point;
 };
 
-/// The ball of radius phi(x) around x holds no surface: a step from x of this share of phi(x) crosses nothing. The rest
-/// makes up for what phi is off; 0.9 is not measured beside other shares.
+/// The ball of radius phi(x) around x holds no surface, so that a step from x which is shorter crosses nothing. A step
+/// may be this share of phi(x) long: less than all of it, to allow for an error of phi. Not measured beside others.
 inline constexpr double kFreeShare = 0.9;
 
 /// Exact distance to a surface: phi(x) without a grid's error.

@@ -37,12 +37,13 @@ struct Surface {
   /// of their faces; zero for the others, and where borders meet. For a vertex that stays in a plane that plane's
   /// normal, either way round. Empty if nothing has a border, or stays in a plane.
   std::vector<Vec3d> conormals;
-  /// Planes that vertices stay in (see border_planes.h), in this frame; of each vertex, how many of them hold it, 0 ..
-  /// 3 (empty if there are none); for those that two hold, a second conormal, at right angles to the first one, sorted
-  /// by vertex; and the walls, sorted by vertex.
+  /// Planes that vertices stay in (see border_planes.h), in this frame.
   std::vector<SymmetryPlane> planes;
+  /// Of each vertex, how many planes hold it, 0 .. 3. Empty if there are no planes.
   std::vector<std::uint8_t> held;
+  /// Of vertices that two planes hold, a second conormal, at right angles to the first one. Sorted by vertex.
   std::vector<std::pair<std::uint32_t, Vec3d>> second_conormals;
+  /// Planes that vertices may not pass. Sorted by vertex.
   std::vector<Wall> walls;
   /// Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
   std::vector<std::uint32_t> incident, incident_begin;
@@ -85,9 +86,8 @@ struct Surface {
 };
 
 /// Builds the surface of polygons: welds, triangulates, connects faces, counts, and settles which side is outward (see
-/// orientation.h). Origin and normals are
-/// left to to_local_frame(). \throw InvalidInput if there is no face, an index is out of range, a coordinate is not
-/// finite, or there are 2^31 triangles or more.
+/// orientation.h). Origin and normals are left to to_local_frame(). \throw InvalidInput if there is no face, an index
+/// is out of range, a coordinate is not finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
 /// Which vertices of a mesh are one.
