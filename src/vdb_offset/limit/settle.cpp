@@ -62,6 +62,7 @@ std::vector<std::uint32_t> Settling::vertices_to_settle() {
   std::sort(order.begin(), order.end());
   order.resize(std::min(order.size(), kMostSettled));
   std::vector<std::uint32_t> largest;
+  largest.reserve(order.size());
   for (const auto& [area, v] : order) largest.push_back(v);
   live_area.measure(largest);
   std::erase_if(largest, [&](std::uint32_t v) { return !(live_area[v] > least); });
