@@ -202,7 +202,8 @@ TEST_CASE("command: distances of each vertex, as an expression and from files", 
   check_failure(shell, "sphere.obj c.obj -d 'u'", 2, "texture coordinates");
   check_failure(shell, "sphere.obj c.obj --distance-from a.csv", 2, "a.csv");
   check_failure(shell, "sphere.obj c.obj --distance-from ply:thickness", 2, "sphere.obj");
-  check_failure(shell, "sphere.obj c.obj -d 1 --distance-from numbers.txt", 1, "got both");
+  check_failure(shell, "sphere.obj c.obj -d 1 --distance-from numbers.txt", 1,
+                "--distance-from and --distance exclude each other");
 }
 
 TEST_CASE("command: thickness by the surface's own parameters", "[command]") {
@@ -458,13 +459,15 @@ TEST_CASE("command: 1 for wrong usage", "[command]") {
   check_failure(shell, "sphere.xyz out.obj --distance 1", 1, "sphere.xyz");
   check_failure(shell, "sphere.obj out.obj --distance 1 --nonsense", 1, "--nonsense");
   check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 0", 1, "--voxel-size");
-  check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 1 --voxels-per-distance 1", 1, "both");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --voxel-size 1 --voxels-per-distance 1", 1,
+                "--voxel-size and --voxels-per-distance exclude each other");
   check_failure(shell, "sphere.obj out.obj --distance 1 --collision bounce", 1, "'bounce'");
   check_failure(shell, "sphere.obj out.obj --distance 1 --solver magic", 1, "'magic'");
   check_failure(shell, "sphere.obj out.obj --distance 1 --weld some", 1, "'some'");
   check_failure(shell, "sphere.obj out.obj --distance 1 --threads -1", 1, "--threads");
   check_failure(shell, "sphere.obj out.obj --distance 1 --max-memory lots", 1, "'lots'");
-  check_failure(shell, "sphere.obj out.obj --distance 1 --quiet --verbose", 1, "both");
+  check_failure(shell, "sphere.obj out.obj --distance 1 --quiet --verbose", 1,
+                "--quiet and --verbose exclude each other");
   check_failure(shell, "sphere.obj out.obj --distance 1 --report sphere.obj", 1, "file of its own");
   check_failure(shell, "sphere.obj out.obj --distance 1 --save-vdb ./out.obj", 1, "file of its own");
   check_failure(shell, "sphere.obj out.obj --distance 0 --save-vdb f.vdb", 1, "other than 0");
@@ -638,13 +641,13 @@ TEST_CASE("command: options of layers that do not go together", "[command][layer
   for (const auto& [arguments, message] :
        {std::pair{"out.vtu --distance 1", "--layers"},
         {"out.obj --distance 1 --growth 1.2", "--growth needs --layers"},
-        {"out.vtu --layers 3", "expected one of --first-height"},
-        {"out.vtu --layers 3 --first-height 1 --total-thickness 2", "expected one of"},
+        {"out.vtu --layers 3", "needs one of --first-height"},
+        {"out.vtu --layers 3 --first-height 1 --total-thickness 2", "needs one of"},
         {"out.vtu --layers 0 --first-height 1", "--layers: expected 1 to 1000"},
         {"out.vtu --layers 2 --first-height 1 --growth 0", "--growth: expected"},
         {"out.vtu --layers 2 --first-height 'x+' ", "--first-height"},
         {"out.vtu --layers 2 --first-height 1 --shell", "--shell and --layers exclude each other"},
-        {"out.vtu --layers 2 --first-height 1 --distance 1", "--distance: expected"},
+        {"out.vtu --layers 2 --first-height 1 --distance 1", "--distance and --layers exclude each other"},
         {"out.vts --layers 2 --first-height 1", "--structured"},
         {"out.vtu --layers 2 --first-height 1 --structured", "--structured"}})
     check_failure(shell, std::string("sphere.obj ") + arguments, 1, message);
@@ -711,10 +714,10 @@ TEST_CASE("command: options of captured surfaces that do not go together", "[com
   check_failure(shell, "sphere.obj out.obj -d 0.1 --mode front", 1, "--mode: expected 'topology' or 'iso'");
   check_failure(shell, "sphere.obj out.obj -d 0.1 --adaptivity 0.5", 1, "--adaptivity needs --mode iso");
   check_failure(shell, "sphere.obj out.obj -d 0.1 --transport uv", 1, "--transport needs --mode iso");
-  for (const std::string option :
-       {"--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge", "--solver eikonal",
-        "--normals keep", "--states a.csv", "--paths a.obj", "--save-vdb a.vdb"})
+  for (const std::string option : {"--only group=a", "--border fixed", "--obstacle sphere.obj", "--collision merge",
+                                   "--solver eikonal", "--states a.csv", "--paths a.obj", "--save-vdb a.vdb"})
     check_failure(shell, iso + option, 1, option.substr(0, option.find(' ')) + " and --mode iso exclude each other");
+  check_failure(shell, iso + "--normals keep", 1, "--normals keep and --mode iso exclude each other");
   check_failure(shell, "sphere.obj out.vtu --mode iso --layers 3 --first-height 0.1", 1,
                 "--layers and --mode iso exclude each other");
   check_failure(shell, "sphere.obj out.obj -d 0.1 --keep-specks", 1, "--keep-specks needs --mode iso");
