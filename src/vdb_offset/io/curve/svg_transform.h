@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/vec.h"
 
 namespace vdb_offset::io {
