@@ -37,7 +37,7 @@ struct RunFacts {
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };
 
-/// The report of a run as JSON text; the keys are documented in the README.
+/// The report of a run as JSON text; the keys are documented in docs/report.md.
 VDB_OFFSET_API std::string report_json(const OffsetResult& result, const RunFacts& run);
 /// The report of layers as JSON text: figures about vertices are those of the outermost surface.
 VDB_OFFSET_API std::string report_json(const LayersResult& result, const RunFacts& run);

@@ -24,7 +24,7 @@ OffsetResult offset_of(const Curves& curves, double distance) {
   return offset_curves(curves.view(), {&distances, 1}, {}).front();
 }
 
-/// States tell the truth, nobody is too far out, and nothing crosses that did not before.
+/// States tell the truth, no point is too far out, and nothing crosses that did not before.
 void require_honest(const Curves& curves, const OffsetResult& result) {
   CHECK(new_crossings(curves, result.positions) == result.statistics.limit.crossings_near_source);
   CHECK(result.statistics.limit.left.total() == 0);
@@ -363,7 +363,7 @@ TEST_CASE("curve files: drawings as programs write them", "[curves][io]") {
   const Curves& square = odd.file.polygons;
   REQUIRE(square.positions.size() == 5);
   CHECK(square.positions.front() == square.positions.back());  // but for rounding it ends where it began
-  // Digits are those of the drawing's coordinates, whatever the shape's own are; who stays keeps all of its.
+  // Digits are those of the drawing's coordinates, whatever the shape's own are; a point that stays keeps all of its.
   const std::string text =
       "<svg><g transform='translate(-1000,-1000)'><path d='M1000,1000 L1000.3,1000 1000.3,1000.3 Z'/></g>"
       "<path d='M30.123456 1L2 3'/></svg>";

@@ -197,7 +197,7 @@ TEST_CASE("convert: a moved vertex gets a new normal", "[io]") {
   CHECK_THAT(converted("obj", obj, "off", up, keep).bytes, Catch::Contains("0 0 1 0.6 0 0.8\n"));
   CHECK_THAT(body(converted("obj", obj, "ply", up).bytes), Catch::StartsWith(stored(0., 0., 1., 0., 0., 1.)));
   CHECK_THAT(body(converted("obj", obj, "ply", up, keep).bytes), Catch::StartsWith(stored(0., 0., 1., 0.6, 0., 0.8)));
-  // One that is no number is in nobody's way where it is computed anew.
+  // A normal that is no number does no harm where it is computed anew.
   const std::string nan = kTriangle + "vn nan 0 0\nf 1//1 2//1 3//1\n";
   CHECK(converted("obj", nan, "off", up).lost.empty());
   CHECK(converted("obj", nan, "off").lost == "normals");

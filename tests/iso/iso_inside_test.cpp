@@ -57,16 +57,6 @@ IsoOptions options_of(double distance, double voxel_size) {
   return options;
 }
 
-double enclosed_by(const Polygons& mesh) {
-  double sum = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.view().face(f);
-    for (std::size_t k = 2; k < face.size(); ++k)
-      sum += mesh.positions[face[0]].dot(mesh.positions[face[k - 1]].cross(mesh.positions[face[k]])) / 6;
-  }
-  return sum;
-}
-
 /// A triangle of sides along x and y, extruded, with a knife edge of so many degrees, in a frame that is not the
 /// grid's.
 Polygons knife(double degrees) {
@@ -116,7 +106,7 @@ TEST_CASE("iso inside: solids that overlap are hollowed as one", "[iso]") {
   CHECK(result.statistics.solid.buried + result.statistics.solid.cut > 0);
   // The smaller boxes, and what the rounding around the rim adds to the passage between them.
   const double passage = 0.64 * 2.0, rounding = (1 - M_PI / 4) * 0.01 * 4 * 0.8;
-  CHECK(enclosed_by(result.polygons) == Approx(5.832 + passage + rounding).epsilon(3e-3));
+  CHECK(test::enclosed_volume(result.polygons) == Approx(5.832 + passage + rounding).epsilon(3e-3));
   // Every vertex is as far from the boundary, and none nearer to what is buried but through it.
   std::size_t beyond_buried = 0;
   for (std::size_t v = 0; v < result.polygons.positions.size(); v += 7) {
@@ -131,23 +121,23 @@ TEST_CASE("iso inside: solids that overlap are hollowed as one", "[iso]") {
 
 TEST_CASE("iso inside: what lies in a solid is not surface, whether faces meet or not", "[iso]") {
   const Polygons box = scene::box({1, 1, 1}, 1, true);
-  const double alone = enclosed_by(make_iso_surface(box.view(), options_of(-0.1, 0.03)).polygons);
+  const double alone = test::enclosed_volume(make_iso_surface(box.view(), options_of(-0.1, 0.03)).polygons);
   CHECK(alone == Approx(0.512).epsilon(1e-6));
   for (const Polygons& other : {scene::box({0.5, 0.4, 0.3}, 1, true), scene::icosphere(0.4, 2)}) {
     const IsoResult nested = make_iso_surface(together(box, other).view(), options_of(-0.1, 0.03));
     CHECK(nested.statistics.components == 1);
     CHECK(nested.statistics.solid.buried == other.face_count());
-    CHECK(enclosed_by(nested.polygons) == Approx(alone).epsilon(1e-9));
+    CHECK(test::enclosed_volume(nested.polygons) == Approx(alone).epsilon(1e-9));
   }
   // Flush: part of a side is shared.
   const IsoResult flush = make_iso_surface(
       together(box, moved(scene::box({0.5, 0.5, 0.5}, 1, true), {0.25, 0.25, 0.25})).view(), options_of(-0.1, 0.03));
   CHECK(flush.statistics.components == 1);
-  CHECK(enclosed_by(flush.polygons) == Approx(alone).epsilon(1e-6));
+  CHECK(test::enclosed_volume(flush.polygons) == Approx(alone).epsilon(1e-6));
   // Face to face: two halves of a bar.
   const IsoResult bar = make_iso_surface(together(box, moved(box, {1, 0, 0})).view(), options_of(-0.1, 0.03));
   CHECK(bar.statistics.components == 1);
-  CHECK(enclosed_by(bar.polygons) == Approx(1.8 * 0.8 * 0.8).epsilon(1e-6));
+  CHECK(test::enclosed_volume(bar.polygons) == Approx(1.8 * 0.8 * 0.8).epsilon(1e-6));
   // A cavity stays one.
   const IsoResult hollow = make_iso_surface(scene::hollow_box(1, 0.3, 2).view(), options_of(-0.05, 0.03));
   CHECK(hollow.statistics.components == 2);
@@ -161,7 +151,7 @@ TEST_CASE("iso inside: an edge of four faces does not make solids open", "[iso]"
   CHECK(result.statistics.is_signed);
   CHECK(result.statistics.valid());
   CHECK(result.statistics.components == 2);
-  CHECK(enclosed_by(result.polygons) == Approx(2 * 0.9 * 0.9 * 0.9).epsilon(1e-6));
+  CHECK(test::enclosed_volume(result.polygons) == Approx(2 * 0.9 * 0.9 * 0.9).epsilon(1e-6));
   IsoOptions never = options_of(-0.05, 0.02);
   never.use_winding = false;
   CHECK_FALSE(make_iso_surface(cubes.view(), never).statistics.is_signed);
@@ -176,7 +166,7 @@ TEST_CASE("iso inside: small holes are filled, and what is open stays so", "[iso
     CHECK(result.statistics.is_signed);
     CHECK(result.statistics.components == 1);
     CHECK(result.statistics.solid.holes == 3);
-    CHECK(enclosed_by(result.polygons) == Approx(4.0 / 3 * M_PI * std::pow(1 + d, 3)).epsilon(0.03));
+    CHECK(test::enclosed_volume(result.polygons) == Approx(4.0 / 3 * M_PI * std::pow(1 + d, 3)).epsilon(0.03));
   }
   // Distances are to the mesh as it is, if the ball of that radius does not pass through the holes.
   const IsoResult inner = make_iso_surface(pierced.view(), options_of(-0.2, 0.1));
@@ -250,7 +240,7 @@ TEST_CASE("iso: knife edges leave no specks", "[iso]") {
   options.keep_specks = true;
   const IsoResult all = make_iso_surface(wedge.view(), options);
   CHECK(all.statistics.components == 1 + result.statistics.dropped_specks);
-  CHECK(enclosed_by(all.polygons) - enclosed_by(result.polygons) <
+  CHECK(test::enclosed_volume(all.polygons) - test::enclosed_volume(result.polygons) <
         1e-3 * static_cast<double>(result.statistics.dropped_specks));
 }
 
@@ -271,7 +261,7 @@ TEST_CASE("iso: what is flat is merged, and nothing of its shape is lost", "[iso
   const IsoResult inner = make_iso_surface(box.view(), options_of(-0.1, 0.03));
   CHECK(inner.statistics.valid());
   CHECK(inner.polygons.face_count() == 12);
-  CHECK(enclosed_by(inner.polygons) == Approx(0.8 * 0.5 * 0.32).epsilon(1e-7));
+  CHECK(test::enclosed_volume(inner.polygons) == Approx(0.8 * 0.5 * 0.32).epsilon(1e-7));
   IsoOptions uniform = options_of(0.1, 0.03);
   uniform.adaptivity = 0;
   const IsoResult all = make_iso_surface(box.view(), uniform),
@@ -279,7 +269,7 @@ TEST_CASE("iso: what is flat is merged, and nothing of its shape is lost", "[iso
   CHECK(outer.statistics.valid());
   CHECK(outer.statistics.merged_vertices + outer.polygons.positions.size() == all.polygons.positions.size());
   CHECK(outer.polygons.face_count() < all.polygons.face_count() / 2);
-  CHECK(enclosed_by(outer.polygons) == Approx(enclosed_by(all.polygons)).epsilon(1e-8));
+  CHECK(test::enclosed_volume(outer.polygons) == Approx(test::enclosed_volume(all.polygons)).epsilon(1e-8));
   // On flats, the distance is that between vertices, too.
   double worst = 0;
   for (std::size_t f = 0; f < outer.polygons.face_count(); ++f) {
@@ -357,9 +347,9 @@ TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", 
   const Hollow outward = make_hollow(skin.polygons.view(), box.view(), Hollow::Source::Inner);
   CHECK(outward.facts.closed);
   CHECK(outward.facts.oriented);
-  CHECK(outward.facts.volume == Approx(enclosed_by(skin.polygons) - 1));
+  CHECK(outward.facts.volume == Approx(test::enclosed_volume(skin.polygons) - 1));
   const Hollow both = make_hollow(skin.polygons.view(), cavity.polygons.view(), Hollow::Source::Neither);
-  CHECK(both.facts.volume == Approx(enclosed_by(skin.polygons) - 0.512).epsilon(1e-6));
+  CHECK(both.facts.volume == Approx(test::enclosed_volume(skin.polygons) - 0.512).epsilon(1e-6));
   // A cavity that meets the skin is told.
   CHECK(make_hollow(box.view(), moved(cavity.polygons, {0.15, 0, 0}).view(), Hollow::Source::Outer).facts.crossings >
         0);
@@ -374,7 +364,7 @@ TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", 
   for (const char* name : {"out.obj", "out.ply", "out.stl", "out.off"}) {
     io::write_hollow(folder.file(name), &source, hollow, inside);
     const io::MeshFile written = io::read_mesh(folder.file(name));
-    CHECK(enclosed_by(written.polygons) == Approx(1 - 0.512).epsilon(1e-6));
+    CHECK(test::enclosed_volume(written.polygons) == Approx(1 - 0.512).epsilon(1e-6));
     if (std::string(name) == "out.obj") {
       CHECK(written.polygons.positions == hollow.polygons.positions);
       CHECK(written.polygons.corners == hollow.polygons.corners);

@@ -24,16 +24,6 @@ struct TemporaryFile {
 
 scene::Scene read(const std::string& text) { return scene::read_scene(TemporaryFile(text).path); }
 
-double volume(const Polygons& mesh) {
-  double sum = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.view().face(f);
-    for (std::size_t k = 2; k < face.size(); ++k)
-      sum += mesh.positions[face[0]].dot(mesh.positions[face[k - 1]].cross(mesh.positions[face[k]])) / 6;
-  }
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("scenes: every one runs as it expects", "[scene]") {
@@ -113,7 +103,7 @@ TEST_CASE("shapes: closed ones are closed, oriented outwards and of the right vo
     CHECK(facts.oriented());
     CHECK(facts.degenerate_faces == 0);
     CHECK(facts.unused_vertices == 0);
-    CHECK(std::abs(volume(c.mesh) - c.volume) < c.tolerance);
+    CHECK(std::abs(test::enclosed_volume(c.mesh) - c.volume) < c.tolerance);
   }
 }
 

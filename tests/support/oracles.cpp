@@ -76,6 +76,16 @@ double brute_force_distance(PolygonView mesh, const Vec3d& x) {
   return least;
 }
 
+double enclosed_volume(const Polygons& mesh) {
+  double sum = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    for (std::size_t k = 2; k < face.size(); ++k)
+      sum += mesh.positions[face[0]].dot(mesh.positions[face[k - 1]].cross(mesh.positions[face[k]])) / 6;
+  }
+  return sum;
+}
+
 bool is_inside(PolygonView mesh, const Vec3d& x) {
   double winding = 0;
   for_each_triangle(mesh, [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {

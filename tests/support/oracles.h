@@ -19,6 +19,9 @@ std::pair<Polygons, std::vector<double>> far_sphere();
 /// nothing with the library: projection onto the plane and signed areas, else the three segments.
 double brute_force_distance(PolygonView mesh, const Vec3d& x);
 
+/// What a closed mesh of faces that point outward encloses: the sum of its triangles' tetrahedra with the origin.
+double enclosed_volume(const Polygons& mesh);
+
 /// Whether x lies inside a closed mesh, by the winding number: the sum of its triangles' solid angles.
 bool is_inside(PolygonView mesh, const Vec3d& x);
 

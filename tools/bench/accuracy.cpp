@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the README's tables of accuracy: positions of a sphere's and a cube's vertices against closed forms.
+// Prints the tables of accuracy in docs/measured.md: positions of a sphere's and a cube's vertices against closed
+// forms.
 #include <fmt/format.h>
 
 #include <algorithm>

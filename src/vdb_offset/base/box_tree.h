@@ -57,7 +57,7 @@ class BoxTree {
   /// Calls is_it(i) for boxes of a level that meet `box`, until it returns true. Whether it did.
   template <class IsIt>
   bool any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level = 0) const;
-  /// The same of the boxes given, without begin .. end - 1.
+  /// Calls is_it(i) for the boxes given but begin .. end - 1 that meet `box`, until it returns true. Whether it did.
   template <class IsIt>
   bool any_overlap_beside(std::size_t begin, std::size_t end, const FloatBox& box, IsIt&& is_it) const;
 

@@ -144,7 +144,7 @@ void remove_stale_temporaries(const std::filesystem::path& folder) noexcept {
          entry.increment(failed))
       if (is_stale(entry->path().filename().string(), ours)) ::unlink(entry->path().c_str());
   } catch (const std::exception&) {
-    // What cannot be tidied up harms nobody.
+    // What cannot be tidied up does no harm.
   }
 }
 

@@ -36,8 +36,7 @@ class Temporary {
 
 /// Makes an empty file beside `target`, of a name that nobody can guess and that was not there before. It is as long as
 /// the target's own name: where the file system takes that one, it takes this one. The target's ending stays last, as
-/// writers choose a format by it. Who may read and write it is up to the process's mask. \throw WriteError, which names
-/// `path`
+/// writers choose a format by it. Its permissions follow the process's mask. \throw WriteError, which names `path`
 Temporary new_temporary_file(const std::filesystem::path& target, const std::string& path);
 
 /// Removes files of new_temporary_file() that runs on this machine have left in a folder as they were killed.

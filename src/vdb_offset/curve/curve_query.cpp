@@ -40,7 +40,7 @@ unsigned nearer_boxes(const BoxTree::Siblings& box, float x, float y, float limi
 
 CurveQuery::CurveQuery(const Polyline& line) : line_(line), distinct_(distinct_segments(line.segments)) {
   tree_.build((distinct_.size() + kLeafSize - 1) / kLeafSize, [&](std::size_t leaf) { return box_of(leaf); });
-  if (is_crowded()) sheaves_.emplace(line, distinct_);
+  if (is_crowded()) crowd_.emplace(line, distinct_);
 }
 
 bool CurveQuery::is_crowded() const {
@@ -81,7 +81,7 @@ Closest CurveQuery::operator()(const Vec3d& x, std::uint32_t hint) const {
 }
 
 TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {
-  if (sheaves_) return sheaves_->near(x, segment);
+  if (crowd_) return crowd_->near(x, segment);
   struct Node {
     std::uint32_t level, node;
     float squared;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "vdb_offset/base/box_tree.h"
+#include "vdb_offset/curve/oriented_boxes.h"
 #include "vdb_offset/curve/polyline.h"
-#include "vdb_offset/curve/sheaves.h"
 #include "vdb_offset/query/closest_query.h"
 
 namespace vdb_offset {
@@ -17,7 +17,7 @@ namespace vdb_offset {
 ///
 /// Segments lie along their curves, four in a row to a box of an implicit tree. A query cannot miss: the hint only
 /// bounds the search. Where the curves are so crowded that boxes hold more than a hundred segments of others at once,
-/// they are in sheaves instead. Memory: about 10 bytes a segment, 40 if crowded. Safe from any number of threads.
+/// they are in OrientedBoxes instead. Memory: about 10 bytes a segment, 40 if crowded. Safe from any number of threads.
 class CurveQuery {
  public:
   /// Keeps a reference. \pre the curves have a segment
@@ -26,14 +26,15 @@ class CurveQuery {
   /// The closest point to x; which of several as close depends only on x, the hint and the curves.
   Closest operator()(const Vec3d& x, std::uint32_t hint) const;
 
-  /// The same as TrianglePoint, from a segment that becomes the closest: it costs no more than to look along the curve.
+  /// The closest point to x as a TrianglePoint, searched from `segment`, which becomes the closest one. A search that
+  /// starts near its end costs little more than a walk along the curve.
   TrianglePoint near(const Vec3d& x, std::uint32_t& segment) const;
 
-  /// The same for several points. \pre as many hints and answers as points
+  /// The closest points to several points. \pre as many hints and answers as points
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
-  /// The same for points on ways up from the curves: see ClosestQuery.
+  /// The closest points to points on paths that lead away from the curves: see ClosestQuery.
   void answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,
                           std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 
@@ -48,7 +49,7 @@ class CurveQuery {
   const Polyline& line_;
   std::vector<std::uint32_t> distinct_;  // those that the tree holds: what is there several times, once
   BoxTree tree_;
-  std::optional<Sheaves> sheaves_;  // if the curves are crowded
+  std::optional<OrientedBoxes> crowd_;  // if the curves are crowded
 };
 
 }  // namespace vdb_offset

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "vdb_offset/base/box_tree.h"
-#include "vdb_offset/curve/fans.h"
 #include "vdb_offset/curve/ribbon.h"
+#include "vdb_offset/curve/segment_fans.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

@@ -12,14 +12,14 @@ namespace vdb_offset {
 
 /// The closest point of plane curves where many segments lie across, beside or on each other, so that upright boxes
 /// around those in a row hold nearly everything: a tree of boxes that each lie along their segments, which are put into
-/// sheaves by where they lie and which way they run.
+/// groups by where they lie and which way they run.
 ///
 /// Of those as near as the closest one, but for rounding (some 1e-15 of the extent), the first found ends the search:
 /// thousands on one line would all have to be asked otherwise. Memory: 28 bytes a segment.
-class Sheaves {
+class OrientedBoxes {
  public:
   /// Keeps a reference. `segments` are those of the line that count, at least one.
-  Sheaves(const Polyline& line, std::vector<std::uint32_t> segments);
+  OrientedBoxes(const Polyline& line, std::vector<std::uint32_t> segments);
 
   /// The closest point to x, from a segment that becomes the closest. Depends only on these and the curves.
   TrianglePoint near(const Vec3d& x, std::uint32_t& segment) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/curve/sheaves.h"
+#include "vdb_offset/curve/oriented_boxes.h"
 
 #include <tbb/parallel_invoke.h>
 
@@ -20,7 +20,7 @@ Vec2d turned(const Vec2d& along, const Vec2d& x) {
   return {along[0] * x[0] + along[1] * x[1], along[0] * x[1] - along[1] * x[0]};
 }
 
-/// How far along, how far across and how much turned against a sheaf's way a segment is.
+/// How far along, how far across and how much turned against a group's direction a segment is.
 using Traits = std::array<double, 3>;
 
 Traits traits_of(const Vec2d& along, const Vec2d& a, const Vec2d& b) {
@@ -30,7 +30,7 @@ Traits traits_of(const Vec2d& along, const Vec2d& a, const Vec2d& b) {
 
 }  // namespace
 
-Sheaves::Sheaves(const Polyline& line, std::vector<std::uint32_t> segments)
+OrientedBoxes::OrientedBoxes(const Polyline& line, std::vector<std::uint32_t> segments)
     : line_(line), segments_(std::move(segments)) {
   while (segments_.size() >> levels_ > 2 * kLeafSize - 1) ++levels_;
   boxes_.resize(std::size_t{2} << levels_);
@@ -42,7 +42,7 @@ Sheaves::Sheaves(const Polyline& line, std::vector<std::uint32_t> segments)
   }
 }
 
-void Sheaves::build(std::size_t level, std::size_t node) {
+void OrientedBoxes::build(std::size_t level, std::size_t node) {
   const auto [begin, end] = range(level, node);
   const std::span some = std::span(segments_).subspan(begin, end - begin);
   const Vec2d along = mean_way(some);
@@ -56,7 +56,7 @@ void Sheaves::build(std::size_t level, std::size_t node) {
 }
 
 /// Whichever way along it each of them runs: angles are doubled.
-Vec2d Sheaves::mean_way(std::span<const std::uint32_t> segments) const {
+Vec2d OrientedBoxes::mean_way(std::span<const std::uint32_t> segments) const {
   Vec2d sum(0.0);
   for (const auto s : segments) {
     const Vec2d way = end_of(s, 1) - end_of(s, 0);
@@ -67,7 +67,7 @@ Vec2d Sheaves::mean_way(std::span<const std::uint32_t> segments) const {
   return {std::cos(angle), std::sin(angle)};
 }
 
-Sheaves::Box Sheaves::box_of(std::span<const std::uint32_t> segments, const Vec2d& along) const {
+OrientedBoxes::Box OrientedBoxes::box_of(std::span<const std::uint32_t> segments, const Vec2d& along) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box box{along, Vec2d(kInfinity), Vec2d(-kInfinity)};
   for (const auto s : segments)
@@ -83,7 +83,7 @@ Sheaves::Box Sheaves::box_of(std::span<const std::uint32_t> segments, const Vec2
 
 /// By what makes their box the widest: that they lie apart, across or along by more than they are long, or run
 /// different ways.
-void Sheaves::halve(std::span<std::uint32_t> segments, std::size_t middle, const Vec2d& along) const {
+void OrientedBoxes::halve(std::span<std::uint32_t> segments, std::size_t middle, const Vec2d& along) const {
   Traits lower, upper;
   lower.fill(std::numeric_limits<double>::infinity());
   upper.fill(-lower[0]);
@@ -108,7 +108,7 @@ void Sheaves::halve(std::span<std::uint32_t> segments, std::size_t middle, const
   std::transform(order.begin(), order.end(), segments.begin(), [](const auto& each) { return each.second; });
 }
 
-double Sheaves::squared_to(std::size_t node, const Vec2d& x) const {
+double OrientedBoxes::squared_to(std::size_t node, const Vec2d& x) const {
   const Box& box = boxes_[node];
   const Vec2d local = turned(box.along, x);
   double sum = 0;
@@ -119,7 +119,7 @@ double Sheaves::squared_to(std::size_t node, const Vec2d& x) const {
   return sum;
 }
 
-TrianglePoint Sheaves::near(const Vec3d& x, std::uint32_t& segment) const {
+TrianglePoint OrientedBoxes::near(const Vec3d& x, std::uint32_t& segment) const {
   struct Node {
     std::size_t level, node;
     double squared;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/curve/fans.h"
+#include "vdb_offset/curve/segment_fans.h"
 
 #include <algorithm>
 

@@ -11,7 +11,7 @@
 
 namespace vdb_offset {
 
-/// SegmentFans of segments: those out of a point that many share. Of these, two meet elsewhere than in it only if they
+/// Fans of segments: those out of a point that many share. Two of a fan meet elsewhere than in it only if they
 /// run the same way, so that they are kept in the order of their directions (by exact predicates), and none is compared
 /// with all. A segment between two such points is in the fan of the first. Memory: 60 bytes a segment in fans.
 class SegmentFans {
