@@ -10,7 +10,7 @@
 namespace vdb_offset {
 
 /// Curves in the layout of a polygon mesh: "face" f lists the points that curve f runs through, at least one. It is
-/// closed if it ends where it begins. Curves that meet end to end at one place go on as one.
+/// closed if it ends where it begins. Curves that meet end to end at one position go on as one.
 using CurvesView = PolygonView;
 using Curves = Polygons;
 

@@ -39,7 +39,7 @@ struct KnownSides {
 struct VDB_OFFSET_API LayersResult {
   SharedStacks stacks;  ///< Of the input's vertices: on the wall, which is the mesh itself, and at each height.
   /// Of each input vertex: the first vertex that it moves with; kNone if it is in no face. Empty on curves.
-  std::vector<std::uint32_t> place;
+  std::vector<std::uint32_t> welded_to;
   std::vector<Distances> heights;      ///< Asked of each input vertex, one set a layer; all of one sign.
   std::vector<double> share;           ///< Of each input vertex: the share of its heights that it keeps, 0 .. 1.
   std::vector<VertexState> states;     ///< Of the outermost surface's vertices.

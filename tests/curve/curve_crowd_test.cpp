@@ -38,16 +38,16 @@ void require_closest(const Polyline& line, std::mt19937& numbers) {
 
 /// Spokes from a point to those of a grid, of which many run the same way, and a segment across.
 struct Hub {
-  std::vector<Vec2d> places{{0, 0}};
+  std::vector<Vec2d> positions{{0, 0}};
   std::vector<Segment> segments{{1, 2}};
   Hub() {
     for (int i = -5; i <= 5; ++i)
       for (int j = -5; j <= 5; ++j)
-        if (i != 0 || j != 0) places.emplace_back(i, j);
-    for (std::uint32_t p = 1; p < places.size(); ++p) segments.push_back(p % 2 != 0 ? Segment{0, p} : Segment{p, 0});
+        if (i != 0 || j != 0) positions.emplace_back(i, j);
+    for (std::uint32_t p = 1; p < positions.size(); ++p) segments.push_back(p % 2 != 0 ? Segment{0, p} : Segment{p, 0});
   }
   bool along(std::size_t s, std::size_t t) const {
-    const Vec2d a = places[s] - places[0], b = places[t] - places[0];
+    const Vec2d a = positions[s] - positions[0], b = positions[t] - positions[0];
     return a[0] * b[1] == a[1] * b[0] && a.dot(b) > 0;
   }
 };
@@ -70,7 +70,7 @@ TEST_CASE("crowded curves: the closest point is the one that all segments tell",
 TEST_CASE("crossings: segments out of one point meet if they run the same way, wherever that goes", "[curve]") {
   Hub hub;
   REQUIRE(hub.segments.size() > SegmentFans::kLeast);
-  SegmentCrossings finder(hub.segments, hub.places);
+  SegmentCrossings finder(hub.segments, hub.positions);
   const auto require_pairs = [&](std::span<const std::uint32_t> asked) {
     std::vector<SegmentPair> all, some;
     for (std::uint32_t s = 1; s < hub.segments.size(); ++s)
@@ -90,11 +90,11 @@ TEST_CASE("crossings: segments out of one point meet if they run the same way, w
   };
   require_pairs(std::vector<std::uint32_t>{3, 40, 41});
   // A spoke is turned onto others, one loses its length, and then the point that all share goes off.
-  hub.places[3] = {20, 20}, hub.places[50] = {0, 0};
+  hub.positions[3] = {20, 20}, hub.positions[50] = {0, 0};
   const std::vector<std::uint32_t> turned{0, 3, 50};
   finder.update(turned);
   require_pairs(turned);
-  hub.places[0] = {-30, 7};
+  hub.positions[0] = {-30, 7};
   std::vector<std::uint32_t> rest;
   for (std::uint32_t s = 1; s < hub.segments.size(); ++s) rest.push_back(s);
   finder.update(rest);

@@ -81,7 +81,7 @@ TEST_CASE("curve check: each fault is found", "[curves][check]") {
     CHECK(found.faults.crossings > 0);
     CHECK_FALSE(found.valid());
   }
-  SECTION("two at one place") {
+  SECTION("two at one position") {
     std::vector<Vec3d> positions = good;
     positions[5] = positions[4];
     CHECK(check_at(curves, positions, 0.05).faults.collapsed == 1);

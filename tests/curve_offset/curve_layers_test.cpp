@@ -172,11 +172,12 @@ TEST_CASE("curves: distances of layers are those of the curves as written", "[cu
   const LayersResult layers = grow_curve_layers(curves.view(), rising(0.1, 3), options);
   double most_off = 0;
   for (std::size_t p = 0; p < curves.positions.size(); ++p) {
-    const auto places = layers.stacks.of(p);
-    CHECK(places[0] == curves.positions[p]);
-    for (const std::size_t k : {1, 2, 3}) CHECK((places[k] - Rounding(options.precision)(places[k])).length() < 1e-15);
-    CHECK(layers.first_achieved[p] == Approx(distance_to(curves, places[1])).epsilon(1e-9));
-    CHECK(layers.achieved[p] == Approx(distance_to(curves, places[3])).epsilon(1e-9));
+    const auto positions = layers.stacks.of(p);
+    CHECK(positions[0] == curves.positions[p]);
+    for (const std::size_t k : {1, 2, 3})
+      CHECK((positions[k] - Rounding(options.precision)(positions[k])).length() < 1e-15);
+    CHECK(layers.first_achieved[p] == Approx(distance_to(curves, positions[1])).epsilon(1e-9));
+    CHECK(layers.achieved[p] == Approx(distance_to(curves, positions[3])).epsilon(1e-9));
     most_off = std::max(most_off, std::abs(layers.first_achieved[p] - 0.1 / 6) * 60);
   }
   CHECK(most_off > 1e-3);  // three digits are few

@@ -168,7 +168,7 @@ TEST_CASE("curves: where two curves share a piece of the front, what is judged i
 }
 
 TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are spread over the rest", "[curves]") {
-  // Each trough of this star is narrower than the offset, and all points still find a place on it.
+  // Each trough of this star is narrower than the offset, and all points still find a position on it.
   const Curves star_of_twelve = star(1200, [](double a) { return 1 + 0.4 * std::sin(12 * a); });
   const OffsetResult result = offset_of(star_of_twelve, 0.1);
   CHECK(result.statistics.limit.untanglings > 0);
@@ -202,15 +202,15 @@ TEST_CASE("curves: paths stay in the curves' plane, from where points stood to w
   options.keep_paths = true;
   const OffsetResult result = offset_curves(tilted.view(), {&distance, 1}, options).front();
   REQUIRE(result.paths.size() == 200);
-  std::size_t places = 0;
+  std::size_t positions = 0;
   for (std::size_t p = 0; p < 200; ++p) {
     const auto& path = result.paths[p];
-    places += path.size();
+    positions += path.size();
     CHECK(path.front() == tilted.positions[p]);
     CHECK(path.back() == result.positions[p]);
     for (const Vec3d& x : path) CHECK(x[2] == Approx(0.5 * x[0] - x[1]).margin(1e-12));
   }
-  CHECK(places > 1000);
+  CHECK(positions > 1000);
 }
 
 TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {

@@ -171,13 +171,13 @@ TEST_CASE("sweep: walls, gaps and needles thinner than a voxel keep their distan
   }
 }
 
-TEST_CASE("sweep: the same voxels at any scale and place", "[sweep][invariant]") {
+TEST_CASE("sweep: the same voxels at any scale and position", "[sweep][invariant]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 1.5, 8, 3);
   const double h = 0.0625;
   const DistanceField base = Fixture(mesh, h).field({2 * h, 0.3});
-  const auto compare_with_base = [&](double scale, const Vec3d& place, double tolerance) {
+  const auto compare_with_base = [&](double scale, const Vec3d& shift, double tolerance) {
     Polygons other = mesh;
-    for (Vec3d& p : other.positions) p = p * scale + place;
+    for (Vec3d& p : other.positions) p = p * scale + shift;
     const DistanceField field = Fixture(other, h * scale).field({2 * h * scale, 0.3 * scale});
     CHECK(field.phi->activeVoxelCount() == base.phi->activeVoxelCount());
     auto values = field.phi->getConstAccessor();

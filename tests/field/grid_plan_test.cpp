@@ -86,8 +86,8 @@ static Polygons debris() {
   for (int i = 0; i < 200; ++i) {
     const Polygons part = scene::icosphere(0.002, 0);
     const auto first = static_cast<std::uint32_t>(all.positions.size());
-    const Vec3d place(i * 37 % 200, i * 91 % 200, i * 53 % 200);
-    for (const Vec3d& p : part.positions) all.positions.push_back(p + place / 100.0);
+    const Vec3d shift(i * 37 % 200, i * 91 % 200, i * 53 % 200);
+    for (const Vec3d& p : part.positions) all.positions.push_back(p + shift / 100.0);
     for (std::size_t f = 0; f < part.face_count(); ++f)
       all.add_face({first + part.corners[3 * f], first + part.corners[3 * f + 1], first + part.corners[3 * f + 2]});
   }

@@ -60,22 +60,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::optional<io::CurveFile> file = parsed(format, bytes);
   if (!file) return 0;
   check_curves(*file);
-  std::vector<Vec3d> places = file->file.polygons.positions;
+  std::vector<Vec3d> positions = file->file.polygons.positions;
   const auto patched = [&] {
-    if (format != io::CurveFormat::Svg) return io::patched_bytes(file->file, places);
-    return io::patch_svg(bytes, file->svg, file->file.polygons.view(), places, {});
+    if (format != io::CurveFormat::Svg) return io::patched_bytes(file->file, positions);
+    return io::patch_svg(bytes, file->svg, file->file.polygons.view(), positions, {});
   };
   require(patched() == bytes, "curves that stay keep every byte");
   for (const auto& shape : file->svg.shapes)
     if (shape.to_drawing != std::array<double, 6>{1, 0, 0, 1, 0, 0}) return 0;  // rounded once more
-  for (Vec3d& p : places) p = Vec3d(p[1] / 3, -p[0] / 7, p[2]);
+  for (Vec3d& p : positions) p = Vec3d(p[1] / 3, -p[0] / 7, p[2]);
   const std::string moved = patched();
   const std::optional<io::CurveFile> back = parsed(format, moved);
   require(back.has_value(), "what was written can be read");
   check_curves(*back);
   require(back->file.polygons.corners == file->file.polygons.corners, "curves stay");
-  for (std::size_t p = 0; p < places.size(); ++p)
-    require(back->file.polygons.positions[p] == Rounding(file->file.precision)(places[p]),
+  for (std::size_t p = 0; p < positions.size(); ++p)
+    require(back->file.polygons.positions[p] == Rounding(file->file.precision)(positions[p]),
             "points are those that were written");
   return 0;
 }

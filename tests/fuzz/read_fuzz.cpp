@@ -64,7 +64,7 @@ void check_mesh(const io::MeshFile& file) {
   for (const Vec3d& p : mesh.positions)
     for (int k = 0; k < 3; ++k) require(std::isfinite(p[k]), "coordinates are finite");
 
-  require(file.position_at.size() == mesh.positions.size(), "every vertex has its place in the file");
+  require(file.position_at.size() == mesh.positions.size(), "every vertex has its byte offset in the file");
   require(file.corner_normal.empty() || file.corner_normal.size() == mesh.corners.size(), "one normal a corner");
   for (const auto n : file.corner_normal)
     require(n == io::kNoNormal || n < file.normal_at.size(), "corner_normal holds indices of normals");

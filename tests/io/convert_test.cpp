@@ -31,9 +31,9 @@ Converted converted(const std::string& from, const std::string& bytes, const std
     CHECK(back.polygons.corners == file.polygons.corners);
     CHECK(back.polygons.face_begin == file.polygons.face_begin);
   } else {
-    const auto places = io::positions_in_triangles(file.polygons.view(), back.polygons.view());
-    REQUIRE(places.has_value());
-    for (std::size_t v = 0; v < positions.size(); ++v) CHECK((*places)[v] == Vec3d(openvdb::Vec3s(positions[v])));
+    const auto in_triangles = io::positions_in_triangles(file.polygons.view(), back.polygons.view());
+    REQUIRE(in_triangles.has_value());
+    for (std::size_t v = 0; v < positions.size(); ++v) CHECK((*in_triangles)[v] == Vec3d(openvdb::Vec3s(positions[v])));
   }
   return {slurp(folder.file("out." + to)), result.lost};
 }
@@ -213,9 +213,9 @@ TEST_CASE("convert: where vertices stand is told by triangles", "[io]") {
   io::write_mesh(folder.file("a.stl"), mesh.polygons.view());
   Polygons triangles = io::read_mesh(folder.file("a.stl")).polygons;
   REQUIRE(triangles.face_count() == 5);
-  const auto places = io::positions_in_triangles(mesh.polygons.view(), triangles.view());
-  REQUIRE(places.has_value());
-  CHECK(*places == mesh.polygons.positions);
+  const auto in_triangles = io::positions_in_triangles(mesh.polygons.view(), triangles.view());
+  REQUIRE(in_triangles.has_value());
+  CHECK(*in_triangles == mesh.polygons.positions);
   CHECK_FALSE(io::positions_in_triangles(triangles.view(), mesh.polygons.view()));
   // Ears of this one, cut one after the other, look like the fan of another that is turned by a corner.
   converted("obj", "v 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nf 1 2 3 4 5 6\n", "stl", Vec3d(0.25, 0, 0));

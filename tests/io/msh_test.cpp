@@ -200,12 +200,12 @@ std::size_t repeated_nodes(const std::string& text) {
   std::size_t count = 0, repeated = 0;
   in >> count;
   REQUIRE(count > 0);
-  std::set<std::array<double, 3>> places;
+  std::set<std::array<double, 3>> positions;
   for (std::size_t i = 0; i < count; ++i) {
     std::size_t tag = 0;
     std::array<double, 3> at{};
     in >> tag >> at[0] >> at[1] >> at[2];
-    repeated += !places.insert(at).second;
+    repeated += !positions.insert(at).second;
   }
   CHECK(in);
   return repeated;

@@ -76,7 +76,7 @@ Polygons knife(double degrees) {
   return mesh;
 }
 
-/// Of a prism over a regular polygon, along z: vertices at round places.
+/// Of a prism over a regular polygon, along z: vertices at round coordinates.
 Polygons prism(int sides) {
   Polygons mesh;
   for (const double z : {0.0, 5.0})
@@ -221,7 +221,7 @@ TEST_CASE("holes: loops are found whatever meets at their vertices", "[iso]") {
   for (const Hole& hole : found.holes) CHECK(hole.rim.size() == 3);
 }
 
-TEST_CASE("iso: flat faces on round places are valid", "[iso]") {
+TEST_CASE("iso: flat faces at round coordinates are valid", "[iso]") {
   for (const double d : {0.5, -0.5, 1.0}) {
     const IsoResult result = make_iso_surface(prism(24).view(), options_of(d, 0.25));
     CHECK(result.statistics.valid());

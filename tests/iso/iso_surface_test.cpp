@@ -63,12 +63,12 @@ std::size_t unsound(const Polygons& mesh) {
     while (++steps <= ring.size() && at != ring.begin()->first);
     wrong += steps != ring.size();
   }
-  const std::set<std::pair<double, std::pair<double, double>>> places = [&] {
+  const std::set<std::pair<double, std::pair<double, double>>> distinct = [&] {
     std::set<std::pair<double, std::pair<double, double>>> all;
     for (const Vec3d& p : mesh.positions) all.insert({p[0], {p[1], p[2]}});
     return all;
   }();
-  return wrong + (mesh.positions.size() - places.size());
+  return wrong + (mesh.positions.size() - distinct.size());
 }
 
 double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
@@ -87,7 +87,7 @@ bool passes(const Vec3d& p, const Vec3d& q, const std::array<Vec3d, 3>& t) {
 /// could.
 std::size_t brute_force_crossings(const Polygons& mesh) {
   const Triangles triangles = triangles_of(mesh);
-  const auto places = [&](const std::array<std::uint32_t, 3>& t) {
+  const auto corners_of = [&](const std::array<std::uint32_t, 3>& t) {
     return std::array<Vec3d, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
   };
   const auto is_apart = [&](const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
@@ -101,14 +101,14 @@ std::size_t brute_force_crossings(const Polygons& mesh) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = s[k], b = s[(k + 1) % 3];
       if (std::count(t.begin(), t.end(), a) + std::count(t.begin(), t.end(), b) > 0) continue;
-      if (passes(mesh.positions[a], mesh.positions[b], places(t))) return true;
+      if (passes(mesh.positions[a], mesh.positions[b], corners_of(t))) return true;
     }
     return false;
   };
   // In the order of their least x, whatever starts behind a triangle's end is apart.
   std::vector<std::pair<double, double>> extent;
   for (const auto& t : triangles) {
-    const auto [a, b, c] = places(t);
+    const auto [a, b, c] = corners_of(t);
     extent.emplace_back(std::min({a[0], b[0], c[0]}), std::max({a[0], b[0], c[0]}));
   }
   std::vector<std::size_t> order(triangles.size());
@@ -118,7 +118,7 @@ std::size_t brute_force_crossings(const Polygons& mesh) {
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = i + 1; j < order.size() && extent[order[j]].first <= extent[order[i]].second; ++j) {
       const auto &s = triangles[order[i]], &t = triangles[order[j]];
-      if (!is_apart(places(s), places(t))) found += cuts(s, t) || cuts(t, s);
+      if (!is_apart(corners_of(s), corners_of(t))) found += cuts(s, t) || cuts(t, s);
     }
   return found;
 }
@@ -464,7 +464,7 @@ TEST_CASE("inside: agrees with solid angles", "[capture]") {
 
 TEST_CASE("mend: pierced spheres become whole, on the sphere", "[capture]") {
   Polygons mesh = scene::icosphere(1, 3);
-  // Each vertex beside the place of one a few edges away.
+  // Each vertex beside the position of one a few edges away.
   for (const std::size_t v : {20u, 90u, 300u}) {
     const Vec3d away = mesh.positions[v] + Vec3d(0.25, -0.2, 0.15);
     mesh.positions[v] = away.unit();
@@ -488,9 +488,9 @@ TEST_CASE("mend: splits that lead nowhere end, and leave nothing behind", "[capt
   Polygons mesh = scene::icosphere(1, 3);
   mesh.positions[90] = (mesh.positions[90] + Vec3d(0.25, -0.2, 0.15)).unit();
   Surface surface = build_surface(mesh.view(), {.enabled = false});
-  // A surface with so few places that every split makes needles.
-  const Vec3d place = mesh.positions[90];
-  const MendStatistics statistics = mend(surface, [&](const Vec3d&) { return std::optional(place); });
+  // A surface with so few positions that every split makes needles.
+  const Vec3d position = mesh.positions[90];
+  const MendStatistics statistics = mend(surface, [&](const Vec3d&) { return std::optional(position); });
   CHECK(statistics.split_edges == 0);  // of the mesh that was kept
   CHECK(surface.vertices.size() == mesh.positions.size());
   CHECK(statistics.rounds < 10);
@@ -518,7 +518,7 @@ TEST_CASE("transport: texture, colours and materials are those of the closest po
   CHECK(materials.libraries == std::vector<std::string>{"some.mtl"});
   CHECK(mesh.positions == result.polygons.positions);
 
-  // The values are linear in the place, on every face; so those at the closest point are those of its place.
+  // The values are linear in the position, on every face; so those at the closest point are those of its position.
   Surface surface = build_surface(source.polygons.view(), {});
   to_local_frame(surface, 0.1);
   const auto closest_to = [&](const Vec3d& x) {

@@ -42,7 +42,7 @@ LayersResult layers_along(const Polygons& mesh, const std::vector<Vec3d>& direct
       stack[k + 1] = mesh.positions[v] + share[v] * heights[k] * directions[v];
   }
   layers.stacks = {std::move(stacks), std::move(own)};
-  layers.place = weld_by_position(mesh.view(), {});
+  layers.welded_to = weld_by_position(mesh.view(), {});
   for (const double height : heights) layers.heights.emplace_back(height);
   layers.states.assign(share.size(), VertexState::Reached);
   for (const double s : share) {
@@ -434,8 +434,8 @@ TEST_CASE("layer cells: layers of another mesh are refused", "[layer_cells]") {
   LayersResult layers = layers_up(mesh, {1});
   CHECK_THROWS_AS(make_cells(mesh.view(), layers, {{"a"}, {0, 0, 0, 1}}), InvalidInput);
   LayersResult nowhere = layers;
-  nowhere.place[4] = kNone;
-  CHECK_THROWS_WITH(make_cells(mesh.view(), nowhere, {}), Catch::Contains("that lack places of its corners"));
+  nowhere.welded_to[4] = kNone;
+  CHECK_THROWS_WITH(make_cells(mesh.view(), nowhere, {}), Catch::Contains("that lack welded vertices of its corners"));
   layers.share.pop_back();
   CHECK_THROWS_WITH(make_cells(mesh.view(), layers, {}), "layers: expected 9 shares, got 8");
 }
@@ -510,8 +510,8 @@ TEST_CASE("prism columns: four at once and pairs give the same bits", "[cell_qua
     bool operator==(const Found&) const = default;
   };
   for (int trial = 0; trial < 1000; ++trial) {
-    for (Vec3d& place : stacks)
-      for (int i = 0; i < 3; ++i) place[i] = trial % 4 == 0 ? std::round(any(random)) : any(random);
+    for (Vec3d& position : stacks)
+      for (int i = 0; i < 3; ++i) position[i] = trial % 4 == 0 ? std::round(any(random)) : any(random);
     Found found[2];
     for (const bool pairs : {false, true}) {
       Found& to = found[pairs];

@@ -95,9 +95,9 @@ std::size_t boundary_crossings(const VolumeMesh& volume) {
       boundary.close_face();
     }
   const Surface surface = build_surface(boundary.view(), {}, Orient::Keep);
-  std::vector<Vec3d> places;
-  for (const auto v : surface.representative) places.push_back(volume.points[v]);
-  return CrossingFinder(surface, places).all().size();
+  std::vector<Vec3d> positions;
+  for (const auto v : surface.representative) positions.push_back(volume.points[v]);
+  return CrossingFinder(surface, positions).all().size();
 }
 
 /// Vertices of one edge differ in thickness by no more than half of its length.
@@ -301,13 +301,13 @@ TEST_CASE("layers: distances and the gap to obstacles are those of the surfaces 
   const LayersResult layers = grow_layers(mesh.view(), growing(0.0333, 1.2, 2), options);
   double highest = 0, most_off = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const auto places = layers.stacks.of(v);
-    CHECK(places[0] == mesh.positions[v]);
-    for (const std::size_t k : {1, 2}) CHECK(places[k] == Rounding(options.precision)(places[k]));
-    CHECK(layers.first_achieved[v] == Approx(test::brute_force_distance(mesh.view(), places[1])).epsilon(1e-9));
-    CHECK(layers.achieved[v] == Approx(test::brute_force_distance(mesh.view(), places[2])).epsilon(1e-9));
+    const auto positions = layers.stacks.of(v);
+    CHECK(positions[0] == mesh.positions[v]);
+    for (const std::size_t k : {1, 2}) CHECK(positions[k] == Rounding(options.precision)(positions[k]));
+    CHECK(layers.first_achieved[v] == Approx(test::brute_force_distance(mesh.view(), positions[1])).epsilon(1e-9));
+    CHECK(layers.achieved[v] == Approx(test::brute_force_distance(mesh.view(), positions[2])).epsilon(1e-9));
     most_off = std::max(most_off, std::abs(layers.first_achieved[v] - 0.0333) / 0.0333);
-    highest = std::max(highest, places[2][2]);
+    highest = std::max(highest, positions[2][2]);
   }
   CHECK(most_off > 1e-3);  // three digits are few
   REQUIRE(layers.statistics.obstacles);

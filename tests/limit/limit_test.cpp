@@ -30,9 +30,9 @@ OffsetResult limited(const Polygons& mesh, double distance, Collision collision 
 /// Pairs of triangles that meet in a mesh with its vertices at `positions`.
 std::size_t crossings(const Polygons& mesh, const std::vector<Vec3d>& positions) {
   const Surface surface = build_surface(mesh.view(), {});
-  std::vector<Vec3d> places;
-  for (const auto v : surface.representative) places.push_back(positions[v]);
-  return CrossingFinder(surface, places).all().size();
+  std::vector<Vec3d> now;
+  for (const auto v : surface.representative) now.push_back(positions[v]);
+  return CrossingFinder(surface, now).all().size();
 }
 
 /// What limit() says is left is what is found in what is written: nothing.
@@ -170,17 +170,17 @@ TEST_CASE("crossings: faces at one vertex that run through each other, and faces
 
 TEST_CASE("crossings: as vertices move, those around them are found, or one of each triangle's", "[crossings]") {
   const Surface surface = build_surface(scene::torus(1, 0.4, 24, 12).view(), {});
-  std::vector<Vec3d> places = surface.vertices;
-  CrossingFinder finder(surface, places);
+  std::vector<Vec3d> now = surface.vertices;
+  CrossingFinder finder(surface, now);
   std::mt19937 engine(3);
   std::size_t pairs = 0, fewer = 0;
   for (int round = 0; round < 60; ++round) {
     INFO(round);
     const double size = 0.04 * (1 + round % 20);
     std::vector<std::uint32_t> touched;
-    for (std::uint32_t v = 0; v < places.size(); ++v) {
+    for (std::uint32_t v = 0; v < now.size(); ++v) {
       if (engine() % 8 != 0) continue;
-      for (int k = 0; k < 3; ++k) places[v][k] = surface.vertices[v][k] + size * (engine() / 4294967296.0 - 0.5);
+      for (int k = 0; k < 3; ++k) now[v][k] = surface.vertices[v][k] + size * (engine() / 4294967296.0 - 0.5);
       const auto around = surface.triangles_around(v);
       touched.insert(touched.end(), around.begin(), around.end());
     }
@@ -299,7 +299,7 @@ TEST_CASE("limit: what is written of a thin wall is what is judged", "[limit]") 
   }
 }
 
-TEST_CASE("limit: places as near to two sides are judged by both", "[limit]") {
+TEST_CASE("limit: points as near to two sides are judged by both", "[limit]") {
   // Symmetric to the last bit.
   for (const double share : {0.5, 0.6, 0.8}) {
     check_agreement(scene::box(Vec3d(1, 0.125, 1), 8, true), -share * 0.125, {});

@@ -66,9 +66,9 @@ TEST_CASE("check: what is wrong with an offset is told", "[check]") {
 
 TEST_CASE("check: flat faces over a round source are off between their vertices", "[check]") {
   const Polygons sphere = scene::icosphere(1, 3);
-  std::vector<Vec3d> places = sphere.positions;
-  for (Vec3d& p : places) p *= 1.1;
-  const FaceInteriorError error = check_of(sphere, places, 0.1).interior;
+  std::vector<Vec3d> positions = sphere.positions;
+  for (Vec3d& p : positions) p *= 1.1;
+  const FaceInteriorError error = check_of(sphere, positions, 0.1).interior;
   CHECK(error.samples == 4 * sphere.face_count());
   CHECK(error.mean < 0.02);
   CHECK(error.quantile_99 <= error.worst);
@@ -80,9 +80,9 @@ TEST_CASE("check: what cannot be compared is refused", "[check]") {
   const Polygons box = scene::box(Vec3d(1), 2, true);
   CHECK_THROWS_AS(check_of(box, {}), InvalidInput);
   CHECK_THROWS_AS(check_offset({}, {}), InvalidInput);
-  std::vector<Vec3d> places = box.positions;
-  places[3][1] = std::nan("");
-  CHECK_THROWS_AS(check_of(box, places), InvalidInput);
+  std::vector<Vec3d> positions = box.positions;
+  positions[3][1] = std::nan("");
+  CHECK_THROWS_AS(check_of(box, positions), InvalidInput);
   CHECK(check_of(box, box.positions).valid());
   CHECK(check_of(box, box.positions).distance == 0);
 }

@@ -45,7 +45,7 @@ TEST_CASE("closest: equals brute force", "[closest]") {
   CHECK(worst_difference(scene::box(Vec3d(1, 100, 0.001), 1, true), 400, 1) < 1e-10);
 }
 
-TEST_CASE("closest: equals brute force at any scale and place", "[closest]") {
+TEST_CASE("closest: equals brute force at any scale and position", "[closest]") {
   for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) {
     Polygons mesh = scene::icosphere(scale, 3);
     CHECK(worst_difference(mesh, 100, scale) < 4e-12 * scale);

@@ -51,7 +51,7 @@ Cuts cut_ways(const Polygons& mesh, double distance) {
 
 }  // namespace
 
-TEST_CASE("cut: over corners, edges and faces the place at a distance is found in a look or two", "[cut]") {
+TEST_CASE("cut: over corners, edges and faces the point at a distance is found in a look or two", "[cut]") {
   for (const double distance : {0.01, 0.1, 0.5}) {
     const Cuts cuts = cut_ways(scene::bumpy_sphere(1, 0.5, 2.5, 3, 4), distance);
     CAPTURE(distance, cuts.tried, cuts.looks, cuts.most_looks);

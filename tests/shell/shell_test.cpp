@@ -300,20 +300,20 @@ TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way 
     to_local_frame(surface, 0.1);
     std::vector<Vec3d> source;
     for (const auto v : surface.representative) source.push_back(mesh.positions[v]);
-    std::vector<Vec3d> places = source;
+    std::vector<Vec3d> positions = source;
     const ClosestQuery query(surface);
     const Distances distances(0.3);
-    CrossingFinder now(surface, places);
+    CrossingFinder now(surface, positions);
     const CrossingFinder before(surface, source);
     const SourceCrossings none(surface, {});
     const ConstrainedSurface constrained{query, surface, {}, {}, {}};
-    RimCrossings rim(constrained, source, places, distances);
+    RimCrossings rim(constrained, source, positions, distances);
     for (int step = 0; step < 4; ++step) {
       std::vector<std::uint32_t> moved, touched;
-      for (std::uint32_t v = 0; v < places.size(); ++v) {
+      for (std::uint32_t v = 0; v < positions.size(); ++v) {
         if (step > 0 && engine() % 10 < 7) continue;
         moved.push_back(v);
-        places[v] = source[v] + in_box(Vec3d(-0.1, -0.1, 0), Vec3d(0.1, 0.1, 0.4));
+        positions[v] = source[v] + in_box(Vec3d(-0.1, -0.1, 0), Vec3d(0.1, 0.1, 0.4));
         const auto around = surface.triangles_around(v);
         touched.insert(touched.end(), around.begin(), around.end());
       }
@@ -321,7 +321,7 @@ TEST_CASE("shell: what meets a rim is found as its vertices move, whichever way 
       now.update(touched);
       rim.find(moved, touched, now, before, none);
       std::vector<Vec3d> outer = mesh.positions;
-      for (std::size_t v = 0; v < outer.size(); ++v) outer[v] = places[surface.welded[v]];
+      for (std::size_t v = 0; v < outer.size(); ++v) outer[v] = positions[surface.welded[v]];
       const Shell shell = make_shell(mesh.view(), outer, mesh.positions, {});
       const Surface solid = build_surface(shell.polygons.view(), {});
       std::size_t expected = 0;
@@ -420,7 +420,7 @@ TEST_CASE("shell: faces without extent, nothing moved, and welding", "[shell]") 
   CHECK(apart.facts.closed);
   CHECK(apart.facts.oriented);
   CHECK(apart.facts.volume == Approx(welded.facts.volume));
-  // Copies that are not quite at one place.
+  // Copies that are not quite at one position.
   Polygons loose = soup;
   for (std::size_t v = 0; v < loose.positions.size(); ++v) loose.positions[v][0] += static_cast<double>(v % 2) * 1e-9;
   CHECK_FALSE(make_shell(loose.view(), grown, loose.positions, {}).rim.empty());

@@ -105,7 +105,7 @@ TEST_CASE("seams: cracks of nothing are closed, and told", "[seams]") {
   CHECK(facts_of(zeros).closed());
 }
 
-TEST_CASE("seams: the file's precision tells what is one place", "[seams]") {
+TEST_CASE("seams: the file's precision tells what is one position", "[seams]") {
   const Polygons whole = lump();
   const auto largest = [](const Polygons& mesh) {
     double most = 0;
@@ -209,7 +209,7 @@ TEST_CASE("seams: nothing is welded that could be meant", "[seams]") {
   }
 }
 
-TEST_CASE("seams: an offset moves both sides as one, each from its own place", "[seams]") {
+TEST_CASE("seams: an offset moves both sides as one, each from its own position", "[seams]") {
   const Polygons whole = lump(), mesh = cracked(whole, 1e-11);
   OffsetOptions options;
   options.distance = 0.3;

@@ -17,12 +17,12 @@ using namespace vdb_offset;
 
 namespace {
 
-/// An open tube of quads, whose rings stand at the heights 0 .. 1: place(turn, height) for each, turns being 0 .. 1.
-Polygons open_tube(std::uint32_t segments, std::uint32_t stacks, const std::function<Vec3d(double, double)>& place) {
+/// An open tube of quads, whose rings stand at the heights 0 .. 1: position(turn, height) for each, turns being 0 .. 1.
+Polygons open_tube(std::uint32_t segments, std::uint32_t stacks, const std::function<Vec3d(double, double)>& position) {
   Polygons mesh;
   for (std::uint32_t j = 0; j <= stacks; ++j)
     for (std::uint32_t i = 0; i < segments; ++i)
-      mesh.positions.push_back(place(double(i) / segments, double(j) / stacks));
+      mesh.positions.push_back(position(double(i) / segments, double(j) / stacks));
   for (std::uint32_t j = 0; j < stacks; ++j)
     for (std::uint32_t i = 0; i < segments; ++i) {
       const std::uint32_t next = (i + 1) % segments;
@@ -176,7 +176,7 @@ TEST_CASE("symmetry: a wavy patch keeps to the four planes of its sides, and its
 }
 
 TEST_CASE("symmetry: what of a smooth border lies in a plane by chance is not held", "[symmetry]") {
-  // A tube whose rims are waves: each has places where it hardly turns, and where it is highest.
+  // A tube whose rims are waves: each has points where it hardly turns, and where it is highest.
   const Polygons mesh = open_tube(600, 4, [](double turn, double z) {
     const double a = 2 * std::numbers::pi * turn;
     return Vec3d(std::cos(a), std::sin(a), z + 0.2 * std::sin(3 * a) * (2 * z - 1) + 0.1 * std::cos(2 * a));

@@ -140,7 +140,7 @@ std::vector<Vec3d> positions_in_offset(const Request& made, const Polygons& sour
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
     return offset.positions;
-  if (auto places = io::positions_in_triangles(source.view(), offset.view())) return std::move(*places);
+  if (auto positions = io::positions_in_triangles(source.view(), offset.view())) return std::move(*positions);
   throw InvalidInput(
       fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),

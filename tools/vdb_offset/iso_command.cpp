@@ -113,37 +113,38 @@ void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, I
 ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   require_even(job);
   const PolygonView mesh = job.source.view();
-  const std::vector<Destination>& places = job.outputs;
+  const std::vector<Destination>& destinations = job.outputs;
   if (job.request.dry_run) {
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < destinations.size(); ++i)
       print_iso_dry_run(
-          job, plan_iso_surface_in_metric(mesh, options_of(job, job.distances[i], places[i].mesh), job.options.metric),
+          job,
+          plan_iso_surface_in_metric(mesh, options_of(job, job.distances[i], destinations[i].mesh), job.options.metric),
           job.distances[i][0]);
     return kDone;
   }
   const io::Transported transported = read_attributes_of(job);
   std::vector<IsoResult> results;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    results.push_back(capture_valid(job, job.distances[i], places[i].mesh, transported));
+  for (std::size_t i = 0; i < destinations.size(); ++i)
+    results.push_back(capture_valid(job, job.distances[i], destinations[i].mesh, transported));
   std::optional<IsoResult> inner;
-  if (job.request.inner) inner = capture_valid(job, job.distances.back(), places.front().mesh, transported);
+  if (job.request.inner) inner = capture_valid(job, job.distances.back(), destinations.front().mesh, transported);
   if (job.shell) require_inside(results.front());
   bar.show(Stage::Write, 0);
   const IsoResult* const inner_skin = inner ? &*inner : nullptr;
   OutputFiles outputs(job.request.sync);
   std::optional<Hollow> hollow;  // of one distance
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = 0; i < destinations.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
     if (job.shell) hollow = hollow_of(mesh, job.distances[i][0], results[i], inner_skin);
-    if (hollow) write_hollow(job, places[i], *hollow, results[i], inner_skin, timing.start);
-    else write_iso_surface(job, transported, places[i], results[i], timing.start);
+    if (hollow) write_hollow(job, destinations[i], *hollow, results[i], inner_skin, timing.start);
+    else write_iso_surface(job, transported, destinations[i], results[i], timing.start);
   }
   outputs.commit(ignore_interrupts);
   bar.clear();
-  for (std::size_t i = 0; i < places.size() && !job.request.quiet; ++i) {
+  for (std::size_t i = 0; i < destinations.size() && !job.request.quiet; ++i) {
     const double distance = job.distances[i][0], seconds = seconds_since(timing.start);
-    if (hollow) print_hollow_summary(job, places[i].mesh, distance, *hollow, results[i], inner_skin, seconds);
-    else print_iso_summary(job, places[i].mesh, distance, results[i], seconds);
+    if (hollow) print_hollow_summary(job, destinations[i].mesh, distance, *hollow, results[i], inner_skin, seconds);
+    else print_iso_summary(job, destinations[i].mesh, distance, results[i], seconds);
   }
   return kDone;
 }

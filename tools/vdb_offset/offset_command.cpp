@@ -68,12 +68,13 @@ std::string in_words(const FaultCounts& counts) {
 /// Names the outputs that are not valid, though they were to be. False if there are none.
 bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
   bool any = false;
-  const std::vector<Destination>& places = job.outputs;
+  const std::vector<Destination>& destinations = job.outputs;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const FaultCounts& left = results[i].statistics.limit.left;
     if (left.total() == 0) continue;
     any = true;
-    tell(fmt::format("{}: not valid: {} are left", i < places.size() ? places[i].mesh : "--inner", in_words(left)));
+    tell(fmt::format("{}: not valid: {} are left", i < destinations.size() ? destinations[i].mesh : "--inner",
+                     in_words(left)));
   }
   return any;
 }

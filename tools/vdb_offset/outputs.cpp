@@ -134,11 +134,11 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
 /// Each path as a line.
 void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>& paths) {
   Curves lines;
-  for (const std::vector<Vec3d>& places : paths) {
-    if (places.size() < 2) continue;  // of vertices that stay
-    for (const Vec3d& place : places) {
+  for (const std::vector<Vec3d>& line : paths) {
+    if (line.size() < 2) continue;  // of vertices that stay
+    for (const Vec3d& position : line) {
       lines.corners.push_back(static_cast<std::uint32_t>(lines.positions.size()));
-      lines.positions.push_back(place);
+      lines.positions.push_back(position);
     }
     lines.close_face();
   }

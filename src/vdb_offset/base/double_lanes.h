@@ -69,8 +69,8 @@ template <class Real>
 Vec3Of<Real> operator-(const Vec3Of<Real>& a, const Vec3Of<Real>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <class Place>
-Vec3Of<double2> both(const Place& a, const Place& b) {
+template <class Vector>
+Vec3Of<double2> both(const Vector& a, const Vector& b) {
   return {double2{a[0], b[0]}, double2{a[1], b[1]}, double2{a[2], b[2]}};
 }
 

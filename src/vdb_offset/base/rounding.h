@@ -33,15 +33,15 @@ struct Rounding : Precision {
   }
 
   /// What is kept of the position of a vertex that was at `source` before.
-  Vec3d operator()(const Vec3d& source, const Vec3d& place) const {
-    return place == source && !rounds_all ? place : (*this)(place);
+  Vec3d operator()(const Vec3d& source, const Vec3d& position) const {
+    return position == source && !rounds_all ? position : (*this)(position);
   }
 
-  /// Whether `stored` is what is written for a vertex that has not moved from `place`.
-  bool stays(const Vec3d& place, const Vec3d& stored) const {
-    if (!rounds_all) return place == stored;
-    if (scale != Vec3d(1.0)) return (*this)(place) == stored;
-    return (*this)(place[0]) == stored[0] && (*this)(place[1]) == stored[1] && (*this)(place[2]) == stored[2];
+  /// Whether `stored` is what is written for a vertex that has not moved from `position`.
+  bool stays(const Vec3d& position, const Vec3d& stored) const {
+    if (!rounds_all) return position == stored;
+    if (scale != Vec3d(1.0)) return (*this)(position) == stored;
+    return (*this)(position[0]) == stored[0] && (*this)(position[1]) == stored[1] && (*this)(position[2]) == stored[2];
   }
 
   /// Most that a number may change by as it is kept, relative to itself.

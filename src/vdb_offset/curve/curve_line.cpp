@@ -47,8 +47,8 @@ MeshFacts facts_of(CurvesView curves, const PlaneChains& plane) {
   const CurveChains& chains = plane.chains;
   MeshFacts facts;
   facts.vertices = plane.points.size();
-  facts.unused_vertices = static_cast<std::size_t>(std::count(chains.place.begin(), chains.place.end(), kNone));
-  for (std::uint32_t p = 0; p < plane.points.size(); ++p) facts.welded_vertices += chains.place[p] == p;
+  facts.unused_vertices = static_cast<std::size_t>(std::count(chains.welded_to.begin(), chains.welded_to.end(), kNone));
+  for (std::uint32_t p = 0; p < plane.points.size(); ++p) facts.welded_vertices += chains.welded_to[p] == p;
   facts.faces_by_corners[2] = chains.segments.size();
   facts.components = chains.chains;
   facts.closed_components = chains.closed;
@@ -79,7 +79,7 @@ DrawnLine draw_line(const PlaneChains& plane, const Vec3d& origin, double z) {
       p = drawn.vertex[p];
     }
   for (std::uint32_t p = 0; p < plane.points.size(); ++p)
-    if (plane.chains.place[p] != kNone) drawn.vertex[p] = drawn.vertex[plane.chains.place[p]];
+    if (plane.chains.welded_to[p] != kNone) drawn.vertex[p] = drawn.vertex[plane.chains.welded_to[p]];
   drawn.line = make_polyline(std::move(vertices), std::move(segments), plane.chains);
   drawn.line.origin = origin;
   return drawn;

@@ -14,7 +14,7 @@ namespace {
 // Squared distances to boxes of floats, in floats, are right to far less than this share.
 constexpr float kBoxRounding = 1 - 0x1p-20f;
 
-// Segments that are looked at to tell whether curves are crowded, and as many lowest boxes around a place as make them
+// Segments that are looked at to tell whether curves are crowded, and as many lowest boxes around a point as make them
 // so: where there are fewer, those are the faster, and no usual curve has a fifth of them.
 constexpr std::size_t kCrowdSamples = 256, kCrowd = 32;
 
@@ -50,11 +50,11 @@ bool CurveQuery::is_crowded() const {
   for (std::size_t i = step / 2; i < distinct_.size(); i += step, ++samples) {
     const auto [a, b] = line_.segments[distinct_[i]];
     const Vec3d middle = (line_.vertices[a] + line_.vertices[b]) * 0.5;
-    FloatBox place;
+    FloatBox point;
     for (std::size_t k = 0; k < 2; ++k)
-      place.lower[k] = place.upper[k] = static_cast<float>(middle[static_cast<int>(k)]);
-    place.lower[2] = place.upper[2] = 0;
-    tree_.for_each_overlap(place, [&](std::size_t) { ++around; });
+      point.lower[k] = point.upper[k] = static_cast<float>(middle[static_cast<int>(k)]);
+    point.lower[2] = point.upper[2] = 0;
+    tree_.for_each_overlap(point, [&](std::size_t) { ++around; });
   }
   return around > samples * kCrowd;
 }

@@ -28,7 +28,7 @@ class OrientedBoxes {
   static constexpr std::size_t kLeafSize = 4;  // segments of a lowest box, or up to twice as many
 
   struct Box {
-    Vec2d along{1, 0};  // unit length: the axis of place (along x, and left of that)
+    Vec2d along{1, 0};  // unit length: the first axis of the box; the second is to the left of it
     Vec2d lower, upper;
   };
   /// Nodes 2 n and 2 n + 1 are halves of node n; 1 is the root.
@@ -40,8 +40,8 @@ class OrientedBoxes {
     return {segments_.size() * i >> level, segments_.size() * (i + 1) >> level};
   }
   Vec2d end_of(std::uint32_t segment, int end) const {
-    const Vec3d& place = line_.vertices[line_.segments[segment][static_cast<std::size_t>(end)]];
-    return {place[0], place[1]};
+    const Vec3d& position = line_.vertices[line_.segments[segment][static_cast<std::size_t>(end)]];
+    return {position[0], position[1]};
   }
   double squared_to(std::size_t node, const Vec2d& x) const;
   void build(std::size_t level, std::size_t node);

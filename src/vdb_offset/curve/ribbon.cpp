@@ -145,7 +145,7 @@ struct Loop {
     }
     return inside;
   }
-  /// A place of the loop itself, on its longest segment: other loops may touch it at its points.
+  /// A point of the loop itself, on its longest segment: other loops may touch it at its points.
   Vec2d sample() const {
     std::size_t best = 0;
     double longest = -1;
@@ -198,11 +198,11 @@ PlaneFrame plane_of(CurvesView curves) {
 
 CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points) {
   CurveChains joined;
-  joined.place = weld_by_position(curves, {});
+  joined.welded_to = weld_by_position(curves, {});
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
     const auto curve = curves.face(c);
     for (std::size_t i = 1; i < curve.size(); ++i) {
-      const Segment segment{joined.place[curve[i - 1]], joined.place[curve[i]]};
+      const Segment segment{joined.welded_to[curve[i - 1]], joined.welded_to[curve[i]]};
       if (points[segment[0]] != points[segment[1]]) joined.segments.push_back(segment);
     }
   }
@@ -253,8 +253,8 @@ std::vector<Vec3d> curve_normals(CurvesView curves) {
   }
   std::vector<Vec3d> normals(points.size(), Vec3d(0.0));
   for (std::size_t p = 0; p < points.size(); ++p) {
-    if (chains.place[p] == kNone) continue;
-    const Vec2d& n = sum[chains.place[p]];
+    if (chains.welded_to[p] == kNone) continue;
+    const Vec2d& n = sum[chains.welded_to[p]];
     if (n.lengthSqr() > 1e-24) normals[p] = frame.to_space(n.unit());
   }
   return normals;

@@ -62,11 +62,11 @@ std::vector<std::uint32_t> distinct_segments(std::span<const Segment> segments) 
   return order;
 }
 
-SegmentCrossings::SegmentCrossings(std::span<const Segment> segments, std::span<const Vec2d> places)
+SegmentCrossings::SegmentCrossings(std::span<const Segment> segments, std::span<const Vec2d> positions)
     : segments_(segments),
-      places_(places),
+      positions_(positions),
       distinct_(distinct_segments(segments)),
-      fans_(segments, places, distinct_),
+      fans_(segments, positions, distinct_),
       leaf_of_(segments.size(), kNone) {
   for (std::uint32_t leaf = 0; leaf < distinct_.size(); ++leaf) leaf_of_[distinct_[leaf]] = leaf;
   tree_.build(distinct_.size(), [&](std::size_t leaf) { return box_of(distinct_[leaf]); });
@@ -89,7 +89,7 @@ FloatBox SegmentCrossings::box_of(std::size_t segment) const {
   box.lower[2] = box.upper[2] = 0;
   for (const auto p : segments_[segment])
     for (std::size_t k = 0; k < 2; ++k) {
-      const auto x = static_cast<float>(places_[p][static_cast<int>(k)]);
+      const auto x = static_cast<float>(positions_[p][static_cast<int>(k)]);
       const float rounding = std::abs(x) * 0x1p-23f + std::numeric_limits<float>::denorm_min();
       box.lower[k] = std::min(box.lower[k], x - rounding);
       box.upper[k] = std::max(box.upper[k], x + rounding);
@@ -102,7 +102,7 @@ bool SegmentCrossings::meet(std::uint32_t s, std::uint32_t t) const {
   // A point that both have comes first in both.
   if (a[1] == b[0] || a[1] == b[1]) std::swap(a[0], a[1]);
   if (a[0] == b[1]) std::swap(b[0], b[1]);
-  const Vec2d &p = places_[a[0]], &q = places_[a[1]], &r = places_[b[0]], &u = places_[b[1]];
+  const Vec2d &p = positions_[a[0]], &q = positions_[a[1]], &r = positions_[b[0]], &u = positions_[b[1]];
   if (p == q || r == u) return false;
   if (a[0] == b[0]) return a[1] != b[1] && overlap_from(p, q, u);
   const int r_side = side_of(p, q, r), u_side = side_of(p, q, u);

@@ -30,8 +30,8 @@ inline constexpr std::size_t kMostListedCrossings = 1000000;
 /// and what fans take.
 class SegmentCrossings {
  public:
-  /// `places` of the points may lie anywhere. Keeps references to both.
-  SegmentCrossings(std::span<const Segment> segments, std::span<const Vec2d> places);
+  /// `positions` of the points may lie anywhere. Keeps references to both.
+  SegmentCrossings(std::span<const Segment> segments, std::span<const Vec2d> positions);
 
   /// To be told of segments whose points have moved; sorted, no two the same.
   void update(std::span<const std::uint32_t> segments);
@@ -53,7 +53,7 @@ class SegmentCrossings {
   bool any_met(std::uint32_t s, std::uint32_t least, IsIt&& is_it) const;
 
   std::span<const Segment> segments_;
-  std::span<const Vec2d> places_;
+  std::span<const Vec2d> positions_;
   std::vector<std::uint32_t> distinct_;  // what the tree's leaves are
   SegmentFans fans_;
   std::vector<std::uint32_t> leaf_of_;  // of each segment; kNone of one that is there already

@@ -9,19 +9,19 @@ namespace vdb_offset {
 
 /// Around the point from the direction of x, counterclockwise.
 bool SegmentFans::Before::operator()(std::uint32_t s, std::uint32_t t) const {
-  const Vec2d &p = fans->places_[point], &a = fans->end_of(s, point), &b = fans->end_of(t, point);
+  const Vec2d &p = fans->positions_[point], &a = fans->end_of(s, point), &b = fans->end_of(t, point);
   const auto is_below = [&](const Vec2d& x) { return x[1] < p[1] || (x[1] == p[1] && x[0] < p[0]); };
   if (is_below(a) != is_below(b)) return is_below(b);
   return side_of(p, a, b) > 0;
 }
 
-SegmentFans::SegmentFans(std::span<const Segment> segments, std::span<const Vec2d> places,
+SegmentFans::SegmentFans(std::span<const Segment> segments, std::span<const Vec2d> positions,
                          std::vector<std::uint32_t>& some)
-    : segments_(segments), places_(places) {
-  std::vector<std::uint32_t> around(places.size(), 0), fan_at(places.size(), kNoFan);
+    : segments_(segments), positions_(positions) {
+  std::vector<std::uint32_t> around(positions.size(), 0), fan_at(positions.size(), kNoFan);
   for (const auto s : some)
     for (const auto p : segments[s]) ++around[p];
-  for (std::uint32_t p = 0; p < places.size(); ++p) {
+  for (std::uint32_t p = 0; p < positions.size(); ++p) {
     if (around[p] < kLeast) continue;
     fan_at[p] = static_cast<std::uint32_t>(fans_.size());
     fans_.push_back({p, {}, Ordered(Before{this, p})});
@@ -44,7 +44,7 @@ SegmentFans::SegmentFans(std::span<const Segment> segments, std::span<const Vec2
 
 void SegmentFans::insert(std::uint32_t segment) {
   Fan& fan = fans_[fan_of_[segment]];
-  const bool has_length = places_[fan.point] != end_of(segment, fan.point);
+  const bool has_length = positions_[fan.point] != end_of(segment, fan.point);
   at_[segment] = has_length ? fan.ordered.insert(segment) : fan.ordered.end();
 }
 

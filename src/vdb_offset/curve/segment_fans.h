@@ -20,8 +20,8 @@ class SegmentFans {
   static constexpr std::size_t kLeast = 64;
 
   /// Of these segments; they are put in an order in which those of each fan stand in a row, behind all others. Keeps
-  /// references to the segments of which these are some, and to the places.
-  SegmentFans(std::span<const Segment> segments, std::span<const Vec2d> places, std::vector<std::uint32_t>& some);
+  /// references to the segments of which these are some, and to the positions.
+  SegmentFans(std::span<const Segment> segments, std::span<const Vec2d> positions, std::vector<std::uint32_t>& some);
   SegmentFans(const SegmentFans&) = delete;
   SegmentFans& operator=(const SegmentFans&) = delete;
 
@@ -60,11 +60,11 @@ class SegmentFans {
   void insert(std::uint32_t segment);
   const Vec2d& end_of(std::uint32_t segment, std::uint32_t point) const {
     const Segment& ends = segments_[segment];
-    return places_[ends[0] == point ? ends[1] : ends[0]];
+    return positions_[ends[0] == point ? ends[1] : ends[0]];
   }
 
   std::span<const Segment> segments_;
-  std::span<const Vec2d> places_;
+  std::span<const Vec2d> positions_;
   std::vector<Fan> fans_;
   std::vector<std::uint32_t> fan_of_;        // of each segment; empty if there are none
   std::vector<Ordered::const_iterator> at_;  // of each segment: where it stands in its fan

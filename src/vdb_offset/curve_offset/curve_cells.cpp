@@ -51,10 +51,10 @@ class CurveCellMaker {
   void add_points() {
     VolumeMesh& mesh = result_.mesh;
     mesh.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"state", {}}};
-    numbers_.assign(layers_.count() + 1, std::vector<std::uint32_t>(chains_.place.size(), kNone));
+    numbers_.assign(layers_.count() + 1, std::vector<std::uint32_t>(chains_.welded_to.size(), kNone));
     for (std::size_t k = 0; k < numbers_.size(); ++k)
-      for (std::uint32_t p = 0; p < chains_.place.size(); ++p) {
-        if (chains_.place[p] != p || (k > 0 && is_flat(p))) continue;
+      for (std::uint32_t p = 0; p < chains_.welded_to.size(); ++p) {
+        if (chains_.welded_to[p] != p || (k > 0 && is_flat(p))) continue;
         numbers_[k][p] = static_cast<std::uint32_t>(mesh.points.size());
         mesh.points.push_back(layers_.stacks.of(p)[k]);
         mesh.point_fields[0].values.push_back(static_cast<float>(k));
@@ -66,7 +66,7 @@ class CurveCellMaker {
 
   void settle_roles() {
     const Distances& asked = layers_.heights.back();
-    sides_of_.assign(chains_.place.size(), 0);
+    sides_of_.assign(chains_.welded_to.size(), 0);
     for (const auto& [a, b] : chains_.segments) {
       const int flat = is_flat(a) + is_flat(b);
       result_.facts.role.push_back(asked[a] == 0 && asked[b] == 0 ? FaceRole::Bare

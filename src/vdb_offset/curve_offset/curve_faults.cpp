@@ -108,7 +108,7 @@ Indices CurveFaults::segments_around(const Indices& points) const {
 void CurveFaults::measure(std::uint32_t point) {
   const Polyline& line = curves_.line();
   const Vec3d x = curves_.in_frame(position_[point]);
-  const Closest closest = curves_.front(x, around(point).front());
+  const Closest closest = curves_.query(x, around(point).front());
   const double target = std::abs(curves_.distances[point]);
   distance_[point] = closest.distance;
   away_[point] = {x[0] - closest.point[0], x[1] - closest.point[1]};
@@ -139,7 +139,7 @@ CurveFaults::Fault CurveFaults::judge(std::uint32_t segment) const {
   };
   if (!is_against(away_[a]) || !is_against(away_[b])) return Fault::None;
   const Vec3d middle = curves_.in_frame((position_[a] + position_[b]) * 0.5);
-  const Vec3d away = middle - curves_.front(middle, around(a).front()).point;
+  const Vec3d away = middle - curves_.query(middle, around(a).front()).point;
   return is_against({away[0], away[1]}) ? Fault::Inverted : Fault::None;
 }
 

@@ -16,12 +16,12 @@ namespace vdb_offset {
 
 /// Curves in their plane, and the distances that are asked for.
 struct PlaneCurves {
-  const CurveQuery& front;
+  const CurveQuery& query;
   std::span<const Vec2d> source;  ///< Positions of the polyline's vertices in the plane.
   const Distances& distances;     ///< Of the polyline's vertices.
   Rounding precision;             ///< Of the coordinates that will be written.
 
-  const Polyline& line() const { return front.surface(); }
+  const Polyline& line() const { return query.surface(); }
   /// A point of the plane in the polyline's frame.
   Vec3d in_frame(const Vec2d& x) const {
     return {x[0] - line().origin[0], x[1] - line().origin[1], line().vertices.front()[2]};

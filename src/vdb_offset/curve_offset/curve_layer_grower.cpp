@@ -62,7 +62,7 @@ class CurveLayerGrower final : public LayerGrower {
           const std::uint32_t p = points[i];
           std::fill(stack_.stacks.of(p).begin(), stack_.stacks.of(p).end(), source_[p]);
           if (stack_.share[p] > 0)
-            put_down(p, 1, QueryDistance<CurveQuery>(curves_.front, faults_.around(p).front()),
+            put_down(p, 1, QueryDistance<CurveQuery>(curves_.query, faults_.around(p).front()),
                      [](std::size_t, double) { return true; });
         },
         64);
@@ -96,7 +96,7 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   round_layers(
       source, curves.precision, [](std::uint32_t) { return true; },
       [&](std::uint32_t p, const Vec3d& position) -> std::optional<double> {
-        return curves.front(curves.in_frame({position[0], position[1]}), faults.around(p).front()).distance;
+        return curves.query(curves.in_frame({position[0], position[1]}), faults.around(p).front()).distance;
       },
       stack, paths);
   return stack;

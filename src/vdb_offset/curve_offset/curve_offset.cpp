@@ -61,8 +61,8 @@ std::vector<OffsetResult> results_at_source(CurvesView curves, const CurvePlan& 
                                             std::span<const Distances> distances, bool keep_paths) {
   std::vector<OffsetResult> results;
   for (const Distances& each : distances)
-    results.push_back(result_at_source(CurvePoints{curves, plan.plane.chains.place, plan.plane.frame}, each, keep_paths,
-                                       plan.statistics));
+    results.push_back(result_at_source(CurvePoints{curves, plan.plane.chains.welded_to, plan.plane.frame}, each,
+                                       keep_paths, plan.statistics));
   return results;
 }
 

@@ -73,7 +73,7 @@ PreparedCurves::PreparedCurves(CurvesView curves, const OffsetOptions& options, 
   drawn_ = draw_line(plane_, ribbon_.origin, kRibbonVoxels / 2 * voxel_size - ribbon_.origin[2]);
   first_point_.assign(drawn_.source.size(), kNone);
   for (std::uint32_t p = 0; p < plane_.points.size(); ++p)
-    if (drawn_.vertex[p] != kNone && plane_.chains.place[p] == p) first_point_[drawn_.vertex[p]] = p;
+    if (drawn_.vertex[p] != kNone && plane_.chains.welded_to[p] == p) first_point_[drawn_.vertex[p]] = p;
   query_.emplace(drawn_.line);
 }
 

@@ -111,7 +111,7 @@ class ChainOrder {
     if (paths_.state[p] != VertexState::Reached) return {};
     const Polyline& line = curves_.line();
     const Vec3d x = curves_.in_frame(position(i));
-    const Closest closest = curves_.front(x, paths_.closest[p]);
+    const Closest closest = curves_.query(x, paths_.closest[p]);
     const Vec3d away = x - closest.point;
     if (closest.triangle < chain_.first || closest.triangle >= chain_.first + chain_.count ||
         !(line.pseudonormal(closest.triangle, closest.feature).dot(away) * curves_.side(p) > 0))
@@ -253,7 +253,7 @@ std::optional<Vec2d> position_on_front(const PlaneCurves& curves, Vec2d x, std::
   std::uint32_t hint = curves.line().triangles_around(point).front();
   for (int i = 0; i < kProjections; ++i) {
     const Vec3d at = curves.in_frame(x);
-    const Closest closest = curves.front(at, hint);
+    const Closest closest = curves.query(at, hint);
     hint = closest.triangle;
     const Vec3d away = at - closest.point;
     const double towards = curves.line().pseudonormal(closest.triangle, closest.feature).dot(away);

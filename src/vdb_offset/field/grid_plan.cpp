@@ -29,9 +29,9 @@ constexpr double kMaxVoxelsAcross = 8388608;
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
 // Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
 constexpr std::size_t kTriangleBytes = 256, kVertexBytes = 355;
-// Of a layer: places of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
+// Of a layer: positions of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
 constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
-// Of another result: its places, paths and states, and what nearer ones begin with; what it takes to make it valid.
+// Of another result: its positions, paths and states, and what nearer ones begin with; what it takes to make it valid.
 constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 95;
 // The process itself: code, libraries, allocator.
 constexpr double kProcessBytes = 57 << 20;

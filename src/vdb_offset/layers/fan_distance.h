@@ -15,8 +15,8 @@ namespace vdb_offset {
 // Distances that differ by less than this share are taken as equal: far below the promised 1e-6, far above rounding.
 inline constexpr double kSameDistance = 1e-9;
 
-/// Bounds where the front can be nearer to some points than their known distances. Around the end of a vertex's path
-/// lies a ball that holds nothing of the front. Whatever is nearer to a point x than its distance lies in the ball
+/// Bounds where the moving part can be nearer to some points than their known distances. Around the end of a vertex's
+/// path lies a ball that holds nothing of the part. Whatever is nearer to a point x than its distance lies in the ball
 /// around x, and outside of the empty one: no farther from the pole of the ball around x, in the direction from the
 /// path's end through x, than the circle in which both balls' surfaces meet. All of that lies within radius() of the
 /// vertex.
@@ -59,8 +59,8 @@ class FanDistance {
 /// few near triangles that are not in it.
 class NearDistance {
  public:
-  NearDistance(const Surface& front, VertexFan& fan, NearTriangles& others)
-      : front_(front), fan_(fan), others_(others) {
+  NearDistance(const Surface& surface, VertexFan& fan, NearTriangles& others)
+      : surface_(surface), fan_(fan), others_(others) {
     if (others.size() > 0) believed_ = static_cast<std::uint32_t>(others.foremost());
   }
 
@@ -85,9 +85,9 @@ class NearDistance {
   }
 
  private:
-  Phi of_other(std::uint32_t i, const Vec3d& x) const { return phi_of(front_.closest_on(others_.triangle(i), x), x); }
+  Phi of_other(std::uint32_t i, const Vec3d& x) const { return phi_of(surface_.closest_on(others_.triangle(i), x), x); }
 
-  const Surface& front_;
+  const Surface& surface_;
   VertexFan& fan_;
   NearTriangles& others_;
   std::uint32_t believed_ = kNone;  // the one of the others that was closest last; kNone: one of the fan

@@ -74,13 +74,13 @@ struct TwoTriangles {
 
 /// The corners of two triangles in the order of their vertices' numbers, and the signs that their normals then have.
 struct TwoOrders {
-  TwoOrders(const std::array<std::span<const std::uint32_t>, 2>& base, std::span<const std::uint32_t> place) {
+  TwoOrders(const std::array<std::span<const std::uint32_t>, 2>& base, std::span<const std::uint32_t> welded_to) {
     for (std::size_t i = 0; i < 2; ++i) {
       auto& [p, q, r] = by_number[i];
       p = base[i][0], q = base[i][1], r = base[i][2];
-      if (place[p] > place[q]) std::swap(p, q), sign[i] = -sign[i];
-      if (place[q] > place[r]) std::swap(q, r), sign[i] = -sign[i];
-      if (place[p] > place[q]) std::swap(p, q), sign[i] = -sign[i];
+      if (welded_to[p] > welded_to[q]) std::swap(p, q), sign[i] = -sign[i];
+      if (welded_to[q] > welded_to[r]) std::swap(q, r), sign[i] = -sign[i];
+      if (welded_to[p] > welded_to[q]) std::swap(p, q), sign[i] = -sign[i];
     }
   }
   Vec3Of<double2> at(const VertexStacks& stacks, std::size_t k, std::size_t layer) const {
@@ -107,9 +107,9 @@ PairMask have_volume(const TwoOrders& order, const VertexStacks& stacks, std::si
 /// it is a (1 - t)^2 + (a + c - d) t (1 - t) + c t^2, where a and c are the edge's products with the normals, and d is
 /// the triple product of all three edges.
 std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>, 2>& base, const VertexStacks& stacks,
-                                std::span<const std::uint32_t> place, int side) {
+                                std::span<const std::uint32_t> welded_to, int side) {
   const double2 sign = double2{} + static_cast<double>(side);
-  const TwoOrders order(base, place);
+  const TwoOrders order(base, welded_to);
   PairMask upright{-1, -1};
   TwoTriangles below(base, stacks, 0);
   for (std::size_t layer = 0; layer < stacks.layers() && (upright[0] != 0 || upright[1] != 0); ++layer) {
@@ -162,11 +162,11 @@ std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
 
 GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
                              CellRules rules)
-    : rules_(rules), place_(constrained.surface.vertices.size(), kNone) {
+    : rules_(rules), first_vertex_(constrained.surface.vertices.size(), kNone) {
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
   VDB_OFFSET_ASSERT(constrained.surface.welded.size() == mesh.positions.size());
   for (auto v = static_cast<std::uint32_t>(constrained.surface.welded.size()); v-- > 0;)
-    if (constrained.surface.welded[v] != kNone) place_[constrained.surface.welded[v]] = v;
+    if (constrained.surface.welded[v] != kNone) first_vertex_[constrained.surface.welded[v]] = v;
   if (take_all(mesh, constrained, source)) return;
   const Surface& surface = constrained.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
@@ -174,7 +174,7 @@ GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constra
   corners_.reserve(mesh.corners.size());
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const std::uint32_t face = surface.face[t];
-    if (!constrained.is_front(t) || seen[face] == kCarries) continue;
+    if (!constrained.triangle_on_part(t) || seen[face] == kCarries) continue;
     const auto& [a, b, c] = surface.triangles[t];
     seen[face] = (source[b] - source[a]).cross(source[c] - source[a]).lengthSqr() > 0 ? kCarries : kWithoutArea;
     if (seen[face] == kCarries) add(mesh, surface, t, source);
@@ -193,7 +193,7 @@ GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constra
 /// Returns false if they are not.
 bool GrowthColumns::take_all(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source) {
   const Surface& surface = constrained.surface;
-  if (!constrained.off_front.empty() || mesh.corners.size() != 3 * mesh.face_count()) return false;
+  if (!constrained.off_part.empty() || mesh.corners.size() != 3 * mesh.face_count()) return false;
   std::atomic<bool> all = true;
   corners_.resize(3 * surface.triangles.size());
   begin_.resize(surface.triangles.size() + 1);
@@ -255,7 +255,7 @@ Vec3d GrowthColumns::normal(std::size_t column, std::size_t k, const VertexStack
 bool GrowthColumns::is_valid(std::size_t column, const VertexStacks& stacks, int side) const {
   VDB_OFFSET_ASSERT(column < size() && (side == 1 || side == -1));
   if (is_of_prisms(column, stacks))
-    return are_upright({base(column), base(column)}, stacks, place_, side)[0] &&
+    return are_upright({base(column), base(column)}, stacks, first_vertex_, side)[0] &&
            (rules_ != CellRules::OpenFoam || has_valid_cells(column, stacks, side));
   return rises_everywhere(column, stacks, side) && has_valid_cells(column, stacks, side);
 }
@@ -290,7 +290,7 @@ bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stac
   const auto flat = [&](std::uint32_t v) { return stacks.is_flat(v); };
   if (std::all_of(ring.begin(), ring.end(), flat)) return true;  // there are none
   numbers.clear();
-  for (const std::uint32_t v : ring) numbers.push_back(place_[v]);
+  for (const std::uint32_t v : ring) numbers.push_back(first_vertex_[v]);
   cells.begin(numbers, [&](std::size_t k) { return flat(ring[k]); });
   for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {
     const VolumeMesh& mesh = cells.at(layer, [&](std::size_t k) { return stacks.of(ring[k]); });
@@ -312,7 +312,7 @@ std::array<bool, 2> GrowthColumns::are_valid(std::size_t column, std::size_t oth
                                              int side) const {
   if (rules_ == CellRules::OpenFoam || !is_of_prisms(column, stacks) || !is_of_prisms(other, stacks))
     return {is_valid(column, stacks, side), is_valid(other, stacks, side)};
-  return are_upright({base(column), base(other)}, stacks, place_, side);
+  return are_upright({base(column), base(other)}, stacks, first_vertex_, side);
 }
 
 }  // namespace vdb_offset

@@ -13,7 +13,7 @@
 
 namespace vdb_offset {
 
-/// The columns of cells that stand on the faces of a constrained surface's front, on its welded vertices.
+/// The columns of cells that stand on the faces of a constrained surface's moving part, on its welded vertices.
 ///
 /// A column's base runs as its face's triangles do in the surface, seen from where they face. Faces that the surface
 /// leaves out, as repeated ones, and those without area carry none. A quad with a corner that is straight or turns
@@ -66,7 +66,8 @@ class GrowthColumns {
   std::vector<std::uint32_t> incident_, incident_begin_;
   std::vector<SplitQuad> split_quads_;
   CellRules rules_;
-  std::vector<std::uint32_t> place_;  // of each of the surface's vertices: the first of the mesh's at its position
+  std::vector<std::uint32_t>
+      first_vertex_;  // of each of the surface's vertices: the first of the mesh's at its position
 };
 
 }  // namespace vdb_offset

@@ -36,23 +36,23 @@ inline Phi phi_of(const TrianglePoint& nearest, const Vec3d& x) {
 }
 inline Phi phi_of(const Vec3d& away) { return {away.length(), away}; }
 
-/// Distances along a vertex's rail by the exact query, of points in the front's frame. The triangle that is closest to
-/// one point is likely to be closest to the next: find() searches for it; at() takes the distance of the last one
-/// found, which is never too small.
+/// Distances along a vertex's rail by the exact query, of points in the moving part's frame. The triangle that is
+/// closest to one point is likely to be closest to the next: find() searches for it; at() takes the distance of the
+/// last one found, which is never too small.
 template <class Query>
 class QueryDistance {
  public:
-  QueryDistance(const Query& front, std::uint32_t hint) : front_(front), triangle_(hint) {}
+  QueryDistance(const Query& query, std::uint32_t hint) : query_(query), triangle_(hint) {}
 
-  Phi at(const Vec3d& x) const { return phi_of(front_.surface().closest_on(triangle_, x), x); }
+  Phi at(const Vec3d& x) const { return phi_of(query_.surface().closest_on(triangle_, x), x); }
   Phi find(const Vec3d& x) {
-    const auto found = front_(x, triangle_);
+    const auto found = query_(x, triangle_);
     triangle_ = found.triangle;
     return {found.distance, x - found.point};
   }
 
  private:
-  const Query& front_;
+  const Query& query_;
   std::uint32_t triangle_;
 };
 

@@ -37,29 +37,29 @@ class SurfaceLayerGrower final : public LayerGrower {
   SurfaceLayerGrower(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                      std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                      Paths& paths)
-      : LayerGrower(source, constrained.front.surface().origin, heights, paths),
+      : LayerGrower(source, constrained.moving_part.surface().origin, heights, paths),
         constrained_(constrained),
-        front_(constrained.front.surface()),
+        moving_part_(constrained.moving_part.surface()),
         slides_(slides),
         columns_(columns),
         faults_(faults) {}
 
  private:
-  bool moves(std::uint32_t v) const override { return constrained_.on_front(v) && heights_.back()[v] != 0; }
+  bool moves(std::uint32_t v) const override { return constrained_.vertex_on_part(v) && heights_.back()[v] != 0; }
   bool is_bound(std::uint32_t v) const override { return constrained_.is_bound(v); }
 
   bool sees_all_faces(std::uint32_t v, const Vec3d& displacement) const override {
     const double length = displacement.length();
     for (const auto t : constrained_.surface.triangles_around(v)) {
       const auto& [a, b, c] = constrained_.surface.triangles[t];
-      if (!constrained_.is_front(t)) continue;
+      if (!constrained_.triangle_on_part(t)) continue;
       const Vec3d n = (source_[b] - source_[a]).cross(source_[c] - source_[a]);
       if (n.lengthSqr() > 0 && !(side_ * n.dot(displacement) > kLeastSlope * n.length() * length)) return false;
     }
     return true;
   }
 
-  Vec3d direction_of(std::uint32_t v) const override { return start_direction(front_, on_front(v)); }
+  Vec3d direction_of(std::uint32_t v) const override { return start_direction(moving_part_, on_part(v)); }
 
   std::size_t column_count() const override { return columns_.size(); }
   std::span<const std::uint32_t> base(std::size_t column) const override { return columns_.base(column); }
@@ -113,15 +113,15 @@ class SurfaceLayerGrower final : public LayerGrower {
       std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
       if (!(stack_.share[v] > 0) || (slides_ && constrained_.is_bound(v) && put_along_border(v))) continue;
       const double top = top_of(v), radius = put_on_fan(v, top, fan, distances);
-      if (radius < kInfinity) by_fan.add(v, top, {source_[v] - front_.origin, radius});
+      if (radius < kInfinity) by_fan.add(v, top, {source_[v] - moving_part_.origin, radius});
       else by_ball.add(v, top, ball_of_rail(v, top));
     }
-    constrained_.front.collect_together(by_fan.balls, [&](std::size_t i, NearTriangles& near) {
+    constrained_.moving_part.collect_together(by_fan.balls, [&](std::size_t i, NearTriangles& near) {
       const std::uint32_t v = by_fan.vertices[i];
       const auto of_layers = std::span(distances).subspan(i * heights_.size(), heights_.size());
       if (!is_on_fan(v, of_layers, near)) by_ball.add(v, by_fan.tops[i], ball_of_rail(v, by_fan.tops[i]));
     });
-    constrained_.front.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
+    constrained_.moving_part.collect_together(by_ball.balls, [&](std::size_t i, NearTriangles& near) {
       const std::uint32_t v = by_ball.vertices[i];
       if (!put_by_near(v, by_ball.tops[i], by_ball.balls[i], fan, near)) put_by_query(v);
     });
@@ -132,7 +132,7 @@ class SurfaceLayerGrower final : public LayerGrower {
   /// in the ball whose diameter goes from the vertex through the top of the rail, and beyond it by the outermost
   /// height.
   ClosestQuery::Ball ball_of_rail(std::uint32_t v, double top) const {
-    const Vec3d to_top = rail_of(v)(top), foot = source_[v] - front_.origin;
+    const Vec3d to_top = rail_of(v)(top), foot = source_[v] - moving_part_.origin;
     const double length = to_top.length(), radius = (length + std::min(length, stack_.share[v] * asked(v))) / 2;
     if (!(length > 0)) return {foot, 0};
     return {foot + to_top * (radius / length), radius * kBallRoom};
@@ -149,21 +149,22 @@ class SurfaceLayerGrower final : public LayerGrower {
           at_end ? paths_.displacement[v]
                  : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
       stack[k + 1] = source_[v] + displacement;
-      stack_.first_achieved[v] = constrained_.front(stack[k + 1] - front_.origin, constrained_.hint(v)).distance;
+      stack_.first_achieved[v] =
+          constrained_.moving_part(stack[k + 1] - moving_part_.origin, constrained_.hint(v)).distance;
       if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
     }
     return true;
   }
 
-  std::uint32_t on_front(std::uint32_t v) const {
-    return constrained_.front_vertex.empty() ? v : constrained_.front_vertex[v];
+  std::uint32_t on_part(std::uint32_t v) const {
+    return constrained_.part_vertex.empty() ? v : constrained_.part_vertex[v];
   }
 
   /// Puts layers where their distances from the vertex's fan are the heights. Returns the radius around the vertex
   /// within which all triangles lie that may be nearer to some of them: the ball around the end of its path is empty.
   /// The radius is infinite where it would be large, or where a closest triangle is clearly not in the fan.
   double put_on_fan(std::uint32_t v, double top, VertexFan& fan, std::vector<double>& distances) {
-    fan.begin(front_, on_front(v));
+    fan.begin(moving_part_, on_part(v));
     const double free = paths_.achieved[v] - 2 * faults_.rounding(v);
     if (!fan.whole() || !(free > 0)) return kInfinity;
     const auto stack = stack_.stacks.of(v);
@@ -184,15 +185,15 @@ class SurfaceLayerGrower final : public LayerGrower {
   /// Whether no triangle near a vertex is nearer to its layers than its fan. `distances` are those of the layers.
   bool is_on_fan(std::uint32_t v, std::span<const double> distances, NearTriangles& near) const {
     near.remove_if([&](std::uint32_t t) {
-      const auto& corners = front_.triangles[t];
-      return std::find(corners.begin(), corners.end(), on_front(v)) != corners.end();
+      const auto& corners = moving_part_.triangles[t];
+      return std::find(corners.begin(), corners.end(), on_part(v)) != corners.end();
     });
     bool holds = true;
     for (std::size_t k = distances.size(); near.size() > 0 && holds && k-- > 0;) {
-      const Vec3d x = stack_.stacks.of(v)[k + 1] - front_.origin;
+      const Vec3d x = stack_.stacks.of(v)[k + 1] - moving_part_.origin;
       const double nearer = distances[k] * (1 - kSameDistance);
       near.visit_nearer(x, nearer, [&](std::size_t i) {
-        const Phi other = phi_of(front_.closest_on(near.triangle(i), x), x);
+        const Phi other = phi_of(moving_part_.closest_on(near.triangle(i), x), x);
         near.hold_back(i, x, other.away, other.value);
         holds = holds && !(other.value < nearer);
         return nearer;
@@ -207,10 +208,10 @@ class SurfaceLayerGrower final : public LayerGrower {
   bool put_by_near(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
     const auto stack = stack_.stacks.of(v);
     if (near.size() > kMostNear) return false;
-    fan.begin(front_, on_front(v));
+    fan.begin(moving_part_, on_part(v));
     near.remove_if([&](std::uint32_t t) { return fan.has(t); });
-    const Vec3d centre = ball.centre + front_.origin;
-    return put_down(v, top, NearDistance(front_, fan, near), [&](std::size_t k, double phi) {
+    const Vec3d centre = ball.centre + moving_part_.origin;
+    return put_down(v, top, NearDistance(moving_part_, fan, near), [&](std::size_t k, double phi) {
       return is_at_height(v, k, phi) && (stack[k + 1] - centre).length() + phi <= ball.radius;
     });
   }
@@ -222,12 +223,12 @@ class SurfaceLayerGrower final : public LayerGrower {
 
   /// Puts layers by exact queries: slower than any other way, and always right.
   void put_by_query(std::uint32_t v) {
-    put_down(v, 1, QueryDistance<ClosestQuery>(constrained_.front, constrained_.hint(v)),
+    put_down(v, 1, QueryDistance<ClosestQuery>(constrained_.moving_part, constrained_.hint(v)),
              [](std::size_t, double) { return true; });
   }
 
   const ConstrainedSurface& constrained_;
-  const Surface& front_;
+  const Surface& moving_part_;
   const BorderSlides* slides_;
   const GrowthColumns& columns_;
   FaultFinder& faults_;

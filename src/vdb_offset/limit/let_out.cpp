@@ -75,7 +75,7 @@ void LetOut::ease() {
     if (share[v] == 0) continue;
     for (const auto t : state_.surface.triangles_around(v))
       for (const auto w : state_.surface.triangles[t]) {
-        if (state_.distances[w] == 0 || !state_.constrained.on_front(w)) continue;
+        if (state_.distances[w] == 0 || !state_.constrained.vertex_on_part(w)) continue;
         const double most = share[v] + steepest_change(w, v);
         if (!(share[w] > most) || !state_.is_short(w) ||
             state_.live_area.area(w) > kMuchMoreArea * state_.live_area.area(v))

@@ -43,7 +43,7 @@ void write_paths(LimitState& state, std::vector<std::uint8_t>& mended) {
   std::size_t moving = 0;
   for (std::uint32_t v = 0; v < state.share.size(); ++v) {
     const double target = std::abs(state.distances[v]);
-    if (target == 0 || !state.constrained.on_front(v)) continue;
+    if (target == 0 || !state.constrained.vertex_on_part(v)) continue;
     ++moving;
     const Vec3d displacement = state.displacement_of(v);
     const bool stayed = paths.displacement[v] == displacement;

@@ -46,8 +46,8 @@ Vec3d LimitState::displacement_of(std::uint32_t v) const {
   const Vec3d& all = whole[v];
   if (part == 1) return all;
   if (part >= kBent || part == 0 || constrained.is_bound(v)) return all * part;
-  const Vec3d start =
-      start_direction(constrained.front.surface(), constrained.front_vertex_of(v)) * (distances[v] < 0 ? -1.0 : 1.0);
+  const Vec3d start = start_direction(constrained.moving_part.surface(), constrained.part_vertex_of(v)) *
+                      (distances[v] < 0 ? -1.0 : 1.0);
   if (!(start.lengthSqr() > 0)) return all * part;
   const double u = part / kBent;
   return (all * (u * u) + start * (all.length() * u * (1 - u))) * kBent;
@@ -65,7 +65,7 @@ Indices LimitState::with_rings(const Indices& vertices, int rings) {
 bool LimitState::may_slide(std::uint32_t v) const {
   const VertexState state = paths.state[v];
   const bool at_end = state == VertexState::Reached || (state == VertexState::Collision && has_sides(v));
-  return at_end && distances[v] != 0 && constrained.on_front(v) && !constrained.is_bound(v);
+  return at_end && distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
 }
 
 /// Whether any face around a vertex has an area. Lines have none, nor do the vertices that only lines hold.

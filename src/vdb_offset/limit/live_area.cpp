@@ -39,7 +39,7 @@ LiveArea::LiveArea(const ConstrainedSurface& constrained, const Distances& dista
 }
 
 bool LiveArea::counts(std::uint32_t t) const {
-  return constrained_.is_front(t) && surface_.triangle_normals[t].lengthSqr() > 0;
+  return constrained_.triangle_on_part(t) && surface_.triangle_normals[t].lengthSqr() > 0;
 }
 
 double LiveArea::area_of(std::uint32_t t) const {
@@ -66,7 +66,7 @@ void LiveArea::measure(const std::vector<std::uint32_t>& vertices) {
 }
 
 double LiveArea::find(std::uint32_t v) const {
-  if (!constrained_.on_front(v) || distances_[v] == 0) return 0;
+  if (!constrained_.vertex_on_part(v) || distances_[v] == 0) return 0;
   double live = 0;
   std::uint32_t hint = constrained_.hint(v);
   for (const auto t : surface_.triangles_around(v))
@@ -85,14 +85,14 @@ Vec3d LiveArea::centre(std::uint32_t t) const {
 /// The image of the point of a triangle that lies `along` from a vertex.
 LiveArea::Image LiveArea::image(std::uint32_t v, std::uint32_t t, const Vec3d& along, std::uint32_t& hint) const {
   const Vec3d position = surface_.vertices[v] + along + surface_.triangle_normals[t] * distances_[v];
-  const Closest closest = constrained_.front(position, hint);
+  const Closest closest = constrained_.moving_part(position, hint);
   hint = closest.triangle;
   return {position, closest.distance >= std::abs(distances_[v]) * kLive};
 }
 
 bool LiveArea::is_at_border(std::uint32_t v) const {
-  const auto& conormals = constrained_.front.surface().conormals;
-  return !conormals.empty() && conormals[constrained_.front_vertex_of(v)] != Vec3d(0.0);
+  const auto& conormals = constrained_.moving_part.surface().conormals;
+  return !conormals.empty() && conormals[constrained_.part_vertex_of(v)] != Vec3d(0.0);
 }
 
 /// Whether the faces around a vertex agree about the outside: along each edge as many run one way as the other, borders

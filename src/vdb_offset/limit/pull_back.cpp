@@ -23,7 +23,7 @@ Indices vertices_to_pull(LimitState& state, std::uint32_t pinned) {
   const FaultFinder& faults = state.faults;
   const auto gather = [&](std::uint32_t v) { gathered.add(v); };
   const auto may_go_back = [&](std::uint32_t v) {
-    return v != pinned && state.share[v] != 0 && state.constrained.on_front(v) && state.whole[v] != Vec3d(0.0);
+    return v != pinned && state.share[v] != 0 && state.constrained.vertex_on_part(v) && state.whole[v] != Vec3d(0.0);
   };
   faults.for_each_faulty_corner(gather);
   state.live_area.measure(gathered.take());

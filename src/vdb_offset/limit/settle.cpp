@@ -43,12 +43,12 @@ bool holds(const Some& some, std::uint32_t v) {
 bool Settling::may_leave_path(std::uint32_t v) const {
   const ConstrainedSurface& constrained = state_.constrained;
   if (constrained.obstacles && state_.paths.state[v] == VertexState::Collision) return false;
-  return state_.distances[v] != 0 && constrained.on_front(v) && !constrained.is_bound(v);
+  return state_.distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
 }
 
 /// Whether a vertex of the moving part has to stay in planes.
 bool Settling::is_held(std::uint32_t v) const {
-  return state_.constrained.front.surface().is_held(state_.constrained.front_vertex_of(v));
+  return state_.constrained.moving_part.surface().is_held(state_.constrained.part_vertex_of(v));
 }
 
 /// The short vertices with which most live area is lost, that with the most first.
@@ -184,7 +184,7 @@ void Settling::put(const Moves& moves, OldOnes& old) {
     moved.push_back(v);
     Vec3d whole = position - state_.surface.vertices[v];
     if (is_held(v))
-      whole = state_.constrained.front.surface().along_border(state_.constrained.front_vertex_of(v), whole);
+      whole = state_.constrained.moving_part.surface().along_border(state_.constrained.part_vertex_of(v), whole);
     state_.whole[v] = round_displacement(whole, std::abs(state_.distances[v]));
     state_.share[v] = 1;
   }

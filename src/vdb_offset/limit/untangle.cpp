@@ -57,7 +57,7 @@ class UntangledPatch {
                  std::span<const std::uint32_t> vertices, std::span<Vec3d> displacement)
       : constrained_(constrained),
         surface_(constrained.surface),
-        front_(constrained.front.surface()),
+        moving_part_(constrained.moving_part.surface()),
         distances_(distances),
         options_(options),
         free_(vertices.size()) {
@@ -180,13 +180,13 @@ class UntangledPatch {
         if (p.normal.lengthSqr() > kCancelled) p.normal.normalize();
         continue;
       }
-      const TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
+      const TrianglePoint nearest = moving_part_.walk_to_closest(p.x, p.hint);
       p.distance = std::sqrt(nearest.squared_distance);
       p.normal = p.distance > 0 ? (p.x - nearest.point) / (p.side * p.distance) : Vec3d(0.0);
     }
     for (int i = 0; i < options_.smoothing; ++i) smooth_normals();
     for (Point& p : points_) p.tangent = plane_of(p.normal);
-    if (!front_.conormals.empty()) keep_borders();
+    if (!moving_part_.conormals.empty()) keep_borders();
     least_det_ = 1;
     folded_ = 0;
     for (Face& face : faces_) {
@@ -211,16 +211,16 @@ class UntangledPatch {
   /// stay in these in any case: in one plane, on the line of two, or where they are.
   void keep_borders() {
     for (Point& p : points_) {
-      const std::uint32_t v = constrained_.front_vertex.empty() ? p.vertex : constrained_.front_vertex[p.vertex];
+      const std::uint32_t v = constrained_.part_vertex.empty() ? p.vertex : constrained_.part_vertex[p.vertex];
       if (v == kNone) continue;
-      const bool held = front_.is_held(v);
-      const Vec3d& c = front_.conormals[v];
-      const Vec3d n = front_.along_border(v, p.normal);
+      const bool held = moving_part_.is_held(v);
+      const Vec3d& c = moving_part_.conormals[v];
+      const Vec3d n = moving_part_.along_border(v, p.normal);
       p.stuck = held && !(n.lengthSqr() > kCancelled);
       if (p.stuck) p.tangent.fill(Vec3d(0.0));
       if (!(held || options_.keep_borders) || c.lengthSqr() == 0 || !(n.lengthSqr() > kCancelled)) continue;
       p.normal = n.unit();
-      p.tangent = {held ? front_.along_border(v, p.normal.cross(c)) : p.normal.cross(c), Vec3d(0.0)};
+      p.tangent = {held ? moving_part_.along_border(v, p.normal.cross(c)) : p.normal.cross(c), Vec3d(0.0)};
     }
   }
 
@@ -362,10 +362,10 @@ class UntangledPatch {
     constexpr double kSettled = 1e-9, kLeastSlope = 0.1, kStepOff = 0.02, kOnSurface = 1e-3;
     const Vec3d away = p.normal * p.side;
     for (int i = 0; i < kMostSteps; ++i) {
-      TrianglePoint nearest = front_.walk_to_closest(p.x, p.hint);
+      TrianglePoint nearest = moving_part_.walk_to_closest(p.x, p.hint);
       double distance = std::sqrt(nearest.squared_distance);
       if (std::abs(distance - p.target) <= kSettled * p.target) {
-        const Closest closest = constrained_.front(p.x, p.hint);
+        const Closest closest = constrained_.moving_part(p.x, p.hint);
         if (std::abs(closest.distance - p.target) <= kSettled * p.target) return;
         p.hint = closest.triangle;
         distance = closest.distance;
@@ -385,7 +385,7 @@ class UntangledPatch {
 
   const ConstrainedSurface& constrained_;
   const Surface& surface_;
-  const Surface& front_;
+  const Surface& moving_part_;
   const Distances& distances_;
   Untangler::Options options_;
   std::size_t free_;  // number of the patch's points, which are the first; the others stand around the patch

@@ -53,17 +53,17 @@ Vec3d displacement_to_distance(const ConstrainedSurface& constrained, std::uint3
   const Vec3d& start = constrained.surface.vertices[vertex];
   std::uint32_t hint = constrained.hint(vertex);
   const auto beside = [&](const Vec3d& x) {
-    const TrianglePoint nearest = constrained.front.near(x, hint);
+    const TrianglePoint nearest = constrained.moving_part.near(x, hint);
     return sample_at(x, hint, nearest);
   };
   const auto exactly = [&](const Vec3d& x) {
-    const Closest closest = constrained.front(x, hint);
+    const Closest closest = constrained.moving_part(x, hint);
     hint = closest.triangle;
     return sample_at(x, closest);
   };
   const auto settled = [&](const Sample& at) { return std::abs(at.phi - distance) <= kSettled * distance; };
   const auto cut = [&](const Sample& near, const Sample& far, const auto& measure) {
-    return cut_at_distance(constrained.front.surface(), near, far, distance, measure, settled);
+    return cut_at_distance(constrained.moving_part.surface(), near, far, distance, measure, settled);
   };
   const Sample first = beside(start + displacement * std::min(1.0, distance / displacement.length())),
                last = beside(start + displacement);
@@ -73,7 +73,7 @@ Vec3d displacement_to_distance(const ConstrainedSurface& constrained, std::uint3
     const Sample end = exactly(start + displacement);
     if (!(end.phi > distance)) return displacement;
     at = cut(at, end, exactly);
-    if (!settled(at) && !constrained.front.surface().is_held(constrained.front_vertex_of(vertex)))
+    if (!settled(at) && !constrained.moving_part.surface().is_held(constrained.part_vertex_of(vertex)))
       return round_displacement(end.x - end.away * (1 - distance / end.phi) - start, distance);
   }
   return round_displacement(at.x - start, distance);

@@ -32,19 +32,19 @@ struct SlideDirection {
 /// The slide of one border vertex.
 class BorderVertex {
  public:
-  BorderVertex(const MeshParts& parts, const ClosestQuery& front, const ClosestQuery& rest, std::uint32_t vertex,
+  BorderVertex(const MeshParts& parts, const ClosestQuery& moving_part, const ClosestQuery& rest, std::uint32_t vertex,
                double distance)
       : whole_(*parts.whole),
-        off_front_(parts.off_front),
-        front_(front),
+        off_part_(parts.off_part),
+        moving_part_(moving_part),
         rest_(rest),
         vertex_(vertex),
-        on_front_(parts.front_vertex[vertex]),
-        hint_(front.surface().triangles_around(on_front_).front()),
+        on_part_(parts.part_vertex[vertex]),
+        hint_(moving_part.surface().triangles_around(on_part_).front()),
         origin_(whole_.vertices[vertex]),
         target_(std::abs(distance)),
         side_(distance < 0 ? -1 : 1),
-        part_normal_(front.surface().vertex_normals[on_front_] * side_) {}
+        part_normal_(moving_part.surface().vertex_normals[on_part_] * side_) {}
 
   /// The end of the slide: at the distance, if the vertex gets there.
   Vec3d slide() {
@@ -72,13 +72,13 @@ class BorderVertex {
   }
 
  private:
-  double distance_of(const Vec3d& x) const { return front_(x, hint_).distance; }
+  double distance_of(const Vec3d& x) const { return moving_part_(x, hint_).distance; }
 
   Vec3d go(const Vec3d& from, const Vec3d& direction, double step, bool on_surface) {
     const Vec3d x = from + direction * step;
     if (!on_surface) return x;
     const Vec3d there = on_rest(x);
-    if (!front_.surface().is_held(on_front_)) return there;
+    if (!moving_part_.surface().is_held(on_part_)) return there;
     constexpr int kMostTurns = 30;  // between planes and faces; not measured
     Vec3d held = in_planes(there);
     for (int i = 0; i < kMostTurns; ++i) {
@@ -97,7 +97,7 @@ class BorderVertex {
   }
 
   /// The closest position to this in the planes that hold the vertex, if any do.
-  Vec3d in_planes(const Vec3d& x) const { return origin_ + front_.surface().along_border(on_front_, x - origin_); }
+  Vec3d in_planes(const Vec3d& x) const { return origin_ + moving_part_.surface().along_border(on_part_, x - origin_); }
 
   /// Bisection on the length of the last step.
   Vec3d cut(const Vec3d& here, const Vec3d& direction, double step, bool on_surface) {
@@ -115,10 +115,10 @@ class BorderVertex {
   Vec3d away_from_part() const {
     Vec3d sum(0.0);
     for (const auto t : whole_.triangles_around(vertex_)) {
-      if (!off_front_[t]) continue;
+      if (!off_part_[t]) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t edge = 3 * t + k, from = whole_.from(edge), to = whole_.to(edge);
-        if ((from != vertex_ && to != vertex_) || off_front_[whole_.next_around_edge[edge] / 3]) continue;
+        if ((from != vertex_ && to != vertex_) || off_part_[whole_.next_around_edge[edge] / 3]) continue;
         const Vec3d along = whole_.vertices[to] - whole_.vertices[from];
         const Vec3d third = whole_.vertices[whole_.triangles[t][(k + 2) % 3]] - whole_.vertices[from];
         const Vec3d across = third - along * (third.dot(along) / along.lengthSqr());
@@ -127,7 +127,7 @@ class BorderVertex {
     }
     if (sum.lengthSqr() > 0) return sum;
     for (const auto t : whole_.triangles_around(vertex_))  // the part and the faces that stay only touch here
-      if (off_front_[t])
+      if (off_part_[t])
         for (const auto v : whole_.triangles[t]) sum += whole_.vertices[v] - origin_;
     return sum;
   }
@@ -136,7 +136,7 @@ class BorderVertex {
     Vec3d mean(0.0), first(0.0), crease(0.0);
     for (const auto t : whole_.triangles_around(vertex_)) {
       const Vec3d& n = whole_.triangle_normals[t];
-      if (!off_front_[t] || n.lengthSqr() == 0) continue;
+      if (!off_part_[t] || n.lengthSqr() == 0) continue;
       mean += n;
       if (first.lengthSqr() == 0) first = n;
       const Vec3d across = first.cross(n);
@@ -146,14 +146,14 @@ class BorderVertex {
     if (crease.length() > kOnePlane) {
       crease.normalize();
       for (const auto t : whole_.triangles_around(vertex_))
-        if (off_front_[t] && std::abs(whole_.triangle_normals[t].dot(crease)) > kOnePlane) return std::nullopt;
+        if (off_part_[t] && std::abs(whole_.triangle_normals[t].dot(crease)) > kOnePlane) return std::nullopt;
       away = crease * (away.dot(crease) < 0 ? -1.0 : 1.0);
     } else {
       if (!(mean.lengthSqr() > 0)) return std::nullopt;
       mean.normalize();
       away -= mean * away.dot(mean);
     }
-    if (front_.surface().is_held(on_front_)) away = front_.surface().along_border(on_front_, away);
+    if (moving_part_.surface().is_held(on_part_)) away = moving_part_.surface().along_border(on_part_, away);
     if (!(away.lengthSqr() > 0) || !(part_normal_.lengthSqr() > 0)) return std::nullopt;
     away.normalize();
     const bool turns_away = away.dot(part_normal_.unit()) < kTurnsAway;
@@ -161,10 +161,10 @@ class BorderVertex {
   }
 
   const Surface& whole_;
-  const std::vector<std::uint8_t>& off_front_;
-  const ClosestQuery& front_;
+  const std::vector<std::uint8_t>& off_part_;
+  const ClosestQuery& moving_part_;
   const ClosestQuery& rest_;
-  std::uint32_t vertex_, on_front_, hint_, rest_hint_ = 0;
+  std::uint32_t vertex_, on_part_, hint_, rest_hint_ = 0;
   Vec3d origin_;
   double target_;
   int side_;
@@ -173,40 +173,41 @@ class BorderVertex {
 
 }  // namespace
 
-BorderSlides::BorderSlides(const MeshParts& parts, const ClosestQuery& front)
-    : parts_(parts), front_(front), rest_(*parts.rest) {
+BorderSlides::BorderSlides(const MeshParts& parts, const ClosestQuery& moving_part)
+    : parts_(parts), moving_part_(moving_part), rest_(*parts.rest) {
   VDB_OFFSET_ASSERT(parts.whole && parts.rest);
 }
 
 Vec3d BorderSlides::operator()(std::uint32_t vertex, double distance) const {
-  return BorderVertex(parts_, front_, rest_, vertex, distance).slide();
+  return BorderVertex(parts_, moving_part_, rest_, vertex, distance).slide();
 }
 
 bool BorderSlides::lead(std::uint32_t vertex) const {
   constexpr double kInPlane = 1e-6;  // of a normal's cosine
-  const Surface& front = front_.surface();
-  const std::uint32_t on_front = parts_.front_vertex[vertex];
-  if (!front.is_held(on_front)) return true;
+  const Surface& moving_part = moving_part_.surface();
+  const std::uint32_t on_part = parts_.part_vertex[vertex];
+  if (!moving_part.is_held(on_part)) return true;
   const auto around = parts_.whole->triangles_around(vertex);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
     const Vec3d& n = parts_.whole->triangle_normals[t];
-    return parts_.off_front[t] && n.lengthSqr() > 0 && std::abs(n.dot(front.conormals[on_front])) < 1 - kInPlane;
+    return parts_.off_part[t] && n.lengthSqr() > 0 && std::abs(n.dot(moving_part.conormals[on_part])) < 1 - kInPlane;
   });
 }
 
-void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
-                   Paths& paths) {
-  VDB_OFFSET_ASSERT(paths.displacement.size() == front.surface().vertices.size());
+void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& moving_part,
+                   const Distances& distances, Paths& paths) {
+  VDB_OFFSET_ASSERT(paths.displacement.size() == moving_part.surface().vertices.size());
   std::vector<std::uint32_t> border;
   for (std::uint32_t v = 0; v < parts.at_border.size(); ++v)
-    if (parts.at_border[v] && distances[parts.front_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
+    if (parts.at_border[v] && distances[parts.part_vertex[v]] != 0 && slides.lead(v)) border.push_back(v);
   parts.bound.assign(parts.at_border.begin(), parts.at_border.end());
   const auto move = [&](std::size_t i) {
-    const std::uint32_t v = border[i], f = parts.front_vertex[v];
+    const std::uint32_t v = border[i], f = parts.part_vertex[v];
     const double target = std::abs(distances[f]);
     paths.displacement[f] = round_displacement(slides(v, distances[f]) - parts.whole->vertices[v], target);
-    const Vec3d position = (front.surface().vertices[f] + front.surface().origin) + paths.displacement[f];
-    const Closest closest = front(position - front.surface().origin, front.surface().triangles_around(f).front());
+    const Vec3d position = (moving_part.surface().vertices[f] + moving_part.surface().origin) + paths.displacement[f];
+    const Closest closest =
+        moving_part(position - moving_part.surface().origin, moving_part.surface().triangles_around(f).front());
     if (!paths.trace.empty()) paths.trace[f].clear();
     paths.achieved[f] = closest.distance;
     paths.closest[f] = closest.triangle;

@@ -18,7 +18,7 @@ namespace vdb_offset {
 class BorderSlides {
  public:
   /// Keeps references to both. \pre some faces of the mesh stay
-  BorderSlides(const MeshParts& parts, const ClosestQuery& front);
+  BorderSlides(const MeshParts& parts, const ClosestQuery& moving_part);
 
   /// The position at which a vertex of the whole mesh, on the border, is at this distance from the part, negative
   /// inward; or as near to that distance as it gets. In the moving part's frame.
@@ -28,14 +28,14 @@ class BorderSlides {
 
  private:
   const MeshParts& parts_;
-  const ClosestQuery& front_;
+  const ClosestQuery& moving_part_;
   ClosestQuery rest_;
 };
 
 /// Gives the border vertices new paths, to their distances, which they are bound to from then on. Distances and paths
 /// are those of the moving part's vertices. The result does not depend on the number of threads. Replaces
 /// `parts.bound`.
-void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& front, const Distances& distances,
-                   Paths& paths);
+void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQuery& moving_part,
+                   const Distances& distances, Paths& paths);
 
 }  // namespace vdb_offset

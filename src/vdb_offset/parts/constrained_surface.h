@@ -35,13 +35,13 @@ struct FileFrame {
 /// The surface holds what moves and what is in its way: the whole mesh where only a part of it is offset, and obstacles
 /// behind it. It stands in the moving part's frame. Spans are empty where the surface is the moving part itself.
 struct ConstrainedSurface {
-  const ClosestQuery& front;  ///< Of the moving part.
+  const ClosestQuery& moving_part;  ///< Of the moving part.
   const Surface& surface;
-  std::span<const std::uint32_t> front_vertex;  ///< Of each vertex: its index on the moving part, or kNone.
-  std::span<const std::uint8_t> off_front;      ///< Of each triangle: 1 if it is not on the moving part.
-  std::span<const std::uint8_t> bound;          ///< Of each vertex: 1 if it must not leave its path.
-  const Obstacles* obstacles = nullptr;         ///< Obstacles to keep away from, if there are any.
-  bool off_source = false;                      ///< Moved faces must not meet the source either, as in a shell.
+  std::span<const std::uint32_t> part_vertex;  ///< Of each vertex: its index on the moving part, or kNone.
+  std::span<const std::uint8_t> off_part;      ///< Of each triangle: 1 if it is not on the moving part.
+  std::span<const std::uint8_t> bound;         ///< Of each vertex: 1 if it must not leave its path.
+  const Obstacles* obstacles = nullptr;        ///< Obstacles to keep away from, if there are any.
+  bool off_source = false;                     ///< Moved faces must not meet the source either, as in a shell.
   /// Number of the mesh's faces, if what is off the moving part rests as a whole while layers rise from it: vertices at
   /// the border then go along resting faces instead of taking them along. 0: they take the faces along.
   std::size_t resting_faces = 0;
@@ -53,11 +53,11 @@ struct ConstrainedSurface {
   const FileFrame* file = nullptr;  ///< If distances are measured in the space of a metric.
 
   /// The index of a vertex on the moving part; kNone if it is not there.
-  std::uint32_t front_vertex_of(std::uint32_t vertex) const {
-    return front_vertex.empty() ? vertex : front_vertex[vertex];
+  std::uint32_t part_vertex_of(std::uint32_t vertex) const {
+    return part_vertex.empty() ? vertex : part_vertex[vertex];
   }
-  bool on_front(std::uint32_t vertex) const { return front_vertex.empty() || front_vertex[vertex] != kNone; }
-  bool is_front(std::uint32_t triangle) const { return off_front.empty() || !off_front[triangle]; }
+  bool vertex_on_part(std::uint32_t vertex) const { return part_vertex.empty() || part_vertex[vertex] != kNone; }
+  bool triangle_on_part(std::uint32_t triangle) const { return off_part.empty() || !off_part[triangle]; }
   /// Whether a triangle is one of an obstacle, which never moves.
   bool is_obstacle(std::uint32_t triangle) const {
     return obstacles && triangle >= surface.triangles.size() - obstacles->query.surface().triangles.size();
@@ -67,7 +67,9 @@ struct ConstrainedSurface {
     return obstacles && vertex >= surface.vertices.size() - obstacles->query.surface().vertices.size();
   }
   /// Whether a triangle stays while layers rise from the moving part.
-  bool rests(std::uint32_t triangle) const { return !is_front(triangle) && surface.face[triangle] < resting_faces; }
+  bool rests(std::uint32_t triangle) const {
+    return !triangle_on_part(triangle) && surface.face[triangle] < resting_faces;
+  }
   bool has_bound_corner(std::uint32_t triangle) const {
     const auto& corners = surface.triangles[triangle];
     return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_bound(v); });
@@ -75,19 +77,19 @@ struct ConstrainedSurface {
   bool is_bound(std::uint32_t vertex) const { return !bound.empty() && bound[vertex]; }
   /// A triangle of the moving part to begin a search at.
   std::uint32_t hint_of_triangle(std::uint32_t triangle) const {
-    return front_vertex.empty() ? triangle : hint(surface.triangles[triangle][0]);
+    return part_vertex.empty() ? triangle : hint(surface.triangles[triangle][0]);
   }
   /// A triangle of the moving part, at a vertex if that is on it, to begin a search at.
   std::uint32_t hint(std::uint32_t vertex) const {
-    const std::uint32_t v = front_vertex_of(vertex);
-    return v == kNone ? 0 : front.surface().triangles_around(v).front();
+    const std::uint32_t v = part_vertex_of(vertex);
+    return v == kNone ? 0 : moving_part.surface().triangles_around(v).front();
   }
   /// Whether sizes and frames agree: for assertions.
   bool fits() const {
     const auto fits = [](const auto& some, std::size_t count) { return some.empty() || some.size() == count; };
-    return surface.origin == front.surface().origin && fits(front_vertex, surface.vertices.size()) &&
-           fits(off_front, surface.triangles.size()) && fits(bound, surface.vertices.size()) &&
-           fits(other_skin, surface.vertices.size()) && front_vertex.empty() == off_front.empty() &&
+    return surface.origin == moving_part.surface().origin && fits(part_vertex, surface.vertices.size()) &&
+           fits(off_part, surface.triangles.size()) && fits(bound, surface.vertices.size()) &&
+           fits(other_skin, surface.vertices.size()) && part_vertex.empty() == off_part.empty() &&
            (!obstacles || obstacles->query.surface().origin == surface.origin);
   }
 };

@@ -30,15 +30,15 @@ struct SomeFaces {
 /// Finds for the whole's vertices and triangles where they are on the moving part, and which lie at its border.
 void relate(PolygonView mesh, std::span<const std::uint8_t> only, MeshParts& parts) {
   const Surface& whole = *parts.whole;
-  parts.front_vertex.assign(whole.vertices.size(), kNone);
+  parts.part_vertex.assign(whole.vertices.size(), kNone);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    if (parts.front.welded[v] != kNone) parts.front_vertex[whole.welded[v]] = parts.front.welded[v];
-  parts.off_front.assign(whole.triangles.size(), 0);
+    if (parts.moving_part.welded[v] != kNone) parts.part_vertex[whole.welded[v]] = parts.moving_part.welded[v];
+  parts.off_part.assign(whole.triangles.size(), 0);
   parts.at_border.assign(whole.vertices.size(), 0);
   for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
     if (only.empty() || only[whole.face[t]]) continue;
-    parts.off_front[t] = 1;
-    for (const auto v : whole.triangles[t]) parts.at_border[v] = parts.front_vertex[v] != kNone;
+    parts.off_part[t] = 1;
+    for (const auto v : whole.triangles[t]) parts.at_border[v] = parts.part_vertex[v] != kNone;
   }
 }
 
@@ -61,7 +61,7 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
                        std::to_string(options.only.size()));
   MeshParts parts;
   if (!of_parts) {
-    parts.front = build_surface(mesh, options.weld, options.orient);
+    parts.moving_part = build_surface(mesh, options.weld, options.orient);
   } else {
     const SomeFaces chosen(mesh, options.only, 1), left(mesh, options.only, 0);
     if (chosen.empty()) throw InvalidInput("part: expected at least one face, got none");
@@ -70,12 +70,12 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
     const auto build = [&](PolygonView faces) {
       return build_welded(faces, restricted(welding, faces), options.orient);
     };
-    parts.front = build(chosen.of(mesh));
+    parts.moving_part = build(chosen.of(mesh));
     parts.whole = build_welded(mesh, welding, options.orient);
     if (!left.empty()) parts.rest = build(left.of(mesh));
   }
   if (options.obstacles.face_count() > 0) {
-    if (!parts.whole) parts.whole = parts.front;
+    if (!parts.whole) parts.whole = parts.moving_part;
     parts.obstacle_mesh = options.obstacles;
     parts.obstacles = build_surface(options.obstacles, {});
   }
@@ -84,26 +84,26 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
 }
 
 void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
-  to_local_frame(parts.front, voxel_size);
-  hold_in_planes(parts.front, symmetry, reach);
+  to_local_frame(parts.moving_part, voxel_size);
+  hold_in_planes(parts.moving_part, symmetry, reach);
   for (std::optional<Surface>* other : {&parts.whole, &parts.rest, &parts.obstacles})
-    if (*other) to_frame(**other, parts.front.origin);
+    if (*other) to_frame(**other, parts.moving_part.origin);
   if (!parts.obstacles) return;
   append(*parts.whole, *parts.obstacles);
-  parts.front_vertex.resize(parts.whole->vertices.size(), kNone);
+  parts.part_vertex.resize(parts.whole->vertices.size(), kNone);
   parts.at_border.resize(parts.whole->vertices.size(), 0);
-  parts.off_front.resize(parts.whole->triangles.size(), 1);
+  parts.off_part.resize(parts.whole->triangles.size(), 1);
 }
 
 Distances distances_on_parts(const MeshParts& parts, Border border, const Distances& of_input,
                              std::size_t& disagreeing) {
-  const bool all_move = parts.front_vertex.empty();
+  const bool all_move = parts.part_vertex.empty();
   if (of_input.uniform() && all_move) return of_input;
   const Surface& surface = parts.surface();
   MeanDistances mean = mean_distances(of_input, surface.welded, surface.representative);
   disagreeing += mean.disagreeing;
   for (std::size_t w = 0; w < mean.each.size() && !all_move; ++w)
-    if (parts.front_vertex[w] == kNone || (border == Border::Fixed && parts.at_border[w])) mean.each[w] = 0;
+    if (parts.part_vertex[w] == kNone || (border == Border::Fixed && parts.at_border[w])) mean.each[w] = 0;
   return Distances(std::move(mean.each));
 }
 

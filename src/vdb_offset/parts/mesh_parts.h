@@ -23,20 +23,20 @@ struct MeshPartsOptions {
 
 /// A mesh, sorted into the part that moves, which distances are measured from, the faces that stay, and obstacles.
 struct MeshParts {
-  Surface front;                 ///< The moving part.
+  Surface moving_part;           ///< The moving part.
   std::optional<Surface> whole;  ///< All of the mesh, then the obstacles; empty if that is the moving part alone.
   std::optional<Surface> rest;   ///< The faces that stay; empty if none does.
   std::optional<Surface> obstacles;
-  PolygonView obstacle_mesh;                ///< The mesh that the obstacles were built from.
-  std::vector<std::uint32_t> front_vertex;  ///< These three as in ConstrainedSurface.
-  std::vector<std::uint8_t> off_front;
+  PolygonView obstacle_mesh;               ///< The mesh that the obstacles were built from.
+  std::vector<std::uint32_t> part_vertex;  ///< These three as in ConstrainedSurface.
+  std::vector<std::uint8_t> off_part;
   std::vector<std::uint8_t> bound;
   std::vector<std::uint8_t> at_border;  ///< Of each vertex of the whole: 1 if it is on the moving part and on the rest.
 
-  const Surface& surface() const { return whole ? *whole : front; }
+  const Surface& surface() const { return whole ? *whole : moving_part; }
   ConstrainedSurface constrained(const ClosestQuery& query, const Obstacles* keep_away, bool off_source,
                                  std::size_t resting_faces = 0) const {
-    return {query, surface(), front_vertex, off_front, bound, keep_away, off_source, resting_faces};
+    return {query, surface(), part_vertex, off_part, bound, keep_away, off_source, resting_faces};
   }
   /// The positions of the vertices of surface() in the input, to the last bit.
   std::vector<Vec3d> source(PolygonView mesh) const;
@@ -46,9 +46,9 @@ struct MeshParts {
 /// \throw InvalidInput as build_surface(), and if `only` has not one mark for each face or marks no face
 MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options);
 
-/// Puts all parts into the moving part's frame (see place()), appends the obstacles to the whole, and finds which
-/// vertices of the moving part stay in planes, none of which goes farther than `reach` (world units). To be called
-/// once, before distances are made for surface(), and before any ConstrainedSurface. \throw InvalidInput as
+/// Puts all parts into the moving part's frame (see to_local_frame()), appends the obstacles to the whole, and finds
+/// which vertices of the moving part stay in planes, none of which goes farther than `reach` (world units). To be
+/// called once, before distances are made for surface(), and before any ConstrainedSurface. \throw InvalidInput as
 /// hold_in_planes()
 void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach);
 

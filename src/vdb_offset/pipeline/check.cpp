@@ -61,20 +61,20 @@ std::size_t count_torn(const Surface& surface, PolygonView source, std::span<con
   return torn;
 }
 
-/// The median distance of the front's vertices, with the sign of the side that most of them lie on.
+/// The median distance of the moving part's vertices, with the sign of the side that most of them lie on.
 double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3d> positions) {
-  const Surface& front = constrained.front.surface();
+  const Surface& moving_part = constrained.moving_part.surface();
   std::vector<Vec3d> points;
   for (std::uint32_t v = 0; v < positions.size(); ++v)
-    if (constrained.on_front(v)) points.push_back(positions[v] - front.origin);
-  const std::vector<Closest> closest = closest_points(constrained.front, points);
+    if (constrained.vertex_on_part(v)) points.push_back(positions[v] - moving_part.origin);
+  const std::vector<Closest> closest = closest_points(constrained.moving_part, points);
   std::vector<double> distance;
   distance.reserve(closest.size());
   std::ptrdiff_t outside = 0;
   for (std::size_t v = 0; v < closest.size(); ++v) {
     const auto& [d, triangle, feature, tied, point] = closest[v];
     distance.push_back(d);
-    outside += front.pseudonormal(triangle, feature).dot(points[v] - point) < 0 ? -1 : 1;
+    outside += moving_part.pseudonormal(triangle, feature).dot(points[v] - point) < 0 ? -1 : 1;
   }
   const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
   std::nth_element(distance.begin(), middle, distance.end());
@@ -104,21 +104,21 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), {.find = false, .planes = {}}, 0);
   const Surface& surface = parts.surface();
-  const ClosestQuery query(parts.front);
+  const ClosestQuery query(parts.moving_part);
   const std::vector<Vec3d> source = parts.source(space.view()),
-                           places = positions_in_offset(surface, source, moved.view().positions),
+                           in_offset = positions_in_offset(surface, source, moved.view().positions),
                            in_file = parts.source(mesh),
                            moved_in_file = positions_in_offset(surface, in_file, positions);
   std::optional<Surroundings> surroundings;
   if (parts.obstacles) {
     surroundings.emplace(parts, source, options.clearance);
-    result.obstacles = surroundings->facts(places);
+    result.obstacles = surroundings->facts(in_offset);
   }
   ConstrainedSurface constrained = parts.constrained(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, moved_in_file};
   if (!options.metric.even()) constrained.file = &file;
   result.torn = count_torn(surface, mesh, positions, options.precision);
-  result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, places));
+  result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, in_offset));
   std::size_t disagreeing = 0;
   const Distances distances = distances_on_parts(parts, options.border, result.distances, disagreeing);
   result.distances = distances_of_input(surface, distances);
@@ -131,13 +131,13 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   std::optional<SelfCrossings> source_crossings;
   if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
   FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));
-  finder.move_all([&](std::uint32_t v) { return places[v]; });
+  finder.move_all([&](std::uint32_t v) { return in_offset[v]; });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
   result.crossings_near_source = finder.crossings_near_source();
   result.more_source_crossings = finder.source_crossings().has_more();
   judge_vertices(surface, finder, distances, options.precision, result);
-  result.interior = measure_interior(constrained, places, distances);
+  result.interior = measure_interior(constrained, in_offset, distances);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ bool goes_anywhere(const Reach& farthest);
 
 /// Rasterises a surface and sweeps its field out to the plan's reach. Adds the seconds of both stages to `statistics`.
 /// \param slab the surface is a ribbon, and its field one leaf node thick
-/// \pre the surface stands in the frame of the plan's voxels (see place())
+/// \pre the surface stands in the frame of the plan's voxels (see to_local_frame())
 DistanceField make_field(const Surface& surface, const GridPlan& plan, bool slab, const OffsetOptions& options,
                          OffsetStatistics& statistics);
 
@@ -43,7 +43,7 @@ Ridges ridges_of(const OffsetOptions& options);
 /// The options of propagate() in a run.
 PathOptions march_options(const OffsetOptions& options, Ridges ridges);
 
-/// The voxel size of the frame of a surface that no field is made for (see place()), world units, above 0.
+/// The voxel size of the frame of a surface that no field is made for (see to_local_frame()), world units, above 0.
 double frame_voxel_size(const MeshFacts& facts);
 
 /// Runs `work(threads)` in an arena of its own, which keeps the number of threads a matter of this call alone.

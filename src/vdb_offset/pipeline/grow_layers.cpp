@@ -41,8 +41,9 @@ void round_to_file(const PreparedMesh& mesh, const ConstrainedSurface& constrain
       mesh.source(), mesh.options().precision,
       [&](std::uint32_t v) { return mesh.surface().representative[v] != kNone; },
       [&](std::uint32_t v, const Vec3d& position) -> std::optional<double> {
-        if (!constrained.on_front(v)) return std::nullopt;
-        return constrained.front(position - constrained.front.surface().origin, constrained.hint(v)).distance;
+        if (!constrained.vertex_on_part(v)) return std::nullopt;
+        return constrained.moving_part(position - constrained.moving_part.surface().origin, constrained.hint(v))
+            .distance;
       },
       stack, paths);
 }
@@ -119,7 +120,7 @@ LayersResult hand_over(const PreparedMesh& mesh, OffsetStatistics statistics, co
     result.first_achieved[v] = stack.first_achieved[w];
   });
   result.stacks = stacks_of_input(mesh, std::move(stack.stacks));
-  result.place = first_at_position(surface);
+  result.welded_to = first_at_position(surface);
   for (const Distances& each : heights) result.heights.push_back(distances_of_input(surface, each));
   result.carries = carries(mesh, columns);
   result.known = known_sides(surface.facts);

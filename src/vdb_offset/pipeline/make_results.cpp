@@ -31,8 +31,8 @@ constexpr std::size_t kInteriorTriangles = 10000;
 
 bool is_junction(const MeshParts& parts, const std::vector<std::uint8_t>& junctions, std::size_t vertex) {
   if (junctions.empty()) return false;
-  const std::size_t on_front = parts.front_vertex.empty() ? vertex : parts.front_vertex[vertex];
-  return on_front < junctions.size() && junctions[on_front];
+  const std::size_t on_part = parts.part_vertex.empty() ? vertex : parts.part_vertex[vertex];
+  return on_part < junctions.size() && junctions[on_part];
 }
 
 /// The distances of all vertices with 0 at junctions.
@@ -256,7 +256,7 @@ class ResultMaker {
 AskedDistances ask(const PreparedMesh& mesh, std::span<const Distances> of_input) {
   AskedDistances distances;
   if (mesh.options().off_source)
-    distances.junctions = find_junctions(mesh.parts().front, mesh.mesh(), mesh.options().only);
+    distances.junctions = find_junctions(mesh.parts().moving_part, mesh.mesh(), mesh.options().only);
   distances.disagreeing.resize(of_input.size());
   for (std::size_t i = 0; i < of_input.size(); ++i) {
     distances.asked.push_back(mesh.distances_of_all(of_input[i], distances.disagreeing[i]));

@@ -17,7 +17,8 @@ struct AskedDistances {
   std::vector<Distances> asked;  ///< Means of the distances that the input's vertices are given.
   std::vector<Distances> moved;  ///< The distances that vertices are moved by: 0 at junctions, else those asked for.
   std::vector<std::size_t> disagreeing;  ///< Of each result: input vertices with another distance than is asked for.
-  /// Of each vertex of the front: 1 if it is at a junction. Empty if none is, or if no shell is made of the results.
+  /// Of each vertex of the moving part: 1 if it is at a junction. Empty if none is, or if no shell is made of the
+  /// results.
   std::vector<std::uint8_t> junctions;
 };
 AskedDistances ask(const PreparedMesh& mesh, std::span<const Distances> of_input);

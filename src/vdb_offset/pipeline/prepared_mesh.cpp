@@ -19,34 +19,34 @@ namespace {
 // Bytes that a vertex takes while a result in which much is held back is made valid; measured: up to 430.
 constexpr std::size_t kLimitBytes = 500;
 
-/// The distances of the front's vertices, picked from those of all vertices.
-Distances distances_on_front(const MeshParts& parts, const Distances& of_all) {
-  if (parts.front_vertex.empty() || of_all.uniform()) return of_all;
-  std::vector<double> each(parts.front.vertices.size(), 0.0);
-  for (std::size_t w = 0; w < parts.front_vertex.size(); ++w)
-    if (parts.front_vertex[w] != kNone) each[parts.front_vertex[w]] = of_all[w];
+/// The distances of the moving part's vertices, picked from those of all vertices.
+Distances distances_of_part(const MeshParts& parts, const Distances& of_all) {
+  if (parts.part_vertex.empty() || of_all.uniform()) return of_all;
+  std::vector<double> each(parts.moving_part.vertices.size(), 0.0);
+  for (std::size_t w = 0; w < parts.part_vertex.size(); ++w)
+    if (parts.part_vertex[w] != kNone) each[parts.part_vertex[w]] = of_all[w];
   return Distances(std::move(each));
 }
 
-/// The paths of all vertices from those of the front's; vertices that are not on the front stay, as was asked.
-Paths paths_of_all(const MeshParts& parts, Paths of_front) {
-  if (parts.front_vertex.empty()) return of_front;
-  const std::size_t count = parts.front_vertex.size();
+/// The paths of all vertices from those of the moving part's; all other vertices stay, as was asked.
+Paths paths_of_all(const MeshParts& parts, Paths of_part) {
+  if (parts.part_vertex.empty()) return of_part;
+  const std::size_t count = parts.part_vertex.size();
   Paths paths{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<double>(count, 0.0),
               std::vector<VertexState>(count, VertexState::Reached), std::vector<std::uint32_t>(count, kNone),
-              of_front.straight};
+              of_part.straight};
   for (std::size_t w = 0; w < count; ++w) {
-    const auto f = parts.front_vertex[w];
+    const auto f = parts.part_vertex[w];
     if (f == kNone) continue;
-    paths.displacement[w] = of_front.displacement[f];
-    paths.achieved[w] = of_front.achieved[f];
-    paths.state[w] = of_front.state[f];
-    paths.closest[w] = of_front.closest[f];
+    paths.displacement[w] = of_part.displacement[f];
+    paths.achieved[w] = of_part.achieved[f];
+    paths.state[w] = of_part.state[f];
+    paths.closest[w] = of_part.closest[f];
   }
-  if (of_front.trace.empty()) return paths;
+  if (of_part.trace.empty()) return paths;
   paths.trace.resize(count);
   for (std::size_t w = 0; w < count; ++w)
-    if (parts.front_vertex[w] != kNone) paths.trace[w] = std::move(of_front.trace[parts.front_vertex[w]]);
+    if (parts.part_vertex[w] != kNone) paths.trace[w] = std::move(of_part.trace[parts.part_vertex[w]]);
   return paths;
 }
 
@@ -70,7 +70,7 @@ GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthes
     if (*surface) beside += surface_bytes(**surface);
   if (options.collision == Collision::Limit) beside += kLimitBytes * mesh.positions.size();
   if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
-  return plan_grid(parts.front, farthest, options.grid, options.max_memory, threads, {beside});
+  return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads, {beside});
 }
 
 PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, int threads, const Reach& farthest,
@@ -87,13 +87,13 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
       plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
       to_local_frame(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
     } else if (parts_.obstacles) {
-      to_local_frame(parts_, frame_voxel_size(parts_.front.facts), options.symmetry, 0);
+      to_local_frame(parts_, frame_voxel_size(parts_.moving_part.facts), options.symmetry, 0);
     }
   }
   statistics_.plan = plan;
-  if (moves) field_ = make_field(parts_.front, plan, false, options, statistics_);
+  if (moves) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
-  if (moves) query_.emplace(parts_.front);
+  if (moves) query_.emplace(parts_.moving_part);
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
   if (parts_.obstacles) surroundings_.emplace(parts_, source_, options.clearance);
   if (moves && options.border == Border::Slide && parts_.rest) slides_.emplace(parts_, *query_);
@@ -111,21 +111,21 @@ Distances PreparedMesh::distances_of_all(const Distances& of_input, std::size_t&
 
 std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances> distances, Ridges ridges) {
   VDB_OFFSET_ASSERT(query_.has_value());
-  const DirectionField directions = find_directions(field_, is_open(parts_.front.facts), statistics_);
+  const DirectionField directions = find_directions(field_, is_open(parts_.moving_part.facts), statistics_);
   const StageTimer timer(statistics_.seconds, Stage::Propagate);
   VDB_OFFSET_ASSERT(std::all_of(distances.begin(), distances.end(), [&](const Distances& each) {
     return each.uniform() || each.count() == surface().vertices.size();
   }));
-  std::vector<Distances> on_front;
-  for (const Distances& each : distances) on_front.push_back(distances_on_front(parts_, each));
-  std::vector<Paths> of_front =
-      propagate(*query_, directions, on_front, obstacles(), options_.progress, march_options(options_, ridges));
-  VDB_OFFSET_ASSERT(of_front.size() == distances.size());
+  std::vector<Distances> on_part;
+  for (const Distances& each : distances) on_part.push_back(distances_of_part(parts_, each));
+  std::vector<Paths> of_part =
+      propagate(*query_, directions, on_part, obstacles(), options_.progress, march_options(options_, ridges));
+  VDB_OFFSET_ASSERT(of_part.size() == distances.size());
   std::vector<Marched> marched;
-  for (std::size_t i = 0; i < of_front.size(); ++i) {
-    if (slides_) slide_borders(parts_, *slides_, *query_, on_front[i], of_front[i]);
+  for (std::size_t i = 0; i < of_part.size(); ++i) {
+    if (slides_) slide_borders(parts_, *slides_, *query_, on_part[i], of_part[i]);
     Marched& each = marched.emplace_back();
-    each.paths = paths_of_all(parts_, std::move(of_front[i]));
+    each.paths = paths_of_all(parts_, std::move(of_part[i]));
     each.bound = std::exchange(parts_.bound, {});  // what is bound at one distance may be free at another
     if (surroundings_) surroundings_->hold(each.paths, distances[i], each.bound);
     end_traces(each.paths);
@@ -142,21 +142,21 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
 }
 
 SideRoom PreparedMesh::room(const Paths& paths, const Distances& distances) const {
-  return room_beside(*query_, parts_.front.facts.closed(), paths.state,
-                     [&] { return distances_on_front(parts_, distances); });
+  return room_beside(*query_, parts_.moving_part.facts.closed(), paths.state,
+                     [&] { return distances_of_part(parts_, distances); });
 }
 
 BorderFacts PreparedMesh::borders(const Paths& paths) const {
-  if (parts_.front_vertex.empty()) return border_facts(parts_.front, paths.displacement, {});
-  std::vector<Vec3d> displacement(parts_.front.vertices.size(), Vec3d(0.0));
+  if (parts_.part_vertex.empty()) return border_facts(parts_.moving_part, paths.displacement, {});
+  std::vector<Vec3d> displacement(parts_.moving_part.vertices.size(), Vec3d(0.0));
   std::vector<std::uint8_t> sliding(displacement.size(), 0);
-  for (std::size_t w = 0; w < parts_.front_vertex.size(); ++w) {
-    const auto f = parts_.front_vertex[w];
+  for (std::size_t w = 0; w < parts_.part_vertex.size(); ++w) {
+    const auto f = parts_.part_vertex[w];
     if (f == kNone) continue;
     displacement[f] = paths.displacement[w];
     sliding[f] = slides_ && parts_.at_border[w];
   }
-  return border_facts(parts_.front, displacement, sliding);
+  return border_facts(parts_.moving_part, displacement, sliding);
 }
 
 }  // namespace vdb_offset

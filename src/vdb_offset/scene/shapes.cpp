@@ -29,7 +29,7 @@ void require_length(const char* what, double value) {
     throw InvalidInput(fmt::format("shape: expected {} > 0, got {}", what, value));
 }
 
-/// \throw OutOfBudget if so many more faces do not fit, with as many points and, of each, its number by its place.
+/// \throw OutOfBudget if so many more faces do not fit, with as many points and, of each, its number by its position.
 void require_room(std::size_t faces) {
   constexpr std::size_t kFaceBytes = 5 * 4, kPointBytes = sizeof(Vec3d) + 80;  // the map's node, as libstdc++ has it
   require_memory(faces * (kFaceBytes + kPointBytes), "shape");

@@ -49,7 +49,7 @@ class JoinedSets {
 /// A face as seen along an edge.
 struct Leaf {
   std::uint32_t corner, face;
-  bool forwards;     // it runs through the edge from the smaller place to the larger one
+  bool forwards;     // it runs through the edge from the smaller vertex to the larger one
   Vec3d into{0.0};   // unit vector from the edge into the face
   double angle = 0;  // around the edge
   /// The side towards the leaf at the next larger angle.
@@ -77,12 +77,12 @@ class SideFinder {
  private:
   /// A sector at an edge of three faces or more, at one of its ends.
   struct Sector {
-    std::uint32_t edge, place, corner;  // as 2 c + s
+    std::uint32_t edge, vertex, corner;  // as 2 c + s
   };
 
   void join_all() {
     edge_ = 0;
-    visit_edges(mesh_, sheets_.place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
+    visit_edges(mesh_, sheets_.welded_to, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
       ++edge_;
       if (sides.size() == 1) leave_open({{sides[0].corner, sides[0].corner}, {0, 1}, Vec3d(0.0)});
       else if (sides.size() == 2) join_two(leaf_of(smaller, sides[0]), leaf_of(smaller, sides[1]));
@@ -93,7 +93,7 @@ class SideFinder {
   /// Cuts wedges that come by one edge twice (see find_cuts()).
   void cut_wedges() {
     for (Sector& sector : sectors_) sector.corner = joined_.find(sector.corner);
-    const auto key = [](const Sector& s) { return std::tuple(s.edge, s.place, s.corner); };
+    const auto key = [](const Sector& s) { return std::tuple(s.edge, s.vertex, s.corner); };
     std::sort(sectors_.begin(), sectors_.end(), [&](const Sector& a, const Sector& b) { return key(a) < key(b); });
     for (std::size_t i = 1; i < sectors_.size(); ++i)
       if (key(sectors_[i]) == key(sectors_[i - 1])) links_[sectors_[i].corner];
@@ -128,7 +128,7 @@ class SideFinder {
     return corner + 1 < mesh_.face_begin[f + 1] ? corner + 1 : mesh_.face_begin[f];
   }
   Leaf leaf_of(std::uint32_t smaller, const EdgeSide& side) const {
-    return {side.corner, face_of_[side.corner], sheets_.place[mesh_.corners[side.corner]] == smaller};
+    return {side.corner, face_of_[side.corner], sheets_.welded_to[mesh_.corners[side.corner]] == smaller};
   }
   /// The leaf's corners at the smaller and the larger position.
   std::array<std::uint32_t, 2> ends(const Leaf& leaf) const {
@@ -144,7 +144,7 @@ class SideFinder {
       const std::uint32_t own = 2 * at_a[end] + side_of_a, other = 2 * at_b[end] + side_of_b;
       if (!is_joined_) {
         joined_.join(own, other);
-        if (is_sector) sectors_.push_back({edge_, sheets_.place[mesh_.corners[at_a[end]]], own});
+        if (is_sector) sectors_.push_back({edge_, sheets_.welded_to[mesh_.corners[at_a[end]]], own});
       } else if (const auto links = links_.find(joined_.find(own)); links != links_.end()) {
         links->second.push_back(
             {{own, other}, is_sector ? edge_ : kNone, {{a.corner, b.corner}, {side_of_a, side_of_b}, Vec3d(0.0)}});
@@ -183,7 +183,7 @@ class SideFinder {
   void follow(const Leaf& repeat, const std::vector<Leaf>& leaves) {
     const auto vertices = [&](const Leaf& leaf) {
       std::vector<std::uint32_t> all;
-      for (const auto v : mesh_.face(leaf.face)) all.push_back(sheets_.place[v]);
+      for (const auto v : mesh_.face(leaf.face)) all.push_back(sheets_.welded_to[v]);
       std::sort(all.begin(), all.end());
       return all;
     };
@@ -321,7 +321,7 @@ Vec3d newell_normal(PolygonView mesh, std::size_t f) {
 }
 
 SheetSides find_sides(const Sheets& sheets) {
-  VDB_OFFSET_ASSERT(sheets.place.size() == sheets.mesh.positions.size());
+  VDB_OFFSET_ASSERT(sheets.welded_to.size() == sheets.mesh.positions.size());
   VDB_OFFSET_ASSERT(sheets.turned.size() == sheets.mesh.face_count());
   VDB_OFFSET_ASSERT(sheets.repeats.size() == sheets.mesh.face_count());
   return SideFinder(sheets).find();

@@ -44,9 +44,9 @@ struct SheetSides {
 /// The input of find_sides(): a mesh, and how its surface was built.
 struct Sheets {
   PolygonView mesh;
-  std::span<const std::uint32_t> place;   ///< Of each vertex: the first at its position (see weld_by_position()).
-  std::span<const std::uint8_t> turned;   ///< Of each face: 1 if it was turned round to agree with its neighbours.
-  std::span<const std::uint8_t> repeats;  ///< Of each face: 1 if it lies over an earlier one.
+  std::span<const std::uint32_t> welded_to;  ///< Of each vertex: the first at its position (see weld_by_position()).
+  std::span<const std::uint8_t> turned;      ///< Of each face: 1 if it was turned round to agree with its neighbours.
+  std::span<const std::uint8_t> repeats;     ///< Of each face: 1 if it lies over an earlier one.
   /// The thickness of a sheet at a vertex, world units: on its outer side, and on its inner side.
   std::function<std::array<double, 2>(std::uint32_t)> thickness;
 

@@ -31,12 +31,13 @@ Polygons put_together(PolygonView outer, PolygonView inner) {
 
 void count_edges(Hollow& hollow) {
   const PolygonView mesh = hollow.polygons.view();
-  const std::vector<std::uint32_t> place = weld_by_position(mesh, {});
+  const std::vector<std::uint32_t> welded_to = weld_by_position(mesh, {});
   ShellFacts& facts = hollow.facts;
   facts.closed = facts.oriented = true;
-  visit_edges(mesh, place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
-    const auto forwards = std::count_if(
-        sides.begin(), sides.end(), [&](const EdgeSide& side) { return place[mesh.corners[side.corner]] == smaller; });
+  visit_edges(mesh, welded_to, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
+    const auto forwards = std::count_if(sides.begin(), sides.end(), [&](const EdgeSide& side) {
+      return welded_to[mesh.corners[side.corner]] == smaller;
+    });
     facts.border_edges_left += sides.size() == 1;
     facts.non_manifold_edges += sides.size() > 2;
     facts.closed = facts.closed && sides.size() % 2 == 0;

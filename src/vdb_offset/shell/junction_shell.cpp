@@ -149,7 +149,7 @@ class JunctionShell {
   }
 
   void add_rim() {
-    std::map<std::uint32_t, std::vector<End>> ends;  // by place
+    std::map<std::uint32_t, std::vector<End>> ends;  // by the vertex that its own is welded to
     std::vector<RimFace> faces;
     for (const SheetSides::Gap& gap : sides_.gaps) {
       const std::uint32_t face = face_of(gap.corner[0]);
@@ -162,7 +162,7 @@ class JunctionShell {
       note_end(ends, from, back_to, face, gap.corner[0]);
       note_end(ends, back_from, to, face, gap.corner[0]);
     }
-    for (auto& [place, some] : ends) close(some, faces);
+    for (auto& [vertex, some] : ends) close(some, faces);
     std::stable_sort(faces.begin(), faces.end(), [](const RimFace& a, const RimFace& b) {
       return std::pair(a.origin.face, a.origin.corner) < std::pair(b.origin.face, b.origin.corner);
     });
@@ -188,7 +188,7 @@ class JunctionShell {
     if (!input_.junctions[v]) return;
     const bool at_start = mesh_.corners[corner] == v;
     const std::uint32_t next = corner + 1 < mesh_.face_begin[face + 1] ? corner + 1 : mesh_.face_begin[face];
-    ends[input_.sheets.place[v]].push_back({from, to, face, at_start ? corner : next});
+    ends[input_.sheets.welded_to[v]].push_back({from, to, face, at_start ? corner : next});
   }
 
   /// Fills the holes that rims which meet at a vertex leave there, if they do not end on each other.

@@ -19,9 +19,9 @@ namespace vdb_offset {
 namespace {
 
 /// The corners at which the mesh's border edges start, in ascending order.
-std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::uint32_t> place) {
+std::vector<std::uint32_t> find_border(PolygonView mesh, std::span<const std::uint32_t> welded_to) {
   std::vector<std::uint32_t> corners;
-  visit_edges(mesh, place, [&](auto, std::span<const EdgeSide> sides) {
+  visit_edges(mesh, welded_to, [&](auto, std::span<const EdgeSide> sides) {
     if (sides.size() == 1) corners.push_back(sides[0].corner);
   });
   std::sort(corners.begin(), corners.end());
@@ -85,11 +85,11 @@ Shell both_skins(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
 
 /// The positions of the shell's vertices if vertices that are welded in the mesh have one position in each skin. In the
 /// shell they may have several: where vertices are welded with a tolerance, or at a seam, those that do not move stay.
-std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uint32_t> place_in_mesh) {
+std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uint32_t> welded_in_mesh) {
   const std::size_t count = shell.source_vertices();
   std::vector<Vec3d> positions = shell.polygons.positions;
   for_each_index(2 * count, [&](std::size_t v) {
-    const std::uint32_t first = place_in_mesh[v % count];
+    const std::uint32_t first = welded_in_mesh[v % count];
     if (first != kNone) positions[v] = shell.polygons.positions[v < count ? first : count + first];
   });
   return positions;
@@ -97,21 +97,21 @@ std::vector<Vec3d> welded_positions(const Shell& shell, std::span<const std::uin
 
 /// For each vertex of the shell the first vertex that counts as one with it; kNone for a vertex in no face. Vertices
 /// that are welded in the mesh are one in each skin; others are by their positions, if vertices are welded at all.
-std::vector<std::uint32_t> places_of(const Shell& shell, std::span<const std::uint32_t> place_in_mesh,
-                                     bool by_position) {
+std::vector<std::uint32_t> welded_in_shell(const Shell& shell, std::span<const std::uint32_t> welded_in_mesh,
+                                           bool by_position) {
   const std::size_t count = shell.source_vertices();
-  const std::vector<Vec3d> positions = welded_positions(shell, place_in_mesh);
+  const std::vector<Vec3d> positions = welded_positions(shell, welded_in_mesh);
   if (by_position) return weld_by_position({positions, shell.polygons.corners, shell.polygons.face_begin}, {});
-  std::vector<std::uint32_t> place(2 * count);
+  std::vector<std::uint32_t> welded_to(2 * count);
   for_each_index(2 * count, [&](std::size_t v) {
-    place[v] = static_cast<std::uint32_t>(v >= count && positions[v] == positions[v - count] ? v - count : v);
+    welded_to[v] = static_cast<std::uint32_t>(v >= count && positions[v] == positions[v - count] ? v - count : v);
   });
-  return place;
+  return welded_to;
 }
 
 /// Adds a rim face at each border edge. It runs against the edge's face on the outer skin, and so along that face's own
 /// direction on the inner skin, where faces are reversed.
-void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<const std::uint32_t> place,
+void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<const std::uint32_t> welded_to,
              Shell& shell) {
   const auto inner = static_cast<std::uint32_t>(mesh.positions.size());
   for (const std::uint32_t corner : border) {
@@ -122,8 +122,8 @@ void add_rim(PolygonView mesh, std::span<const std::uint32_t> border, std::span<
     auto& corners = shell.polygons.corners;
     const std::size_t first = corners.size();
     for (const std::uint32_t v : quad)
-      if (corners.size() == first || place[v] != place[corners.back()]) corners.push_back(v);
-    while (corners.size() > first && place[corners.back()] == place[corners[first]]) corners.pop_back();
+      if (corners.size() == first || welded_to[v] != welded_to[corners.back()]) corners.push_back(v);
+    while (corners.size() > first && welded_to[corners.back()] == welded_to[corners[first]]) corners.pop_back();
     const std::size_t size = corners.size() - first;
     if (size < 3) {
       corners.resize(first);
@@ -144,13 +144,13 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
                        std::to_string(outer.size()) + " and " + std::to_string(inner.size()));
   const Part part(mesh, only);
   const PolygonView faces = part.view();
-  const std::vector<std::uint32_t> place_in_mesh = weld_by_position(faces, weld);
+  const std::vector<std::uint32_t> welded_in_mesh = weld_by_position(faces, weld);
   if (2 * mesh.positions.size() >= kNone)
     throw InvalidInput("shell: expected fewer than 2^31 vertices, got " + std::to_string(mesh.positions.size()));
   Shell shell = both_skins(faces, outer, inner);
-  const std::vector<std::uint32_t> place = places_of(shell, place_in_mesh, weld.enabled);
-  add_rim(faces, find_border(faces, place_in_mesh), place, shell);
-  count_facts(faces, weld, precision, place, shell);
+  const std::vector<std::uint32_t> welded_to = welded_in_shell(shell, welded_in_mesh, weld.enabled);
+  add_rim(faces, find_border(faces, welded_in_mesh), welded_to, shell);
+  count_facts(faces, weld, precision, welded_to, shell);
   shell.faces = part.faces();
   for (Shell::RimOrigin& edge : shell.rim) edge = part.in_mesh(edge);
   return shell;
@@ -196,13 +196,13 @@ Shell junction_shell_of(const Part& part, const TakenFaces& taken, std::span<con
                         std::span<const Vec3d> inner_skin, const OffsetResult& result, const OffsetOptions& options,
                         const OffsetResult* inner) {
   const PolygonView faces = part.view();
-  const std::vector<std::uint32_t> place = weld_by_position(faces, options.weld);
+  const std::vector<std::uint32_t> welded_to = weld_by_position(faces, options.weld);
   const auto thickness = [&](std::uint32_t v) -> std::array<double, 2> {
     const double d = result.distances[v];
     if (inner) return {d, -inner->distances[v]};
     return {std::max(d, 0.0), std::max(-d, 0.0)};
   };
-  Shell shell = make_junction_shell({.sheets = {faces, place, taken.turned, taken.repeats, thickness},
+  Shell shell = make_junction_shell({.sheets = {faces, welded_to, taken.turned, taken.repeats, thickness},
                                      .outer = outer,
                                      .inner = inner_skin,
                                      .junctions = taken.junctions,

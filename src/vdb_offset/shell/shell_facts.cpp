@@ -13,12 +13,12 @@
 namespace vdb_offset {
 namespace {
 
-void count_edges(std::span<const std::uint32_t> place, Shell& shell) {
+void count_edges(std::span<const std::uint32_t> welded_to, Shell& shell) {
   ShellFacts& facts = shell.facts;
   facts.closed = facts.oriented = true;
-  visit_edges(shell.polygons.view(), place, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
+  visit_edges(shell.polygons.view(), welded_to, [&](std::uint32_t smaller, std::span<const EdgeSide> sides) {
     const auto forwards = std::count_if(sides.begin(), sides.end(), [&](const EdgeSide& side) {
-      return place[shell.polygons.corners[side.corner]] == smaller;
+      return welded_to[shell.polygons.corners[side.corner]] == smaller;
     });
     facts.border_edges_left += sides.size() == 1;
     facts.non_manifold_edges += sides.size() > 2;
@@ -58,10 +58,10 @@ void count_pinched(PolygonView mesh, std::span<const Vec3d> written, Shell& shel
 /// Counts the crossings. Vertices that count as one are judged at one position, although those that have not moved keep
 /// their own coordinates.
 void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const Vec3d> written,
-                     std::span<const std::uint32_t> place, const Rounding& precision, Shell& shell) {
+                     std::span<const std::uint32_t> welded_to, const Rounding& precision, Shell& shell) {
   std::vector<Vec3d> joined(written.begin(), written.end());
   for (std::size_t v = 0; v < joined.size(); ++v)
-    if (place[v] != kNone) joined[v] = written[place[v]];
+    if (welded_to[v] != kNone) joined[v] = written[welded_to[v]];
   const Surface surface = build_surface({joined, shell.polygons.corners, shell.polygons.face_begin}, {});
   const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
   if (pairs.empty()) return;
@@ -101,12 +101,12 @@ std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOption
 }
 
 void count_facts(PolygonView mesh, const WeldOptions& weld, const Rounding& precision,
-                 std::span<const std::uint32_t> place, Shell& shell) {
-  VDB_OFFSET_ASSERT(place.size() == shell.polygons.positions.size());
+                 std::span<const std::uint32_t> welded_to, Shell& shell) {
+  VDB_OFFSET_ASSERT(welded_to.size() == shell.polygons.positions.size());
   const std::vector<Vec3d> written = written_positions(mesh, shell, precision);
-  count_edges(place, shell);
+  count_edges(welded_to, shell);
   count_pinched(mesh, written, shell);
-  count_crossings(mesh, weld, written, place, precision, shell);
+  count_crossings(mesh, weld, written, welded_to, precision, shell);
   shell.facts.volume = enclosed_volume({written, shell.polygons.corners, shell.polygons.face_begin});
 }
 

@@ -18,8 +18,8 @@ std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOption
 
 /// Counts all facts of a shell but those of its rim, on positions as they will be written.
 /// \param mesh the faces that the shell is made from
-/// \param place of each vertex of the shell the first vertex that counts as one with it (see weld_by_position())
+/// \param welded_to of each vertex of the shell the first vertex that counts as one with it (see weld_by_position())
 void count_facts(PolygonView mesh, const WeldOptions& weld, const Rounding& precision,
-                 std::span<const std::uint32_t> place, Shell& shell);
+                 std::span<const std::uint32_t> welded_to, Shell& shell);
 
 }  // namespace vdb_offset

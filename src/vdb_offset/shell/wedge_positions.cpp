@@ -148,7 +148,7 @@ class WedgePositionFinder {
   /// Of each face the faces on its plane, across edges of two faces.
   std::vector<std::vector<std::uint32_t>> find_planes() const {
     std::vector<std::vector<std::uint32_t>> others(mesh_.face_count());
-    visit_edges(mesh_, sheets_.place, [&](auto, std::span<const EdgeSide> sides) {
+    visit_edges(mesh_, sheets_.welded_to, [&](auto, std::span<const EdgeSide> sides) {
       if (sides.size() != 2) return;
       const std::uint32_t a = face_of(sides[0].corner), b = face_of(sides[1].corner);
       if (!(unit_normal(a).cross(unit_normal(b)).length() < kSamePlane)) return;

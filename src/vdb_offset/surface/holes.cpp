@@ -91,17 +91,17 @@ class LoopFinder {
   /// As many open edges arrive at a vertex as leave it, so the walk ends where it began.
   void walk_from(std::uint32_t start) {
     std::vector<std::uint32_t> path;
-    std::map<std::uint32_t, std::size_t> place{{start, 0}};  // of each vertex on the path
+    std::map<std::uint32_t, std::size_t> step{{start, 0}};  // of each vertex on the path: how many edges lead to it
     for (std::uint32_t at = start; !leaving_[at].empty();) {
       const std::uint32_t edge = leaving_[at].back();
       leaving_[at].pop_back();
       path.push_back(edge);
       at = edges_[edge].to;
-      const auto [known, is_new] = place.emplace(at, path.size());
+      const auto [known, is_new] = step.emplace(at, path.size());
       if (is_new) continue;
       const auto begin = path.begin() + static_cast<std::ptrdiff_t>(known->second);
       loops_.emplace_back(begin, path.end());
-      for (auto e = begin + 1; e < path.end(); ++e) place.erase(edges_[*e].from);
+      for (auto e = begin + 1; e < path.end(); ++e) step.erase(edges_[*e].from);
       path.erase(begin, path.end());
     }
   }

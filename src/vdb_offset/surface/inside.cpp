@@ -102,7 +102,7 @@ bool Inside::is_buried(std::uint32_t triangle, const Vec3d& x, double close) con
   constexpr double kLeastSlope = 1e-6, kAround = 1e3;
   const double slope = normal_of(triangle).dot(RayTree::direction());
   if (sense_ == 0 || std::abs(slope) < kLeastSlope) return false;
-  // Just ahead of all that is at this place, and just behind it.
+  // Just ahead of all that is at this point, and just behind it.
   int ahead = 0, here = slope > 0 ? 1 : -1;
   rays_.cast_from_behind(x, kAround * close, [&](std::size_t t, int turn, double height) {
     if (t == triangle) return;

@@ -87,7 +87,7 @@ class Inside {
   /// Whether the inside ends at fillings of holes somewhere.
   bool has_holes() const { return has_holes_; }
   /// Whether both sides of a triangle are inside at a point on it: then what is inside does not end there. Triangles
-  /// that are closer to the point than `close` are at one place with it.
+  /// that are closer to the point than `close` count as being at the point, too.
   bool is_buried(std::uint32_t triangle, const Vec3d& x, double close) const;
 
  private:

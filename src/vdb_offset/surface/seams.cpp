@@ -22,7 +22,7 @@
 namespace vdb_offset {
 namespace {
 
-// What a few roundings make of one place, in each of three coordinates.
+// What a few roundings make of one position, in each of three coordinates.
 constexpr double kUnitsApart = 4;
 // Of the diagonal: a crack that no one means, whatever the coordinates could tell apart.
 constexpr double kNothingOfDiagonal = 1e-9;
@@ -39,12 +39,12 @@ struct BorderEdge {
 /// bucket that did not come to zero can be borders: none at all on a closed surface.
 class EdgeSums {
  public:
-  EdgeSums(PolygonView polygons, std::span<const std::uint32_t> place) : sums_(kBuckets, 0) {
+  EdgeSums(PolygonView polygons, std::span<const std::uint32_t> welded_to) : sums_(kBuckets, 0) {
     tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts(kBuckets, 0);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), kRun), [&](const auto& range) {
       std::vector<std::uint64_t>& part = parts.local();
       for (std::size_t f = range.begin(); f != range.end(); ++f)
-        visit_sides(polygons, place, f, [&](auto, std::uint32_t from, std::uint32_t to) {
+        visit_sides(polygons, welded_to, f, [&](auto, std::uint32_t from, std::uint32_t to) {
           const std::uint64_t hash = mix(key(from, to)), value = mix(hash + 1);
           part[hash % kBuckets] += from < to ? value : -value;
         });
@@ -69,12 +69,12 @@ class EdgeSums {
 };
 
 /// The edges of a single face.
-std::vector<BorderEdge> find_single_edges(PolygonView polygons, std::span<const std::uint32_t> place) {
-  const EdgeSums sums(polygons, place);
+std::vector<BorderEdge> find_single_edges(PolygonView polygons, std::span<const std::uint32_t> welded_to) {
+  const EdgeSums sums(polygons, welded_to);
   if (sums.all_cancel()) return {};
   std::atomic<std::size_t> count = 0;
   const auto for_each_doubtful = [&](auto&& visit) {
-    for_each_side(polygons, place, [&](auto, std::uint32_t from, std::uint32_t to) {
+    for_each_side(polygons, welded_to, [&](auto, std::uint32_t from, std::uint32_t to) {
       if (!sums.cancels(from, to)) visit(EdgeSums::key(from, to));
     });
   };

@@ -136,18 +136,18 @@ void find_bounds(Surface& surface) {
 void sort_in_space(Surface& surface) {
   const MortonCurve curve(surface.facts.lower, surface.facts.upper);
   const std::size_t count = surface.triangles.size();
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> places(count);
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> on_curve(count);
   for_each_index(count, [&](std::size_t t) {
     const auto& [a, b, c] = surface.triangles[t];
     const Vec3d centre = surface.vertices[a] / 3.0 + surface.vertices[b] / 3.0 + surface.vertices[c] / 3.0;
-    places[t] = {curve(centre), static_cast<std::uint32_t>(t)};
+    on_curve[t] = {curve(centre), static_cast<std::uint32_t>(t)};
   });
-  tbb::parallel_sort(places.begin(), places.end());
+  tbb::parallel_sort(on_curve.begin(), on_curve.end());
   std::vector<std::array<std::uint32_t, 3>> triangles(count);
   std::vector<std::uint32_t> faces(count);
   for_each_index(count, [&](std::size_t i) {
-    triangles[i] = surface.triangles[places[i].second];
-    faces[i] = surface.face[places[i].second];
+    triangles[i] = surface.triangles[on_curve[i].second];
+    faces[i] = surface.face[on_curve[i].second];
   });
   surface.triangles = std::move(triangles);
   surface.face = std::move(faces);
@@ -185,12 +185,12 @@ double add_areas(const Surface& surface, std::vector<std::uint8_t>& degenerate) 
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-/// Whether a face has a place at two of its corners.
-bool repeats_place(PolygonView polygons, const Surface& surface, std::size_t f, std::vector<std::uint32_t>& places) {
-  places.clear();
-  for (const auto v : polygons.face(f)) places.push_back(surface.welded[v]);
-  std::sort(places.begin(), places.end());
-  return std::adjacent_find(places.begin(), places.end()) != places.end();
+/// Whether a face has one vertex at two of its corners.
+bool repeats_vertex(PolygonView polygons, const Surface& surface, std::size_t f, std::vector<std::uint32_t>& corners) {
+  corners.clear();
+  for (const auto v : polygons.face(f)) corners.push_back(surface.welded[v]);
+  std::sort(corners.begin(), corners.end());
+  return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
 }
 
 void measure(PolygonView polygons, Surface& surface) {
@@ -198,9 +198,9 @@ void measure(PolygonView polygons, Surface& surface) {
   std::vector<std::uint8_t> degenerate(polygons.face_count(), 1);
   facts.area = add_areas(surface, degenerate);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), 1024), [&](const auto& range) {
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> corners;
     for (std::size_t f = range.begin(); f != range.end(); ++f)
-      if (repeats_place(polygons, surface, f, places)) degenerate[f] = 1;
+      if (repeats_vertex(polygons, surface, f, corners)) degenerate[f] = 1;
   });
   facts.degenerate_faces = static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
 }

@@ -64,8 +64,8 @@ class TolerantWelder {
   std::vector<std::uint32_t> slots_;
 };
 
-/// Finds the first vertex of all that stand at one place, bit by bit, from any number of threads: first all are added,
-/// then each may ask. A place keeps the slot that its first comer got, where the lowest number stays.
+/// Finds the first vertex of all that stand at one position, bit by bit, from any number of threads: first all are
+/// added, then each may ask. A position keeps the slot that its first comer got, where the lowest number stays.
 class ExactWelder {
  public:
   explicit ExactWelder(std::span<const Vec3d> positions)
@@ -191,7 +191,7 @@ Welding restricted(Welding welding, PolygonView some_faces) {
   std::vector<std::uint32_t> first(welding.first.size(), kNone);
   for (const auto v : some_faces.corners) {
     const std::uint32_t one = welding.first[v];
-    first[v] = first[one] = one;  // which may be in none of the faces, but has their place
+    first[v] = first[one] = one;  // which may be in none of the faces, but has their position
   }
   welding.first = std::move(first);
   return welding;

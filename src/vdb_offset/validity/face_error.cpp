@@ -12,7 +12,7 @@ namespace vdb_offset {
 FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> positions,
                                    const Distances& distances, std::size_t most) {
   const Surface& surface = constrained.surface;
-  const Vec3d origin = constrained.front.surface().origin;
+  const Vec3d origin = constrained.moving_part.surface().origin;
   const std::size_t all = surface.triangles.size(), count = most == 0 ? all : std::min(all, most);
   constexpr std::size_t kSamples = 4;  // of a triangle
   constexpr double kLeftOut = -1;      // the error of a sample that is left out
@@ -23,7 +23,7 @@ FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::s
   std::vector<double> error(kSamples * count, kLeftOut);
   const auto measure = [&](std::size_t i) {
     const auto t = static_cast<std::uint32_t>(i * all / count);
-    if (!constrained.is_front(t)) return;
+    if (!constrained.triangle_on_part(t)) return;
     const auto& [a, b, c] = surface.triangles[t];
     const double da = distances[a], db = distances[b], dc = distances[c];
     const Vec3d samples[kSamples] = {
@@ -33,7 +33,7 @@ FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::s
                                      std::abs(dc + da) / 2};
     const std::uint32_t hint = constrained.hint_of_triangle(t), hints[kSamples] = {hint, hint, hint, hint};
     Closest closest[kSamples];
-    constrained.front.answer_together(samples, hints, closest);
+    constrained.moving_part.answer_together(samples, hints, closest);
     for (std::size_t k = 0; k < kSamples; ++k)
       if (wanted[k] > least_target) error[kSamples * i + k] = std::abs(closest[k].distance - wanted[k]) / wanted[k];
   };

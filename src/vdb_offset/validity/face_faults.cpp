@@ -57,15 +57,15 @@ FaceFaults::Fault FaceFaults::fault_of(std::uint32_t t) const {
   const Vec3d before = twice_area(surface_, t, source_), now = twice_area(surface_, t, positions_.all());
   if (!(before.lengthSqr() > 0)) return Fault::None;
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
-  const bool against = constrained_.is_front(t) ? positions_.faces_against_front(t) : now.dot(before) < 0;
+  const bool against = constrained_.triangle_on_part(t) ? positions_.faces_against_part(t) : now.dot(before) < 0;
   if (against) return Fault::Inverted;
   return is_crowded(t) ? Fault::Crowded : Fault::None;
 }
 
 bool FaceFaults::is_crowded(std::uint32_t t) const {
   if (!clearance_ && !source_finder_) return false;
-  if (source_finder_ && constrained_.is_front(t) && meets_source(t)) return true;
-  if (other_skin_finder_ && constrained_.is_front(t) && meets_other_skin(t)) return true;
+  if (source_finder_ && constrained_.triangle_on_part(t) && meets_source(t)) return true;
+  if (other_skin_finder_ && constrained_.triangle_on_part(t) && meets_other_skin(t)) return true;
   return clearance_ && is_near_obstacle(t);
 }
 
@@ -97,22 +97,22 @@ bool FaceFaults::meets_source(std::uint32_t t) const {
   const Indices met = source_finder_->met_by(t, positions_.all());
   return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
     if (constrained_.rests(s) && constrained_.has_bound_corner(s)) return !constrained_.has_bound_corner(t);
-    return constrained_.is_front(s) && (s == t || !source_crossings_.sheets_cross(s, t));
+    return constrained_.triangle_on_part(s) && (s == t || !source_crossings_.sheets_cross(s, t));
   });
 }
 
 bool FaceFaults::meets_other_skin(std::uint32_t t) const {
   const Indices met = other_skin_finder_->met_by(t, positions_.all());
   return std::any_of(met.begin(), met.end(), [&](std::uint32_t s) {
-    return constrained_.is_front(s) && !source_crossings_.sheets_cross(s, t);
+    return constrained_.triangle_on_part(s) && !source_crossings_.sheets_cross(s, t);
   });
 }
 
 void FaceFaults::find_folded() {
   folded_.assign(source_.size(), 0);
   for_each_index(source_.size(), [&](std::size_t v) {
-    const std::uint32_t on_front = constrained_.front_vertex_of(static_cast<std::uint32_t>(v));
-    folded_[v] = on_front != kNone && is_folded(constrained_.front.surface(), on_front);
+    const std::uint32_t on_part = constrained_.part_vertex_of(static_cast<std::uint32_t>(v));
+    folded_[v] = on_part != kNone && is_folded(constrained_.moving_part.surface(), on_part);
   });
 }
 

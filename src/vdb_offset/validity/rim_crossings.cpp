@@ -9,16 +9,16 @@ namespace vdb_offset {
 namespace {
 
 /// Whether no other face of the moving part lies at a half-edge's edge.
-bool ends_front(const ConstrainedSurface& constrained, std::uint32_t half_edge) {
+bool ends_part(const ConstrainedSurface& constrained, std::uint32_t half_edge) {
   const auto& next = constrained.surface.next_around_edge;
   for (std::uint32_t h = next[half_edge]; h != half_edge; h = next[h])
-    if (constrained.is_front(h / 3)) return false;
+    if (constrained.triangle_on_part(h / 3)) return false;
   return true;
 }
 
 /// Whether a triangle is one of the mesh that stays, which a shell of the moving part does not have.
 bool is_left_out(const ConstrainedSurface& constrained, std::uint32_t triangle) {
-  return !constrained.is_front(triangle) &&
+  return !constrained.triangle_on_part(triangle) &&
          constrained.surface.representative[constrained.surface.triangles[triangle][0]] != kNone;
 }
 
@@ -42,7 +42,7 @@ RimCrossings::RimCrossings(const ConstrainedSurface& constrained, std::span<cons
 void RimCrossings::find_edges() {
   const auto half_edges = static_cast<std::uint32_t>(surface_.next_around_edge.size());
   for (std::uint32_t h = 0; h < half_edges; ++h) {
-    if (!constrained_.is_front(h / 3) || !ends_front(constrained_, h)) continue;
+    if (!constrained_.triangle_on_part(h / 3) || !ends_part(constrained_, h)) continue;
     Edge edge{surface_.from(h), surface_.to(h), h / 3};
     if (surface_.is_turned(edge.triangle)) std::swap(edge.from, edge.to);
     edges_.push_back(edge);
@@ -117,7 +117,7 @@ void RimCrossings::find(std::span<const std::uint32_t> moved, std::span<const st
 
   std::erase_if(with_other_, [&](const auto& pair) { return rim_has_moved(pair.first); });
   for (const auto& [r, t] : other_skin.met_by(rim, rim_corners))
-    if (constrained_.is_front(t) && !may_meet(r, t)) with_other_.emplace_back(r, t);
+    if (constrained_.triangle_on_part(t) && !may_meet(r, t)) with_other_.emplace_back(r, t);
 
   std::erase_if(with_rim_, [&](const auto& pair) { return rim_has_moved(pair.first) || rim_has_moved(pair.second); });
   for (const auto& [r, s] : finder_->of_updated())

@@ -110,11 +110,11 @@ bool VertexPositions::is_known(std::uint32_t v, const Vec3d& x, const Paths& end
 }
 
 void VertexPositions::measure(std::span<const std::uint32_t> vertices, const Paths* ends) {
-  const Surface& front = constrained_.front.surface();
+  const Surface& moving_part = constrained_.moving_part.surface();
   Indices unknown;
   for (const auto v : vertices) {
     // A vertex that has not moved is on the moving part, unless it is no vertex of that.
-    if (!has_moved(v) || !constrained_.on_front(v)) {
+    if (!has_moved(v) || !constrained_.vertex_on_part(v)) {
       away_[v] = Vec3d(0.0);
       distance_[v] = 0;
       closest_[v] = kNone;
@@ -125,7 +125,7 @@ void VertexPositions::measure(std::span<const std::uint32_t> vertices, const Pat
     const Vec3d x = in_frame(v);
     if (ends && is_known(v, x, *ends)) {
       std::uint32_t triangle = ends->closest[v];
-      const TrianglePoint nearest = front.walk_to_closest(x, triangle);
+      const TrianglePoint nearest = moving_part.walk_to_closest(x, triangle);
       take(v, x, {std::sqrt(nearest.squared_distance), triangle, nearest.feature, false, nearest.point}, Found);
     } else {
       unknown.push_back(v);
@@ -143,21 +143,21 @@ void VertexPositions::measure_exactly(std::span<const std::uint32_t> vertices) {
     hints.push_back(closest_[v] != kNone ? closest_[v] : constrained_.hint(v));
   }
   std::vector<Closest> answers(points.size());
-  constrained_.front.answer_together(points, hints, answers);
+  constrained_.moving_part.answer_together(points, hints, answers);
   for (std::size_t i = 0; i < vertices.size(); ++i)
     take(vertices[i], points[i], answers[i], answers[i].tied ? Tied : Sole);
 }
 
 void VertexPositions::take(std::uint32_t v, const Vec3d& x, const Closest& closest, Nearness nearness) {
-  const Surface& front = constrained_.front.surface();
+  const Surface& moving_part = constrained_.moving_part.surface();
   distance_[v] = closest.distance;
   closest_[v] = closest.triangle;
   away_[v] = x - closest.point;
   nearness_[v] = nearness;
   right_side_[v] = 1;
   const int side = distances_[v] < 0 ? -1 : 1;
-  if (front.facts.closed() && front.facts.oriented() && closest.distance > near_)
-    right_side_[v] = side * front.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
+  if (moving_part.facts.closed() && moving_part.facts.oriented() && closest.distance > near_)
+    right_side_[v] = side * moving_part.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
 }
 
 void VertexPositions::find_ties_around(const Indices& triangles) {
@@ -165,7 +165,7 @@ void VertexPositions::find_ties_around(const Indices& triangles) {
   Indices vertices;
   for (const auto t : triangles) {
     const auto& corners = surface_.triangles[t];
-    if (!constrained_.is_front(t) || std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+    if (!constrained_.triangle_on_part(t) || std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
           return chosen[v] || (nearness_[v] != Found && distance_[v] >= near_);
         }))
       continue;
@@ -212,9 +212,10 @@ bool VertexPositions::is_misplaced(std::uint32_t v) const {
 }
 
 bool VertexPositions::is_beyond_wall(std::uint32_t v) const {
-  const Surface& front = constrained_.front.surface();
-  if (front.walls.empty() || !constrained_.on_front(v) || !has_moved(v)) return false;
-  return vdb_offset::is_beyond_wall(front, constrained_.front_vertex_of(v), position_[v] - front.origin, rounding(v));
+  const Surface& moving_part = constrained_.moving_part.surface();
+  if (moving_part.walls.empty() || !constrained_.vertex_on_part(v) || !has_moved(v)) return false;
+  return vdb_offset::is_beyond_wall(moving_part, constrained_.part_vertex_of(v), position_[v] - moving_part.origin,
+                                    rounding(v));
 }
 
 /// Whether a direction turns from no point of the moving part that is as near to x as the closest.
@@ -223,7 +224,7 @@ bool VertexPositions::looks_away(const Vec3d& outward, const Vec3d& x, const Vec
   if (turns_from(outward, away)) return false;
   bool from_all = true;
   if (tied)
-    constrained_.front.visit_as_near(
+    constrained_.moving_part.visit_as_near(
         x, distance, [&](const Vec3d& point) { from_all = from_all && !turns_from(outward, x - point); });
   return from_all;
 }
@@ -231,11 +232,11 @@ bool VertexPositions::looks_away(const Vec3d& outward, const Vec3d& x, const Vec
 bool VertexPositions::looks_away(const Vec3d& outward, std::uint32_t v) const {
   const Vec3d x = in_frame(v);
   if (nearness_[v] != Found) return looks_away(outward, x, away_[v], distance_[v], nearness_[v] == Tied);
-  const Closest closest = constrained_.front(x, closest_[v]);
+  const Closest closest = constrained_.moving_part(x, closest_[v]);
   return looks_away(outward, x, x - closest.point, closest.distance, closest.tied);
 }
 
-bool VertexPositions::faces_against_front(std::uint32_t t) const {
+bool VertexPositions::faces_against_part(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   const Vec3d now = twice_area(surface_, t, position_), outward = now * side_of(distances_, surface_.triangles[t]);
   bool any = false;
@@ -246,8 +247,8 @@ bool VertexPositions::faces_against_front(std::uint32_t t) const {
       any = true;
       if (looks_away(outward, v)) return false;
     }
-  const Vec3d centre = (position_[a] + position_[b] + position_[c]) / 3.0 - constrained_.front.surface().origin;
-  const Closest closest = constrained_.front(centre, constrained_.hint(a));
+  const Vec3d centre = (position_[a] + position_[b] + position_[c]) / 3.0 - constrained_.moving_part.surface().origin;
+  const Closest closest = constrained_.moving_part(centre, constrained_.hint(a));
   if (closest.distance >= near_)
     return !looks_away(outward, centre, centre - closest.point, closest.distance, closest.tied);
   return any || now.dot(twice_area(surface_, t, source_)) < 0;

@@ -74,7 +74,7 @@ class VertexPositions {
   /// Whether a triangle of the moving part turns its back to the direction that leads away from the part, at each
   /// corner and at the centre, as far as these are off the part: where several points are as near, to the direction
   /// from any of them. With nothing off the part, whether the triangle turns its back to its source.
-  bool faces_against_front(std::uint32_t triangle) const;
+  bool faces_against_part(std::uint32_t triangle) const;
 
  private:
   /// What is known of the moving part near a vertex: Found, the closest point of the triangles around the one that a
@@ -87,7 +87,7 @@ class VertexPositions {
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest, Nearness nearness);
   bool is_beyond_wall(std::uint32_t vertex) const;
-  Vec3d in_frame(std::uint32_t vertex) const { return position_[vertex] - constrained_.front.surface().origin; }
+  Vec3d in_frame(std::uint32_t vertex) const { return position_[vertex] - constrained_.moving_part.surface().origin; }
   bool looks_away(const Vec3d& outward, const Vec3d& x, const Vec3d& away, double distance, bool tied) const;
   bool looks_away(const Vec3d& outward, std::uint32_t vertex) const;
 

@@ -11,7 +11,7 @@ namespace vdb_offset {
 /// A face of a cell: the positions of its corners in the list of the cell's corners, ccw seen from outside.
 struct LocalFace {
   std::uint8_t size;
-  std::uint8_t places[4];
+  std::uint8_t local_corners[4];
 };
 /// The faces of a type of cells.
 struct LocalFaces {
@@ -45,7 +45,7 @@ void for_each_cell_face(CellType type, std::span<const std::uint32_t> cell, Visi
   const LocalFaces& faces = kCellFaces[static_cast<std::size_t>(type)];
   for (std::size_t f = 0; f < faces.count; ++f) {
     std::uint32_t corners[4];
-    for (std::size_t k = 0; k < faces.faces[f].size; ++k) corners[k] = cell[faces.faces[f].places[k]];
+    for (std::size_t k = 0; k < faces.faces[f].size; ++k) corners[k] = cell[faces.faces[f].local_corners[k]];
     visit(std::span<const std::uint32_t>(corners, faces.faces[f].size));
   }
 }

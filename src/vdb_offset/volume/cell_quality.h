@@ -30,12 +30,12 @@ double aspect_ratio(const VolumeMesh& mesh, std::size_t cell);
 double cell_volume(const VolumeMesh& mesh, std::size_t cell);
 
 /// Six times the volume between a face and `origin`, signed: the sum over a closed boundary is six times the volume
-/// inside it. `place` gives the position of a corner.
-template <class Place>
-double six_volumes_below(std::span<const std::uint32_t> face, const Vec3d& origin, Place&& place) {
+/// inside it. `position` gives the position of a corner.
+template <class Position>
+double six_volumes_below(std::span<const std::uint32_t> face, const Vec3d& origin, Position&& position) {
   const std::size_t n = face.size();
   const auto first = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
-  const auto corner = [&](std::size_t k) -> Vec3d { return place(face[(first + k) % n]) - origin; };
+  const auto corner = [&](std::size_t k) -> Vec3d { return position(face[(first + k) % n]) - origin; };
   const Vec3d fan = corner(0);
   double sum = 0;
   for (std::size_t k = 2; k < n; ++k) sum += fan.dot(corner(k - 1).cross(corner(k)));

@@ -30,7 +30,7 @@ void for_each_face(const VolumeMesh& mesh, std::size_t c, Visit&& visit) {
   if (mesh.cell_types[c] != CellType::Polyhedron) {
     const LocalFaces& faces = kCellFaces[static_cast<std::size_t>(mesh.cell_types[c])];
     for (std::uint32_t local = 0; local < faces.count; ++local)
-      visit(local, CellFace{corners.data(), faces.faces[local].places, faces.faces[local].size});
+      visit(local, CellFace{corners.data(), faces.faces[local].local_corners, faces.faces[local].size});
     return;
   }
   for (std::uint32_t local = 0, at = 1; local < corners[0]; ++local, at += corners[at] + 1)
@@ -58,8 +58,8 @@ SidesByPoint by_lowest_corner(const VolumeMesh& mesh, std::size_t side_count) {
   for_each_index(mesh.cell_count(), [&](std::size_t c) {
     for_each_face(mesh, c, [&](std::uint32_t local, const CellFace& face) {
       const std::uint32_t p = lowest_corner(face, face.size);
-      const std::uint32_t place = left[p].fetch_sub(1, std::memory_order_relaxed) - 1;
-      result.sides[result.begin[p] + place] = {static_cast<std::uint32_t>(c), local};
+      const std::uint32_t slot = left[p].fetch_sub(1, std::memory_order_relaxed) - 1;
+      result.sides[result.begin[p] + slot] = {static_cast<std::uint32_t>(c), local};
     });
   });
   return result;
@@ -92,7 +92,7 @@ CellFace face(const VolumeMesh& mesh, std::size_t c, std::size_t local) {
   VDB_OFFSET_ASSERT(local < face_count(mesh.cell_types[c], corners));
   if (mesh.cell_types[c] != CellType::Polyhedron) {
     const LocalFace& known = kCellFaces[static_cast<std::size_t>(mesh.cell_types[c])].faces[local];
-    return {corners.data(), known.places, known.size};
+    return {corners.data(), known.local_corners, known.size};
   }
   std::size_t at = 1;
   for (; local > 0; --local) at += corners[at] + 1;

@@ -14,10 +14,11 @@ namespace vdb_offset {
 /// A face of a cell, ccw seen from outside.
 struct CellFace {
   const std::uint32_t* corners;  ///< The corners of the cell, or of a polyhedron's face.
-  const std::uint8_t* places;  ///< Positions of the face's corners among the cell's; null if `corners` are the face's.
+  const std::uint8_t*
+      local_corners;  ///< The numbers of the face's corners among the cell's; null if `corners` are the face's.
   std::size_t size;
 
-  std::uint32_t operator[](std::size_t k) const { return places ? corners[places[k]] : corners[k]; }
+  std::uint32_t operator[](std::size_t k) const { return local_corners ? corners[local_corners[k]] : corners[k]; }
 };
 
 /// Number of faces of a cell.

@@ -78,9 +78,9 @@ bool Skin::is_source() const {
 Vec3d Skin::position(std::size_t v) const { return new_position(v).value_or(source_.polygons.positions[source_of(v)]); }
 
 std::optional<Vec3d> Skin::new_position(std::size_t v) const {
-  const Vec3d& place = shell_.polygons.positions[number(v)];
-  if (!has_moved(source_.polygons.positions[source_of(v)], place, precision_)) return std::nullopt;
-  return precision_(place);
+  const Vec3d& position = shell_.polygons.positions[number(v)];
+  if (!has_moved(source_.polygons.positions[source_of(v)], position, precision_)) return std::nullopt;
+  return precision_(position);
 }
 
 std::optional<Vec3d> Skin::new_normal(std::size_t n) const {

@@ -111,15 +111,15 @@ std::array<Vec3d, 2> box_of(const VolumeMesh& mesh, const Corners& corners) {
   return corners.empty() ? std::array{Vec3d(0), Vec3d(0)} : box;
 }
 
-void append_place(std::string& bytes, const Vec3d& place) {
-  for (int k = 0; k < 3; ++k) append_binary(bytes, place[k]);
+void append_position(std::string& bytes, const Vec3d& position) {
+  for (int k = 0; k < 3; ++k) append_binary(bytes, position[k]);
 }
 
 /// `bounded_by` are tags of entities of one dimension less, below 0 where these run the other way.
 void append_entity(std::string& bytes, int tag, const std::array<Vec3d, 2>& box, int group,
                    const std::vector<int>& bounded_by) {
   append_binary(bytes, tag);
-  for (const Vec3d& corner : box) append_place(bytes, corner);
+  for (const Vec3d& corner : box) append_position(bytes, corner);
   append_binary(bytes, std::uint64_t{1});
   append_binary(bytes, group);
   append_binary(bytes, std::uint64_t{bounded_by.size()});
@@ -127,9 +127,9 @@ void append_entity(std::string& bytes, int tag, const std::array<Vec3d, 2>& box,
 }
 
 /// Corners are in no physical group.
-void append_corner(std::string& bytes, int tag, const Vec3d& place) {
+void append_corner(std::string& bytes, int tag, const Vec3d& position) {
   append_binary(bytes, tag);
-  append_place(bytes, place);
+  append_position(bytes, position);
   append_binary(bytes, std::uint64_t{0});
 }
 
@@ -174,7 +174,7 @@ Pieces msh_nodes(const VolumeMesh& mesh, int dimension, int tag, std::span<const
       head, {{points.size(),
               [points](std::string& bytes, std::size_t i) { append_binary(bytes, std::uint64_t{points[i]} + 1); }},
              {points.size(),
-              [&mesh, points](std::string& bytes, std::size_t i) { append_place(bytes, mesh.points[points[i]]); }}});
+              [&mesh, points](std::string& bytes, std::size_t i) { append_position(bytes, mesh.points[points[i]]); }}});
 }
 
 Pieces msh_all_nodes(const VolumeMesh& mesh, const MshEntities& entities) {

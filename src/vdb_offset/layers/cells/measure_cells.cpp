@@ -133,9 +133,9 @@ class CellMeasurer {
     return sum;
   }
   double six_volumes_under(std::span<const Index> face) const {
-    return six_volumes_below(face, origin_, [&](Index p) -> const Vec3d& { return place(p); });
+    return six_volumes_below(face, origin_, [&](Index p) -> const Vec3d& { return position(p); });
   }
-  const Vec3d& place(Index point) const {
+  const Vec3d& position(Index point) const {
     const LayerPoints& points = cells_.points;
     if (point < points.wall()) return stack(point)[0];
     const Index above = point - points.wall();

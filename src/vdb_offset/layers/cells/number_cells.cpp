@@ -26,11 +26,11 @@ namespace {
 using Index = std::uint32_t;
 
 /// The positions of a face's corners without those that repeat the one before. Returns false if they are no polygon.
-bool clean_ring(std::span<const Index> face, std::span<const Index> place, std::vector<Index>& ring,
+bool clean_ring(std::span<const Index> face, std::span<const Index> welded_to, std::vector<Index>& ring,
                 std::vector<Index>& sorted) {
   ring.clear();
   for (const Index v : face)
-    if (ring.empty() || ring.back() != place[v]) ring.push_back(place[v]);
+    if (ring.empty() || ring.back() != welded_to[v]) ring.push_back(welded_to[v]);
   while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
   if (ring.size() <= 3) return ring.size() == 3;  // neighbours differ, and all three are neighbours
   sorted.assign(ring.begin(), ring.end());
@@ -63,7 +63,7 @@ NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, Laye
       std::vector<Index> ring, sorted;
       for (std::size_t f = range.begin(); f != range.end(); ++f)
         if (layers.carries.empty() || layers.carries[f] != 0)
-          visit(f, ring, clean_ring(mesh.face(f), layers.place, ring, sorted));
+          visit(f, ring, clean_ring(mesh.face(f), layers.welded_to, ring, sorted));
     });
   };
   visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
@@ -229,7 +229,7 @@ class SideMatch {
   }
   /// Whether any side that is no border is left without a partner.
   bool has_unpaired() const { return has_unpaired_; }
-  bool crowded(Index place) const { return crowded_[place] != 0; }
+  bool crowded(Index vertex) const { return crowded_[vertex] != 0; }
 
   /// Joins corners at crowded positions over paired sides.
   CornerSets join_fans() const {
@@ -270,8 +270,8 @@ class SideMatch {
     return numbers;
   }
   template <class Visit>
-  void visit_risen_from(std::size_t place, Visit&& visit) const {
-    edges_.visit_from(place, [&](Index smaller, std::span<const EdgeSide> sides) {
+  void visit_risen_from(std::size_t vertex, Visit&& visit) const {
+    edges_.visit_from(vertex, [&](Index smaller, std::span<const EdgeSide> sides) {
       const Index larger = sides[0].larger_end;
       if (flat_[smaller] == 0 || flat_[larger] == 0) visit(smaller, larger, sides);
     });
@@ -314,32 +314,32 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, N
   std::optional<SideMatch> sides;
   if (!all_paired) sides.emplace(flat.size(), flat, columns, facts);
   LayerPoints points;
-  std::vector<Index> of_place(flat.size(), kNone);
+  std::vector<Index> of_vertex(flat.size(), kNone);
   for_each_index(columns.corners.size(), [&](std::size_t c) {
-    std::atomic_ref(of_place[columns.corners[c]]).store(0, std::memory_order_relaxed);
+    std::atomic_ref(of_vertex[columns.corners[c]]).store(0, std::memory_order_relaxed);
   });
   for (std::size_t v = 0; v < flat.size(); ++v)
-    if (of_place[v] != kNone) {
-      of_place[v] = points.wall();
+    if (of_vertex[v] != kNone) {
+      of_vertex[v] = points.wall();
       points.vertex.push_back(static_cast<Index>(v));
     }
   std::vector<Index> point(columns.corners.size());
-  for_each_index(point.size(), [&](std::size_t c) { point[c] = of_place[columns.corners[c]]; });
+  for_each_index(point.size(), [&](std::size_t c) { point[c] = of_vertex[columns.corners[c]]; });
   if (sides && sides->has_unpaired()) {
     CornerSets fans = sides->join_fans();
     facts.coincident_sides = sides->count_coincident(fans);
     std::vector<std::uint8_t> taken(flat.size(), 0);
     for (Index c = 0; c < point.size(); ++c) {
-      const Index place = columns.corners[c], first = fans.first(c);
-      if (!sides->crowded(place)) continue;
+      const Index vertex = columns.corners[c], first = fans.first(c);
+      if (!sides->crowded(vertex)) continue;
       if (first != c) {
         point[c] = point[first];
-      } else if (taken[place] != 0) {
+      } else if (taken[vertex] != 0) {
         point[c] = points.wall();
-        points.vertex.push_back(place);
+        points.vertex.push_back(vertex);
         ++facts.split_points;
       }
-      taken[place] = 1;
+      taken[vertex] = 1;
     }
   }
   columns.corners = std::move(point);
@@ -392,7 +392,7 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
   };
   require("layers in a stack", layers.count(), layers.stacks.layers());
   require("stacks", mesh.positions.size(), layers.stacks.vertices());
-  require("places", mesh.positions.size(), layers.place.size());
+  require("welded vertices", mesh.positions.size(), layers.welded_to.size());
   require("shares", mesh.positions.size(), layers.share.size());
   require("states", mesh.positions.size(), layers.states.size());
   require("distances achieved", mesh.positions.size(), layers.achieved.size());
@@ -401,7 +401,9 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
     if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
   if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
   require_usable(mesh, 1);
-  const auto is_placed = [&](Index v) { return v < layers.place.size() && layers.place[v] < layers.place.size(); };
+  const auto is_welded = [&](Index v) {
+    return v < layers.welded_to.size() && layers.welded_to[v] < layers.welded_to.size();
+  };
   const auto all = [](std::size_t count, auto&& holds) {
     std::atomic<bool> found = true;
     for_each_index(count, [&](std::size_t i) {
@@ -410,9 +412,9 @@ void require_layers_of(PolygonView mesh, const LayersResult& layers) {
     return found.load();
   };
   // Checking vertices is faster, as they are in order; only vertices of faces need a position.
-  if (!all(layers.place.size(), [&](std::size_t v) { return is_placed(static_cast<Index>(v)); }) &&
-      !all(mesh.corners.size(), [&](std::size_t c) { return is_placed(mesh.corners[c]); }))
-    throw InvalidInput("layers: expected layers of this mesh, got some that lack places of its corners");
+  if (!all(layers.welded_to.size(), [&](std::size_t v) { return is_welded(static_cast<Index>(v)); }) &&
+      !all(mesh.corners.size(), [&](std::size_t c) { return is_welded(mesh.corners[c]); }))
+    throw InvalidInput("layers: expected layers of this mesh, got some that lack welded vertices of its corners");
 }
 
 const char* name(FaceRole role) {

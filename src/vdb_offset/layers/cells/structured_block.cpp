@@ -34,7 +34,7 @@ class QuadGrid {
       if (face.size() != 4)
         throw InvalidInput("structured block: expected quads, got face " + std::to_string(f) + " (counted from 0) of " +
                            std::to_string(face.size()) + " corners");
-      for (const auto v : face) corners_.push_back(layers.place[v]);
+      for (const auto v : face) corners_.push_back(layers.welded_to[v]);
     }
     if (corners_.empty()) throw InvalidInput("structured block: expected quads, got none");
     begin_.assign(mesh.positions.size() + 2, 0);
