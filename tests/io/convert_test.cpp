@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <openvdb/Types.h>
 
 #include <catch2/catch.hpp>
 #include <cstring>

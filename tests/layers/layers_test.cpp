@@ -145,7 +145,7 @@ TEST_CASE("layers: on a sphere and in a tube, heights are exact and cells fill w
   CHECK(positive_cells(grown.volume) == 1);
   check_heights(mesh, grown.layers, 23);
   // Between the facets of wall and outermost surface.
-  const auto enclosed = [&](const std::vector<Vec3d>& positions) {
+  const auto enclosed = [&mesh = mesh](const std::vector<Vec3d>& positions) {
     double sum = 0;
     for (std::size_t f = 0; f < mesh.face_count(); ++f)
       sum += six_volumes_below(positions, mesh.view().face(f), {}) / 6;
