@@ -8,7 +8,7 @@
 
 namespace vdb_offset {
 
-/// Base of everything the library throws on purpose. Messages read `place: expected X, got Y (hint)`.
+/// Base of everything the library throws on purpose. Messages read `stage or file: expected X, got Y (hint)`.
 struct VDB_OFFSET_API Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -2,9 +2,8 @@
 #pragma once
 
 /// Checks what must hold whatever the input: an invariant, or what a caller has promised (\pre). A failure is a defect
-/// of this library, never of its input, and ends the process with the place and the condition. On in builds with
-/// VDB_OFFSET_ASSERTIONS (Debug, sanitizers); else the condition is not evaluated, and may be as costly as it needs to
-/// be.
+/// of this library, never of its input, and ends the process with file, line and the condition. Builds with
+/// VDB_OFFSET_ASSERTIONS (Debug, sanitizers) evaluate the condition; all others do not, so that it may be costly.
 #ifdef VDB_OFFSET_ASSERTIONS
 
 #include <cstdio>

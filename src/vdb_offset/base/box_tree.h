@@ -54,10 +54,11 @@ class BoxTree {
   /// l > 0 is around the block levels()[l - 1][i]. \pre `box` is bounded along one axis: else it meets empty boxes, too
   template <class Visit>
   void for_each_overlap(const FloatBox& box, Visit&& visit, std::size_t of_level = 0) const;
-  /// Calls is_it(i) for boxes of a level that meet `box`, until it returns true. Whether it did.
+  /// Calls is_it(i) for boxes of a level that meet `box`, until it returns true. Returns whether it did.
   template <class IsIt>
   bool any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_level = 0) const;
-  /// Calls is_it(i) for the boxes given but begin .. end - 1 that meet `box`, until it returns true. Whether it did.
+  /// Calls is_it(i) for the boxes given, other than begin .. end - 1, that meet `box`, until it returns true. Returns
+  /// whether it did.
   template <class IsIt>
   bool any_overlap_beside(std::size_t begin, std::size_t end, const FloatBox& box, IsIt&& is_it) const;
 
@@ -109,21 +110,21 @@ bool BoxTree::any_overlap(const FloatBox& box, IsIt&& is_it, std::size_t of_leve
 
 template <class IsIt>
 bool BoxTree::any_overlap_beside(std::size_t begin, std::size_t end, const FloatBox& box, IsIt&& is_it) const {
-  // What a child of a level holds are 8^level boxes in a row.
+  // A child at a level holds 8^level of the boxes given, in a row.
   const auto counts = [&](std::size_t level, std::size_t child) {
     return child << 3 * level < begin || (child + 1) << 3 * level > end;
   };
   return any_overlap_of(box, 0, counts, is_it);
 }
 
-/// counts(level, child): whether to look at it at all.
+/// Looks only at children for which counts(level, child) holds.
 template <class Counts, class IsIt>
 bool BoxTree::any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&& counts, IsIt&& is_it) const {
   struct Node {
     std::uint32_t level, node;
   };
   VDB_OFFSET_ASSERT(of_level < levels_.size());
-  std::array<Node, kWidth * 12> stack;  // 8^12 boxes are more than can be
+  std::array<Node, kWidth * 12> stack;  // enough: 8^12 boxes are more than 32 bits can number
   std::size_t depth = 0;
   stack[depth++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
   while (depth > 0) {

@@ -11,7 +11,7 @@
 
 namespace vdb_offset {
 
-/// Sorts things into numbered buckets, from any number of threads: first each is counted, then each is given its place.
+/// Sorts things into numbered buckets, from any number of threads: first each is counted, then each is given its index.
 /// The order within a bucket depends on the threads; where it matters, each bucket is sorted afterwards.
 class Buckets {
  public:
@@ -26,13 +26,13 @@ class Buckets {
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     return begin_.back();
   }
-  /// A place for one thing of a bucket. \pre close() was called, and no more things than were counted ask for one
+  /// The index at which one thing of a bucket belongs. \pre close() was called, and no more things than were counted ask for one
   std::uint32_t next(std::size_t bucket) {
-    const std::uint32_t place = std::atomic_ref(begin_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
-    VDB_OFFSET_ASSERT(place < begin_.back());
-    return place;
+    const std::uint32_t index = std::atomic_ref(begin_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
+    VDB_OFFSET_ASSERT(index < begin_.back());
+    return index;
   }
-  /// Where each bucket begins, once all have been given their places; one more than buckets.
+  /// Where each bucket begins, once all things have been given their indices; one number more than buckets.
   std::vector<std::uint32_t> take() {
     begin_.pop_back();
     return std::move(begin_);

@@ -10,7 +10,7 @@
 
 namespace vdb_offset {
 
-/// Two numbers that are worked on at once, as the registers of every x86-64 do; comparisons give all ones or zero.
+/// Two numbers that are worked on at once, in the registers that every x86-64 has. Comparisons give all ones or zero.
 using double2 = double __attribute__((vector_size(16)));
 using PairMask = std::int64_t __attribute__((vector_size(16)));
 

@@ -26,11 +26,11 @@ inline void sort_unique(Indices& indices) {
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-/// Gathers indices that come many times over, as corners of neighbouring triangles do, by marks: these need not be
-/// sorted to be told apart.
+/// Gathers indices that come many times over, as corners of neighbouring triangles do. Each index is marked when it
+/// comes first, so that repeated ones are left out without sorting.
 class IndexGatherer {
  public:
-  /// For indices below `count`.
+  /// A set for indices below `count`.
   explicit IndexGatherer(std::size_t count) : has_(count, 0) {}
 
   void add(std::uint32_t i) {

@@ -15,14 +15,15 @@
 namespace vdb_offset {
 namespace {
 
-/// A number in a file of the control group; `missing` if there is none (no group, or "max").
+/// The number in a file of the process's control group; `missing` if the file has none: there is no group, or it says
+/// "max".
 std::size_t number_in(const char* path, std::size_t missing) {
   std::ifstream file(path);
   std::size_t value = 0;
   return file >> value ? value : missing;
 }
 
-std::atomic<std::size_t> most = 0;  // bytes; the whole process has one memory
+std::atomic<std::size_t> most = 0;  // bytes, 0: no limit; one for the process, as all of it shares one memory
 
 }  // namespace
 
@@ -62,12 +63,12 @@ bool fits_memory(std::size_t bytes) {
   return limit == 0 || (bytes <= limit && held_memory() <= limit - bytes);
 }
 
-void require_memory(std::size_t bytes, const std::string& place) {
+void require_memory(std::size_t bytes, const std::string& where) {
   if (fits_memory(bytes)) return;
   const std::size_t limit = most, held = held_memory();
   const auto mib = [](std::size_t size) { return static_cast<double>(size) / 1048576.0; };
   throw OutOfBudget(fmt::format("{}: expected to fit into {:.0f} MiB (--max-memory), got {:.0f} MiB beside {:.0f} MiB",
-                                place, mib(limit), mib(bytes), mib(held)));
+                                where, mib(limit), mib(bytes), mib(held)));
 }
 
 }  // namespace vdb_offset

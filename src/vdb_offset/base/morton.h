@@ -17,7 +17,7 @@ class MortonCurve {
     scale_ = longest > 0 ? kCells / longest : 0;
   }
 
-  /// 63 bits, 21 for each axis.
+  /// The key of a point: 63 bits, 21 for each axis.
   std::uint64_t operator()(const Vec3d& x) const {
     std::uint64_t code = 0;
     for (int k = 0; k < 3; ++k)
@@ -26,9 +26,9 @@ class MortonCurve {
   }
 
  private:
-  static constexpr double kCells = 2097152;  // along each axis: 2^21, as 63 bits have room for
+  static constexpr double kCells = 2097152;  // along each axis: 2^21, as three times 21 bits fit into 64
 
-  /// Two zeros after each of 21 bits.
+  /// Puts two zeros after each of 21 bits, so that three axes can be interleaved.
   static std::uint64_t spread(std::uint64_t x) {
     x = (x | x << 32) & 0x1f00000000ffffULL;
     x = (x | x << 16) & 0x1f0000ff0000ffULL;

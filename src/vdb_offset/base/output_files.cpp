@@ -27,14 +27,14 @@ struct Descriptor {
 
 std::string reason() { return std::strerror(errno); }
 
-/// A device or a pipe cannot be replaced by a rename.
+/// Whether a file is written where it is, since it cannot be replaced by a rename: a device or a pipe.
 bool is_written_in_place(const std::filesystem::path& target) {
   std::error_code ignored;
   const auto status = std::filesystem::status(target, ignored);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
 
-/// \throw WriteError for a folder
+/// The file that a path leads to. \throw WriteError for a folder
 std::filesystem::path file_to_write(const std::string& path) {
   std::filesystem::path target = replaced_path(path);
   std::error_code unknown;
@@ -58,12 +58,12 @@ struct OutputFiles::File {
   Temporary temporary;
   std::filesystem::path target;
   std::string path;
-  bool was_there = false;   // and has the temporary name once the new one is in place
-  bool can_go_back = true;  // not where the file system cannot exchange two files
+  bool was_there = false;   // a file that was at the target has the temporary name once the new one is in place
+  bool can_go_back = true;  // false where the file system cannot exchange two files
 };
 
 std::filesystem::path replaced_path(const std::string& path) {
-  constexpr int kMostLinks = 40;  // in a row, as Linux follows at most
+  constexpr int kMostLinks = 40;  // links in a row: Linux follows no more than this
   std::error_code failed;
   std::filesystem::path target = std::filesystem::absolute(path, failed);
   const auto leads_nowhere = [&] {
@@ -81,7 +81,7 @@ OutputFiles::OutputFiles(Sync sync) : outer_(innermost), sync_(sync) { innermost
 OutputFiles::~OutputFiles() {
   innermost = outer_;
   files_.clear();
-  while (!folders_.empty()) folders_.pop_back();  // the inner ones first
+  while (!folders_.empty()) folders_.pop_back();  // inner folders first: a folder can only be removed once it is empty
 }
 
 const std::string& OutputFiles::add_file(const std::filesystem::path& target, const std::string& path) {
@@ -123,19 +123,20 @@ void OutputFiles::commit(const std::function<void()>& when_in_place) {
     for (Temporary& folder : folders_) folder.keep();
     if (when_in_place) when_in_place();
   }
-  files_.clear();  // with what was there before
+  files_.clear();  // this removes the replaced files, which have the temporary names now
   folders_.clear();
 }
 
-/// All but its place.
+/// Gives a file the permissions of the one that it replaces and, if asked, waits until it is on the disk. It keeps its
+/// temporary name.
 void OutputFiles::finish(File& file) const {
   const Descriptor written{::open(file.temporary.path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC)};
   struct stat before {};
-  // Where the process's mask leaves its owner no right to read, the file is only not waited for.
+  // A umask may leave the owner no right to read the new file. The file is complete even so; only syncing is skipped.
   if (written.fd < 0 && errno != EACCES) throw WriteError(file.path + ": cannot be written: " + reason());
   file.was_there = ::stat(file.target.c_str(), &before) == 0;
   if (file.was_there && ::fchmod(written.fd, before.st_mode & 07777) != 0) {
-    // Not every file system knows permissions.
+    // Not an error: not every file system has permissions.
   }
   if (sync_ == Sync::Yes && ::fsync(written.fd) != 0 && errno != EINVAL && errno != EBADF)
     throw WriteError(file.path + ": cannot be written: " + reason());
@@ -187,7 +188,7 @@ void replace_file(const std::string& path, const std::function<void(const std::s
 void write_file(const std::string& path, const std::function<void(const Sink&)>& produce) {
   if (path == "-") return produce([](std::string_view bytes) { write_all("standard output", STDOUT_FILENO, bytes); });
   replace_file(path, [&](const std::string& temporary) {
-    const int links = is_written_in_place(temporary) ? 0 : O_NOFOLLOW;  // /dev/stdout is one
+    const int links = is_written_in_place(temporary) ? 0 : O_NOFOLLOW;  // /dev/stdout is a link
     Descriptor file{::open(temporary.c_str(), O_WRONLY | O_TRUNC | links | O_CLOEXEC)};
     if (file.fd < 0) throw WriteError(path + ": cannot be written: " + reason());
     produce([&](std::string_view bytes) { write_all(path, file.fd, bytes); });

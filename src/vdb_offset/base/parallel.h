@@ -19,7 +19,7 @@ void for_each_index(std::size_t count, Work&& work, std::size_t grain = 1024) {
   });
 }
 
-/// Makes `lowest` the lesser of itself and `value`: the first of what several threads find.
+/// Makes `lowest` the lesser of itself and `value`, so that of what several threads find the first is kept.
 inline void lower_to(std::atomic<std::uint64_t>& lowest, std::uint64_t value) {
   for (std::uint64_t known = lowest; value < known && !lowest.compare_exchange_weak(known, value);) {
   }

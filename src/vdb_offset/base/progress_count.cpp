@@ -39,7 +39,7 @@ void Progress::advance(std::size_t count) {
 }
 
 void Progress::tell(std::size_t done) {
-  // Whoever finds the callback busy leaves it alone: a progress bar needs no exact count.
+  // A thread that finds the callback busy does not wait for it: a progress bar needs no exact count.
   std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));

@@ -21,7 +21,7 @@ class JointProgress {
 
  private:
   const ProgressCallback& callback_;
-  std::vector<double> share_;  // that is done of each piece
+  std::vector<double> share_;  // of each piece: the share that is done
   std::mutex mutex_;
 };
 

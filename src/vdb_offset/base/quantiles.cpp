@@ -13,8 +13,8 @@ Spread spread_of(std::span<const Weighted> values) {
     least = std::min(least, v.value);
     most = std::max(most, v.value);
   }
-  constexpr double kKeys = 0xffffffffU;  // the largest key, for the largest value
-  constexpr double kTimes = 0x1p52;      // sums of these are exact, in any order
+  constexpr double kKeys = 0xffffffffU;  // the key of the largest value; keys have 32 bits
+  constexpr double kTimes = 0x1p52;      // sum of all weights as integers: added in any order, they give the same sum
   const bool weighs = whole > 0;
   const double keys = most > least ? kKeys / (most - least) : 0, times = weighs ? kTimes / whole : 0;
   const Quantiles found(

@@ -17,15 +17,16 @@
 
 namespace vdb_offset {
 
-/// A number as a key that grows with it, so many times.
+/// A number as a key that grows with the number, and how many times the number counts.
 struct Ranked {
   std::uint32_t key;
   std::uint64_t times;
 };
 
-/// The keys at the shares of a Spread, and with them the sum of terms: of so many numbers, of which ranked(i) tells the
-/// key and term(i) what is added up. Of many, keys are looked at in two halves: how many numbers there are for each
-/// upper half says in which of them a quantile lies. The same for any number of threads. Cost: O(count).
+/// The keys of the quantiles of a Spread, and the sum of terms, over `count` numbers: ranked(i) gives the key of number
+/// i, and term(i) what it adds to the sum. If there are many numbers, the upper halves of keys are counted first, which
+/// tells the upper half of each quantile; then the lower halves of the keys with these. The result does not depend on
+/// the number of threads. Cost: O(count).
 template <class Rank, class Term>
 class Quantiles {
  public:
@@ -37,18 +38,18 @@ class Quantiles {
   /// \pre count > 0
   Quantiles(std::size_t count, Rank ranked, Term term) : count_(count), ranked_(ranked), term_(term) {
     VDB_OFFSET_ASSERT(count > 0);
-    // Up to so many numbers are sorted sooner than the halves of their keys are counted, for which 2^16 counters have
-    // to be cleared and added up; not measured more closely.
+    // Sorting so few numbers is faster than counting the halves of their keys, for which 2^16 counters are cleared and
+    // added up. Not measured more closely.
     constexpr std::size_t kFew = 10000;
     if (count <= kFew) sort();
     else count_halves();
   }
 
  private:
-  // Values of half a key; and numbers in a block, which is counted by one thread: as many as there are counters to
-  // clear. Not measured beside other blocks.
+  // kHalf: values of half a key. kBlock: numbers that one thread counts at a time, as many as there are counters to
+  // clear; not measured beside other sizes.
   static constexpr std::size_t kHalf = std::size_t{1} << 16, kBlock = std::size_t{1} << 16;
-  static constexpr std::uint8_t kNoSlot = 255;  // of an upper half that no quantile lies in
+  static constexpr std::uint8_t kNoSlot = 255;  // the slot of an upper half in which no quantile lies
   using Counts = std::vector<std::uint64_t>;
 
   void sort() {
@@ -86,7 +87,7 @@ class Quantiles {
   }
 
   std::size_t blocks() const { return (count_ + kBlock - 1) / kBlock; }
-  /// What look() counts in so many slots, over all numbers.
+  /// The sums of what look(block, i, number, counts) counts over all numbers, in `slots` times kHalf counters.
   template <class Look>
   Counts counted(std::size_t slots, Look&& look) {
     tbb::enumerable_thread_specific<Counts> parts([&] { return Counts(slots * kHalf, 0); });
@@ -106,7 +107,8 @@ class Quantiles {
   std::uint64_t rank(double share) const {
     return std::min(times_ - 1, static_cast<std::uint64_t>(share * static_cast<double>(times_)));
   }
-  /// The first half by whose end more than `rank` have been counted; `rank` is then that among its own.
+  /// The half of a key in which number `rank` lies, in rising order. `rank` becomes the rank among the numbers with
+  /// that half.
   static std::uint32_t half_at(std::span<const std::uint64_t> counts, std::uint64_t& rank) {
     std::uint32_t found = 0;
     for (; rank >= counts[found]; ++found) rank -= counts[found];
@@ -126,8 +128,8 @@ class Quantiles {
   std::size_t count_;
   Rank ranked_;
   Term term_;
-  std::uint64_t times_ = 0;         // of all
-  std::vector<std::uint8_t> slot_;  // of each upper half that a quantile lies in
+  std::uint64_t times_ = 0;         // how often all numbers together count
+  std::vector<std::uint8_t> slot_;  // of each upper half: where its lower halves are counted, or kNoSlot
   std::size_t slots_ = 0;
 };
 

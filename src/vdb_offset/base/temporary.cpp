@@ -21,7 +21,8 @@
 
 namespace vdb_offset {
 
-/// Never freed, but used again: a signal handler may look at any of them at any moment.
+/// What remove_temporaries() has to know. These are used again, never freed: a signal handler may read any of them at
+/// any moment.
 struct Temporary::Known {
   enum class State { Free, Changing, There, Removed };  ///< Removed by a handler, which ends the process.
 
@@ -35,18 +36,19 @@ std::atomic<Temporary::Known*> Temporary::first_known = nullptr;
 
 namespace {
 
-// Names of temporary files: hidden, and known again if a run is killed.
+// How names of temporary files begin: hidden, and recognised by a later run if this one is killed.
 constexpr std::string_view kPrefix = ".vdb_offset-";
-// Bytes of a target's ending that are kept; known endings, compressed ones among them, have 9 at most.
+// Longest ending of a target, in bytes, that its temporary file keeps. The longest known ending, of a compressed file,
+// has 9.
 constexpr std::size_t kLongestEnding = 16;
-// Random names that are tried before the folder is held to be at fault. One is enough but for chance.
+// Random names to try before giving up. All but by chance the first one is free.
 constexpr int kMostNames = 100;
 
 enum class Phase { Writing, PuttingInPlace, Ending };
 std::atomic<Phase> phase = Phase::Writing;
 std::mutex putting_in_place;
 
-/// Process numbers mean something on one machine since it was started, and in one of its containers.
+/// A number for the machine, since when it runs, and the container: process numbers mean something only within these.
 std::uint64_t machine() {
   char host[256] = {};
   ::gethostname(host, sizeof host - 1);
@@ -69,7 +71,7 @@ std::uint64_t random_number() {
   return number;
 }
 
-/// Whether a file of this name was made on this machine by a process that is no more.
+/// Whether a file of this name was made on this machine by a process that has ended.
 bool is_stale(std::string_view name, std::string_view ours) {
   if (!name.starts_with(ours)) return false;
   name.remove_prefix(ours.size());
@@ -113,7 +115,7 @@ const std::string& Temporary::path() const { return known_->path; }
 
 void Temporary::keep() {
   auto there = Known::State::There;
-  // Where a handler has removed it, the process ends.
+  // If a signal handler has removed the file, nothing is left to do: the process is about to end.
   if (known_->state.compare_exchange_strong(there, Known::State::Changing)) known_->state = Known::State::Free;
   known_ = nullptr;
 }
@@ -130,7 +132,7 @@ Temporary new_temporary_file(const std::filesystem::path& target, const std::str
       return made;
     }
     const int failed = errno;
-    made.keep();  // whatever it is, it is not ours
+    made.keep();  // what has that name already was not made here, and must not be removed
     if (failed != EEXIST) throw WriteError(path + ": cannot be written: " + std::strerror(failed));
   }
   throw WriteError(path + ": cannot be written: every temporary name is taken");
@@ -144,7 +146,7 @@ void remove_stale_temporaries(const std::filesystem::path& folder) noexcept {
          entry.increment(failed))
       if (is_stale(entry->path().filename().string(), ours)) ::unlink(entry->path().c_str());
   } catch (const std::exception&) {
-    // What cannot be tidied up does no harm.
+    // Files that are left over do no harm.
   }
 }
 
@@ -158,7 +160,7 @@ bool remove_temporaries() noexcept {
     if (known->state.compare_exchange_strong(there, State::Removed) && known->kind == Temporary::Kind::File)
       ::unlink(known->path.c_str());
   }
-  // A folder goes once those in it are gone.
+  // A folder can only be removed after the folders in it: repeat until no more can be.
   for (bool any = true; std::exchange(any, false);)
     for (auto* known = first; known; known = known->next)
       if (known->state == State::Removed && known->kind == Temporary::Kind::Folder)
@@ -170,7 +172,7 @@ PuttingInPlace::PuttingInPlace() {
   putting_in_place.lock();
   auto writing = Phase::Writing;
   if (phase.compare_exchange_strong(writing, Phase::PuttingInPlace)) return;
-  for (;;) ::pause();  // a handler is about to end the process
+  for (;;) ::pause();  // a signal handler is about to end the process
 }
 
 PuttingInPlace::~PuttingInPlace() {

@@ -12,7 +12,7 @@ namespace vdb_offset {
 
 int thread_count(int asked) {
   if (asked < 0) throw InvalidInput("offset: expected 0 threads or more, got " + std::to_string(asked));
-  // More than the machine has would only be asked for in vain.
+  // oneTBB gives no more threads than the machine has.
   const int most = tbb::info::default_concurrency();
   return asked > 0 ? std::min(asked, most) : most;
 }

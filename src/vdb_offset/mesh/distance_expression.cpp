@@ -22,19 +22,19 @@ constexpr std::array<const char*, 8> kVariableNames = {"x", "y", "z", "nx", "ny"
 constexpr std::array<std::pair<const char*, double>, 2> kConstants = {
     {{"pi", std::numbers::pi}, {"e", std::numbers::e}}};
 
-// Bytes of an expression, and how deep its parentheses and conditions may lie in each other. What is written down for
-// muParser, which takes 20,000 bytes, is up to seven times as long.
+// Most bytes of an expression, and how deep its parentheses and conditions may be nested. muParser takes 20,000 bytes,
+// and what is written for it is up to seven times as long as the expression.
 constexpr std::size_t kLongestText = 2000;
 constexpr int kDeepest = 100;
 
-// Vertices that one parser serves: to set one up takes as long as to evaluate some hundreds.
+// Vertices for which one parser is set up, which takes as long as evaluating the expression for some hundreds.
 constexpr std::size_t kBlock = std::size_t{1} << 14;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_utf8_tail(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
-/// Numbers for muParser, which has a reader of its own that follows a locale.
+/// Reads numbers in place of muParser's own reader, which depends on the locale.
 int read_number(const char* text, int* position, double* value) {
   if (!is_digit(*text) && *text != '.') return 0;
   const auto [end, error] = std::from_chars(text, text + std::char_traits<char>::length(text), *value);
@@ -43,11 +43,11 @@ int read_number(const char* text, int* position, double* value) {
   return 1;
 }
 
-/// A compiled expression with variables of its own: muParser writes to its parser whenever it evaluates.
+/// A compiled expression with variables of its own. Each thread needs one: evaluating changes muParser's parser.
 struct Evaluator {
   explicit Evaluator(const std::string& code) {
     parser.AddValIdent(read_number);
-    // It folds `0.5 && 1` into 0 and changes the order of sums and products.
+    // The optimizer folds `0.5 && 1` into 0, and changes the order of sums and products, and so their last bits.
     parser.EnableOptimizer(false);
     parser.ClearConst();
     for (const auto& [name, constant] : kConstants) parser.DefineConst(name, constant);
@@ -80,8 +80,8 @@ std::string known_names() {
   return names;
 }
 
-/// Reads an expression token by token and writes it down for muParser. What is wrong is told here: muParser takes
-/// assignments, texts and lists of results, too, and its errors stand where it noticed them.
+/// Reads an expression token by token and writes it for muParser. Errors are found here, not by muParser: that also
+/// accepts assignments, strings and lists of results, and reports where it noticed an error, not where the error is.
 class ExpressionReader {
  public:
   explicit ExpressionReader(const std::string& text) : text_(text) {}
@@ -103,7 +103,7 @@ class ExpressionReader {
   bool percent = false;
 
  private:
-  /// Makes what follows the token that was taken last the current one; empty at the end.
+  /// Goes on to the next token, which is empty at the end of the text.
   void next() {
     at_ += token_.size();
     while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
@@ -121,7 +121,7 @@ class ExpressionReader {
     }
     for (const std::string_view pair : {"<=", ">=", "==", "!=", "&&", "||"})
       if (rest.starts_with(pair)) return 2;
-    // A character, whole, so that a message can show it.
+    // All bytes of one UTF-8 character, so that a message can show it.
     return static_cast<std::size_t>(std::find_if_not(rest.begin() + 1, rest.end(), is_utf8_tail) - rest.begin());
   }
 
@@ -135,7 +135,7 @@ class ExpressionReader {
       operand();
     }
     if (token_ != "?") return;
-    // Parentheses leave no doubt about conditions within conditions.
+    // With parentheses, how conditions within conditions are grouped does not depend on muParser.
     code.insert(begin, " ((");
     write(") ? (");
     next();
@@ -154,7 +154,7 @@ class ExpressionReader {
   void operand() {
     bool negative = false;
     for (; token_ == "+" || token_ == "-"; next()) negative ^= token_ == "-";
-    if (negative) write("-");  // muParser takes one sign
+    if (negative) write("-");  // muParser accepts only one sign
     if (token_ == "(") {
       write("(");
       next();
@@ -197,7 +197,7 @@ class ExpressionReader {
            std::any_of(kConstants.begin(), kConstants.end(), [&](const auto& known) { return known.first == name; });
   }
 
-  /// The arguments of a function; '(' is the current token.
+  /// Reads the arguments of a function. \pre '(' is the current token
   void call(std::string_view name, std::size_t at) {
     const auto function = functions().find(name);
     if (function == functions().end()) {
@@ -205,7 +205,7 @@ class ExpressionReader {
       for (const auto& [other, count] : functions()) known.push_back(other);
       fail_at(at, fmt::format("unknown function '{}' (there are {})", name, fmt::join(known, ", ")));
     }
-    write(std::string(name) + "(");  // muParser wants no blank between
+    write(std::string(name) + "(");  // muParser accepts no blank between name and parenthesis
     next();
     int count = 0;
     while (token_ != ")") {
@@ -257,16 +257,16 @@ class ExpressionReader {
   static std::string shown(std::string_view token) {
     return token.empty() ? "the end" : fmt::format("'{}'", shortened(token));
   }
-  /// The text as a message of one line can show it.
+  /// The text as a message of one line can show it: cut off, without control characters.
   static std::string shortened(std::string_view text) {
-    constexpr std::size_t kShown = 200;  // characters, of a line that is read
+    constexpr std::size_t kShown = 200;  // bytes; a longer message is hard to read
     std::string line(text.substr(0, kShown));
     std::replace_if(
         line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     return text.size() > kShown ? line + "..." : line;
   }
 
-  /// Counts how deep expressions lie in each other, which takes stack.
+  /// Counts how deep expressions are nested, as each level takes stack.
   struct Level {
     explicit Level(ExpressionReader& reader) : depth(reader.depth_) {
       if (++depth > kDeepest) reader.fail(fmt::format("at most {} levels of parentheses", kDeepest));
@@ -298,7 +298,7 @@ DistanceExpression::DistanceExpression(std::string text) : text_(std::move(text)
   percent_ = reader.percent;
   try {
     Evaluator{code_}();
-  } catch (const mu::ParserError& error) {  // which is no std::exception, and comes only if the reader has let it pass
+  } catch (const mu::ParserError& error) {  // not a std::exception; thrown only if ExpressionReader has missed an error
     throw InvalidExpression(
         fmt::format("distance '{}': expected what muParser takes, got '{}'", text_, error.GetMsg()));
   }

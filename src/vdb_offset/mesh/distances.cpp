@@ -41,7 +41,7 @@ void require_heights(std::span<const Distances> heights, std::size_t vertices) {
     for (std::size_t v = 0; v < (uniform ? 1 : vertices); ++v) {
       const double below = k > 0 ? heights[k - 1][v] : 0, here = heights[k][v];
       if (inward ? here < below : here > below) continue;
-      if (here == 0 && heights.back()[v] == 0) continue;  // this vertex stays
+      if (here == 0 && heights.back()[v] == 0) continue;  // a vertex that stays has height 0 in all layers
       throw InvalidInput("layers: expected heights that rise from the wall on, got " + std::to_string(here) +
                          " behind " + std::to_string(below) +
                          (uniform ? "" : " at vertex " + std::to_string(v) + " (counted from 0)"));

@@ -16,7 +16,7 @@ bool same(Point2 p, Point2 q) { return p.x == q.x && p.y == q.y; }
 struct Ear {
   Point2 a, b, c;
 
-  /// Touching counts.
+  /// Whether a point is in the ear. Points on its edges are.
   bool holds(Point2 p) const { return cross(a, b, p) >= 0 && cross(b, c, p) >= 0 && cross(c, a, p) >= 0; }
 };
 
@@ -28,8 +28,8 @@ struct Box2 {
     lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
     upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
   }
-  /// Whether all of it is to the right of a way. Rounding is monotone, so that cross() of no point in the box is above
-  /// that of the corner that is farthest to the left.
+  /// Whether all of the box is to the right of the line from a to b. It is enough to look at the corner that is farthest
+  /// to the left: rounding is monotone, so that cross() of no other point in the box is above that corner's.
   bool is_right_of(Point2 a, Point2 b) const {
     return cross(a, b, {b.y - a.y >= 0 ? lower.x : upper.x, b.x - a.x >= 0 ? upper.y : lower.y}) < 0;
   }
@@ -38,7 +38,7 @@ struct Box2 {
   }
 };
 
-/// The corners that are left, in a binary tree of boxes: node i has the children 2 i + 1 and 2 i + 2.
+/// The corners that are not cut off yet, in a binary tree of boxes: node i has the children 2 i + 1 and 2 i + 2.
 class CornerTree {
  public:
   explicit CornerTree(const std::vector<Point2>& corners) : corners_(corners), order_(corners.size()) {
@@ -57,7 +57,7 @@ class CornerTree {
     }
   }
 
-  /// A corner that is left, in the ear and for which is_it() holds; kNoCorner if there is none.
+  /// A corner in the ear that is not cut off and for which is_it() holds; kNoCorner if there is none.
   template <class IsIt>
   std::uint32_t find(const Ear& ear, IsIt&& is_it, std::size_t at = 0) const {
     const Node& node = nodes_[at];
@@ -104,7 +104,8 @@ class CornerTree {
   std::size_t first_leaf_ = 0;
 };
 
-/// A set of small numbers that tells the next one from a place on: bits, and bits of which words of these have any.
+/// A set of small numbers that finds the next member from a number on. Level 0 has a bit for each number; each further
+/// level has a bit for each word of the one below, which is set if that word is not zero.
 class NumberSet {
  public:
   explicit NumberSet(std::uint32_t count) {
@@ -146,7 +147,7 @@ class NumberSet {
   std::vector<std::vector<std::uint64_t>> levels_;
 };
 
-/// A ring of corners that are still there, as a linked list over their numbers, which it keeps the order of.
+/// Cuts ears off a polygon. The corners that are left are a linked ring in the order of their numbers.
 class EarClipper {
  public:
   explicit EarClipper(std::vector<Point2> corners)
@@ -180,7 +181,7 @@ class EarClipper {
   }
 
  private:
-  /// From a corner on, itself included; that corner where there is no ear.
+  /// The next corner that is an ear, from `from` on; `from` itself if no corner is an ear.
   std::uint32_t next_ear(std::uint32_t from) {
     for (std::uint32_t k = from;;) {
       k = unknown_.next(k);
@@ -191,12 +192,12 @@ class EarClipper {
     }
   }
 
-  /// Notes which corner is in its way, if one is.
+  /// Whether a corner is an ear. If another corner lies in it, notes that this one waits for the other to be cut off.
   bool is_ear(std::uint32_t k) {
     const Ear ear{corners_[previous_[k]], corners_[k], corners_[next_[k]]};
     waits_for_[k] = kNoCorner;
     if (cross(ear.a, ear.b, ear.c) <= 0) return false;
-    // Corners that stand on a corner of the ear are hole bridges, which visit a position twice.
+    // Other corners at the positions of the ear's own do not count: a bridge to a hole passes its ends twice.
     const std::uint32_t in_the_way = tree_.find(ear, [&](std::uint32_t m) {
       const Point2 p = corners_[m];
       return !is_gone_[m] && !same(p, ear.a) && !same(p, ear.b) && !same(p, ear.c);
@@ -223,7 +224,7 @@ class EarClipper {
     unknown_.add(after);
   }
 
-  /// A corner that is no ear, and the next one that the same is in the way of.
+  /// A corner that waits for another one to be cut off, and the next in the list of corners that wait for that one.
   struct Waiting {
     std::uint32_t corner, next;
   };

@@ -40,7 +40,7 @@ bool same_cycle(Corners a, Corners b) {
   return false;
 }
 
-/// By the hash, and faces with the same in their order.
+/// Sorted by the hash; faces with the same hash by their number.
 struct HashedFace {
   std::uint32_t hash, face;
   bool operator<(const HashedFace& o) const { return std::tie(hash, face) < std::tie(o.hash, o.face); }
@@ -63,7 +63,7 @@ std::vector<std::uint8_t> find_repeated_faces(std::span<const std::uint32_t> cor
   VDB_OFFSET_ASSERT(!begin.empty() && begin.back() <= corners.size());
   const std::size_t count = begin.size() - 1;
   const auto face = [&](std::size_t f) { return corners.subspan(begin[f], begin[f + 1] - begin[f]); };
-  // Those that repeat each other have one smallest corner.
+  // Faces that repeat each other have the same smallest corner: only faces of one bucket have to be compared.
   const auto smallest = [&](std::size_t f) { return *std::min_element(face(f).begin(), face(f).end()); };
   const auto has_corners = [&](std::size_t f) { return begin[f + 1] > begin[f]; };
   Buckets buckets(corners.empty() ? 0 : greatest(corners) + std::size_t{1});

@@ -36,12 +36,13 @@ bool is_flat(std::span<const Vec3d> positions, std::span<const std::uint32_t> po
     lowest = std::min(lowest, height);
     highest = std::max(highest, height);
   }
-  // Heights, by the root of the area: far more than rounding, far less than a bend that one sees. Not measured.
+  // Largest distance from the plane, as a share of the polygon's size: far above rounding, far below a visible bend.
+  // Not measured.
   constexpr double kFlat = 1e-3;
   return highest - lowest <= kFlat * area.length() * std::sqrt(area.length());
 }
 
-/// The corners seen along the area vector's largest component, counter-clockwise.
+/// The corners projected along the axis in which the area vector is largest, counter-clockwise.
 std::vector<Point2> project(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                             const Vec3d& area) {
   int axis = 0;

@@ -2,7 +2,7 @@
 #include "vdb_offset/distance_expression.h"
 #include "vdb_offset/error.h"
 
-/// In the place of expressions, where the library is built without muParser.
+// Stands in for distance_expression.cpp where the library is built without muParser: any expression is refused.
 namespace vdb_offset {
 
 DistanceExpression::DistanceExpression(std::string text) {
