@@ -26,7 +26,8 @@ class Buckets {
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     return begin_.back();
   }
-  /// The index at which one thing of a bucket belongs. \pre close() was called, and no more things than were counted ask for one
+  /// The index at which one thing of a bucket belongs. \pre close() was called, and no more things than were counted
+  /// ask for one
   std::uint32_t next(std::size_t bucket) {
     const std::uint32_t index = std::atomic_ref(begin_[bucket + 1]).fetch_add(1, std::memory_order_relaxed);
     VDB_OFFSET_ASSERT(index < begin_.back());

@@ -21,7 +21,8 @@ void require_memory(std::size_t bytes, const std::string& where);
 /// Appends to a list of unknown final length. \throw OutOfBudget before it passes the limit
 template <class T>
 void append_within_limit(std::vector<T>& list, const T& item, const char* where) {
-  constexpr std::size_t kSmall = std::size_t{1} << 20;  // bytes; smaller lists are not worth asking the system for the memory in use
+  constexpr std::size_t kSmall = std::size_t{1}
+                                 << 20;  // bytes; smaller lists are not worth asking the system for the memory in use
   if (list.size() == list.capacity() && list.size() * sizeof(T) >= kSmall)
     require_memory(2 * list.size() * sizeof(T), where);
   list.push_back(item);

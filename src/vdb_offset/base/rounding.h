@@ -10,8 +10,9 @@ namespace vdb_offset {
 /// Rounds coordinates to what a file keeps of them.
 struct Rounding : Precision {
   Rounding() = default;
-  Rounding(const Precision& precision) : Precision(precision) {}  // NOLINT(google-explicit-constructor): no information is lost or added
-  Rounding(Kind of, int significant_digits = 17) {                // NOLINT(google-explicit-constructor): a kind is a precision
+  Rounding(const Precision& precision)
+      : Precision(precision) {}  // NOLINT(google-explicit-constructor): no information is lost or added
+  Rounding(Kind of, int significant_digits = 17) {  // NOLINT(google-explicit-constructor): a kind is a precision
     kind = of;
     digits = significant_digits;
   }

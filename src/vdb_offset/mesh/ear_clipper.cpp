@@ -28,8 +28,8 @@ struct Box2 {
     lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
     upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
   }
-  /// Whether all of the box is to the right of the line from a to b. It is enough to look at the corner that is farthest
-  /// to the left: rounding is monotone, so that cross() of no other point in the box is above that corner's.
+  /// Whether all of the box is to the right of the line from a to b. It is enough to look at the corner that is
+  /// farthest to the left: rounding is monotone, so that cross() of no other point in the box is above that corner's.
   bool is_right_of(Point2 a, Point2 b) const {
     return cross(a, b, {b.y - a.y >= 0 ? lower.x : upper.x, b.x - a.x >= 0 ? upper.y : lower.y}) < 0;
   }

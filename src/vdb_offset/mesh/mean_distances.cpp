@@ -24,7 +24,8 @@ MeanDistances mean_distances(const Distances& of_vertices, std::span<const std::
   for (std::size_t g = 0; g < count; ++g) {
     if (copies[g] == 0) continue;
     mean.disagreeing += apart[g];
-    mean.each[g] = apart[g] ? mean.each[g] / copies[g] : of_vertices[first[g]];  // where all agree, their distance keeps its bits
+    mean.each[g] =
+        apart[g] ? mean.each[g] / copies[g] : of_vertices[first[g]];  // where all agree, their distance keeps its bits
   }
   return mean;
 }

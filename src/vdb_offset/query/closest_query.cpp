@@ -21,7 +21,8 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   const Vec3d lower = surface.facts.lower - surface.origin, upper = surface.facts.upper - surface.origin;
   double reach = 0;
   for (int k = 0; k < 3; ++k) reach = std::max({reach, std::abs(lower[k]), std::abs(upper[k])});
-  // Boxes hold coordinates of size 1 or so: their squares neither overflow nor vanish in a float.
+  // Boxes hold coordinates of a size near 1, so that their squares neither overflow nor vanish in a float. The slack
+  // covers the rounding of coordinates to floats and of the arithmetic with them: a few units of 6e-8 each.
   scale_ = reach > 0 ? std::ldexp(1.0, -std::ilogb(reach)) : 1.0;
   slack_ = static_cast<float>(reach * scale_ * 4e-7);
   constexpr std::size_t kSize = kLeafSize;
@@ -42,7 +43,8 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
 }
 
 ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
-  constexpr float kNowhere = 1e18f;  // where unused lanes are: farther than any limit, and its square is a float
+  constexpr float kNowhere =
+      1e18f;  // coordinate of unused lanes: beyond any limit, and its square still fits into a float
   Rectangles some{};
   for (int i = 0; i < kLeafSize; ++i) {
     const std::size_t t = leaf * kLeafSize + static_cast<std::size_t>(i);
@@ -63,7 +65,7 @@ ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
                 edge = length > 0 ? (corner[(longest + 1) % 3] - corner[longest]) / length : Vec3d(0.0),
                 to_third = corner[(longest + 2) % 3] - middle, across = to_third - edge * edge.dot(to_third),
                 centre = middle + across / 2.0;
-    // Of a very thin triangle the normal may lean along its edge.
+    // The normal of a very thin triangle may lean along its edge: rectangles need it at right angles to that.
     Vec3d normal = surface_.triangle_normals[t];
     normal -= edge * edge.dot(normal);
     if (normal.lengthSqr() > 0) normal.normalize();
@@ -80,8 +82,8 @@ ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
 
 Closest ClosestQuery::operator()(const Vec3d& x, std::uint32_t hint) const { return Search(*this, x, hint).run(); }
 
-/// The blocks of lowest boxes that some balls may meet, all together; returns how many, of which `blocks` has room for
-/// the first.
+/// Finds the blocks of lowest boxes that may meet any of the balls, and returns their number. `blocks` gets as many of
+/// them as it has room for.
 std::size_t ClosestQuery::find_blocks(std::span<const Ball> balls, Blocks& blocks) const {
   std::size_t count = 0;
   const auto take = [&](std::size_t block) {
@@ -104,7 +106,7 @@ std::size_t ClosestQuery::find_blocks(std::span<const Ball> balls, Blocks& block
   return count;
 }
 
-/// Some points for which the closest points are looked for together.
+/// Points whose closest points are looked for together, as they share most of the boxes.
 class ClosestQuery::Group {
  public:
   static constexpr std::size_t kMost = 32;  // points; not measured beside other numbers
@@ -119,7 +121,9 @@ class ClosestQuery::Group {
     }
   }
 
-  /// Points first .. last - 1: by halves, if the balls that nothing nearer lies outside of do not lie close together.
+  /// Finds the closest points of points first .. last - 1. The ball around each point that reaches to the triangle
+  /// found by walking holds whatever is nearer. Where these balls are not close together, each half is answered by
+  /// itself.
   void answer(std::size_t first, std::size_t last) const {
     Blocks blocks;
     const std::size_t count = query_.find_blocks(std::span(balls_).subspan(first, last - first), blocks);
@@ -158,7 +162,8 @@ std::vector<Closest> closest_points(const ClosestQuery& query, std::span<const V
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { order[i] = {curve(points[i]), i}; });
   tbb::parallel_sort(order.begin(), order.end());
   std::vector<Closest> answers(points.size());
-  // Runs of one length, whatever the number of threads: an answer may depend on its hint.
+  // Points in a run, not measured beside other lengths. The same for any number of threads: of triangles that are as
+  // near, the hint may decide which one is found.
   constexpr std::size_t kRun = 256;
   tbb::parallel_for(std::size_t{0}, (points.size() + kRun - 1) / kRun, [&](std::size_t run) {
     std::uint32_t hint = 0;

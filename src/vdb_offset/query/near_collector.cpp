@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles near balls, and with these the closest points of points along paths.
+// Collects the triangles near balls, and finds with these the closest points of points along paths.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -11,15 +11,16 @@
 
 namespace vdb_offset {
 
-/// Planes that face a point, at a distance, with a box's triangles behind them.
+/// For each triangle of a lowest box, seen from a point: a plane that faces the point, with the triangle behind it.
 struct ClosestQuery::Planes {
   float normal[3][kLeafSize], distance[kLeafSize];
 };
 
-/// Finds near rectangles as near_rectangles() does, and the planes in front of them. In front of the rim of a rectangle
-/// that is longer than it is far away, a plane would not be exact enough: such a rectangle has its own plane.
+/// Finds near rectangles as near_rectangles() does, and the planes in front of them. The plane is at right angles to
+/// the shortest way to the rectangle. To the rim of a rectangle that is longer than it is far away, rounding would make
+/// it too inexact: such a rectangle's own plane is taken.
 unsigned ClosestQuery::planes_before(const Rectangles& some, const float* local, float limit, Planes& planes) {
-  constexpr float kTiny = 1e-30f;  // keeps a division by zero away
+  constexpr float kTiny = 1e-30f;  // least divisor: avoids a division by zero, and is far below any distance
   unsigned near = 0;
   for (int i = 0; i < kLeafSize; i += kLanes) {
     const RectangleView view = view_rectangles(some, i, local);
@@ -49,7 +50,7 @@ class ClosestQuery::Collector {
             const std::function<void(std::size_t, NearTriangles&)>& take)
       : query_(query), balls_(balls), take_(take) {}
 
-  /// Balls first .. last - 1: by halves, if they do not lie close together.
+  /// Collects for balls first .. last - 1. Where these are not close together, each half is taken by itself.
   void collect(std::size_t first, std::size_t last) {
     Blocks blocks;
     const std::size_t count = query_.find_blocks(balls_.subspan(first, last - first), blocks);
@@ -72,7 +73,7 @@ class ClosestQuery::Collector {
     rounding_ = query_.slack_ + 4e-7f * std::max({std::abs(local_[0]), std::abs(local_[1]), std::abs(local_[2])});
     const auto radius = static_cast<float>(ball.radius * query_.scale_), reach = (radius + rounding_) * 1.000001f;
     limit_ = reach * reach;
-    // A ball of no size, or next to none, is no unit.
+    // The radius is the unit of what is collected, and so must not be zero, or so small that rounding decides.
     unit_ = std::max({radius, rounding_, std::numeric_limits<float>::min()});
     near_.begin(ball.centre, static_cast<double>(unit_) / query_.scale_);
   }
@@ -87,7 +88,7 @@ class ClosestQuery::Collector {
     }
   }
 
-  /// Looks into lowest boxes, and hands on what is above these.
+  /// Looks at the children of a node near the ball: into lowest boxes itself, and hands on all others.
   template <class HandOn>
   void open(std::size_t level, std::uint32_t node, HandOn&& hand_on) {
     float squared[kWidth];
@@ -121,7 +122,7 @@ void ClosestQuery::collect_together(std::span<const Ball> balls,
   if (!balls.empty()) Collector(*this, balls, take).collect(0, balls.size());
 }
 
-/// Points on paths up from the surface; their closest points are looked for together.
+/// Points on paths that lead away from the surface. The closest points of a path's points are looked for together.
 class ClosestQuery::AlongPaths {
  public:
   AlongPaths(const ClosestQuery& query, std::span<const Vec3d> points, std::span<const std::size_t> begin,
@@ -137,8 +138,9 @@ class ClosestQuery::AlongPaths {
   }
 
  private:
-  /// Nothing nearer to one of the points than what was found beside it lies outside of the ball around the farthest
-  /// that holds all their balls. If that is hardly larger than the largest of them, it serves for all.
+  /// Adds the balls for the points of a path. The ball around a point that reaches to the triangle found by walking
+  /// holds whatever is nearer. If the ball around the farthest point that holds all the others is hardly larger than
+  /// its own, it serves for all points.
   void add_path(std::size_t first, std::size_t last, std::span<const std::uint32_t> hints) {
     constexpr double kHardlyLarger = 1.05;  // share of radii; a larger ball holds more triangles; not measured
     std::size_t farthest = first;
@@ -180,9 +182,9 @@ class ClosestQuery::AlongPaths {
   const ClosestQuery& query_;
   std::span<const Vec3d> points_;
   std::span<Closest> answers_;
-  std::vector<Closest> walked_;  // what is close to each point, and next to the hint
+  std::vector<Closest> walked_;  // of each point: the closest point found by walking from its hint
   std::vector<Ball> balls_;
-  std::vector<std::pair<std::size_t, std::size_t>> runs_;  // of points, one for each ball
+  std::vector<std::pair<std::size_t, std::size_t>> runs_;  // the points, first .. last - 1, that each ball serves
 };
 
 void ClosestQuery::answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,

@@ -9,7 +9,7 @@
 namespace vdb_offset {
 namespace {
 
-/// Edges with one face, and those at each vertex.
+/// The edges with one face, and for each vertex which of them end there.
 class BorderEdges {
  public:
   explicit BorderEdges(const Surface& surface) {
@@ -28,7 +28,7 @@ class BorderEdges {
   bool has_branch(std::uint32_t vertex) const { return around(vertex).size() != 2; }
   std::array<std::uint32_t, 2> ends(std::uint32_t edge) const { return edges_[edge]; }
 
-  /// Along an edge from one of its ends, and on, until a border branches or closes.
+  /// Follows a border along an edge, from one end of it, until the border branches or closes.
   BorderLoop walk(std::uint32_t edge, std::uint32_t from) {
     BorderLoop loop{{from}, false};
     for (std::uint32_t at = from;;) {

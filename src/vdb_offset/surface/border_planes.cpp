@@ -16,24 +16,28 @@
 namespace vdb_offset {
 namespace {
 
-// Planes through points of which a file has kept seven digits are off by a few of the last, by these shares of the
-// largest coordinate.
+// How far a vertex may be off its plane, as a share of the largest coordinate: files that keep seven digits put points
+// off by a few units of the last one.
 constexpr double kSevenDigits = 1e-6;
-// Far from the origin that says little: then it is no more than this share of the diagonal.
+// Largest such distance as a share of the diagonal: far from the origin, the largest coordinate says little about the
+// size of the mesh. Not measured.
 constexpr double kRoughest = 1e-5;
-// Least cosine between a way in a plane and the normals of faces that rise from it.
+// Least cosine between a direction in a plane and the normals of the faces around a vertex, for the vertex to move
+// within the plane. Not measured.
 constexpr double kWithinReach = 0.2;
-// So much of a piece has to be in reach, by its length.
+// Share of a piece's length along which vertices must be able to move within its plane. Not measured.
 constexpr double kMostInReach = 0.9;
-// Edges of a piece of a border that can hardly lie in a plane by chance; at right angles to an axis, by design.
+// Least number of edges of a piece that lies in a plane: so many hardly do by chance. Fewer are enough for a plane at
+// right angles to an axis, which is most likely meant. Not measured.
 constexpr std::size_t kManyEdges = 4, kFewEdges = 2;
-// A piece has to be so many times wider than that to tell of a plane, and not of a line.
+// Least width of a piece, in tolerances: a narrower one is a line, and lies in many planes. Not measured.
 constexpr double kWideEnough = 8;
-// Where a piece ends, its border leaves the plane by this sine at least.
+// Least sine between the plane of a piece and the edges beside it: if these leave the plane by less, the border bends
+// smoothly, and the piece is in the plane by chance. Not measured.
 constexpr double kLeaves = 0.02;
-// Planes are the same that differ by such an angle.
+// Sine of the angle below which two planes count as one. Not measured.
 constexpr double kSamePlane = 1e-4;
-// Normals of faces in one plane.
+// How far below 1 the cosine between normals of faces in one plane may be: rounding alone. Not measured.
 constexpr double kSameNormal = 1e-12;
 
 Vec3d axis_of(int k) {
@@ -46,7 +50,7 @@ bool is_axis(const Vec3d& normal) {
   return std::abs(normal[0]) == 1 || std::abs(normal[1]) == 1 || std::abs(normal[2]) == 1;
 }
 
-/// A vertex and a plane that is to hold it, by number.
+/// A vertex, and the number of a plane that holds it.
 struct Hold {
   std::uint32_t vertex, plane;
   bool operator==(const Hold&) const = default;
@@ -79,7 +83,7 @@ class PlaneFinder {
     for (const BorderLoop& loop : border_loops(surface_)) find_in(loop);
   }
 
-  /// Has conormals tell which planes hold which vertices.
+  /// Gives vertices the conormals of the planes that hold them.
   void settle() {
     if (holds_.empty()) return;
     std::sort(holds_.begin(), holds_.end());
@@ -121,8 +125,8 @@ class PlaneFinder {
     return number;
   }
 
-  /// Whether a way at right angles to these leads off all faces around a vertex. What rounding leaves of a normal
-  /// across such a way is none.
+  /// Whether a direction at right angles to these conormals leads away from all faces around a vertex. False if the
+  /// vertex's normal is along the conormals but for rounding: there is no such direction then.
   bool leads_off(std::uint32_t v, std::span<const Vec3d> conormals, double least) const {
     const Vec3d& normal = surface_.vertex_normals[v];
     Vec3d along = normal;
@@ -130,10 +134,10 @@ class PlaneFinder {
     return along.length() > least * normal.length() && least_cosine(surface_, v, along.unit()) >= least;
   }
 
-  /// Whether a way in the plane leads off all faces around a vertex of it.
+  /// Whether a direction within the plane leads away from all faces around a vertex.
   bool is_in_reach(std::uint32_t v, const Vec3d& normal) const { return leads_off(v, {&normal, 1}, kWithinReach); }
 
-  /// Whether one of the faces around a vertex lies in the plane: it has to leave that.
+  /// Whether one of the faces around a vertex lies in the plane: its offset leaves the plane, and the vertex with it.
   bool has_face_in(const SymmetryPlane& plane, std::uint32_t v) const {
     const auto around = surface_.triangles_around(v);
     return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
@@ -143,14 +147,14 @@ class PlaneFinder {
     });
   }
 
-  /// What some vertices lie in.
+  /// What a set of vertices lies in.
   enum class Shape { Line, Plane, Neither };
   struct Fit {
     Shape shape;
     SymmetryPlane plane;
   };
 
-  /// The plane of some vertices: at right angles to an axis if it may be.
+  /// The plane that vertices lie in: one at right angles to an axis if the tolerance allows it.
   Fit fit(std::span<const std::uint32_t> piece) const {
     const auto at = [&](std::uint32_t v) -> const Vec3d& { return surface_.vertices[v]; };
     const auto farthest = [&](auto&& distance) {
@@ -171,7 +175,7 @@ class PlaneFinder {
     return {width <= 4 * tolerance_ ? Shape::Plane : Shape::Neither, {normal, middle}};
   }
 
-  /// The middle of the heights along a normal, and how much there is between them.
+  /// The middle of the lowest and highest position along a normal, and the distance between these.
   std::pair<double, double> spread(std::span<const std::uint32_t> piece, const Vec3d& normal) const {
     double low = normal.dot(surface_.vertices[piece.front()]), high = low;
     for (const auto v : piece) {
@@ -189,7 +193,7 @@ class PlaneFinder {
     return length;
   }
 
-  /// Holds the vertices of a piece that lies in a plane, if that is within reach.
+  /// Holds the vertices of a piece in its plane, if most of them can move within the plane.
   bool hold_piece(std::span<const std::uint32_t> piece, const SymmetryPlane& plane, bool is_wall = true) {
     std::vector<std::uint8_t> in_reach;
     for (const auto v : piece) in_reach.push_back(is_in_reach(v, plane.normal));
@@ -216,7 +220,7 @@ class PlaneFinder {
     while (first + 1 < all.size()) first = hold_from(all, first);
   }
 
-  /// Where a closed border turns most.
+  /// The index of the vertex at which a closed border turns most.
   std::size_t sharpest_corner(std::span<const std::uint32_t> all) const {
     std::size_t sharpest = 0;
     double least = 2;
@@ -232,7 +236,8 @@ class PlaneFinder {
     return sharpest;
   }
 
-  /// Holds those pieces of a border in a plane from which the faces rise, as where only some of its sides do.
+  /// Holds those pieces of a plane border from which the faces rise out of the plane: they may rise along some of its
+  /// sides only.
   bool hold_runs(std::span<const std::uint32_t> all, const SymmetryPlane& plane) {
     bool any = false;
     for (std::size_t first = 0, last = 0; first < all.size(); first = last + 1) {
@@ -243,11 +248,11 @@ class PlaneFinder {
     return any;
   }
 
-  /// Looks for the longest piece that begins at a vertex of a border and lies in a plane, or on a line. Returns where
-  /// the next one begins.
+  /// Finds the longest piece that begins at a vertex of a border and lies in a plane or on a line, and holds it.
+  /// Returns where the next piece begins.
   std::size_t hold_from(std::span<const std::uint32_t> all, std::size_t first) {
     const std::size_t straight = end_of_line(all, first), last = longest_from(all, first, straight);
-    // A straight piece and the first edge behind it always lie in a plane.
+    // A piece that goes one edge beyond a straight line tells no plane: a line and an edge always lie in one.
     if (straight - first >= kFewEdges && last <= straight + 1) {
       hold_line(all.subspan(first, straight - first + 1));
       return straight;
@@ -262,8 +267,8 @@ class PlaneFinder {
     return last;
   }
 
-  /// Whether a border leaves the plane of a piece abruptly before and behind it. Any smooth one nearly lies in a plane
-  /// for a few edges, here and there, and leaves that little by little.
+  /// Whether a border leaves the plane of a piece abruptly before and behind it. A smooth border that is
+  /// not plane also lies nearly in a plane for a few edges, but leaves it gradually.
   bool leaves_at_ends(std::span<const std::uint32_t> all, std::size_t first, std::size_t last,
                       const SymmetryPlane& plane) const {
     const bool closed = all.front() == all.back();
@@ -276,7 +281,7 @@ class PlaneFinder {
     return (at_end && !closed) || leaves(all[last], all[at_end ? 1 : last + 1]);
   }
 
-  /// The last vertex of the straight piece that begins at one.
+  /// The last vertex of the straight piece that begins at vertex `first` of a border.
   std::size_t end_of_line(std::span<const std::uint32_t> all, std::size_t first) const {
     const Vec3d &a = surface_.vertices[all[first]], along = surface_.vertices[all[first + 1]] - a;
     std::size_t last = first + 1;
@@ -288,8 +293,8 @@ class PlaneFinder {
     return last;
   }
 
-  /// The last vertex up to which all lies in a plane, at least `known`: twice as far for as long as that holds, then by
-  /// halves.
+  /// The last vertex, at least `known`, up to which all vertices from `first` on lie in a plane. Found by doubling the
+  /// step while they do, then by bisection.
   std::size_t longest_from(std::span<const std::uint32_t> all, std::size_t first, std::size_t known) const {
     const auto holds = [&](std::size_t last) {
       return fit(all.subspan(first, last - first + 1)).shape != Shape::Neither;
@@ -308,8 +313,8 @@ class PlaneFinder {
     return low;
   }
 
-  /// A straight piece along which all faces are in one plane stays in the plane across that, which is no wall to what
-  /// bends farther on.
+  /// Holds a straight piece along which all faces are in one plane, in the plane at right angles to these faces. That
+  /// is no wall: the surface may bend farther on, and pass it.
   void hold_line(std::span<const std::uint32_t> piece) {
     const Vec3d along = surface_.vertices[piece.back()] - surface_.vertices[piece.front()];
     if (piece.size() <= kFewEdges) return;
@@ -328,8 +333,9 @@ class PlaneFinder {
     hold_piece(piece, {across, spread(piece, across).first}, false);
   }
 
-  /// One vertex: in one plane, on the line between two, or where more meet. Planes that are not named give way where
-  /// they leave it no way off its faces. What is at right angles to an axis comes first, to stay so exactly.
+  /// Gives one vertex its conormals: it stays in one plane, on the line where two meet, or at the point where three do.
+  /// Planes that were not named by the user are left out where the vertex could not leave its faces otherwise. Planes
+  /// at right angles to an axis come first, as conormals after the first are rounded.
   void settle(std::span<Hold> all) {
     const std::uint32_t v = all.front().vertex;
     const auto normal_of = [&](const Hold& each) -> const Vec3d& { return surface_.planes[each.plane].normal; };
@@ -352,7 +358,8 @@ class PlaneFinder {
     if (count == 2) surface_.second_conormals.emplace_back(v, conormal[1]);
   }
 
-  /// What hangs together with vertices that a plane holds, and is on one side of it, has a wall there.
+  /// Makes a plane a wall for the vertices that are connected, within `reach_` of it, with those that it holds, if all
+  /// of them are on one side of it.
   void raise_walls() {
     std::vector<std::vector<std::uint32_t>> of_plane(surface_.planes.size());
     for (const auto& [v, number] : holds_) of_plane[number].push_back(v);
@@ -384,8 +391,8 @@ class PlaneFinder {
 
   Surface& surface_;
   double reach_, tolerance_ = 0;
-  std::size_t named_ = 0;              // the first planes are
-  std::vector<std::uint8_t> is_wall_;  // of each plane
+  std::size_t named_ = 0;              // planes that the user has named: the first of all
+  std::vector<std::uint8_t> is_wall_;  // of each plane: 1 if it may be a wall
   std::vector<Hold> holds_;
 };
 

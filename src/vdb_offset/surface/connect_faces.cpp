@@ -17,7 +17,8 @@
 namespace vdb_offset {
 namespace {
 
-/// Half-edges bucketed by their smaller end, in order; in a bucket, those with the same larger end make an edge.
+/// Half-edges in buckets, one for each vertex as the smaller end. Half-edges of a bucket that have the same larger end
+/// are one edge.
 class HalfEdges {
  public:
   explicit HalfEdges(const Surface& surface) : surface_(surface) {
@@ -40,7 +41,7 @@ class HalfEdges {
     for (auto run = first; run != last;) {
       auto end = run;
       while (end != last && larger(*end) == larger(*run)) ++end;
-      if (larger(*run) != v) visit(std::span<const std::uint32_t>(run, end));  // a repeated corner makes no edge
+      if (larger(*run) != v) visit(std::span<const std::uint32_t>(run, end));  // not where a triangle repeats a corner
       run = end;
     }
   }
@@ -53,7 +54,8 @@ class HalfEdges {
   std::vector<std::uint32_t> begin_, sorted_;
 };
 
-/// Sets that any number of threads may unite; the first of a set's members stands for it, whatever the order.
+/// Disjoint sets that any number of threads may unite. The first member of a set stands for it, whatever the order in
+/// which sets were united.
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) {
@@ -62,7 +64,7 @@ class Sets {
   std::uint32_t first(std::uint32_t i) {
     for (std::uint32_t up = parent(i).load(std::memory_order_relaxed); up != i;) {
       const std::uint32_t further = parent(up).load(std::memory_order_relaxed);
-      // Whoever comes next finds a shorter way.
+      // This shortens the path for later look-ups.
       if (further != up) parent(i).compare_exchange_strong(up, further, std::memory_order_relaxed);
       i = further;
       up = parent(i).load(std::memory_order_relaxed);
@@ -84,8 +86,8 @@ class Sets {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Numbers the components in the order of their first face and hands them to the vertices; one that several
-/// components share by a corner belongs to the last of them. Returns the component of each triangle.
+/// Numbers the components in the order of their first face and hands them to the vertices; a vertex
+/// that several components share belongs to the last of them. Returns the component of each triangle.
 std::vector<std::uint32_t> number_components(Surface& surface, Sets& faces, std::size_t face_count) {
   std::vector<std::uint32_t> number(face_count, kNone), component_of(surface.triangles.size());
   for_each_index(component_of.size(), [&](std::size_t t) { component_of[t] = faces.first(surface.face[t]); });
@@ -102,12 +104,12 @@ std::vector<std::uint32_t> number_components(Surface& surface, Sets& faces, std:
   return component_of;
 }
 
-/// What joining finds.
+/// What join() finds.
 struct Joined {
-  std::size_t boundary = 0, non_manifold = 0, conflicts = 0;  // edges
+  std::size_t boundary = 0, non_manifold = 0, conflicts = 0;  // numbers of edges
   bool folded = false;                                        // two triangles over the same corners share an edge
-  std::vector<std::uint32_t> component_of;                    // each triangle
-  std::vector<double> lengths;                                // of edges, while they are gathered
+  std::vector<std::uint32_t> component_of;                    // of each triangle
+  std::vector<double> lengths;                                // of all edges, in any order
 
   void add(const Surface& surface, std::span<const std::uint32_t> edge) {
     const auto across = [&](std::uint32_t e) { return surface.triangles[e / 3][(e + 2) % 3]; };
@@ -144,7 +146,7 @@ Joined join(Surface& surface, std::size_t face_count) {
   });
   Joined joined;
   for (Joined& part : parts) joined.add(std::move(part));
-  // A line that had to stay is all border: it has no side.
+  // A triangle that is no more than a line has no neighbours: it counts as border.
   joined.boundary +=
       static_cast<std::size_t>(std::count_if(surface.triangles.begin(), surface.triangles.end(), repeats_corner));
   joined.component_of = number_components(surface, faces, face_count);
@@ -163,7 +165,7 @@ Joined join(Surface& surface, std::size_t face_count) {
   return joined;
 }
 
-/// Whether a triangle faces against the polygon that it is part of, as where a bent one's fan folds over.
+/// Whether a triangle faces against the polygon that it is part of. The fan of a bent polygon may have such triangles.
 bool is_folded_over(PolygonView polygons, const Surface& surface, std::size_t t) {
   const auto polygon = polygons.face(surface.face[t]);
   if (polygon.size() == 3) return false;
@@ -174,8 +176,8 @@ bool is_folded_over(PolygonView polygons, const Surface& surface, std::size_t t)
   return normal.dot((surface.vertices[j] - surface.vertices[i]).cross(surface.vertices[k] - surface.vertices[i])) < 0;
 }
 
-/// The triangles that are folded over onto another one: of two bent polygons that share three corners in a row, for
-/// one.
+/// The triangles that face against their polygon and have the same corners as another triangle. Two bent polygons that
+/// share three successive corners may have them.
 std::vector<std::uint8_t> find_folded_triangles(PolygonView polygons, const Surface& surface) {
   const std::size_t count = surface.triangles.size();
   std::vector<std::uint8_t> folded(count), result(count, 0);
@@ -194,8 +196,8 @@ std::vector<std::uint8_t> find_folded_triangles(PolygonView polygons, const Surf
   return result;
 }
 
-/// Leaves out every face that repeats another, whichever way round, and of the others the triangles that are folded
-/// over onto another. False if there are none.
+/// Leaves out every face that repeats an earlier one, in either direction, then the triangles of
+/// find_folded_triangles(). Returns whether there were any.
 bool leave_out_repeated_faces(PolygonView polygons, Surface& surface) {
   std::vector<std::uint32_t> corners(polygons.corners.size());
   for_each_index(corners.size(), [&](std::size_t i) { corners[i] = surface.welded[polygons.corners[i]]; });

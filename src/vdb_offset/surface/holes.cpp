@@ -11,20 +11,19 @@
 namespace vdb_offset {
 namespace {
 
-// Shares of a part's area that a hole may have: whatever its rim is like, and where it goes on as the faces around do;
-// and all holes together.
-// Not measured beside other shares.
+// Largest area of a hole that may be filled, as a share of its part's area: of any hole; of a hole whose filling goes
+// on as the faces around it do; and of all holes together. Not measured beside other shares.
 constexpr double kTinyHole = 0.002, kFlatHole = 0.05, kAllHoles = 0.1;
-// Mean cosine of the angles at a rim between faces and filling, above which the filling goes on as the faces do: 60
+// Mean cosine of the angles between faces and filling along a rim, above which the filling goes on as the faces do: 60
 // degrees. Not measured.
 constexpr double kFlatRim = 0.5;
-// How far off its plane a plane loop may be, as a share of the diagonal: what a file of seven digits rounds.
+// How far a plane loop may be off its plane, as a share of the diagonal: the rounding of files that keep seven digits.
 constexpr double kPlane = 1e-6;
 
-/// An edge that lacks a face: it runs as that face would.
+/// An edge that lacks a face, in the direction in which that face would run.
 struct OpenEdge {
   std::uint32_t from, to, triangle;
-  bool is_border;  // with one face
+  bool is_border;  // it has one face
 };
 
 std::uint32_t root_of_part(std::vector<std::uint32_t>& parent, std::uint32_t t) {
@@ -32,7 +31,7 @@ std::uint32_t root_of_part(std::vector<std::uint32_t>& parent, std::uint32_t t) 
   return t;
 }
 
-/// Numbers the parts in the order of their first triangle.
+/// Numbers the parts, which are connected over edges, in the order of their first triangle.
 std::uint32_t number_parts(const Surface& surface, std::vector<std::uint32_t>& part_of) {
   std::vector<std::uint32_t>& parent = part_of;
   parent.resize(surface.triangles.size());
@@ -52,7 +51,7 @@ std::uint32_t number_parts(const Surface& surface, std::vector<std::uint32_t>& p
   return count;
 }
 
-/// Edges through which more faces run one way than the other, as often as there are more.
+/// The edges along which more faces run in one direction than in the other; each one as many times as there are more.
 std::vector<OpenEdge> find_open_edges(const Surface& surface) {
   std::vector<OpenEdge> open;
   for (std::uint32_t edge = 0; edge < surface.next_around_edge.size(); ++edge) {
@@ -78,7 +77,8 @@ class LoopFinder {
  public:
   explicit LoopFinder(const std::vector<OpenEdge>& edges) : edges_(edges) {
     for (std::uint32_t e = 0; e < edges.size(); ++e) leaving_[edges[e].from].push_back(e);
-    for (auto& [vertex, some] : leaving_) std::reverse(some.begin(), some.end());  // the first is taken from the back
+    for (auto& [vertex, some] : leaving_)
+      std::reverse(some.begin(), some.end());  // edges are taken from the back, the first one first
   }
 
   std::vector<std::vector<std::uint32_t>> find() {
@@ -88,7 +88,8 @@ class LoopFinder {
   }
 
  private:
-  /// As many open edges arrive at a vertex as leave it, so the walk ends where it began.
+  /// Walks along open edges and cuts off each loop that closes. As many open edges arrive at a vertex as leave it, so
+  /// that the walk ends where it began.
   void walk_from(std::uint32_t start) {
     std::vector<std::uint32_t> path;
     std::map<std::uint32_t, std::size_t> step{{start, 0}};  // of each vertex on the path: how many edges lead to it
@@ -114,9 +115,9 @@ class LoopFinder {
 /// A hole, and what tells whether it may be filled.
 struct JudgedHole {
   Hole hole;
-  Vec3d centre{0.0}, across{0.0};  // and the vector area of the fan
-  double cosine = 0;               // mean of the angles at the rim
-  bool is_inner = true;            // no edge is a border
+  Vec3d centre{0.0}, across{0.0};  // of the rim; the vector area of the fan that fills it
+  double cosine = 0;               // of the angles between faces and filling, the mean along the rim
+  bool is_inner = true;            // no edge of the rim is a border
 };
 
 JudgedHole judge(const Surface& surface, const std::vector<OpenEdge>& edges, const std::vector<std::uint32_t>& loop) {

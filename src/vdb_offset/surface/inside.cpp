@@ -44,12 +44,12 @@ int RayTree::pass(std::size_t t, const Vec3d& start, double& height) const {
 
 namespace {
 
-/// The solid parts, and the fans that fill their holes.
+/// The triangles of the solid parts, and the fans that fill their holes.
 std::unique_ptr<const Surface> filled(const Surface& surface, const Solidity& solidity) {
   auto all = std::make_unique<Surface>();
   all->origin = surface.origin;
   all->vertices = surface.vertices;
-  all->triangles = surface.triangles;  // which keep their numbers
+  all->triangles = surface.triangles;  // numbers stay: triangles of other parts become empty
   for (std::size_t t = 0; t < all->triangles.size(); ++t)
     if (!solidity.is_solid[solidity.part_of[t]]) all->triangles[t] = {0, 0, 0};
   for (const Hole& hole : solidity.holes) {
@@ -97,12 +97,13 @@ bool Inside::is_buried(std::uint32_t triangle, const Vec3d& x, double close) con
         (surface_.vertices[b] - surface_.vertices[a]).cross(surface_.vertices[c] - surface_.vertices[a]);
     return normal.lengthSqr() > 0 ? normal.unit() : Vec3d(0.0);
   };
-  // Cosine below which a ray runs along a triangle, and has no side of it; and how far around the point, in `close`,
-  // all triangles are passed, so that each that is close is met however much it leans. Not measured.
+  // kLeastSlope: cosine between ray and normal below which the ray runs along the triangle, and is on neither side of
+  // it. kAround: the length of ray around the point, in units of `close`, along which triangles are tested for being
+  // close: the more a triangle leans against the ray, the farther off the ray meets it. Not measured.
   constexpr double kLeastSlope = 1e-6, kAround = 1e3;
   const double slope = normal_of(triangle).dot(RayTree::direction());
   if (sense_ == 0 || std::abs(slope) < kLeastSlope) return false;
-  // Just ahead of all that is at this point, and just behind it.
+  // Winding numbers: just ahead of all triangles at the point, and what these add just behind them.
   int ahead = 0, here = slope > 0 ? 1 : -1;
   rays_.cast_from_behind(x, kAround * close, [&](std::size_t t, int turn, double height) {
     if (t == triangle) return;

@@ -30,7 +30,7 @@ double used_diagonal(PolygonView mesh) {
       });
   const Vec3d size = box.upper - box.lower;
   const double largest = openvdb::math::Max(size[0], size[1], size[2]);
-  // Squares of what is tiny or huge are no numbers.
+  // The squares of tiny and huge lengths would vanish or overflow.
   return largest < 1e-150 || largest > 1e150 ? largest * (largest > 0 ? (size / largest).length() : 0) : size.length();
 }
 

@@ -18,20 +18,21 @@ Vec3d twice_area(const Surface& surface, std::uint32_t t) {
   return (surface.vertices[b] - surface.vertices[a]).cross(surface.vertices[c] - surface.vertices[a]);
 }
 
-/// Triangles that hang together over edges with two faces, and which of them agree with the first.
+/// Triangles that are connected over edges with two faces, and which of them have the orientation of the first.
 struct OrientableSheet {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint8_t> agrees;
   bool orientable = true;
 };
 
-/// The patch around a triangle that no patch holds yet. `state`: 0 not seen, 1 agrees with the seed, 2 does not.
-OrientableSheet collect_patch(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
-  OrientableSheet patch;
-  patch.triangles.push_back(seed);
+/// The sheet of a triangle that belongs to no sheet yet. `state` of each triangle: 0 not seen, 1 agrees with the seed,
+/// 2 does not.
+OrientableSheet collect_sheet(const Surface& surface, std::uint32_t seed, std::vector<std::uint8_t>& state) {
+  OrientableSheet sheet;
+  sheet.triangles.push_back(seed);
   state[seed] = 1;
-  for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
-    const std::uint32_t t = patch.triangles[i];
+  for (std::size_t i = 0; i < sheet.triangles.size(); ++i) {
+    const std::uint32_t t = sheet.triangles[i];
     for (std::uint32_t e = 3 * t; e < 3 * t + 3; ++e) {
       const std::uint32_t twin = surface.next_around_edge[e], other = twin / 3;
       if (twin == e || surface.next_around_edge[twin] != e) continue;
@@ -39,17 +40,17 @@ OrientableSheet collect_patch(const Surface& surface, std::uint32_t seed, std::v
       const auto wanted = static_cast<std::uint8_t>(conflict ? 3 - state[t] : state[t]);
       if (state[other] == 0) {
         state[other] = wanted;
-        patch.triangles.push_back(other);
+        sheet.triangles.push_back(other);
       } else if (state[other] != wanted) {
-        patch.orientable = false;
+        sheet.orientable = false;
       }
     }
   }
-  for (const auto t : patch.triangles) patch.agrees.push_back(state[t] == 1);
-  return patch;
+  for (const auto t : sheet.triangles) sheet.agrees.push_back(state[t] == 1);
+  return sheet;
 }
 
-/// Half-edge k of a triangle whose last two corners change places becomes half-edge 2 - k.
+/// The new number of a half-edge: in a triangle whose last two corners are exchanged, half-edge k becomes 2 - k.
 std::uint32_t renamed(std::uint32_t half_edge, const std::vector<std::uint8_t>& turned) {
   return turned[half_edge / 3] ? 3 * (half_edge / 3) + 2 - half_edge % 3 : half_edge;
 }
@@ -69,12 +70,13 @@ void turn_round(Surface& surface, const std::vector<std::uint8_t>& turned) {
 struct Solid {
   bool closed = true;
   std::size_t triangles = 0;
-  Vec3d reference{0.0};          // one of its vertices: volumes are measured from there, for the least rounding
-  double volume = 0, gross = 0;  // six times the signed one, and the sum of the sizes of its terms
-  Vec3d lower{0.0}, upper{0.0};  // the rest is known only where solids may be nested
+  Vec3d reference{0.0};          // one of its vertices; volumes are measured from there, as that is rounded least
+  double volume = 0, gross = 0;  // six times the signed volume; the sum of the sizes of its terms
+  Vec3d lower{0.0}, upper{0.0};  // these two, and the samples, are set by locate() alone
   std::array<std::uint32_t, 3> samples{};  // triangles, far apart along the space-filling curve
 
-  /// Rounding alone gives a flat one a volume.
+  /// Whether the component is inside out. A flat one has a volume by rounding alone, which is below 1e-12 of the
+  /// terms that it is the sum of.
   bool is_negative() const { return closed && volume < -1e-12 * gross; }
 };
 
@@ -103,7 +105,7 @@ std::vector<Solid> find_solids(const Surface& surface, const std::vector<std::ui
   return solids;
 }
 
-/// Boxes and samples of the solids.
+/// Finds the boxes and the samples of all solids.
 void locate(const Surface& surface, const std::vector<std::uint32_t>& component_of, std::vector<Solid>& solids) {
   std::vector<std::size_t> seen(solids.size(), 0);
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
@@ -122,8 +124,8 @@ void locate(const Surface& surface, const std::vector<std::uint32_t>& component_
   }
 }
 
-/// Tells which closed components another one lies inside of: those around which the winding number of its points is
-/// not zero, counted along rays that start in the middle of faces; two of three decide.
+/// Tells which closed components a component lies inside of: those with a winding number other than zero around its
+/// points. Winding numbers are counted along rays from the middles of three of its faces, of which two decide.
 class Nesting {
  public:
   Nesting(const Surface& surface, const std::vector<std::uint32_t>& component_of, const std::vector<Solid>& solids)
@@ -142,7 +144,7 @@ class Nesting {
   }
 
  private:
-  /// What is strictly inside of a closed surface is so in all coordinates.
+  /// Whether `inner` may lie inside of `outer`, by their boxes.
   bool may_hold(std::uint32_t outer, std::uint32_t inner) const {
     const Solid &a = solids_[outer], &b = solids_[inner];
     for (int k = 0; k < 3; ++k)
@@ -173,7 +175,7 @@ class Nesting {
   RayTree rays_;
 };
 
-/// By component: whether it faces the wrong way as a whole, from what each lies inside of.
+/// Of each component: whether it faces the wrong way as a whole. `around` has the solids that each lies inside of.
 std::vector<std::uint8_t> judge(const std::vector<Solid>& solids,
                                 const std::vector<std::vector<std::uint32_t>>& around) {
   std::vector<std::uint32_t> order(solids.size());
@@ -187,7 +189,8 @@ std::vector<std::uint8_t> judge(const std::vector<Solid>& solids,
     if (solids[c].is_negative()) {
       wrong[c] = !cavity;
     } else if (cavity) {
-      // One that points outward in there may be a solid of its own, unless its surroundings are inside out with it.
+      // A component that faces outward inside another may be a solid of its own, unless the innermost one around it is
+      // inside out: then both are.
       const auto innermost =
           std::max_element(around[c].begin(), around[c].end(),
                            [&](std::uint32_t a, std::uint32_t b) { return around[a].size() < around[b].size(); });
@@ -222,13 +225,13 @@ void settle_orientation(Surface& surface) {
   std::vector<std::uint8_t> state(count, 0), turned(count, 0);
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     if (state[seed] != 0) continue;
-    const OrientableSheet patch = collect_patch(surface, seed, state);
-    if (!patch.orientable) continue;
+    const OrientableSheet sheet = collect_sheet(surface, seed, state);
+    if (!sheet.orientable) continue;
     double area[2] = {0, 0};
-    for (std::size_t i = 0; i < patch.triangles.size(); ++i)
-      area[patch.agrees[i]] += twice_area(surface, patch.triangles[i]).length();
+    for (std::size_t i = 0; i < sheet.triangles.size(); ++i)
+      area[sheet.agrees[i]] += twice_area(surface, sheet.triangles[i]).length();
     const std::uint8_t kept = area[1] >= area[0];
-    for (std::size_t i = 0; i < patch.triangles.size(); ++i) turned[patch.triangles[i]] = patch.agrees[i] != kept;
+    for (std::size_t i = 0; i < sheet.triangles.size(); ++i) turned[sheet.triangles[i]] = sheet.agrees[i] != kept;
   }
   facts.turned_triangles = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), 1));
   turn_round(surface, turned);

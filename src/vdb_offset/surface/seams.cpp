@@ -22,21 +22,23 @@
 namespace vdb_offset {
 namespace {
 
-// What a few roundings make of one position, in each of three coordinates.
+// Largest gap that is welded, in units in the last place: a few roundings in each of three coordinates. Not measured.
 constexpr double kUnitsApart = 4;
-// Of the diagonal: a crack that no one means, whatever the coordinates could tell apart.
+// Gap that is welded in any case, as a share of the diagonal: nobody models a crack as narrow, even if the coordinates
+// are precise enough for it. Not measured.
 constexpr double kNothingOfDiagonal = 1e-9;
-// Borders are told of that are closer to each other than this share of their edges.
+// Borders closer to each other than this share of their edges are reported. Not measured.
 constexpr double kSuspiciousOfEdge = 5e-3;
-// An edge that is not longer than so many gaps does not say which way a border runs.
+// Least length of an edge, in gaps: the direction of a shorter one says nothing about where a border runs. Not
+// measured.
 constexpr double kLongInGaps = 4;
 
 struct BorderEdge {
   std::uint32_t a, b;
 };
 
-/// The sides of all faces, summed up by what their edges hash to; sides of both directions cancel out. Only edges in a
-/// bucket that did not come to zero can be borders: none at all on a closed surface.
+/// Sums over the sides of all faces, in buckets by the hash of their edge. The two sides of an edge with two faces
+/// cancel out, so that only edges in a bucket with a sum other than zero can be borders. A closed surface has none.
 class EdgeSums {
  public:
   EdgeSums(PolygonView polygons, std::span<const std::uint32_t> welded_to) : sums_(kBuckets, 0) {
@@ -62,13 +64,14 @@ class EdgeSums {
   }
 
  private:
-  // As many as stay in a core's cache.
+  // kBuckets: sums that stay in a core's cache, 256 KiB. kRun: faces that a thread takes at a time. Not measured beside
+  // other sizes.
   static constexpr std::size_t kBuckets = 1 << 15, kRun = 1 << 14;
 
   std::vector<std::uint64_t> sums_;
 };
 
-/// The edges of a single face.
+/// The edges with a single face.
 std::vector<BorderEdge> find_single_edges(PolygonView polygons, std::span<const std::uint32_t> welded_to) {
   const EdgeSums sums(polygons, welded_to);
   if (sums.all_cancel()) return {};
@@ -122,9 +125,9 @@ class Borders {
   double median_edge() const { return median_edge_; }
   const Vec3d& position(std::size_t i) const { return positions_[vertices_[i]]; }
 
-  /// How far apart two borders are at their i-th and j-th vertex and along the shorter of the edges that leave there:
-  /// of all such pairs of edges, that of the closest. Infinite if no two run along each other, no farther apart than
-  /// that share of their length.
+  /// The gap between two borders at vertices i and j: for a pair of edges that begin at these, the larger one of the
+  /// distances between the vertices and between the end of the shorter edge and the other edge. Of all such pairs, the
+  /// least counts. Infinite if it is above `most_share` of the shorter edge's length for all pairs.
   double gap(std::size_t i, std::size_t j, double most_share) const {
     const double apart = (position(i) - position(j)).length();
     double least = std::numeric_limits<double>::infinity();
@@ -136,7 +139,7 @@ class Borders {
           along = positions_[p] - position(i);
           end = positions_[q] - position(i);
         }
-        // From here `end` is the nearer one, and to be found on the way to the farther one.
+        // `along` is the longer edge now, and `end` leads from its beginning to the end of the shorter one.
         const double length = end.length(), share = along.lengthSqr() > 0 ? along.dot(end) / along.lengthSqr() : 0;
         const double off = std::max(apart, (end - along * std::clamp(share, 0.0, 1.0)).length());
         if (off <= most_share * length) least = std::min(least, off);
@@ -159,7 +162,7 @@ class Borders {
   Neighbours neighbours(std::size_t i) const { return {ends_.data() + begin_[i], ends_.data() + begin_[i + 1]}; }
 
   std::span<const Vec3d> positions_;
-  std::vector<BorderEdge> ends_;  // each edge both ways, by where it begins
+  std::vector<BorderEdge> ends_;  // each edge in both directions, sorted by its first vertex
   std::vector<std::uint32_t> vertices_;
   std::vector<std::size_t> begin_;
   double median_edge_ = 0;
@@ -168,7 +171,7 @@ class Borders {
 /// Calls visit(i, j), i < j, for the border's vertices that are no farther apart than the radius.
 template <class Visit>
 void for_each_pair(const Borders& borders, double radius, Visit&& visit) {
-  const double side = 8 * radius;  // so that most look into one cell alone
+  const double side = 8 * radius;  // large cells: most vertices have all others within the radius in their own cell
   using Cell = std::array<std::int64_t, 3>;
   const auto cell_of = [&](const Vec3d& p) {
     Cell c;
@@ -203,7 +206,7 @@ struct Extent {
   double largest = 0, diagonal = 0;
 };
 
-/// Of the vertices in use.
+/// The extent of the vertices that faces use.
 Extent extent_of(PolygonView polygons, std::span<const std::uint32_t> first) {
   Vec3d lower(std::numeric_limits<double>::max()), upper(-lower);
   for (std::size_t v = 0; v < first.size(); ++v) {
@@ -216,7 +219,7 @@ Extent extent_of(PolygonView polygons, std::span<const std::uint32_t> first) {
   return extent;
 }
 
-/// Vertices that are one; the lowest stands for all.
+/// Sets of border vertices that are to be one. The lowest vertex of a set stands for it.
 class SeamClusters {
  public:
   explicit SeamClusters(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -233,7 +236,7 @@ class SeamClusters {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Vertices to be welded: what `first` becomes, for those of the border.
+/// Welds sets of border vertices: changes `first`, which has for each vertex the one that it is welded to.
 class SeamWelder {
  public:
   SeamWelder(PolygonView polygons, const Borders& borders, std::vector<std::uint32_t>& first)
@@ -258,7 +261,7 @@ class SeamWelder {
   }
 
  private:
-  /// Chains that lead farther than a crack is wide are none.
+  /// Refuses sets that extend farther than a crack is wide: chains of vertices, each near the next.
   void settle(double tolerance) {
     refused_.assign(borders_.vertices().size(), 0);
     target_.resize(first_.size());
@@ -270,7 +273,7 @@ class SeamWelder {
       root_at_[borders_.vertices()[i]] = root;
     }
   }
-  /// A face keeps its corners apart that follow each other.
+  /// Refuses sets that would make one vertex of two successive corners of a face.
   void refuse_collapsing() {
     for_each_side(polygons_, first_, [&](auto, std::uint32_t from, std::uint32_t to) {
       if (root_at_[from] != kNone && root_at_[from] == root_at_[to])
@@ -282,11 +285,12 @@ class SeamWelder {
   const Borders& borders_;
   std::vector<std::uint32_t>& first_;
   SeamClusters clusters_;
-  std::vector<std::uint8_t> refused_;            // of each root
-  std::vector<std::uint32_t> target_, root_at_;  // of each vertex of the mesh
+  std::vector<std::uint8_t> refused_;  // of each root: 1 if its set stays apart
+  std::vector<std::uint32_t> target_,
+      root_at_;  // of each vertex of the mesh: the one that it becomes; its set, or kNone
 };
 
-/// The decimal exponent of the last digit that the shortest form of a number has; 0 has none.
+/// The decimal exponent of the last digit in the shortest decimal form of a number. \pre the number is not 0
 int last_place(double number) {
   char text[40];
   const char* const end = std::to_chars(std::begin(text), std::end(text), number, std::chars_format::scientific).ptr;
@@ -309,10 +313,11 @@ bool is_single(double number) {
   return back == number;
 }
 
-/// Of numbers within a factor of ten, which have all the digits that were written, the last place of the largest ones;
-/// 0 if most have fewer digits, or all have so few that they may well be exact.
+/// The unit in the last decimal place of the largest numbers, if the numbers look like ones that were written with a
+/// fixed number of digits. 0 if most of them have fewer digits than the others, or if all have so few that they may
+/// well be exact. \pre the numbers are within a factor of ten
 double decimal_unit(const std::vector<double>& numbers, double most) {
-  constexpr double kFewDigits = 1.001e-5;  // fewer than six
+  constexpr double kFewDigits = 1.001e-5;  // a unit above this share of the largest number: fewer than six digits
   if (numbers.empty()) return 0;
   const double power = std::pow(10.0, std::floor(std::log10(most)));
   int least = std::numeric_limits<int>::max(), of_largest = least;
@@ -324,7 +329,8 @@ double decimal_unit(const std::vector<double>& numbers, double most) {
   }
   const auto as_many = std::count_if(places.begin(), places.end(), [&](int place) { return place <= least + 1; });
   if (2 * static_cast<std::size_t>(as_many) < places.size()) return 0;
-  // As many digits for each leave the largest a place less; round ones tell nothing.
+  // With the same number of digits for each, the largest numbers, of one more digit before the point, end a place
+  // earlier. If they end earlier than that, they are round, and the place of the others counts.
   const double unit = std::pow(10.0, of_largest <= least + 1 ? of_largest : least);
   return unit <= kFewDigits * most ? unit : 0;
 }
@@ -343,7 +349,7 @@ double tolerance_of(const Borders& borders, const Extent& extent, double precisi
 }  // namespace
 
 double unit_in_last_place(const std::vector<double>& numbers, double largest) {
-  // Small ones tell nothing: zeros may come as whatever a computation has left of them.
+  // Numbers far below the largest are left out: they may be zeros but for the rounding of an earlier computation.
   const auto those_from = [&](double least) {
     std::vector<double> some;
     std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(some),
@@ -355,7 +361,8 @@ double unit_in_last_place(const std::vector<double>& numbers, double largest) {
   const std::vector<double> large = those_from(most / 1000);
   const bool single = !large.empty() && std::all_of(large.begin(), large.end(), is_single);
   const int digits = single ? std::numeric_limits<float>::digits : std::numeric_limits<double>::digits;
-  // Decimal digits are rounded once, at the end: two of them differ by a unit at most.
+  // Half a decimal unit: decimal numbers were rounded once, when they were written, so that two of them that are equal
+  // but for this differ by one unit at most.
   return std::max(std::ldexp(1.0, std::ilogb(largest) - digits + 1), decimal_unit(those_from(most / 10), most) / 2);
 }
 

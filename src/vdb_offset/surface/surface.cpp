@@ -22,8 +22,8 @@
 namespace vdb_offset {
 namespace {
 
-/// Triangles with a repeated corner are lines that would only make edges of three faces. Those stay that hold a vertex
-/// which is in no other.
+/// Leaves out triangles with a repeated corner: these are lines, and would make edges of three faces. A line stays if
+/// one of its vertices is in no proper triangle.
 void leave_out_lines(Surface& surface) {
   if (std::none_of(surface.triangles.begin(), surface.triangles.end(), repeats_corner)) return;
   std::vector<std::uint8_t> held(surface.vertices.size(), 0);
@@ -43,7 +43,7 @@ void count_corners(PolygonView polygons, MeshFacts& facts) {
   }
 }
 
-/// Each face of n corners has n - 2 triangles.
+/// Triangulates all faces: one of n corners has n - 2 triangles, so that each knows where its triangles go.
 void split_faces(PolygonView polygons, Surface& surface) {
   count_corners(polygons, surface.facts);
   surface.triangles.resize(polygons.corners.size() - 2 * polygons.face_count());
@@ -64,10 +64,10 @@ void split_faces(PolygonView polygons, Surface& surface) {
   leave_out_lines(surface);
 }
 
-/// Numbers the vertices as the triangles come to use them: of all corners those where one is used for the first time
-/// are counted, in runs.
+/// The vertices in the order in which triangles use them first. The corners that use a vertex first are counted in
+/// runs, so that any number of threads gives the same order.
 std::vector<std::uint32_t> order_of_use(const Surface& surface) {
-  constexpr std::size_t kRun = 1 << 16;  // corners, for one thread at a time; not measured beside other lengths
+  constexpr std::size_t kRun = 1 << 16;  // corners that a thread takes at a time; not measured beside other lengths
   const std::size_t corners = 3 * surface.triangles.size(), runs = (corners + kRun - 1) / kRun;
   const auto vertex = [&](std::size_t i) { return surface.triangles[i / 3][i % 3]; };
   std::vector<std::uint32_t> first(surface.vertices.size(), kNone);
@@ -93,7 +93,7 @@ std::vector<std::uint32_t> order_of_use(const Surface& surface) {
         visit_first(run, [&](std::uint32_t v) { order[at++] = v; });
       },
       1);
-  // A face may be in use and yet give no triangle.
+  // Vertices of faces that give no triangle come last.
   std::size_t at = before.back();
   for (std::uint32_t v = 0; at < order.size() && v < first.size(); ++v)
     if (first[v] == kNone) order[at++] = v;
@@ -131,8 +131,8 @@ void find_bounds(Surface& surface) {
     throw InvalidInput("mesh: expected a bounding box with a finite diagonal, got coordinates too far apart");
 }
 
-/// Sorts triangles and vertices along a space-filling curve: what is near in space is near in memory,
-/// however the file orders them.
+/// Sorts triangles and vertices along a space-filling curve, so that those near in space are near in memory, whatever
+/// their order in the file.
 void sort_in_space(Surface& surface) {
   const MortonCurve curve(surface.facts.lower, surface.facts.upper);
   const std::size_t count = surface.triangles.size();
@@ -168,9 +168,10 @@ TriangleShape shape_of(const Surface& surface, std::size_t t) {
   return {n / twice, twice / 2};
 }
 
-/// Summed up in runs of one length, for any number of threads; marks the faces of triangles that have an area.
+/// The sum of all areas, and unmarks the faces of triangles that have one. Areas are added in runs of one length, so
+/// that the sum does not depend on the number of threads.
 double add_areas(const Surface& surface, std::vector<std::uint8_t>& degenerate) {
-  constexpr std::size_t kRun = 4096;  // triangles; the sum depends on it in its last bits
+  constexpr std::size_t kRun = 4096;  // triangles; another length would change the last bits of the sum
   std::vector<double> sums((surface.triangles.size() + kRun - 1) / kRun, 0);
   for_each_index(
       sums.size(),
@@ -233,7 +234,7 @@ void find_normals(Surface& surface) {
 }
 
 double MeshFacts::tolerance_above(double length) {
-  constexpr double kSpare = 1.5;  // chains of such gaps are a little longer
+  constexpr double kSpare = 1.5;  // a chain of such gaps is a little longer than one; not measured
   return std::pow(10.0, std::ceil(std::log10(kSpare * length)));
 }
 
@@ -338,7 +339,8 @@ Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient
 }
 
 void to_local_frame(Surface& surface, double voxel_size) {
-  VDB_OFFSET_ASSERT(voxel_size > 0 && surface.triangle_normals.empty());  // with normals, it has been moved already
+  VDB_OFFSET_ASSERT(voxel_size > 0 &&
+                    surface.triangle_normals.empty());  // a surface with normals has been moved already
   const double leaf = 8 * voxel_size;
   Vec3d origin;
   for (int k = 0; k < 3; ++k) origin[k] = leaf * std::floor(surface.facts.lower[k] / leaf);
@@ -347,7 +349,8 @@ void to_local_frame(Surface& surface, double voxel_size) {
 
 namespace {
 
-/// A border vertex has two edges on it; where it has more, several borders meet.
+/// Finds the conormals of border vertices. A vertex with more than two border edges, where several borders meet, has
+/// none.
 void find_conormals(Surface& surface) {
   surface.conormals.clear();
   if (surface.facts.boundary_left == 0) return;

@@ -25,7 +25,8 @@ std::size_t hash(const Cell& c) {
 }
 std::size_t slots_for(std::size_t count) { return std::bit_ceil(2 * count + 16); }
 
-/// Finds the first vertex within a tolerance of another one, one after the other. Open addressing over vertex numbers.
+/// Finds for vertices, which are taken one after the other, the first one within a tolerance. A hash table with open
+/// addressing over vertex numbers.
 class TolerantWelder {
  public:
   TolerantWelder(std::span<const Vec3d> positions, double tolerance)
@@ -40,7 +41,7 @@ class TolerantWelder {
   }
 
  private:
-  /// Of side `tolerance`.
+  /// The cell that holds a point: a cube of side `tolerance`.
   Cell cell(const Vec3d& p) const {
     Cell c;
     for (int k = 0; k < 3; ++k) c[k] = static_cast<std::int64_t>(std::floor(p[k] / tolerance_));
@@ -64,8 +65,8 @@ class TolerantWelder {
   std::vector<std::uint32_t> slots_;
 };
 
-/// Finds the first vertex of all that stand at one position, bit by bit, from any number of threads: first all are
-/// added, then each may ask. A position keeps the slot that its first comer got, where the lowest number stays.
+/// Finds the first of the vertices that have bitwise the same position, on any number of threads: all vertices are
+/// added first, then each may be looked up. A position has one slot, in which the lowest vertex number stays.
 class ExactWelder {
  public:
   explicit ExactWelder(std::span<const Vec3d> positions)
@@ -89,7 +90,7 @@ class ExactWelder {
   }
 
  private:
-  /// By the position's bits, with -0 as 0.
+  /// The slot at which the search begins: a hash of the position's bits, where -0 counts as 0.
   std::size_t start(std::uint32_t v) const {
     Cell bits;
     for (int k = 0; k < 3; ++k) bits[static_cast<std::size_t>(k)] = std::bit_cast<std::int64_t>(positions_[v][k] + 0.0);
@@ -100,7 +101,7 @@ class ExactWelder {
   std::vector<std::uint32_t> slots_;
 };
 
-/// Of each vertex in use the first one that it is welded with, itself or another; kNone of others.
+/// For each vertex that faces use, the first one that it is welded with, which may be itself; kNone for others.
 std::vector<std::uint32_t> find_firsts(PolygonView polygons, const WeldOptions& options) {
   const std::size_t count = polygons.positions.size();
   std::vector<std::uint32_t> first(count, kNone);
@@ -141,7 +142,7 @@ void require_tolerance(PolygonView polygons, const WeldOptions& options) {
 
 void require_usable(PolygonView polygons, std::uint32_t least_corners) {
   if (polygons.face_count() == 0) throw InvalidInput("mesh: expected at least one face, got none");
-  // The guard leaves room for the two triangles fewer than corners that each face gives.
+  // Three half-edges for each corner are more than needed: a face has two triangles fewer than corners.
   if (polygons.corners.size() >= (std::size_t{1} << 31) / 3)
     throw InvalidInput("mesh: expected fewer than 2^31 half-edges, got " + std::to_string(polygons.corners.size()) +
                        " face corners");
@@ -191,7 +192,7 @@ Welding restricted(Welding welding, PolygonView some_faces) {
   std::vector<std::uint32_t> first(welding.first.size(), kNone);
   for (const auto v : some_faces.corners) {
     const std::uint32_t one = welding.first[v];
-    first[v] = first[one] = one;  // which may be in none of the faces, but has their position
+    first[v] = first[one] = one;  // `one` may be in none of these faces, but has the position
   }
   welding.first = std::move(first);
   return welding;
