@@ -16,7 +16,8 @@ double median_length(const PlaneChains& plane) {
   return *middle;
 }
 
-/// Appends the first point to the curve that runs from there to the last one, or else adds a piece between the two.
+/// Closes a curve. If one curve of the input runs between the two ends, its first point is appended to it; otherwise a
+/// curve of one segment is added.
 void close(Curves& curves, const OpenCurve& open) {
   const CurvesView view = curves.view();
   for (std::size_t c = 0; c < view.face_count(); ++c) {

@@ -11,14 +11,17 @@
 namespace vdb_offset {
 namespace {
 
-// Squared distances to boxes of floats, in floats, are right to far less than this share.
+// Squared distances to boxes are computed in floats, and made smaller by this factor: their rounding is far less, so
+// that no box is taken to be farther than it is.
 constexpr float kBoxRounding = 1 - 0x1p-20f;
 
-// Segments that are looked at to tell whether curves are crowded, and as many lowest boxes around a point as make them
-// so: where there are fewer, those are the faster, and no usual curve has a fifth of them.
+// kCrowdSamples: segments that are sampled to tell whether curves are crowded; not measured. kCrowd: lowest boxes that
+// hold a point of a crowded curve, on average. With fewer, upright boxes are faster; usual curves have less than a
+// fifth of that.
 constexpr std::size_t kCrowdSamples = 256, kCrowd = 32;
 
-/// Which of eight boxes lie nearer to (x, y) than `limit`, squared, as bits; and how far each of them is, at least.
+/// Tells, as bits, which of eight boxes lie nearer to (x, y) than the squared distance `limit`. `squared` gets a lower
+/// bound of each squared distance.
 unsigned nearer_boxes(const BoxTree::Siblings& box, float x, float y, float limit, float* squared) {
   unsigned near = 0;
   for (int i = 0; i < BoxTree::kWidth; i += kLanes) {
@@ -59,7 +62,8 @@ bool CurveQuery::is_crowded() const {
   return around > samples * kCrowd;
 }
 
-/// Rounded outwards, a query point's rounding to float included.
+// Rounded outwards by more than rounding to floats takes, of the segments' ends and of the points that will be looked
+// up.
 FloatBox CurveQuery::box_of(std::size_t leaf) const {
   FloatBox box;
   box.lower[2] = box.upper[2] = 0;

@@ -11,16 +11,18 @@
 namespace vdb_offset {
 namespace {
 
-// Of a coordinate's rounding, what two ways to measure one distance may differ by.
+// How much two computations of the same distance may differ, as a share of the coordinates: some roundings of 2^-53
+// each. Not measured.
 constexpr double kTieRounding = 16 * 0x1p-53;
-// Nodes of a tree with fewer of them are not worth another task.
+// Nodes with fewer segments are built by one task, as another one would cost more than it saves. Not measured.
 constexpr std::size_t kSmallSheaf = 4096;
 
 Vec2d turned(const Vec2d& along, const Vec2d& x) {
   return {along[0] * x[0] + along[1] * x[1], along[0] * x[1] - along[1] * x[0]};
 }
 
-/// How far along, how far across and how much turned against a group's direction a segment is.
+/// Where the middle of a segment is, along and across the direction of its group; and the sine of the angle between the
+/// segment and that direction.
 using Traits = std::array<double, 3>;
 
 Traits traits_of(const Vec2d& along, const Vec2d& a, const Vec2d& b) {
@@ -45,7 +47,7 @@ OrientedBoxes::OrientedBoxes(const Polyline& line, std::vector<std::uint32_t> se
 void OrientedBoxes::build(std::size_t level, std::size_t node) {
   const auto [begin, end] = range(level, node);
   const std::span some = std::span(segments_).subspan(begin, end - begin);
-  const Vec2d along = mean_way(some);
+  const Vec2d along = mean_direction(some);
   boxes_[node] = box_of(some, along);
   if (level == levels_) return;
   halve(some, range(level + 1, 2 * node).end - begin, along);
@@ -55,8 +57,8 @@ void OrientedBoxes::build(std::size_t level, std::size_t node) {
   else tbb::parallel_invoke(first, second);
 }
 
-/// Whichever way along it each of them runs: angles are doubled.
-Vec2d OrientedBoxes::mean_way(std::span<const std::uint32_t> segments) const {
+// The mean of lines, not of directions: angles are doubled, so that segments that run opposite ways count as one.
+Vec2d OrientedBoxes::mean_direction(std::span<const std::uint32_t> segments) const {
   Vec2d sum(0.0);
   for (const auto s : segments) {
     const Vec2d way = end_of(s, 1) - end_of(s, 0);
@@ -81,8 +83,8 @@ OrientedBoxes::Box OrientedBoxes::box_of(std::span<const std::uint32_t> segments
   return box;
 }
 
-/// By what makes their box the widest: that they lie apart, across or along by more than they are long, or run
-/// different ways.
+// Sorted by what makes their box widest: their positions along it (by more than the segments' length), their positions
+// across it, or their directions.
 void OrientedBoxes::halve(std::span<std::uint32_t> segments, std::size_t middle, const Vec2d& along) const {
   Traits lower, upper;
   lower.fill(std::numeric_limits<double>::infinity());

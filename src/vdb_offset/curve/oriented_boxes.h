@@ -45,7 +45,7 @@ class OrientedBoxes {
   }
   double squared_to(std::size_t node, const Vec2d& x) const;
   void build(std::size_t level, std::size_t node);
-  Vec2d mean_way(std::span<const std::uint32_t> segments) const;
+  Vec2d mean_direction(std::span<const std::uint32_t> segments) const;
   Box box_of(std::span<const std::uint32_t> segments, const Vec2d& along) const;
   void halve(std::span<std::uint32_t> segments, std::size_t middle, const Vec2d& along) const;
 

@@ -9,8 +9,9 @@
 namespace vdb_offset {
 
 int side_of(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-  // What rounding cannot have turned is decided here (Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast
-  // Robust Geometric Predicates, 1997); CGAL is right in any case, and slower.
+  // If the determinant is larger than its rounding error, its sign is right (kRounding: Shewchuk, Adaptive Precision
+  // Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997; kUnderflow: below, products may have lost
+  // digits). Else CGAL decides exactly, which is slower.
   constexpr double kRounding = (3 + 16 * 0x1p-53) * 0x1p-53, kUnderflow = 1e-280;
   const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]), difference = left - right,
                sum = std::abs(left) + std::abs(right);

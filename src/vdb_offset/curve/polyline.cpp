@@ -6,7 +6,7 @@
 namespace vdb_offset {
 namespace {
 
-/// Gives each vertex the chain that its first segment is part of; chains are found by walking along.
+/// Gives each vertex the number of the chain that its first segment is part of.
 void find_components(Polyline& line) {
   line.component.assign(line.vertices.size(), kNone);
   std::vector<std::uint32_t> todo;

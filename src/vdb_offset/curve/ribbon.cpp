@@ -12,7 +12,8 @@
 namespace vdb_offset {
 namespace {
 
-// How far off their plane points may be, by their extent: what rounding to seven digits does to a tilted plane is more.
+// How far points may be off their plane, as a share of their extent. Rounding to seven digits puts each coordinate off
+// by up to 5e-7 of itself. Not measured.
 constexpr double kFlat = 1e-6;
 
 /// The points that curves use, with the box around them.
@@ -45,8 +46,8 @@ std::uint32_t farthest(const UsedPoints& used, Measure&& measure) {
                            [&](std::uint32_t a, std::uint32_t b) { return measure(a) < measure(b); });
 }
 
-/// Two unit vectors that the points spread along; of points on a line the second is any across it, within z = constant
-/// if that can be.
+/// A plane that is at right angles to no axis: u leads to the farthest point, v is at right angles to it in the plane
+/// of the points. If all points are on a line, v is any direction across it, one with z = 0 if there is one.
 PlaneFrame tilted_frame(CurvesView curves, const UsedPoints& used) {
   const auto& p = curves.positions;
   PlaneFrame frame;
@@ -63,14 +64,14 @@ PlaneFrame tilted_frame(CurvesView curves, const UsedPoints& used) {
     if (!(side.lengthSqr() > 1e-12)) side = Vec3d(1, 0, 0);
   }
   frame.v = side.unit();
-  // Seen from above, or else from +y or +x, so that right and left do not depend on the points' order.
+  // The plane is seen from +z, or else from +y or +x, so that right and left do not depend on the order of the points.
   const Vec3d normal = frame.u.cross(frame.v);
   const double facing = std::abs(normal[2]) > 1e-9 ? normal[2] : std::abs(normal[1]) > 1e-9 ? normal[1] : normal[0];
   if (facing < 0) frame.v = -frame.v;
   return frame;
 }
 
-/// A piece of a chain: a segment as its curve has it, or turned round.
+/// A piece of a chain: a segment, in the direction of its curve or turned round.
 struct Step {
   std::uint32_t segment;
   bool turned;
@@ -134,7 +135,7 @@ struct Loop {
   bool may_hold(const Vec2d& x) const {
     return x[0] >= lower[0] && x[0] <= upper[0] && x[1] >= lower[1] && x[1] <= upper[1];
   }
-  /// By the parity of what a ray to the right crosses.
+  /// Whether a point is inside, by the parity of the number of segments that a ray to the right crosses.
   bool holds(const Vec2d& x) const {
     if (!may_hold(x)) return false;
     bool inside = false;
@@ -145,7 +146,7 @@ struct Loop {
     }
     return inside;
   }
-  /// A point of the loop itself, on its longest segment: other loops may touch it at its points.
+  /// The middle of the longest segment. A corner would not do: other loops may touch this one there.
   Vec2d sample() const {
     std::size_t best = 0;
     double longest = -1;
@@ -181,7 +182,7 @@ PlaneFrame plane_of(CurvesView curves) {
   for (const int axis : {2, 1, 0}) {
     if (used.lower[axis] != used.upper[axis]) continue;
     frame.origin[axis] = used.lower[axis];
-    // x and y seen from above; z and x from +y; y and z from +x.
+    // The axes are x and y, seen from +z; z and x, from +y; or y and z, from +x.
     frame.u = Vec3d(0.0), frame.v = Vec3d(0.0);
     frame.u[(axis + 1) % 3] = frame.v[(axis + 2) % 3] = 1;
     return frame;

@@ -19,7 +19,7 @@ struct PlaneFrame {
   Vec3d to_space(const Vec2d& vector) const { return u * vector[0] + v * vector[1]; }
 };
 
-/// Finds the plane of curves. \throw InvalidInput if points that curves use do not lie in one plane, to 1e-9 of their
+/// Finds the plane of curves. \throw InvalidInput if points that curves use do not lie in one plane, to 1e-6 of their
 /// extent, by the point that is farthest off; or if one is not finite or an index is out of range.
 PlaneFrame plane_of(CurvesView curves);
 

@@ -77,13 +77,13 @@ void SegmentCrossings::update(std::span<const std::uint32_t> segments) {
   leaves.reserve(segments.size());
   for (const auto s : segments)
     if (!is_repeated(s)) leaves.push_back(leaf_of_[s]);
-  // The leaves of fans stand behind the others.
+  // Leaves of segments in fans come after the others, and so are not in the order of `segments`.
   if (!fans_.empty()) std::sort(leaves.begin(), leaves.end());
   fans_.update(segments);
   if (!leaves.empty()) tree_.refit(leaves, [&](std::size_t leaf) { return box_of(distinct_[leaf]); });
 }
 
-/// Rounded outwards.
+// Rounded outwards, as boxes are of floats.
 FloatBox SegmentCrossings::box_of(std::size_t segment) const {
   FloatBox box;
   box.lower[2] = box.upper[2] = 0;
@@ -99,7 +99,7 @@ FloatBox SegmentCrossings::box_of(std::size_t segment) const {
 
 bool SegmentCrossings::meet(std::uint32_t s, std::uint32_t t) const {
   Segment a = segments_[s], b = segments_[t];
-  // A point that both have comes first in both.
+  // If the segments share a point, it becomes the first of both.
   if (a[1] == b[0] || a[1] == b[1]) std::swap(a[0], a[1]);
   if (a[0] == b[1]) std::swap(b[0], b[1]);
   const Vec2d &p = positions_[a[0]], &q = positions_[a[1]], &r = positions_[b[0]], &u = positions_[b[1]];
@@ -111,7 +111,7 @@ bool SegmentCrossings::meet(std::uint32_t s, std::uint32_t t) const {
   return side_of(r, u, p) * side_of(r, u, q) <= 0;
 }
 
-/// Those of its own fan, whose boxes all meet, are no matter for the tree.
+// Other segments of the same fan are left out of the search in the tree: the boxes of all of them meet.
 template <class IsIt>
 bool SegmentCrossings::any_met(std::uint32_t s, std::uint32_t least, IsIt&& is_it) const {
   const auto look_at = [&](std::size_t leaf) {

@@ -7,7 +7,7 @@
 
 namespace vdb_offset {
 
-/// Around the point from the direction of x, counterclockwise.
+// Counterclockwise around the point, from the direction of the x axis.
 bool SegmentFans::Before::operator()(std::uint32_t s, std::uint32_t t) const {
   const Vec2d &p = fans->positions_[point], &a = fans->end_of(s, point), &b = fans->end_of(t, point);
   const auto is_below = [&](const Vec2d& x) { return x[1] < p[1] || (x[1] == p[1] && x[0] < p[0]); };
@@ -29,7 +29,7 @@ SegmentFans::SegmentFans(std::span<const Segment> segments, std::span<const Vec2
   if (fans_.empty()) return;
   fan_of_.assign(segments.size(), kNoFan);
   for (const auto s : some) fan_of_[s] = std::min(fan_at[segments[s][0]], fan_at[segments[s][1]]);
-  // Those in no fan come first: one more than kNoFan is 0.
+  // Segments in no fan come first: kNoFan + 1 is 0.
   std::stable_sort(some.begin(), some.end(),
                    [&](std::uint32_t s, std::uint32_t t) { return fan_of_[s] + 1 < fan_of_[t] + 1; });
   at_.resize(segments.size());
@@ -50,7 +50,7 @@ void SegmentFans::insert(std::uint32_t segment) {
 
 void SegmentFans::update(std::span<const std::uint32_t> segments) {
   if (empty()) return;
-  // First all are taken out, as the order of the others holds.
+  // All moved segments are removed before any is inserted: until then, the others are in a consistent order.
   for (const auto s : segments) {
     if (fan_of_[s] == kNoFan) continue;
     Ordered& ordered = fans_[fan_of_[s]].ordered;

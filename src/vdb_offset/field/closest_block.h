@@ -13,7 +13,7 @@
 
 namespace vdb_offset {
 
-// Coordinates of a closest point that is not known: its squared distance is more than any reach.
+// Coordinate of a closest point that is not known: its squared distance is beyond any reach, and fits into a float.
 inline constexpr float kFarPoint = 1e15f;
 
 /// Closest points of a leaf node's voxels, in voxels from its voxel (0, 0, 0).
@@ -22,8 +22,8 @@ struct ClosestPoints {
 };
 
 /// What the voxels of a leaf node hand on: closest points and, in the leaf node's own buffer, the triangles that these
-/// are on. The pointer to that buffer is kept here, as reading a neighbour would else wait for its leaf node to come
-/// from memory first.
+/// are on. The pointer to that buffer is kept here: otherwise, reading a neighbour would have to wait for its leaf
+/// node to be loaded first.
 struct LeafPoints {
   ClosestPoints* points = nullptr;
   std::int32_t* id = nullptr;
@@ -36,7 +36,7 @@ inline std::int32_t with_side(std::uint32_t triangle, bool inside) {
 }
 inline std::uint32_t triangle_of(std::int32_t id) { return static_cast<std::uint32_t>(id < 0 ? ~id : id); }
 
-// The voxels of a row, four at once, are this far from the first of them.
+// How far four successive voxels of a row are from the first of them.
 inline constexpr Lanes kCount = {0, 1, 2, 3};
 
 /// One leaf node and its halo, unpacked: a voxel's position is its indices.
@@ -45,7 +45,7 @@ struct ClosestBlock {
   float p[3][kPaddedVoxels];   // closest point
   std::int32_t id[kPaddedVoxels];
 
-  /// Nothing is known of the leaf node yet; its halo is left alone.
+  /// Makes all closest points unknown, for a new leaf node. The halo is loaded afterwards.
   void forget() {
     for (auto& axis : p) std::fill(std::begin(axis), std::end(axis), kFarPoint);
     std::fill(std::begin(id), std::end(id), -1);
@@ -57,7 +57,7 @@ struct ClosestBlock {
                 z = static_cast<float>(k) - p[2][n];
     return x * x + y * y + z * z;
   }
-  /// From the voxels (i, j, k), (i, j, k + 1), .. to the closest points of voxels n, n + 1, ..
+  /// Squared distances from the voxels (i, j, k), (i, j, k + 1), .. to the closest points of voxels n, n + 1, ..
   Lanes squared_lanes(int i, int j, int k, int n) const {
     const Lanes x = static_cast<float>(i) - load_lanes(p[0] + n), y = static_cast<float>(j) - load_lanes(p[1] + n),
                 z = (static_cast<float>(k) + kCount) - load_lanes(p[2] + n);
@@ -71,7 +71,8 @@ struct ClosestBlock {
     return any(known);
   }
 
-  /// Offers the closest points of row m to the eight voxels of row n, which lies at (i, j). True if one is nearer.
+  /// Offers the closest points of row m to the eight voxels of row n, which lies at (i, j). Returns whether any was
+  /// taken.
   bool offer_row(int i, int j, int n, int m) {
     bool taken = false;
     for (int k = 0; k < kLeafWidth; k += kLanes, n += kLanes, m += kLanes) {

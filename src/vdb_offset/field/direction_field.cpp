@@ -35,8 +35,9 @@ struct PhiBlock {
   }
 };
 
-/// phi of a neighbour as seen from a voxel: a change of sign is the surface only if the surface fits in between,
-/// |centre| + |other| <= h. If not, both lie on the same side, beyond a border where the sign means nothing.
+/// phi of a neighbour as seen from a voxel. If the sign differs, the surface lies between the two only if it fits
+/// there: |centre| + |other| <= h, but for rounding. Otherwise both lie beyond a border, where the sign means nothing,
+/// and the neighbour gets the sign of the voxel.
 float seen_from(float centre, float other, float h) {
   const bool jump = std::signbit(centre) != std::signbit(other) && std::abs(centre) + std::abs(other) > 1.001f * h;
   return jump ? -other : other;
@@ -86,7 +87,7 @@ DirectionSampler::DirectionSampler(const DirectionField& field)
 
 void DirectionSampler::look_up(const openvdb::Coord& lowest) {
   nodes_.lowest = lowest;
-  // Two times in three all eight nodes lie in one leaf node.
+  // A fast path: two times in three, all eight nodes lie in one leaf node.
   const bool together = (lowest[0] & 7) != 7 && (lowest[1] & 7) != 7 && (lowest[2] & 7) != 7;
   const GradientLeaf* leaf = together ? gradient_.probeConstLeaf(lowest) : nullptr;
   const openvdb::Index first = GradientLeaf::coordToOffset(lowest);
@@ -104,7 +105,7 @@ void DirectionSampler::look_up(const openvdb::Coord& lowest) {
 double DirectionSampler::turn(std::size_t node, const Vec3d& index, int side, double distance) const {
   const double phi = nodes_.phi[node];
   const auto at = nodes_.lowest.offsetBy(node >> 2 & 1, node >> 1 & 1, node & 1);
-  // The surface lies between x and the node only if their distances to it fit between them.
+  // The surface lies between x and the node only if both of their distances to it fit between them, but for rounding.
   const double apart = (at.asVec3d() - index).length() * field_.voxel_size;
   return std::signbit(phi) != (side < 0) && std::abs(phi) + distance > 1.001 * apart ? -1 : 1;
 }
@@ -114,7 +115,7 @@ bool DirectionSampler::operator()(const Vec3d& x, int side, double distance, Vec
   const Vec3d index(x[0] * per_unit, x[1] * per_unit, x[2] * per_unit);
   const openvdb::Coord lowest = openvdb::Coord::floor(index);
   if (lowest != nodes_.lowest) look_up(lowest);
-  double share[3][2];  // of the lower and the upper node along each axis
+  double share[3][2];  // weight of the lower and the upper node along each axis
   for (int k = 0; k < 3; ++k) {
     share[k][1] = index[k] - lowest[k];
     share[k][0] = 1 - share[k][1];

@@ -15,10 +15,10 @@
 namespace vdb_offset {
 namespace {
 
-/// OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+/// Whether OpenVDB accepts a transform of this voxel size: if its determinant is below 3e-15, it takes it for singular.
 bool can_hold(double voxel_size) { return voxel_size * voxel_size * voxel_size > 3.1e-15; }
 
-/// What openvdb::io::File is over, which does not notice a full disk: its stream is its own.
+/// Writes to a stream of ours, so that a full disk is noticed: openvdb::io::File hides its stream.
 struct Archive : openvdb::io::Archive {
   using openvdb::io::Archive::write;
 };
@@ -47,9 +47,9 @@ void save_vdb(const DistanceField& field, const std::string& path, bool closed_s
         fmt::format("{}: expected a voxel size above 1.5e-5, which OpenVDB's transforms need, got {:.6g} "
                     "(scale the model up)",
                     path, field.voxel_size));
-  openvdb::initialize();  // registers the types that a file may hold; does nothing the second time
+  openvdb::initialize();  // registers the grid types that a file may hold; further calls do nothing
   const auto phi = openvdb::gridPtrCast<openvdb::FloatGrid>(field.phi->deepCopyGrid());
-  // Inactive voxels and tiles inside a closed surface become -background, as level-set tools expect.
+  // Tools for level sets expect inactive voxels and tiles inside a closed surface to be -background.
   if (closed_surface) openvdb::tools::signedFloodFill(phi->tree());
   const openvdb::GridBase::Ptr closest = field.closest->copyGrid();
   for (const openvdb::GridBase::Ptr& grid : {openvdb::GridBase::Ptr(phi), closest}) {

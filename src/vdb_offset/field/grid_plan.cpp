@@ -16,26 +16,30 @@
 namespace vdb_offset {
 namespace {
 
-// Trilinear samples at phi <= d need nodes within sqrt(3) voxels of there.
+// Voxels that are set beyond the distance: trilinear samples there need nodes up to sqrt(3) voxels farther.
 constexpr double kHaloVoxels = 2.0;
-// The band holds both ends of every grid edge that the surface crosses, and so all of phi's sign changes; a little
-// more than one voxel, for the neighbours of a voxel that lies on the surface and so on neither side.
+// Half width of the band: one voxel holds both ends of every grid edge that the surface crosses, and so all changes of
+// sign. A little more holds the neighbours of a voxel that lies on the surface, and so on neither side.
 constexpr double kBandVoxels = 1.01;
-// Leaf coordinates are packed in 21 bits each; 2^23 voxels keep clear of that.
+// Most voxels along an axis: leaf coordinates are packed into 21 bits each, 2^24 voxels, and 2^23 stay well within.
 constexpr double kMaxVoxelsAcross = 8388608;
 
-// phi, closest triangle and direction of a voxel, the three leaf nodes' own bytes, and what the allocator keeps of the
-// sweep's closest points; measured: 12,400.
+// Bytes for a leaf node: phi, closest triangle and direction of each voxel; the three leaf nodes themselves; and what
+// the allocator keeps of the sweep's closest points. Measured in all: 12,400.
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
-// Input and output mesh, surface with adjacency and normals, box tree, rasteriser's pairs.
+// Bytes for a triangle and a vertex: input and output mesh, surface with adjacency and normals, box tree, and the
+// rasteriser's pairs.
 constexpr std::size_t kTriangleBytes = 256, kVertexBytes = 355;
-// Of a layer: positions of its vertices, of its cells' points, and these' numbers; what the cells have beside corners.
+// Bytes that a layer takes for a vertex: its position, the position of the cells' point, numbers of points. And for a
+// face: what its cells have beside corners.
 constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
-// Of another result: its positions, paths and states, and what nearer ones begin with; what it takes to make it valid.
+// Bytes that each further result takes for a vertex: positions, paths, states and what a warm start of a nearer one
+// needs; and while it is made valid.
 constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 95;
-// The process itself: code, libraries, allocator.
+// Bytes for the process itself: code, libraries, allocator. Not measured on other machines.
 constexpr double kProcessBytes = 57 << 20;
-// Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles; only for the estimate that is shown.
+// Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles. Only the estimate that is shown uses
+// them.
 constexpr double kLeafSeconds = 8e-5, kTriangleSeconds = 2e-6, kVertexSeconds = 1.8e-5;
 
 /// A set of cells of a regular lattice over a box, one bit each. Any number of threads may add to it.
@@ -46,7 +50,7 @@ class CellSet {
       size_[k] = static_cast<std::size_t>((upper[static_cast<int>(k)] - lower[static_cast<int>(k)]) / cell) + 1;
     words_.resize((size_[0] * size_[1] * size_[2] + 63) / 64, 0);
   }
-  /// Cells from one to another along each axis, both of them in the set.
+  /// A block of cells: from one cell to another along each axis, both included.
   struct Block {
     std::array<std::size_t, 3> from, to;
     bool operator==(const Block&) const = default;
@@ -86,8 +90,8 @@ class CellSet {
   std::vector<std::uint64_t> words_;
 };
 
-/// Adds the cells that the boxes of a triangle's pieces, none much longer than a cell, meet when widened by `reach`.
-/// Triangles that follow each other mostly meet the same cells: `last` are those added last.
+/// Adds the cells within `reach` of a triangle: it is cut into pieces that are hardly longer than a cell, and the box
+/// of each is widened by `reach`. `last` is the block that was added last, which the next triangle mostly meets again.
 void add_triangle(CellSet& cells, const Vec3d& a, const Vec3d& b, const Vec3d& c, double reach, double cell,
                   CellSet::Block& last) {
   const double ab = (b - a).lengthSqr(), bc = (c - b).lengthSqr(), ca = (a - c).lengthSqr();
@@ -109,16 +113,17 @@ void add_triangle(CellSet& cells, const Vec3d& a, const Vec3d& b, const Vec3d& c
   last = block;
 }
 
-/// Leaf nodes within reach of the surface. Counted, in cells as small as leaf nodes where those are not too many;
-/// else each coarser cell is taken to hold a sheet of them, or as many as the surface's area asks for.
+/// Estimates the number of leaf nodes within reach of the surface. If there are not too many, they are counted; else
+/// larger cells are, and each is taken to hold a sheet of leaf nodes, or as many as the area of the surface gives.
 double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf, bool slab) {
+  // Most cells along the diagonal, and within reach: they limit the time that counting takes. Not measured.
   constexpr double kMostCellsAcross = 192, kMostReachInCells = 4;
   const MeshFacts& facts = surface.facts;
   const double far = std::max(reach.inside, reach.outside), near = std::min(reach.inside, reach.outside);
   const double across = facts.diagonal + 2 * far;
   double cell = leaf;
   while (across / cell > kMostCellsAcross || far / cell > kMostReachInCells) cell *= 2;
-  // A slab is one cell thick, as all that lies above or below counts as in it.
+  // A slab is one cell thick: cells outside of the set count as its outermost ones.
   const Vec3d wide(far, far, slab ? 0 : far);
   const Vec3d upper = slab ? Vec3d(facts.upper[0], facts.upper[1], facts.lower[2]) : facts.upper;
   CellSet cells(facts.lower - wide, upper + wide, cell);
@@ -151,7 +156,7 @@ GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int t
                triangles = static_cast<double>(surface.triangles.size());
   const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes +
                        static_cast<double>(context.bytes_beside);
-  if (bytes > 0x1p62) {  // only to be refused; the casts below must not overflow
+  if (bytes > 0x1p62) {  // such a plan is refused; the casts below must not overflow
     plan.bytes = plan.leaf_nodes = plan.voxels = std::size_t{1} << 62;
     return plan;
   }
@@ -168,9 +173,9 @@ bool fits(const GridPlan& plan, const MeshFacts& facts, std::size_t max_memory) 
   return across < kMaxVoxelsAcross && (max_memory == 0 || plan.bytes <= max_memory);
 }
 
-constexpr double kCoarser = 1.25;  // one step when looking for a size that fits
+constexpr double kCoarser = 1.25;  // factor from one voxel size that is tried to the next; not measured
 
-/// A grid of a few voxels; beyond, there is nothing in it, and indices of voxels run out of digits in the end.
+/// The coarsest voxel size that is tried: the grid has a few voxels then.
 double coarsest_useful(double diagonal, double distance) { return 4 * (diagonal + distance); }
 
 /// The finest size, in steps from `h`, that fits; 0 if even a grid of a few voxels does not.
@@ -212,7 +217,7 @@ void require_plannable(double diagonal, double distance, const GridOptions& opti
   if (!std::isfinite(distance) || distance == 0)
     throw InvalidInput(fmt::format("plan: expected a finite distance other than 0, got {}", distance));
   if (!(diagonal > 0)) throw InvalidInput("plan: expected a mesh with an extent, got a single point, or next to it");
-  // phi is stored in single precision.
+  // phi is stored in single precision, so that lengths must be normal floats.
   for (const double length :
        {diagonal, distance, options.voxel_size.value_or(diagonal), distance / options.voxels_per_distance.value_or(1)})
     if (!(length > 1e-30 && length < 1e30))
@@ -279,7 +284,8 @@ std::size_t layers_bytes(PolygonView mesh, std::size_t layers) {
   std::size_t cells = mesh.face_count() * kLayerFaceBytes;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const std::size_t corners = mesh.face(f).size();
-    // A polyhedron's faces list their corners: a base, a top and a quad for each side.
+    // The cell over a polygon of n > 4 corners is a polyhedron: its faces, a base, a top and n quads, list their
+    // corners.
     cells += 4 * (corners > 4 ? 3 + 7 * corners : 2 * corners);
   }
   return layers * (cells + mesh.positions.size() * kLayerVertexBytes);

@@ -90,7 +90,8 @@ void LeafGraph::make_new_leaves() {
       64);
 }
 
-/// Links a leaf node to its neighbours, and these to it, unless they are new themselves and are linked on their own.
+/// Links a leaf node to its neighbours, and these to it. Neighbours that are new themselves are linked by their own
+/// call.
 void LeafGraph::link(std::size_t leaf, std::size_t first_new) {
   for (int face = 0; face < kFaces; ++face) {
     const std::int32_t found = index_.find(step(leaves_[leaf].origin, face));

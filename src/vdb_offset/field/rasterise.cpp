@@ -18,7 +18,8 @@ namespace {
 
 using openvdb::Coord;
 
-constexpr std::int64_t kKeyBias = 1 << 20;  // makes coordinates of leaf nodes, 21 bits each, positive
+constexpr std::int64_t kKeyBias =
+    1 << 20;  // added to coordinates of leaf nodes, so that 21 bits hold them without a sign
 
 /// A triangle that may lie within the band of a leaf node.
 struct Entry {
@@ -29,23 +30,23 @@ struct Entry {
   }
 };
 
-/// Triangles that lie together along the surface's curve, sorted by the leaf nodes, a few, that they share.
+/// The triangles of successive numbers, which lie near each other, sorted by leaf node.
 using Chunk = std::vector<std::uint32_t>;
-/// Those of one chunk that may lie within the band of one leaf node.
+/// The triangles of one chunk that may lie within the band of one leaf node.
 struct Run {
   std::uint64_t leaf;
   std::uint32_t chunk, begin, end;
   bool operator<(const Run& other) const { return leaf != other.leaf ? leaf < other.leaf : chunk < other.chunk; }
 };
 
-/// Leaf coordinates (voxels / 8), 21 bits each; ordered by x, y, z.
+/// A key for a leaf node: its coordinates (voxels / 8), 21 bits each. Keys are ordered by x, then y, then z.
 std::uint64_t pack(const Coord& leaf) {
   std::uint64_t key = 0;
   for (int k = 0; k < 3; ++k) key = key << 21 | static_cast<std::uint64_t>(leaf[k] + kKeyBias);
   return key;
 }
 
-/// Origin, in voxels, of the leaf node that pack() named.
+/// The origin, in voxels, of the leaf node with this key.
 Coord unpack(std::uint64_t key) {
   const auto part = [&](int shift) {
     return static_cast<int>(static_cast<std::int64_t>(key >> shift & 0x1fffff) - kKeyBias) * kLeafWidth;
@@ -83,7 +84,7 @@ class LeafFinder {
 
  private:
   void descend(std::uint32_t triangle, const Coord& lower, const Coord& upper, std::vector<Entry>& entries) const {
-    // Voxel centres of the box reach from voxel 8 lower to voxel 8 upper + 7.
+    // The centres of the voxels in the box of leaf nodes lie between these two points.
     const Vec3d first = Vec3d(lower.asVec3d()) * kLeafWidth, last = Vec3d(upper.asVec3d()) * kLeafWidth + Vec3d(7.0);
     const double reach = (last - first).length() / 2 * options_.voxel_size + options_.band;
     const Vec3d centre = (first + last) * (0.5 * options_.voxel_size);
@@ -105,11 +106,11 @@ class LeafFinder {
   const RasteriseOptions& options_;
 };
 
-/// The triangles by leaf node: runs in the order of leaf nodes, and in that of triangles within one.
+/// The triangles of each leaf node: runs in the order of leaf nodes, and of triangles within one.
 struct Bins {
   std::vector<Chunk> chunks;
   std::vector<Run> runs;
-  std::vector<std::size_t> leaf_begin;  // into the runs, one more than there are leaf nodes
+  std::vector<std::size_t> leaf_begin;  // index of the first run of each leaf node, and the number of runs
 
   std::span<const std::uint32_t> triangles(const Run& run) const {
     return std::span(chunks[run.chunk]).subspan(run.begin, run.end - run.begin);
@@ -130,7 +131,7 @@ std::vector<Run> sort_chunk(std::vector<Entry>& entries, std::uint32_t index, Ch
 }
 
 Bins sort_into_leaf_nodes(const Surface& surface, const RasteriseOptions& options, Progress& progress) {
-  constexpr std::size_t kChunk = 1024;  // triangles that one thread sorts; not measured beside other numbers
+  constexpr std::size_t kChunk = 1024;  // triangles that a thread sorts at a time; not measured beside other numbers
   const std::size_t count = surface.triangles.size(), chunks = (count + kChunk - 1) / kChunk;
   Bins bins;
   bins.chunks.resize(chunks);
@@ -183,7 +184,7 @@ class LeafCanvas {
         }
   }
 
-  /// Fills both leaf nodes with what lies in the band; false if nothing does.
+  /// Sets the voxels of both leaf nodes that lie in the band. Returns false if none does.
   bool store(PhiLeaf& phi, ClosestLeaf& closest) const {
     bool any = false;
     for (int n = 0; n < kLeafVoxels; ++n) {
@@ -200,10 +201,10 @@ class LeafCanvas {
   }
 
  private:
-  /// Of faces equally near, but for rounding, the input's first wins: where sheets lie back to back, one of them then
-  /// decides all along which side is outside.
+  /// Whether a triangle replaces the one known at a voxel: if it is nearer or, within rounding, as near and of an
+  /// earlier face of the input. Where sheets lie back to back, one of them so decides everywhere which side is outside.
   bool wins(std::uint32_t triangle, double squared, int n) const {
-    constexpr double kTie = 1e-12;  // relative, of squared distances: what rounding leaves
+    constexpr double kTie = 1e-12;  // relative, of squared distances: far above their rounding; not measured
     if (squared < squared_[n] * (1 - kTie)) return true;
     return squared <= squared_[n] * (1 + kTie) && surface_.face[triangle] < surface_.face[triangle_[n]];
   }

@@ -13,20 +13,22 @@
 namespace vdb_offset {
 namespace {
 
-// Handed-on points are samples of the surface about a voxel apart: up to this many voxels too far away.
+// How many voxels too far away a point that was handed on may be, as such points are samples of the surface about a
+// voxel apart. Not measured.
 constexpr float kSampling = 0.25f;
 
-// Up to so many voxels beyond its reach, a voxel still walks to its closest triangle: what it finds, or that it is
-// within reach after all, is of use to its neighbours.
+// Voxels up to this many voxels beyond reach also walk to their closest triangle: some turn out to be within reach, and
+// neighbours may use what they find. Not measured.
 constexpr float kWalkBeyond = 1;
 
-// A squared distance is worth another visit if it falls below this share of what is known.
+// A leaf node is visited again only if a squared distance falls below this share of the known one. Not measured.
 constexpr float kWorthAVisit = 0.999f;
 
-// How much nearer, in voxels, a neighbour's closest point must be for the neighbour's triangle to be tried.
+// How much nearer, in voxels, a neighbour's closest point must be for the neighbour's triangle to be tried. Not
+// measured.
 constexpr double kTolerance = 0.002;
 
-// Leaf nodes for which memory is asked at once; not measured beside other numbers.
+// Leaf nodes whose closest points are allocated together; not measured beside other numbers.
 constexpr std::size_t kPool = 16;
 
 class ClosestSweep {
@@ -77,7 +79,7 @@ class ClosestSweep {
     });
   }
 
-  /// The frozen ones among the eight voxels from n on, as bits.
+  /// Bits that tell which of the eight voxels from n on are voxels of the front, which keep their values.
   unsigned frozen_row(std::size_t leaf, int n) const {
     return leaf < front_leaves_ ? frozen_[leaf].getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8)) : 0u;
   }
@@ -100,7 +102,7 @@ class ClosestSweep {
     return (graph_[leaf].origin + openvdb::Coord(n >> 6, n >> 3 & 7, n & 7)).asVec3d() * h_;
   }
 
-  /// The closest points that the rasteriser's triangles stand for.
+  /// Finds the closest points of the front's voxels, on the triangles that the rasteriser has found.
   void find_points_of_front(std::size_t leaf) {
     std::int32_t* id = points_[leaf].id = graph_[leaf].closest->buffer().data();
     for (auto& axis : points_[leaf].points->p) std::fill(std::begin(axis), std::end(axis), kFarPoint);
@@ -112,7 +114,7 @@ class ClosestSweep {
     }
   }
 
-  /// Hands closest points on within one leaf node, and tells what those across its faces would learn.
+  /// Hands closest points on within one leaf node. Returns at which distances its neighbours would improve.
   Pending relax(std::size_t leaf) {
     ClosestBlock block;
     prefetch(leaf);
@@ -161,14 +163,13 @@ class ClosestSweep {
         }
   }
 
-  /// Asks the memory for what load_halo() is about to read of the leaf nodes above and below, which is a bit of every
-  /// line.
+  /// Prefetches what load_halo() will read of the leaf nodes above and below: a few bytes of every cache line.
   void prefetch(std::size_t leaf) const {
     for (const std::size_t face : {4, 5}) {
       const auto neighbour = graph_[leaf].neighbour[face];
       if (neighbour < 0 || points_[static_cast<std::size_t>(neighbour)].id == nullptr) continue;
       const auto& [points, id] = points_[static_cast<std::size_t>(neighbour)];
-      constexpr int kLine = 16;  // of four bytes
+      constexpr int kLine = 16;  // values of four bytes in a cache line
       for (int n = 0; n < kLeafVoxels; n += kLine) {
         for (const auto& axis : points->p) __builtin_prefetch(axis + n);
         __builtin_prefetch(id + n);
@@ -212,17 +213,17 @@ class ClosestSweep {
     });
   }
 
-  /// Distances at which voxels across the faces would take over a closest point from this leaf node.
+  /// For each face, the least distance at which a voxel across it would take over a closest point of this leaf node.
   Pending find_pending(const ClosestBlock& block) const {
     Pending pending;
     for (int face = 0; face < kFaces; ++face) {
       const float squared = face < 4 ? nearest_across_rows(block, face) : nearest_across_ends(block, face);
-      pending[static_cast<std::size_t>(face)] = std::sqrt(squared);  // of infinity, too
+      pending[static_cast<std::size_t>(face)] = std::sqrt(squared);  // infinity stays infinity
     }
     return pending;
   }
 
-  /// Across the faces along i and j, where rows lie in the face.
+  /// The least squared distance at which a voxel across a face along i or j would improve. Rows lie within such faces.
   float nearest_across_rows(const ClosestBlock& block, int face) const {
     const int axis = face / 2, out = face % 2 ? kLeafWidth : -1;
     Lanes nearest = kNonePending + Lanes{};
@@ -238,7 +239,7 @@ class ClosestSweep {
     return std::min(std::min(nearest[0], nearest[1]), std::min(nearest[2], nearest[3]));
   }
 
-  /// Across the faces along k, where rows end.
+  /// The least squared distance at which a voxel across a face along k, where rows end, would improve.
   float nearest_across_ends(const ClosestBlock& block, int face) const {
     const int k = face % 2 ? kLeafWidth : -1;
     float nearest = kNonePending;
@@ -251,8 +252,8 @@ class ClosestSweep {
     return nearest;
   }
 
-  /// Lets every voxel walk over the mesh to the closest triangle, from the one that it was handed or, where that
-  /// promises to be shorter, from where a neighbour's walk has ended.
+  /// Finds the closest triangle of every voxel by a walk over the mesh. The walk starts at the triangle that was handed
+  /// on or, if that is nearer, at the closest triangle of a neighbour.
   void settle(std::size_t leaf) {
     const GraphLeaf& at = graph_[leaf];
     at.phi->allocate();
@@ -297,8 +298,8 @@ class ClosestSweep {
     return x * x + y * y + z * z;
   }
 
-  /// The triangle of voxel (i, j, k) itself, or of one of the three settled before it, if that one's closest point is
-  /// nearer.
+  /// The triangle to start from: that of voxel (i, j, k) itself, or of one of the three neighbours that were settled
+  /// before it, if the closest point of that one is nearer.
   static std::uint32_t best_start(const float (&p)[3][kLeafVoxels], const std::int32_t* id, int i, int j, int k) {
     const int n = i << 6 | j << 3 | k, ijk[3] = {i, j, k};
     std::uint32_t triangle = triangle_of(id[n]);
@@ -361,8 +362,8 @@ class ClosestSweep {
   float per_voxel_;
   Reach reach_;
   float background_;
-  float reach_inside_, reach_outside_;  // in voxels, squared, with room for the error of samples
-  float walk_inside_, walk_outside_;    // within which voxels look for their triangle
+  float reach_inside_, reach_outside_;  // squared, in voxels, with kSampling added
+  float walk_inside_, walk_outside_;    // squared, in voxels: voxels within it walk to their closest triangle
   std::size_t front_leaves_;
   std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
   std::vector<LeafPoints> points_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kUnset = std::numeric_limits<float>::infinity();
 
-// A gain of fewer voxels than this is rounding; chasing it would sweep for ever.
+// Least improvement, in voxels: a smaller one is rounding, and sweeping for it would not end.
 constexpr float kRounding = 1e-5f;
 
 /// One leaf node and its halo, unpacked; lengths in voxels.
@@ -21,7 +21,7 @@ struct EikonalBlock {
   std::int32_t closest[kPaddedVoxels];
   bool changed[kPaddedVoxels];
 
-  /// Everything counts as changed in a leaf node's first visit.
+  /// \param first all voxels count as changed, as is right on the first visit to a leaf node of the front
   explicit EikonalBlock(bool first) {
     std::fill(std::begin(size), std::end(size), kUnset);
     std::fill(std::begin(changed), std::end(changed), first);
@@ -61,8 +61,8 @@ class EikonalSweep {
   }
 
  private:
-  /// Solves one leaf node with its neighbours as they are, in the eight orders of (+-i, +-j, +-k) in turn until one
-  /// changes nothing, and tells what those across its faces may learn.
+  /// Solves one leaf node, its neighbours being fixed: sweeps in the eight orders of (+-i, +-j, +-k) in turn, until all
+  /// eight have changed nothing. Returns at which distances its neighbours may improve.
   Pending relax(std::size_t leaf) {
     EikonalBlock block(leaf < front_leaves_ && !visited_[leaf]);
     if (leaf < front_leaves_) visited_[leaf] = 1;
@@ -145,8 +145,9 @@ class EikonalSweep {
     }
   }
 
-  /// A neighbour may improve if one of its voxels lies farther out than one here that has changed. A voxel that is not
-  /// set yet is out of reach if the least step, 1 / sqrt(3) of a voxel, leads beyond it.
+  /// For each face, the least distance of a changed voxel from which the neighbour may improve: the voxel across the
+  /// face is farther from the surface, or is not set yet and the least step, 1 / sqrt(3) of a voxel, does not lead out
+  /// of reach.
   Pending find_pending(const EikonalBlock& block) const {
     constexpr float kLeastStep = 0.57f;  // voxels; a little below 1 / sqrt(3)
     Pending pending;
@@ -169,7 +170,7 @@ class EikonalSweep {
   float reach_inside_, reach_outside_;  // in voxels
   float background_;
   std::size_t front_leaves_;
-  std::vector<std::uint8_t> visited_;               // leaf nodes of the front
+  std::vector<std::uint8_t> visited_;               // of each leaf node of the front: 1 once it has been visited
   std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
 };
 
