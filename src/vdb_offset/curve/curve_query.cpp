@@ -115,19 +115,22 @@ TrianglePoint CurveQuery::near(const Vec3d& x, std::uint32_t& segment) const {
       for (std::size_t i = first; i < depth; ++i) --stack[i].level;
       continue;
     }
-    for (; depth > first; --depth) {
-      if (!(stack[depth - 1].squared < best.squared_distance)) continue;
-      const std::size_t begin = stack[depth - 1].node * kLeafSize, end = std::min(distinct_.size(), begin + kLeafSize);
-      for (std::size_t s = begin; s < end; ++s) {
-        if (line_.is_farther(distinct_[s], x, best.squared_distance)) continue;
-        const TrianglePoint other = line_.closest_on(distinct_[s], x);
-        if (!(other.squared_distance < best.squared_distance)) continue;
-        best = other;
-        segment = distinct_[s];
-      }
-    }
+    for (; depth > first; --depth)
+      if (stack[depth - 1].squared < best.squared_distance) look_into(stack[depth - 1].node, x, best, segment);
   }
   return best;
+}
+
+/// Compares the segments of a lowest box with the closest one so far.
+inline void CurveQuery::look_into(std::size_t box, const Vec3d& x, TrianglePoint& best, std::uint32_t& segment) const {
+  const std::size_t begin = box * kLeafSize, end = std::min(distinct_.size(), begin + kLeafSize);
+  for (std::size_t s = begin; s < end; ++s) {
+    if (line_.is_farther(distinct_[s], x, best.squared_distance)) continue;
+    const TrianglePoint other = line_.closest_on(distinct_[s], x);
+    if (!(other.squared_distance < best.squared_distance)) continue;
+    best = other;
+    segment = distinct_[s];
+  }
 }
 
 void CurveQuery::answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,

@@ -44,6 +44,7 @@ class CurveQuery {
   static constexpr std::size_t kLeafSize = 4;  // segments in a lowest box
 
   FloatBox box_of(std::size_t leaf) const;
+  void look_into(std::size_t box, const Vec3d& x, TrianglePoint& best, std::uint32_t& segment) const;
   bool is_crowded() const;
 
   const Polyline& line_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <memory>
@@ -140,27 +141,33 @@ class ClosestSweep {
     return find_pending(block);
   }
 
-  /// From row to row in the four directions along i and j, and along each row both ways whenever it learns something. A
-  /// row is not asked again before it has changed.
+  /// By row of a block: the last pass in which the row has changed.
+  using RowChanges = std::array<int, kPaddedWidth * kPaddedWidth>;
+
+  /// From row to row in the four directions along i and j, and along each row both ways whenever it learns something.
   static void sweep(ClosestBlock& block) {
-    constexpr int kRows = kPaddedWidth * kPaddedWidth;
-    int changed[kRows] = {};  // by row: the last pass that it has changed in
+    RowChanges changed{};
     for (int pass = 0; pass < 4; ++pass)
       for (int a = 0; a < kLeafWidth; ++a)
-        for (int b = 0; b < kLeafWidth; ++b) {
-          const bool down_i = pass & 2, down_j = pass & 1;
-          const int i = down_i ? 7 - a : a, j = down_j ? 7 - b : b, n = padded_index(i, j, 0), row = n / kPaddedWidth;
-          const int before_i = down_i ? kPaddedWidth : -kPaddedWidth, before_j = down_j ? 1 : -1;
-          bool learned = pass == 0 && block.any_known(n);
-          // It has been asked along i in the pass before this one, along j two passes before.
-          if (!down_j || changed[row + before_i] >= pass)
-            learned |= block.offer_row(i, j, n, n + kPaddedWidth * before_i);
-          if (!down_i || changed[row + before_j] >= pass - 1)
-            learned |= block.offer_row(i, j, n, n + kPaddedWidth * before_j);
-          if (!learned) continue;
-          block.offer_along_row(i, j, n);
-          changed[row] = pass;
-        }
+        for (int b = 0; b < kLeafWidth; ++b) sweep_row(block, pass, a, b, changed);
+  }
+
+  /// Offers to one row, the a-th along i and b-th along j in the direction of a pass, what the two rows before it have,
+  /// unless they have offered that already.
+  static void sweep_row(ClosestBlock& block, int pass, int a, int b, RowChanges& changed) {
+    const bool down_i = pass & 2, down_j = pass & 1;
+    const int i = down_i ? 7 - a : a, j = down_j ? 7 - b : b, n = padded_index(i, j, 0), row = n / kPaddedWidth;
+    const int before_i = down_i ? kPaddedWidth : -kPaddedWidth, before_j = down_j ? 1 : -1;
+    const auto last_change = [&](int of) { return changed[static_cast<std::size_t>(of)]; };
+    bool learned = pass == 0 && block.any_known(n);
+    // The row before it along i has offered in the last pass, the one along j in the last pass but one.
+    if (!down_j || last_change(row + before_i) >= pass)
+      learned |= block.offer_row(i, j, n, n + kPaddedWidth * before_i);
+    if (!down_i || last_change(row + before_j) >= pass - 1)
+      learned |= block.offer_row(i, j, n, n + kPaddedWidth * before_j);
+    if (!learned) return;
+    block.offer_along_row(i, j, n);
+    changed[static_cast<std::size_t>(row)] = pass;
   }
 
   /// Prefetches what load_halo() will read of the leaf nodes above and below: a few bytes of every cache line.
@@ -322,27 +329,38 @@ class ClosestSweep {
     prefetch(leaf);
     load_own(leaf, block);
     load_halo(leaf, block);
-    const auto tolerance = static_cast<float>(kTolerance);
     for_each_row([&](int i, int j, int padded, int n) {
-      const float* phi = graph_[leaf].phi->buffer().data() + n;
-      const unsigned on = graph_[leaf].phi->getValueMask().getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8));
-      const unsigned open = on & ~frozen_row(leaf, n);
-      if (open == 0) return;
       float limit[kLeafWidth];
-      for (int k = 0; k < kLeafWidth; ++k) {
-        const float size = std::max(std::abs(phi[k]) * per_voxel_ - tolerance, 0.0f);
-        limit[k] = open >> k & 1 ? size * size : -1;
-      }
+      if (!find_limits(leaf, n, limit)) return;
       for (const int stride : kPaddedStride)
         for (const int m : {padded - stride, padded + stride})
           for (int k = 0; k < kLeafWidth; k += kLanes) {
             const IntLanes nearer = (block.squared_lanes(i, j, k, m + k) < load_lanes(limit + k)) &
                                     (load_lanes(block.id + m + k) != load_lanes(block.id + padded + k));
-            if (!any(nearer)) continue;
-            for (int lane = 0; lane < kLanes; ++lane)
-              if (nearer[lane]) try_out(leaf, n + k + lane, block.id[m + k + lane]);
+            if (any(nearer)) try_out(leaf, n + k, nearer, block.id + m + k);
           }
     });
+  }
+
+  /// The squared distances, in voxels, below which a neighbour's closest point is worth a try by the voxels of the row
+  /// from n on; below 0 for those that have nothing to gain. False if that is so of all of them.
+  bool find_limits(std::size_t leaf, int n, float (&limit)[kLeafWidth]) const {
+    const auto tolerance = static_cast<float>(kTolerance);
+    const float* phi = graph_[leaf].phi->buffer().data() + n;
+    const unsigned on = graph_[leaf].phi->getValueMask().getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8));
+    const unsigned open = on & ~frozen_row(leaf, n);
+    if (open == 0) return false;
+    for (int k = 0; k < kLeafWidth; ++k) {
+      const float size = std::max(std::abs(phi[k]) * per_voxel_ - tolerance, 0.0f);
+      limit[k] = open >> k & 1 ? size * size : -1;
+    }
+    return true;
+  }
+
+  /// Lets some of the four voxels from n on try the triangles of as many others.
+  void try_out(std::size_t leaf, int n, const IntLanes& some, const std::int32_t* ids) {
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (some[lane]) try_out(leaf, n + lane, ids[lane]);
   }
 
   void try_out(std::size_t leaf, int n, std::int32_t id) {

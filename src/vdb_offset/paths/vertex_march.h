@@ -158,9 +158,22 @@ class VertexMarch {
   // for one.
   static constexpr double kLeakVoxels = 0.3;
 
-  /// The largest distance on a path, and the steps before and after it.
+  /// The largest distance on a path, the steps before and after it, and how the path has gone on since.
   struct PathMaximum {
     Sample before, at, after;
+    std::size_t corners;      ///< Of the path up to there.
+    double since_growth = 0;  ///< Length of the path since the distance last grew by more than kSlowest.
+
+    /// Takes a step from `from` to `to` into account, to which the path has so many corners.
+    void add_step(const Sample& from, const Sample& to, double length, std::size_t corners_before) {
+      since_growth += length;
+      if (at.x == from.x) after = to;
+      if (!(to.phi > at.phi)) return;
+      if (to.phi - at.phi > kSlowest * length) since_growth = 0;
+      before = from;
+      at = after = to;
+      corners = corners_before;
+    }
   };
 
   /// Steps along the direction field until all stops are told: where the distance is a stop's, at an obstacle, or, when
@@ -168,44 +181,54 @@ class VertexMarch {
   template <class Tell>
   void march_on(const Sample& first, std::span<const StopDistance> stops, Tell&& tell) {
     const double last = stops.back().distance;
-    std::size_t passed = 0;
     Sample before{origin_, 0, Vec3d(0.0), hint_, Feature::Face}, here = first;
-    PathMaximum largest{before, here, here};
-    double since_largest = 0;
-    std::size_t noted_at_largest = trace_ ? trace_->size() : 0;
+    PathMaximum largest{before, here, here, corner_count()};
     for (int i = 0;; ++i) {
-      for (; here.phi >= target_ || arrived(here.phi); target_ = stops[passed].distance) {
-        tell_of(arrived(here.phi) ? here : cut(before, here), stops[passed], tell);
-        if (++passed == stops.size()) return;
-      }
-      if (i == kMaxSteps || !(since_largest < kPatience * last)) break;
+      while (!stops.empty() && (here.phi >= target_ || arrived(here.phi)))
+        tell_first_of(stops, arrived(here.phi) ? here : cut(before, here), tell);
+      if (stops.empty()) return;
+      if (i == kMaxSteps || !(largest.since_growth < kPatience * last)) break;
       if (trace_) trace_->push_back(here.x - origin_);
-      // Not far beyond the last stop, where the last step is cut; not much less than a voxel, for a slow climb.
-      double step = std::min({(march_ == March::Fast ? kFastShare : kFreeShare) * here.phi,
-                              std::max(kStepVoxels * h_, kStepShare * last),
-                              std::max(last - here.phi, kLeastStep * std::min(h_, last))});
+      double step = longest_step(here.phi, last);
       const Vec3d ahead = runge_kutta(here, step), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
-      const bool in_the_way = to != ahead;
-      for (auto stop = stop_before(to, here); stop; stop = stop_before(to, *stop)) {
-        tell_of(*stop, stops[passed], tell);
-        if (++passed == stops.size()) return;
-        target_ = stops[passed].distance;
-      }
+      tell_stops_before(to, here, stops, tell);
+      if (stops.empty()) return;
       const Sample next = measure(to);
-      since_largest += step;
-      if (largest.at.x == here.x) largest.after = next;
-      if (next.phi > largest.at.phi) {
-        if (next.phi - largest.at.phi > kSlowest * step) since_largest = 0;
-        largest = {here, next, next};
-        if (trace_) noted_at_largest = trace_->size();
-      }
+      largest.add_step(here, next, step, corner_count());
       before = here;
       here = next;
-      if (in_the_way) return tell_blocked(before, here, stops.subspan(passed), tell);
+      if (to != ahead) return tell_blocked(before, here, stops, tell);
     }
     const Sample end = climb(largest);
-    if (trace_) trace_->resize(noted_at_largest);
-    for (const StopDistance& stop : stops.subspan(passed)) tell_of(end, stop, tell);
+    if (trace_) trace_->resize(largest.corners);
+    for (const StopDistance& stop : stops) tell_of(end, stop, tell);
+  }
+
+  std::size_t corner_count() const { return trace_ ? trace_->size() : 0; }
+
+  /// Of a step from where the distance is phi: not far beyond the last stop, where the last step is cut; not much less
+  /// than a voxel, for a slow climb.
+  double longest_step(double phi, double last) const {
+    return std::min({(march_ == March::Fast ? kFastShare : kFreeShare) * phi,
+                     std::max(kStepVoxels * h_, kStepShare * last),
+                     std::max(last - phi, kLeastStep * std::min(h_, last))});
+  }
+
+  /// Tells of the end at the first of the stops, and goes on to the next one, if there is any.
+  template <class Tell>
+  void tell_first_of(std::span<const StopDistance>& stops, const Sample& end, Tell&& tell) {
+    tell_of(end, stops.front(), tell);
+    stops = stops.subspan(1);
+    if (!stops.empty()) target_ = stops.front().distance;
+  }
+
+  /// Tells of the stops that lie on a step, as far as the closest triangles tell.
+  template <class Tell>
+  void tell_stops_before(const Vec3d& end, const Sample& from, std::span<const StopDistance>& stops, Tell&& tell) {
+    for (auto at = stop_before(end, from); at; at = stop_before(end, *at)) {
+      tell_first_of(stops, *at, tell);
+      if (stops.empty()) return;
+    }
   }
 
   /// The point of a step at which the distance is the target, if the closest triangles tell that there is one before

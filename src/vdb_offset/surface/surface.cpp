@@ -257,53 +257,6 @@ Vec3d Surface::across(std::uint32_t triangle, Feature feature, const Vec3d& away
   return displacement - edge * (edge.dot(displacement) / edge.lengthSqr());
 }
 
-TrianglePoint Surface::walk_to_closest(const Vec3d& x, std::uint32_t& triangle) const {
-  VDB_OFFSET_ASSERT(triangle < triangles.size());
-  TrianglePoint best = closest_on(triangle, x);
-  const auto is_nearer = [&](std::uint32_t other) {
-    const TrianglePoint candidate = closest_on(other, x);
-    if (candidate.squared_distance >= best.squared_distance) return false;
-    best = candidate;
-    triangle = other;
-    return true;
-  };
-  // From a point p on an edge or a corner, a triangle leads nearer to x only if one of its corners w does:
-  // (w - p) . (x - p) > 0. Inside an edge x - p is at right angles to it, and the corner across decides.
-  for (bool moved = true; moved && best.feature != Feature::Face;) {
-    moved = false;
-    const std::uint32_t from = triangle;
-    const auto feature = static_cast<std::uint32_t>(best.feature);
-    const Vec3d p = best.point, towards = x - p;
-    const auto lead = [&](std::uint32_t v) { return towards.dot(vertices[v] - p); };
-    if (feature < 3) {
-      // The one that leads nearest first: it is likely to be the only one to look at.
-      const std::uint32_t centre = triangles[from][feature];
-      const auto around = triangles_around(centre);
-      std::uint32_t first = from;
-      double most = 0;
-      for (const auto other : around) {
-        if (other == from) continue;
-        const auto& t = triangles[other];
-        const std::size_t corner = t[0] == centre ? 0 : t[1] == centre ? 1 : 2;
-        const double leads = std::max(lead(t[(corner + 1) % 3]), lead(t[(corner + 2) % 3]));
-        if (leads > most) {
-          most = leads;
-          first = other;
-        }
-      }
-      if (first == from) break;
-      moved = is_nearer(first);
-      for (std::size_t i = 0; !moved && i < around.size(); ++i)
-        moved = around[i] != from && around[i] != first && is_nearer(around[i]);
-    } else {
-      const std::uint32_t edge = 3 * from + (feature - 3);
-      for (std::uint32_t e = next_around_edge[edge]; e != edge && !moved; e = next_around_edge[e])
-        moved = lead(triangles[e / 3][(e + 2) % 3]) > 0 && is_nearer(e / 3);
-    }
-  }
-  return best;
-}
-
 void list_incident_triangles(Surface& surface) {
   Buckets buckets(surface.vertices.size());
   const auto for_each_corner = [&](auto&& visit) {

@@ -258,6 +258,35 @@ void append_own(std::string& text, const SvgMatrix& to_drawing, const Vec3d& pos
   else append_point(text, transformed_back(to_drawing, precision(position)));
 }
 
+/// The points of a drawing, of which some have moved.
+struct MovedPoints {
+  const SvgLines& lines;
+  const CurvesView& source;
+  std::span<const Vec3d> positions;
+  const Rounding& precision;
+
+  bool has_moved(std::uint32_t p) const { return positions[p] != source.positions[p]; }
+  /// Whether a point of the curves first .. end - 1 has moved.
+  bool any_of_curves(std::size_t first, std::size_t end) const {
+    const auto corners =
+        source.corners.subspan(source.face_begin[first], source.face_begin[end] - source.face_begin[first]);
+    return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) { return has_moved(p); });
+  }
+  /// Appends the points of one of a shape's curves, as a part of the attribute that holds them.
+  void append_curve(std::string& text, const SvgLines::Shape& shape, std::size_t curve) const {
+    const auto points = source.face(curve);
+    const bool repeats = points.size() > 1 && points.back() == points.front();
+    for (std::size_t k = 0; k < points.size() - repeats; ++k) {
+      if (k > 0) text += ' ';
+      if (shape.is_path) text += k == 0 ? 'M' : 'L';
+      const std::uint32_t p = points[k];
+      if (has_moved(p)) append_own(text, shape.to_drawing, positions[p], precision);
+      else append_point(text, lines.own[p]);
+    }
+    if (shape.is_path && lines.closed[curve]) text += " Z";
+  }
+};
+
 }  // namespace
 
 SvgLines parse_svg(const std::string& path, std::string_view text) { return SvgReader(path, text).run(); }
@@ -265,29 +294,18 @@ SvgLines parse_svg(const std::string& path, std::string_view text) { return SvgR
 std::string rewrite_svg(std::string_view text, const SvgLines& lines, CurvesView source,
                         std::span<const Vec3d> positions, const Rounding& precision) {
   VDB_OFFSET_ASSERT(positions.size() == source.positions.size());
+  const MovedPoints moved{lines, source, positions, precision};
   std::string rewritten;
   std::size_t copied = 0, curve = 0;
-  const auto has_moved = [&](std::uint32_t p) { return positions[p] != source.positions[p]; };
   for (const SvgLines::Shape& shape : lines.shapes) {
     const std::size_t first = curve;
     curve += shape.curves;
-    const auto corners =
-        source.corners.subspan(source.face_begin[first], source.face_begin[curve] - source.face_begin[first]);
-    if (std::none_of(corners.begin(), corners.end(), has_moved)) continue;
+    if (!moved.any_of_curves(first, curve)) continue;
     rewritten.append(text, copied, shape.begin - copied);
     copied = shape.end;
     for (std::size_t c = first; c < curve; ++c) {
-      const auto points = source.face(c);
-      const bool repeats = points.size() > 1 && points.back() == points.front();
       if (c > first) rewritten += ' ';
-      for (std::size_t k = 0; k < points.size() - repeats; ++k) {
-        if (k > 0) rewritten += ' ';
-        if (shape.is_path) rewritten += k == 0 ? 'M' : 'L';
-        const std::uint32_t p = points[k];
-        if (has_moved(p)) append_own(rewritten, shape.to_drawing, positions[p], precision);
-        else append_point(rewritten, lines.own[p]);
-      }
-      if (shape.is_path && lines.closed[c]) rewritten += " Z";
+      moved.append_curve(rewritten, shape, c);
     }
   }
   return rewritten.append(text, copied);
