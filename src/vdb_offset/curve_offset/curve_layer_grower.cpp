@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/curve_offset/curve_layer_grower.h"
 
-#include "vdb_offset/base/progress_count.h"
-
 #include <algorithm>
 
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/layers/layer_grower.h"
+#include "vdb_offset/layers/layer_wall.h"
 
 namespace vdb_offset {
 namespace {
@@ -18,15 +18,14 @@ bool turns(const Vec3d& a, const Vec3d& b, const Vec3d& c, double sign) {
   return sign * (ab[0] * ac[1] - ab[1] * ac[0]) > kLeastLean * ab.length() * ac.length();
 }
 
-/// Grows layers on curves: columns stand on segments.
-class CurveLayerGrower final : public LayerGrower {
+/// The curves that layers are grown on: columns stand on segments.
+class CurveWall final : public LayerWall {
  public:
-  CurveLayerGrower(const PlaneCurves& curves, std::span<const Vec3d> source, std::span<const Distances> heights,
-                   CurveFaults& faults, Paths& paths)
-      : LayerGrower(source, curves.line().origin, heights, paths), curves_(curves), faults_(faults) {}
+  CurveWall(const PlaneCurves& curves, CurveFaults& faults, RailStacks& stacks)
+      : LayerWall(stacks), side_(stacks.asked().side), curves_(curves), faults_(faults) {}
 
  private:
-  bool moves(std::uint32_t p) const override { return heights_.back()[p] != 0; }
+  bool moves(std::uint32_t p) const override { return stacks_.asked().thickness(p) != 0; }
 
   /// False where curves branch.
   bool sees_all_faces(std::uint32_t p, const Vec3d& displacement) const override {
@@ -44,7 +43,7 @@ class CurveLayerGrower final : public LayerGrower {
 
   /// Every cell turns the right way at each corner that is not flat.
   bool is_valid(std::size_t s) const override {
-    const auto a = stack_.stacks.of(base(s)[0]), b = stack_.stacks.of(base(s)[1]);
+    const auto a = stacks_.of(base(s)[0]), b = stacks_.of(base(s)[1]);
     const bool a_flat = a.front() == a.back(), b_flat = b.front() == b.back();
     if (a_flat && b_flat) return true;
     const double sign = -side_;  // outward is to the right
@@ -60,10 +59,10 @@ class CurveLayerGrower final : public LayerGrower {
         points.size(),
         [&](std::size_t i) {
           const std::uint32_t p = points[i];
-          std::fill(stack_.stacks.of(p).begin(), stack_.stacks.of(p).end(), source_[p]);
-          if (stack_.share[p] > 0)
-            put_down(p, 1, QueryDistance<CurveQuery>(curves_.query, faults_.around(p).front()),
-                     [](std::size_t, double) { return true; });
+          stacks_.flatten(p);
+          if (stacks_.share(p) > 0)
+            stacks_.put_down(p, 1, QueryDistance<CurveQuery>(curves_.query, faults_.around(p).front()),
+                             [](std::size_t, double) { return true; });
         },
         64);
   }
@@ -71,12 +70,13 @@ class CurveLayerGrower final : public LayerGrower {
   void find_faults(const Indices& points) override {
     std::vector<Vec2d> positions;
     positions.reserve(points.size());
-    for (const auto p : points) positions.emplace_back(outermost(p)[0], outermost(p)[1]);
+    for (const auto p : points) positions.emplace_back(stacks_.outermost(p)[0], stacks_.outermost(p)[1]);
     faults_.move(points, positions);
   }
   Indices faulty_vertices() const override { return faults_.faulty_points(); }
   double distance_of(std::uint32_t p) const override { return faults_.distance_of(p); }
 
+  int side_;
   const PlaneCurves& curves_;
   CurveFaults& faults_;
 };
@@ -92,7 +92,10 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   std::vector<Vec3d> source;
   source.reserve(curves.source.size());
   for (const Vec2d& p : curves.source) source.emplace_back(p[0], p[1], z);
-  LayerStack stack = CurveLayerGrower(curves, source, heights, faults, paths).run(progress);
+  const AskedLayers asked(source, curves.line().origin, heights);
+  RailStacks stacks(asked, paths);
+  CurveWall wall(curves, faults, stacks);
+  LayerStack stack = grow_on(wall, paths, progress);
   round_layers(
       source, curves.precision, [](std::uint32_t) { return true; },
       [&](std::uint32_t p, const Vec3d& position) -> std::optional<double> {

@@ -11,6 +11,7 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/layers/fan_distance.h"
 #include "vdb_offset/layers/layer_grower.h"
+#include "vdb_offset/layers/layer_wall.h"
 
 namespace vdb_offset {
 namespace {
@@ -32,12 +33,16 @@ constexpr double kFanShare = 0.5;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-class SurfaceLayerGrower final : public LayerGrower {
+/// The constrained surface that layers are grown on.
+class SurfaceWall final : public LayerWall {
  public:
-  SurfaceLayerGrower(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
-                     std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
-                     Paths& paths)
-      : LayerGrower(source, constrained.moving_part.surface().origin, heights, paths),
+  SurfaceWall(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
+              FaultFinder& faults, Paths& paths, RailStacks& stacks)
+      : LayerWall(stacks),
+        asked_(stacks.asked()),
+        source_(asked_.source),
+        heights_(asked_.heights),
+        paths_(paths),
         constrained_(constrained),
         moving_part_(constrained.moving_part.surface()),
         slides_(slides),
@@ -54,7 +59,7 @@ class SurfaceLayerGrower final : public LayerGrower {
       const auto& [a, b, c] = constrained_.surface.triangles[t];
       if (!constrained_.triangle_on_part(t)) continue;
       const Vec3d n = (source_[b] - source_[a]).cross(source_[c] - source_[a]);
-      if (n.lengthSqr() > 0 && !(side_ * n.dot(displacement) > kLeastSlope * n.length() * length)) return false;
+      if (n.lengthSqr() > 0 && !(asked_.side * n.dot(displacement) > kLeastSlope * n.length() * length)) return false;
     }
     return true;
   }
@@ -64,19 +69,21 @@ class SurfaceLayerGrower final : public LayerGrower {
   std::size_t column_count() const override { return columns_.size(); }
   std::span<const std::uint32_t> base(std::size_t column) const override { return columns_.base(column); }
   std::span<const std::uint32_t> columns_around(std::uint32_t v) const override { return columns_.around(v); }
-  bool is_valid(std::size_t column) const override { return columns_.is_valid(column, stack_.stacks, side_); }
+  bool is_valid(std::size_t column) const override {
+    return columns_.is_valid(column, stacks_.positions(), asked_.side);
+  }
   std::array<bool, 2> are_valid(std::size_t column, std::size_t other) const override {
-    return columns_.are_valid(column, other, stack_.stacks, side_);
+    return columns_.are_valid(column, other, stacks_.positions(), asked_.side);
   }
 
   void find_faults(const Indices& vertices) override {
     faults_.move(
-        vertices, [&](std::uint32_t v) { return outermost(v); }, &paths_);
+        vertices, [&](std::uint32_t v) { return stacks_.outermost(v); }, &paths_);
   }
   /// The faults at the ends of paths are known.
   void find_first_faults(const Indices& all) override {
     Indices back = all;
-    std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || is_at_end(v); });
+    std::erase_if(back, [&](std::uint32_t v) { return !moves(v) || stacks_.is_at_end(v); });
     find_faults(back);
   }
   Indices faulty_vertices() const override { return faults_.faulty_vertices(); }
@@ -110,9 +117,9 @@ class SurfaceLayerGrower final : public LayerGrower {
     Puts by_fan, by_ball;
     std::vector<double> distances;
     for (const auto v : vertices) {
-      std::fill(stack_.stacks.of(v).begin(), stack_.stacks.of(v).end(), source_[v]);
-      if (!(stack_.share[v] > 0) || (slides_ && constrained_.is_bound(v) && put_along_border(v))) continue;
-      const double top = top_of(v), radius = put_on_fan(v, top, fan, distances);
+      stacks_.flatten(v);
+      if (!(stacks_.share(v) > 0) || (slides_ && constrained_.is_bound(v) && put_along_border(v))) continue;
+      const double top = stacks_.top_of(v), radius = put_on_fan(v, top, fan, distances);
       if (radius < kInfinity) by_fan.add(v, top, {source_[v] - moving_part_.origin, radius});
       else by_ball.add(v, top, ball_of_rail(v, top));
     }
@@ -132,8 +139,8 @@ class SurfaceLayerGrower final : public LayerGrower {
   /// in the ball whose diameter goes from the vertex through the top of the rail, and beyond it by the outermost
   /// height.
   ClosestQuery::Ball ball_of_rail(std::uint32_t v, double top) const {
-    const Vec3d to_top = rail_of(v)(top), foot = source_[v] - moving_part_.origin;
-    const double length = to_top.length(), radius = (length + std::min(length, stack_.share[v] * asked(v))) / 2;
+    const Vec3d to_top = stacks_.rail_of(v)(top), foot = source_[v] - moving_part_.origin;
+    const double length = to_top.length(), radius = (length + std::min(length, stacks_.thickness(v))) / 2;
     if (!(length > 0)) return {foot, 0};
     return {foot + to_top * (radius / length), radius * kBallRoom};
   }
@@ -141,17 +148,17 @@ class SurfaceLayerGrower final : public LayerGrower {
   /// Puts the layers of a border vertex where it slides to. Returns false if it does not reach one of its heights so.
   bool put_along_border(std::uint32_t v) {
     if (!slides_->lead(v)) return false;
-    const auto stack = stack_.stacks.of(v);
+    const auto stack = stacks_.of(v);
     for (std::size_t k = heights_.size(); k-- > 0;) {
-      const double height = stack_.share[v] * heights_[k][v], target = std::abs(height);
-      const bool at_end = k + 1 == heights_.size() && stack_.share[v] == most_[v];
+      const double height = stacks_.share(v) * heights_[k][v], target = std::abs(height);
+      const bool at_end = k + 1 == heights_.size() && stacks_.share(v) == stacks_.most(v);
       const Vec3d displacement =
           at_end ? paths_.displacement[v]
                  : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
       stack[k + 1] = source_[v] + displacement;
-      stack_.first_achieved[v] =
-          constrained_.moving_part(stack[k + 1] - moving_part_.origin, constrained_.hint(v)).distance;
-      if (!(std::abs(stack_.first_achieved[v] - target) <= kReachedTolerance * target)) return false;
+      const double achieved = constrained_.moving_part(stack[k + 1] - moving_part_.origin, constrained_.hint(v)).distance;
+      stacks_.set_first_achieved(v, achieved);
+      if (!(std::abs(achieved - target) <= kReachedTolerance * target)) return false;
     }
     return true;
   }
@@ -167,15 +174,15 @@ class SurfaceLayerGrower final : public LayerGrower {
     fan.begin(moving_part_, on_part(v));
     const double free = paths_.achieved[v] - 2 * faults_.rounding(v);
     if (!fan.whole() || !(free > 0)) return kInfinity;
-    const auto stack = stack_.stacks.of(v);
+    const auto stack = stacks_.of(v);
     SpaceBesideBall beside(source_[v], source_[v] + paths_.displacement[v], free);
     const std::size_t before = distances.size();
     distances.resize(before + heights_.size());
-    const bool there = put_down(v, top, FanDistance(fan), [&](std::size_t k, double phi) {
+    const bool there = stacks_.put_down(v, top, FanDistance(fan), [&](std::size_t k, double phi) {
       distances[before + k] = phi;
       if (!is_at_height(v, k, phi)) return false;
       // The distance at the end of a path is known to be exact.
-      const bool at_end = k + 1 == heights_.size() && is_at_end(v);
+      const bool at_end = k + 1 == heights_.size() && stacks_.is_at_end(v);
       return at_end || beside.add(stack[k + 1], phi, kFanShare * free);
     });
     if (there) return beside.radius();
@@ -190,7 +197,7 @@ class SurfaceLayerGrower final : public LayerGrower {
     });
     bool holds = true;
     for (std::size_t k = distances.size(); near.size() > 0 && holds && k-- > 0;) {
-      const Vec3d x = stack_.stacks.of(v)[k + 1] - moving_part_.origin;
+      const Vec3d x = stacks_.of(v)[k + 1] - moving_part_.origin;
       const double nearer = distances[k] * (1 - kSameDistance);
       near.visit_nearer(x, nearer, [&](std::size_t i) {
         const Phi other = phi_of(moving_part_.closest_on(near.triangle(i), x), x);
@@ -206,27 +213,31 @@ class SurfaceLayerGrower final : public LayerGrower {
   /// layers. Returns false if they are many, or if a layer turns out to be outside of what the ball is large enough
   /// for, or not at its height.
   bool put_by_near(std::uint32_t v, double top, const ClosestQuery::Ball& ball, VertexFan& fan, NearTriangles& near) {
-    const auto stack = stack_.stacks.of(v);
+    const auto stack = stacks_.of(v);
     if (near.size() > kMostNear) return false;
     fan.begin(moving_part_, on_part(v));
     near.remove_if([&](std::uint32_t t) { return fan.has(t); });
     const Vec3d centre = ball.centre + moving_part_.origin;
-    return put_down(v, top, NearDistance(moving_part_, fan, near), [&](std::size_t k, double phi) {
+    return stacks_.put_down(v, top, NearDistance(moving_part_, fan, near), [&](std::size_t k, double phi) {
       return is_at_height(v, k, phi) && (stack[k + 1] - centre).length() + phi <= ball.radius;
     });
   }
 
   bool is_at_height(std::uint32_t v, std::size_t k, double distance) const {
-    const double height = stack_.share[v] * std::abs(heights_[k][v]);
+    const double height = stacks_.share(v) * std::abs(heights_[k][v]);
     return std::abs(distance - height) <= kReachedTolerance * height;
   }
 
   /// Puts layers by exact queries: slower than any other way, and always right.
   void put_by_query(std::uint32_t v) {
-    put_down(v, 1, QueryDistance<ClosestQuery>(constrained_.moving_part, constrained_.hint(v)),
-             [](std::size_t, double) { return true; });
+    stacks_.put_down(v, 1, QueryDistance<ClosestQuery>(constrained_.moving_part, constrained_.hint(v)),
+                     [](std::size_t, double) { return true; });
   }
 
+  const AskedLayers& asked_;
+  std::span<const Vec3d> source_;
+  std::span<const Distances> heights_;
+  Paths& paths_;
   const ConstrainedSurface& constrained_;
   const Surface& moving_part_;
   const BorderSlides* slides_;
@@ -243,7 +254,10 @@ LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlide
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
-  return SurfaceLayerGrower(constrained, slides, columns, source, heights, faults, paths).run(progress);
+  const AskedLayers asked(source, constrained.moving_part.surface().origin, heights);
+  RailStacks stacks(asked, paths);
+  SurfaceWall wall(constrained, slides, columns, faults, paths, stacks);
+  return grow_on(wall, paths, progress);
 }
 
 void round_layers(std::span<const Vec3d> source, const Rounding& precision,
