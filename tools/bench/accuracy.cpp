@@ -23,7 +23,7 @@ Row measure(const Polygons& mesh, double distance, double voxel_size, Answer&& a
   OffsetOptions options;
   options.distance = distance;
   options.grid.voxel_size = voxel_size;
-  options.collision = Collision::Merge;  // the paper's answer, which the closed forms are
+  options.collision = Collision::Merge;  // the closed forms are those of the paper's answer, which merges
   const OffsetResult result = offset(mesh.view(), options);
   Row row;
   const auto count = static_cast<double>(mesh.positions.size());

@@ -49,7 +49,7 @@ Polygons load(const std::string& path) {
   return scene.mesh_path.empty() ? std::move(scene.shape) : io::read_mesh(scene.mesh_path).polygons;
 }
 
-/// Loop's subdivision, `times` over: four triangles for each, every time.
+/// Subdivides a mesh `times` times by Loop's scheme: four triangles for each one, every time.
 Polygons subdivide(const Polygons& mesh, int times) {
   if (times == 0) return mesh;
   OpenMesh::TriMesh_ArrayKernelT<MeshTraits> fine;
@@ -85,7 +85,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Random points within the distance of the surface, each with the triangle that it was made near.
+/// Random points within the distance of the surface, each with a triangle near it.
 std::vector<std::pair<Vec3d, std::uint32_t>> make_queries(const Surface& surface, double distance, std::size_t count) {
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -98,7 +98,7 @@ std::vector<std::pair<Vec3d, std::uint32_t>> make_queries(const Surface& surface
   return queries;
 }
 
-/// Resident memory of the process now, bytes.
+/// The resident memory of the process, bytes.
 std::size_t current_memory() {
   std::ifstream statm("/proc/self/statm");
   std::size_t size = 0, resident = 0;
@@ -106,7 +106,7 @@ std::size_t current_memory() {
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Largest difference of `count` queries from trying every triangle.
+/// The largest difference between the distances of `count` queries and those found by trying every triangle.
 double check_query(const ClosestQuery& query, std::span<const std::pair<Vec3d, std::uint32_t>> queries) {
   std::vector<double> difference(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
@@ -119,7 +119,7 @@ double check_query(const ClosestQuery& query, std::span<const std::pair<Vec3d, s
   return difference.empty() ? 0 : *std::max_element(difference.begin(), difference.end());
 }
 
-/// |phi| of `count` voxels against the exact distance, in voxels: root mean square and largest.
+/// The root mean square and the largest error of |phi| at `count` voxels, in voxels.
 std::pair<double, double> check_field(const DistanceField& field, const ClosestQuery& query, std::size_t count) {
   const std::size_t stride = std::max<std::size_t>(1, field.phi->activeVoxelCount() / count);
   double sum = 0, worst = 0;
@@ -179,7 +179,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
            {"leaf_nodes", field.phi->tree().leafCount()},
            {"band_voxels", band_voxels},
            {"voxels", voxels},
-           {"field_bytes", field_memory},  // of the first run only: the process keeps what it has had
+           {"field_bytes", field_memory},  // from the first run alone: later runs reuse the memory of the process
            {"build_s", median(build)},
            {"rasterise_s", median(raster)},
            {"sweep_s", median(swept)},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times reading and writing beside OpenMesh's, run by run in turn. Reading is from the file to arrays of positions and
-// faces on both sides: building OpenMesh's half-edges is timed apart.
+// Times reading and writing beside OpenMesh's, in alternating runs. On both sides, reading leads from the file to
+// arrays of positions and faces: building OpenMesh's half-edges is timed separately.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using FloatMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 
-/// Takes what OpenMesh's readers find into arrays, without half-edges.
+/// Collects what OpenMesh's readers find in arrays, without half-edges.
 class Collector : public OpenMesh::IO::ImporterT<FloatMesh> {
  public:
   explicit Collector(FloatMesh& mesh) : ImporterT(mesh) {}
@@ -60,7 +60,7 @@ void require(bool done, const std::string& path) {
   if (!done) throw std::runtime_error("OpenMesh failed on " + path);
 }
 
-/// Seconds of both sides for one file; written files go to `folder`.
+/// The seconds that both sides take for one file. Written files go to `folder`.
 Json run(const std::string& path, int repeat, const std::filesystem::path& folder) {
   const std::string name = std::filesystem::path(path).filename(), ours = folder / ("ours_" + name),
                     theirs = folder / ("openmesh_" + name);

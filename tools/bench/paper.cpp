@@ -26,7 +26,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr double kDistance = 0.1, kTimeStep = 0.01;  // the paper's, inward
-constexpr int kRuns = 3;                             // of which the median counts
+constexpr int kRuns = 3;                             // runs, of which the median counts
 
 using Answer = std::function<Vec3d(const Vec3d&)>;
 
@@ -97,7 +97,7 @@ class InterpolatedMarch {
   double h_;
 };
 
-/// Leaves the nodes within the shape alone, as on a grid that ends at its bounding box.
+/// Removes the nodes outside of the shape, as on a grid that ends at its bounding box.
 void cut_at_surface(DistanceField& field) {
   for (auto phi = field.phi->beginValueOn(); phi; ++phi)
     if (*phi > 1e-6f) phi.setValueOff();
@@ -153,7 +153,7 @@ OffsetOptions our_options(double h) {
   return options;
 }
 
-/// Of several runs the median of each time; the rest is the same in all.
+/// The row of several runs, with the median of each time. All else is the same in all runs.
 Row median_of(const std::function<Row()>& run) {
   std::array<Row, kRuns> rows;
   for (Row& row : rows) row = run();
@@ -218,7 +218,7 @@ void circle_tables() {
   }
 }
 
-/// Where the circle's 40 points are before, and after by both methods on a grid of n cells across.
+/// Prints the positions of the circle's 40 points: in the source, and by both methods on a grid of n cells across.
 void print_circle(int n) {
   const Curves circle = circle_of(40);
   std::vector<Vec3d> by_paper;

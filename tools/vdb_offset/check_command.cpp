@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `vdb_offset check`: what it is told, what it measures, and what it prints.
+// `vdb_offset check`: its command line, what it measures, and what it prints.
 #include "check_command.h"
 
 #include <fmt/format.h>
@@ -44,13 +44,14 @@ Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex sho
 
 /// What the command line of `check` asks for.
 struct CheckRequest {
-  Request made;  ///< What made OFFSET of SOURCE, as far as it is told; also files and numbers of this command itself.
+  Request
+      made;  ///< The options with which OFFSET was made of SOURCE, as far as they are given, and this command's own.
   std::string distance, distance_from;
   std::optional<AxisDistances> axes;
   bool json = false;
 };
 
-/// Options that say what the offset was told.
+/// Declares the options that say how the offset was made.
 void declare_offset(CommandLine& line, CheckRequest& request, std::string& distance_xy, std::string& distance_z) {
   Request& made = request.made;
   line.option("-d,--distance", "D",
@@ -89,7 +90,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }
 
-/// Empty if the command line asked only for help, which is then printed.
+/// Reads the command line. None if it asked only for help, which is then printed.
 std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   CheckRequest request;
   Request& made = request.made;
@@ -113,7 +114,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   return request;
 }
 
-/// Of meshes, a distance may be an expression or a file.
+/// Reads the distances for meshes, which may be expressions or files.
 void take_distances_of_meshes(CheckRequest& request) {
   Request& made = request.made;
   if (!request.distance.empty()) made.distances.push_back(parse_distance_of("--distance", request.distance, made));
@@ -122,7 +123,7 @@ void take_distances_of_meshes(CheckRequest& request) {
   made.distance_option = "--distance-from";
 }
 
-/// The report may not take the place of what is measured, nor be mixed with what is printed.
+/// Refuses a report that would replace one of the files that are measured, or be mixed with the printed summary.
 void require_report_apart(const CheckRequest& request) {
   const Request& made = request.made;
   if (made.report.empty()) return;
@@ -135,7 +136,7 @@ void require_report_apart(const CheckRequest& request) {
                      ", which is that of --json (standard output)");
 }
 
-/// Positions of the source's vertices in the offset, which has the same faces, or the triangles that STL has of them.
+/// The positions of the source's vertices in the offset, which has the same faces or, as an STL file, their triangles.
 std::vector<Vec3d> positions_in_offset(const Request& made, const Polygons& source, const Polygons& offset) {
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
@@ -159,7 +160,7 @@ std::optional<double> parse_distance(const std::string& text, PolygonView source
   }
 }
 
-/// \throw InvalidInput unless both have the same points; a curve that was closed for one of the two may be open in the
+/// \throw InvalidInput unless both have the same points. A curve that is closed in one of them may be open in the
 /// other.
 void require_same_points(const Request& made, const Curves& source, const Curves& offset) {
   if (source.positions.size() != offset.positions.size())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has to stand before main(), and before libraries set themselves up: one that this command is linked to starts
-// threads then, and where none are to be had the process would end by a signal, without a word of ours.
+// What has to be done before main(), and before libraries are initialised. One of them starts threads then: where the
+// system has none left, the process would end by a signal and without a message of ours.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -17,20 +17,21 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Neither of the two below may be instrumented: it runs before the sanitizers do.
+// The functions that run before main() must not be instrumented: the sanitizers are not initialised yet.
 
-/// A file that is opened later must not get the number of a standard stream that the caller has closed: messages would
-/// go into it. What holds the number instead fails all reading and writing, as the closed one would.
+/// Opens a file for each standard stream that the caller has closed: otherwise the next file that is opened would get
+/// its number, and messages would be written into it. Reading and writing it fail, as they would for the closed stream.
 [[gnu::no_sanitize_address]] void fill_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
       static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-/// For what no one can catch: thrown before main(), by a thread of a library, or while something else was cleaned up.
+/// Ends the process with a message, after an exception that nothing can catch: one thrown before main(), by a thread of
+/// a library, or while another one was handled.
 [[noreturn]] void end_with_message() {
   const std::exception_ptr thrown = std::current_exception();
-  if (!thrown) std::abort();  // a fault of the program, not of its surroundings
+  if (!thrown) std::abort();  // without an exception it is a defect, which is to dump core
   try {
     std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
@@ -50,7 +51,7 @@ namespace {
 [[gnu::no_sanitize_address]] void prepare(int, char**, char**) {
   fill_closed_streams();
   std::set_terminate(end_with_message);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is an error of writing like any other
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then an error of writing like any other
 }
 
 [[gnu::section(".preinit_array"), gnu::used]] void (*before_libraries)(int, char**, char**) = prepare;

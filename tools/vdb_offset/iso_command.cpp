@@ -15,7 +15,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// No file is written of what is not what it is said to be.
+/// \throw Error for a surface that is not valid, of which no file is to be written.
 void require_valid(const IsoStatistics& found) {
   if (found.valid()) return;
   throw Error(fmt::format(
@@ -26,7 +26,8 @@ void require_valid(const IsoStatistics& found) {
       found.mending.left.needles, found.attempts));
 }
 
-/// A scene may bring what the command line could not ask for.
+/// \throw InvalidOption for options that --mode iso has not, and which a scene may have brought: the command line's own
+/// are refused earlier.
 void require_even(const Job& job) {
   for (const Distances& each : job.distances)
     if (!each.uniform())
@@ -43,7 +44,7 @@ IsoOptions options_of(const Job& job, const Distances& distance, const std::stri
   options.distance = distance[0];
   options.grid = given.grid;
   options.adaptivity = asked.adaptivity;
-  // What comes along differs within what is flat.
+  // Attributes that are transported may differ within flat parts, so that these are not merged unless asked for.
   const auto& [attributes, materials] = transported;
   if (!options.adaptivity && !(attributes.texture.empty() && attributes.colours.empty() && materials.of_face.empty()))
     options.adaptivity = 0;
@@ -78,8 +79,8 @@ void write_iso_surface(const Job& job, const io::Transported& transported, const
   if (!to.report.empty()) write_iso_report(job, to, result, start);
 }
 
-IsoResult capture_valid(const Job& job, const Distances& distance, const std::string& path,
-                        const io::Transported& transported) {
+IsoResult make_valid(const Job& job, const Distances& distance, const std::string& path,
+                     const io::Transported& transported) {
   IsoResult result =
       make_iso_surface_in_metric(job.source.view(), options_of(job, distance, path, transported), job.options.metric);
   require_valid(result.statistics);
@@ -91,21 +92,21 @@ void require_inside(const IsoResult& result) {
     throw InvalidInput("--shell with --mode iso: expected a mesh that has an inside, got an open one");
 }
 
-/// The mesh and the captured surface, or two of these, as one solid.
-Hollow hollow_of(PolygonView mesh, double distance, const IsoResult& captured, const IsoResult* inner) {
-  const PolygonView skin = captured.polygons.view();
+/// The mesh and the iso-surface, or two of these, as one solid.
+Hollow hollow_of(PolygonView mesh, double distance, const IsoResult& iso, const IsoResult* inner) {
+  const PolygonView skin = iso.polygons.view();
   if (inner) return make_hollow(skin, inner->polygons.view(), Hollow::Source::Neither);
   return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer) : make_hollow(skin, mesh, Hollow::Source::Inner);
 }
 
-void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, IsoResult& captured,
-                  const IsoResult* inner, Clock::time_point start) {
+void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, IsoResult& iso, const IsoResult* inner,
+                  Clock::time_point start) {
   const auto writing = Clock::now();
   const io::WriteOptions options = write_options(job.request, to.mesh);
   const io::MeshFile* const file = job.source.file ? &*job.source.file : nullptr;
-  tell_losses(job.request, to.mesh, io::write_hollow(to.mesh, file, hollow, captured, options));
-  captured.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!to.report.empty()) write_iso_report(job, to, captured, start, &hollow.facts, inner);
+  tell_losses(job.request, to.mesh, io::write_hollow(to.mesh, file, hollow, iso, options));
+  iso.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
+  if (!to.report.empty()) write_iso_report(job, to, iso, start, &hollow.facts, inner);
 }
 
 }  // namespace
@@ -125,14 +126,14 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   const io::Transported transported = read_attributes_of(job);
   std::vector<IsoResult> results;
   for (std::size_t i = 0; i < destinations.size(); ++i)
-    results.push_back(capture_valid(job, job.distances[i], destinations[i].mesh, transported));
+    results.push_back(make_valid(job, job.distances[i], destinations[i].mesh, transported));
   std::optional<IsoResult> inner;
-  if (job.request.inner) inner = capture_valid(job, job.distances.back(), destinations.front().mesh, transported);
+  if (job.request.inner) inner = make_valid(job, job.distances.back(), destinations.front().mesh, transported);
   if (job.shell) require_inside(results.front());
   bar.show(Stage::Write, 0);
   const IsoResult* const inner_skin = inner ? &*inner : nullptr;
   OutputFiles outputs(job.request.sync);
-  std::optional<Hollow> hollow;  // of one distance
+  std::optional<Hollow> hollow;  // for one distance alone
   for (std::size_t i = 0; i < destinations.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
     if (job.shell) hollow = hollow_of(mesh, job.distances[i][0], results[i], inner_skin);

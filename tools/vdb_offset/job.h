@@ -22,12 +22,13 @@ struct Destination {
   std::string distance;  ///< The distance as the user gave it.
 };
 
-/// What a request asks of a source: everything that a run needs, lengths in world units. It refers to both.
+/// What a request asks of a source: everything that a run needs, lengths in world units. Refers to the request and the
+/// source.
 struct Job {
   const Request& request;
   const Source& source;
   OffsetOptions options;               ///< All but the distance and the progress.
-  bool shell = false;                  ///< Asked for, or a scene's own wish.
+  bool shell = false;                  ///< By the command line or a scene.
   std::vector<DistanceRequest> asked;  ///< The distances as given, one for each output; of layers: none.
   std::vector<Distances> distances;    ///< One set for each output, then that of the inner skin if there is one; of
                                        ///< layers: their heights above the wall, from there on.

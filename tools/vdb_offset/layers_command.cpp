@@ -26,7 +26,7 @@ bool is_volume(const std::string& path) {
   return io::volume_format_of(path).has_value() || io::structured_format_of(path).has_value();
 }
 
-/// Cells are measured whatever is written; those over a mesh are made if they are.
+/// Layers and their cells. Cells are always measured; over a mesh, they are made only if they are written.
 struct Grown {
   LayersResult layers;
   WallNames names;
@@ -48,7 +48,7 @@ void measure(const Source& source, Grown& grown) {
   grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells->facts(), grown.cells->quality());
 }
 
-/// Into an object that stays where it is, as what is measured refers to its layers.
+/// Grows layers. `grown` must not be moved afterwards: its cells refer to its layers.
 void grow(const Job& job, Grown& grown) {
   const Source& source = job.source;
   if (source.curves) {
@@ -108,8 +108,8 @@ bool are_valid(const LayerReport& report) {
          (!report.foam || report.foam->wrong_faces == 0);
 }
 
-/// Whether --strict can be content: every cell is valid, every vertex keeps all of its heights, and nothing is nearer
-/// to an obstacle than asked.
+/// Whether what --strict asks for is met: every cell is valid, every vertex keeps all of its heights, and nothing is
+/// nearer to an obstacle than asked.
 bool is_as_asked(const Grown& grown) {
   const LayersResult& layers = grown.layers;
   if (layers.statistics.obstacles && layers.statistics.obstacles->near > 0) return false;

@@ -7,7 +7,7 @@
 
 namespace vdb_offset::tool {
 
-/// Carries out a job with layers. Returns kProcessing if --strict was given and cannot be content.
+/// Carries out a job with layers. Returns kProcessing if what --strict asks for is not met.
 ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar);
 
 }  // namespace vdb_offset::tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command: a request from the command line, a job of it and the source, and what carries that out.
+// The command: reads a request from the command line, makes a job of it and the source, and carries it out.
 #include <tbb/global_control.h>
 
 #include <exception>
@@ -25,8 +25,9 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// Names of layers' files are not known before the source is.
-void require_writable_places(const Request& request) {
+/// \throw WriteError for outputs that cannot be written, as far as their names are known: those of layers depend on the
+/// source.
+void require_writable_outputs(const Request& request) {
   if (request.dry_run || request.layers) return;
   for (const Destination& to : destinations(request, request.distances))
     for (const std::string& path : {to.mesh, to.report, to.states, to.paths})
@@ -43,13 +44,13 @@ ExitCode run(const Job& job, const Timing& timing, ProgressBar& bar) {
 ExitCode run(const Request& request) {
   const auto start = Clock::now();
   tell_of_lost_input(request.input);
-  std::optional<tbb::global_control> threads;  // reading and writing, too
+  std::optional<tbb::global_control> threads;  // limits reading and writing as well
   if (request.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
   const bool curves = holds_curves(request.input);
   require_for_input(request, curves);
   require_apart(request);
-  require_writable_places(request);
+  require_writable_outputs(request);
   ProgressBar bar(!request.quiet);
   bar.show(Stage::Read, 0);
   const Source source = read_source(request, curves);

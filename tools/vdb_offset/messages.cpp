@@ -14,15 +14,16 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Bytes of a line that is read, not searched, and of a word in it; a name is known by less.
+// Most bytes of a message, which is to be read and not searched, and of a word in it, by which a name is recognised.
 constexpr std::size_t kLongestMessage = 500, kLongestWord = 160;
 
-// Why standard output did not take what was printed, or 0.
+// The error number of the last failure to print on standard output; 0 if there was none.
 int print_error = 0;
 
 bool is_tail(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
-/// Bytes of the UTF-8 character that a text begins with; 0 if it begins with none, or one that is not to be seen.
+/// The number of bytes of the UTF-8 character that a text begins with; 0 if these bytes are none, or a control
+/// character.
 std::size_t character_at(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
@@ -66,7 +67,7 @@ std::string shortened(std::string_view text, std::size_t most) {
 }
 
 std::string readable(std::string_view message) {
-  constexpr std::size_t kMostLookedAt = 1 << 16;  // bytes; what is far too long is not looked through
+  constexpr std::size_t kMostLookedAt = 1 << 16;  // bytes; a message is cut to this length before it is searched
   const std::string whole = shortened(message, kMostLookedAt);
   std::string line;
   for (std::size_t begin = 0; begin < whole.size();) {

@@ -14,11 +14,11 @@ std::string shortened(std::string_view text, std::size_t most);
 /// `\xff`, words and the whole of a length that can be read.
 std::string readable(std::string_view message);
 
-/// Prints `vdb_offset: MESSAGE` on standard error. If that is closed or full there is no place for it, and that is all.
+/// Prints `vdb_offset: MESSAGE` on standard error. If that is closed or full, the message is lost.
 void tell(std::string_view message) noexcept;
 
-/// What is for the user to read: kept until it is complete, then printed on standard output or, if that is taken, on
-/// standard error. That it could not be is for require_printed() to find.
+/// A text for the user, kept until it is complete, then printed on standard output or, if that is taken, on standard
+/// error. require_printed() finds out whether that failed.
 class Printout {
  public:
   explicit Printout(bool output_is_taken = false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Offsets of meshes and curves, from the job to the files.
+// Carries out offsets of meshes and curves, from the job to the files.
 #include "offset_command.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ void require_field(const Job& job) {
     throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");
 }
 
-/// Whether --strict can be content with a result. Says why, if not.
+/// Whether a result is what --strict asks for. If not, says why.
 bool is_as_asked(const OffsetResult& result, bool of_curves) {
   const OffsetStatistics& statistics = result.statistics;
   const auto is_clear = [](std::size_t triangles, const char* what) {
@@ -65,7 +65,7 @@ std::string in_words(const FaultCounts& counts) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// Names the outputs that are not valid, though they were to be. False if there are none.
+/// Names the outputs that are not valid although they should be. Returns false if there are none.
 bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
   bool any = false;
   const std::vector<Destination>& destinations = job.outputs;
@@ -79,7 +79,7 @@ bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
   return any;
 }
 
-/// kProcessing if a result is not valid, or what a scene expects, or --strict, is not met.
+/// Returns kProcessing if a result is not valid, or if what a scene expects or --strict asks for is not met.
 ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std::optional<ShellFacts>& shell) {
   std::vector<std::string> failed;
   if (job.source.scene) failed = scene::unmet(job.expect, job.source.view(), results.front());

@@ -18,7 +18,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// Where a name's endings begin, `.gz` and `.zst` counted with the one before.
+/// Where the ending of a name begins. `.gz` and `.zst` belong to the ending before them.
 std::size_t ending_of(const std::string& name) {
   const std::size_t folder = name.rfind('/') == std::string::npos ? 0 : name.rfind('/') + 1;
   std::size_t dot = name.rfind('.');
@@ -29,7 +29,7 @@ std::size_t ending_of(const std::string& name) {
   return before == std::string::npos || before <= folder ? dot : before;
 }
 
-/// A distance as given, without what may not be part of a file's name.
+/// A distance as given, without characters that file names may not have.
 std::string as_name(std::string distance) {
   for (char& c : distance)
     if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view(".+-%_").find(c) == std::string_view::npos)
@@ -50,7 +50,7 @@ std::string numbered(std::string name, std::size_t number, std::size_t of, const
   return name;
 }
 
-/// Every option's name and value in force, as a job has them.
+/// The names and values of all options that are in force.
 std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job, const Destination& to) {
   const Request& request = job.request;
   const auto number = [](const std::optional<double>& value) {
@@ -131,11 +131,11 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   return {};
 }
 
-/// Each path as a line.
+/// Writes each path as a curve.
 void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>& paths) {
   Curves lines;
   for (const std::vector<Vec3d>& line : paths) {
-    if (line.size() < 2) continue;  // of vertices that stay
+    if (line.size() < 2) continue;  // a vertex that stays has no path
     for (const Vec3d& position : line) {
       lines.corners.push_back(static_cast<std::uint32_t>(lines.positions.size()));
       lines.positions.push_back(position);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a request to a job: what the mesh, or the scene, settles of what was asked for.
+// Makes a job of a request: settles what depends on the mesh or the scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,8 @@ OffsetOptions options_of(const Request& request) {
   return options;
 }
 
-/// A scene's mesh to fit takes the place of a distance, with all that the command line may not ask for then.
+/// Takes a scene's mesh to fit, which replaces a distance, and refuses the options that the command line may not have
+/// then.
 void settle_fit_of_scene(Job& job) {
   const Request& request = job.request;
   for (const auto& [name, given] : {std::pair{"--mode iso", request.iso.has_value()},
@@ -54,7 +55,7 @@ void settle_scene(Job& job) {
   scene.set(job.options);
   if (given.voxel_size || given.voxels_per_distance) job.options.grid = given;
   if (!job.request.layers && !job.request.iso) job.shell = job.shell || scene.shell;
-  // What a scene expects holds for its own distance.
+  // A scene's expectations hold for its own distance alone.
   if (job.request.layers || !job.asked.empty()) return;
   job.expect = scene.expect;
   if (scene.to_fit.face_count() > 0) return settle_fit_of_scene(job);
@@ -109,7 +110,7 @@ Distances evaluate(const Job& job, const DistanceRequest& request) {
   return scene::distances_of(request.distance, source.view(), normals_of, texture_of);
 }
 
-/// Distances, each multiplied by a factor.
+/// Multiplies all distances by a factor.
 Distances scaled(const Distances& distances, double factor) {
   if (distances.uniform()) return factor * distances[0];
   std::vector<double> each(distances.count());
@@ -117,10 +118,10 @@ Distances scaled(const Distances& distances, double factor) {
   return Distances(std::move(each));
 }
 
-/// Heights of layers that grow from one to the next.
+/// The heights of layers whose thickness grows by a factor from one to the next.
 std::vector<Distances> geometric_heights(const Job& job) {
   const LayersRequest& layers = *job.request.layers;
-  std::vector<double> factors;  // of the first layer's height
+  std::vector<double> factors;  // of each layer: its height as a multiple of the first layer's
   factors.reserve(layers.count);
   double sum = 0, step = 1;
   for (std::size_t k = 0; k < layers.count; ++k, step *= layers.growth) factors.push_back(sum += step);
@@ -131,9 +132,10 @@ std::vector<Distances> geometric_heights(const Job& job) {
   return heights;
 }
 
-constexpr std::size_t kLongestHeight = 4096;  // characters: twice the longest expression, or the longest path
+constexpr std::size_t kLongestHeight = 4096;  // bytes: twice the longest expression, or the longest path
 
-/// One height a line; empty lines and what is behind a # do not count. Other files are looked for beside this one.
+/// Reads a file of heights: one a line; empty lines, and text behind a #, are ignored. Files that it names are looked
+/// for in its own folder.
 std::vector<Distances> read_heights(Job& job) {
   const LayersRequest& layers = *job.request.layers;
   const std::string& path = layers.heights;
@@ -170,7 +172,7 @@ std::vector<Distances> read_heights(Job& job) {
   return heights;
 }
 
-/// One set for each output, and that of the inner skin.
+/// The distances of all outputs, then those of the inner skin.
 std::vector<Distances> distances_of(Job& job) {
   const Request& request = job.request;
   if (request.axes) {
@@ -191,7 +193,7 @@ std::vector<Distances> distances_of(Job& job) {
   return distances;
 }
 
-/// What the files that are written keep of positions.
+/// The precision that the written files keep of positions.
 Precision precision_of(const Job& job) {
   const Request& request = job.request;
   const bool cells =

@@ -22,21 +22,21 @@ namespace fs = std::filesystem;
 
 std::string number_of(const struct stat& file) { return fmt::format("{}:{}", file.st_dev, file.st_ino); }
 
-/// Takes whatever is written there, from anyone.
+/// Whether a file is /dev/null, which any number of outputs may be written to.
 bool is_null_device(const struct stat& file) { return S_ISCHR(file.st_mode) && file.st_rdev == makedev(1, 3); }
 
-/// What two paths have in common if they are one file. Empty for what cannot clash.
+/// A text that is the same for two paths if they lead to the same file. Empty for a file that cannot clash with others.
 std::string identity_of(const std::string& path, int standard_stream) {
   struct stat file {};
   const bool exists = path == "-" ? ::fstat(standard_stream, &file) == 0 : ::stat(path.c_str(), &file) == 0;
   if (path == "-" && (!exists || !S_ISREG(file.st_mode))) return fmt::format("-{}", standard_stream);
   if (!exists) {
     const fs::path whole = replaced_path(path);
-    return (whole.has_filename() ? whole : whole.parent_path()).string();  // a folder's may end in a slash
+    return (whole.has_filename() ? whole : whole.parent_path()).string();  // the path of a folder may end in a slash
   }
   if (is_null_device(file)) return {};
   struct stat stream {};
-  // This is /dev/stdout, say.
+  // The path is a name of the standard stream, such as /dev/stdout.
   if (!S_ISREG(file.st_mode) && ::fstat(standard_stream, &stream) == 0 && number_of(stream) == number_of(file))
     return fmt::format("-{}", standard_stream);
   return number_of(file);
@@ -59,7 +59,7 @@ void add(std::vector<RunFile>& files, const std::string& option, const std::stri
   if (!path.empty()) files.push_back({option, path, false});
 }
 
-/// The file that a distance comes from, if it does.
+/// Adds the file that a distance is read from, if there is one.
 void add_source_of(std::vector<RunFile>& files, const std::string& option, const DistanceRequest& request) {
   if (!request.from.starts_with("ply:")) add(files, option, request.from);
 }
@@ -76,7 +76,7 @@ std::vector<RunFile> read_by(const Request& request) {
   return files;
 }
 
-/// `layers`: how many surfaces are written, if the output is no volume mesh.
+/// The files that are written with --layers. `layers` is the number of surfaces, if the output is no volume mesh.
 std::vector<RunFile> written_with_layers(const Request& request, std::size_t layers) {
   std::vector<RunFile> files;
   const auto volume = io::volume_format_of(request.output);
@@ -95,9 +95,9 @@ std::vector<RunFile> written_with_layers(const Request& request, std::size_t lay
 
 std::vector<RunFile> written_by(const Request& request, std::vector<Destination> destinations) {
   std::vector<RunFile> files;
-  // A scene alone has not told of its distance yet.
+  // Without distances on the command line, the scene's one is not known yet, and there is one output.
   if (destinations.empty()) destinations.push_back({request.output, request.report, request.states, request.paths, {}});
-  // A scene is no mesh, and several outputs that begin to replace the input are an oversight.
+  // An output may replace an input mesh. Not a scene, and not one of several outputs, as that is hardly intended.
   const bool may_be_input = destinations.size() == 1 && !scene::is_scene(request.input);
   for (const Destination& to : destinations) {
     files.push_back({"OUTPUT", to.mesh, may_be_input});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading what is to be offset.
+// Reads what is to be offset.
 #include "source.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// Several meshes as one.
+/// Appends a mesh to another one.
 void add(Polygons& to, const Polygons& from) {
   const auto first = static_cast<std::uint32_t>(to.positions.size());
   to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());

@@ -15,7 +15,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// Whether standard output holds a file.
+/// Whether standard output is one of the files that are written.
 bool output_is_taken(const Request& request) {
   return is_standard_output(request.output) || is_standard_output(request.report);
 }
@@ -47,7 +47,7 @@ void print_facts(std::FILE* out, const MeshFacts& facts, bool curves = false) {
         facts.repeated_faces, facts.folded_triangles, facts.boundary_left, facts.non_manifold_left);
 }
 
-/// Where it is not clear which side is outward, and what to do about it.
+/// Says where it is not clear which side is outward, and what to do about it.
 void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient) {
   if (facts.inside_out_components > 0)
     fmt::print(out, "{} of {} closed components point inward as a whole: {}\n", facts.inside_out_components,
@@ -61,14 +61,15 @@ void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient) {
                facts.orientation_conflicts, facts.turned_triangles, facts.unsettled_conflicts);
 }
 
-/// Which borders were closed, and which look as if they should be.
+/// Says which borders were closed, and which look as if they should be.
 void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
   if (seams.vertices > 0)
     fmt::print(out,
                "{} vertices at borders are one with others but for rounding, {:.2g} apart at most, and count as welded "
                "(--weld exact leaves these borders open)\n",
                seams.vertices, seams.widest);
-  constexpr double kFarBelow = 0.1;  // of the distance: nearer borders hold it back; not measured
+  constexpr double kFarBelow =
+      0.1;  // share of the distance: borders nearer to each other hold the offset back; not measured
   if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)
     fmt::print(out,
                "{} vertices are at borders that run along each other, {:.2g} apart at most: --weld {:g} closes them if "
@@ -76,7 +77,7 @@ void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
                seams.near_vertices, seams.widest_near, MeshFacts::tolerance_above(seams.widest_near));
 }
 
-/// What may have held vertices back.
+/// Says that slivers may have held vertices back.
 void print_slivers(std::FILE* out, const MeshFacts& facts) {
   if (facts.sliver_edges > 0)
     fmt::print(out,
@@ -113,7 +114,7 @@ std::string text_of(const SymmetryPlane& plane) {
 }
 
 void print_planes(std::FILE* out, const BorderFacts& borders) {
-  constexpr std::size_t kMostNamed = 6;  // planes on a line
+  constexpr std::size_t kMostNamed = 6;  // planes that are named on a line
   if (borders.planes.empty()) return;
   fmt::print(out, "planes     {} vertices stay in", borders.held_vertices);
   for (std::size_t i = 0; i < std::min(borders.planes.size(), kMostNamed); ++i)
@@ -122,7 +123,7 @@ void print_planes(std::FILE* out, const BorderFacts& borders) {
   fmt::print(out, "\n");
 }
 
-/// All that is known of the mesh and the grid, and the seconds of each stage.
+/// Prints all facts about the mesh and the grid, and the seconds of each stage.
 void print_details(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances, bool curves) {
   print_facts(out, statistics.facts, curves);
   print_planes(out, statistics.borders);
@@ -131,7 +132,7 @@ void print_details(std::FILE* out, const OffsetStatistics& statistics, const Dis
     fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), statistics.seconds[s]);
 }
 
-/// Where borders are not what the shape of the input lets one expect.
+/// Says where borders of the offset are not as one would expect from the input.
 void print_borders(std::FILE* out, const BorderFacts& borders) {
   if (borders.strayed_vertices > 0)
     fmt::print(out, "{} of {} vertices at borders leave the plane across these, by {:.3g} degrees at most\n",
@@ -141,14 +142,14 @@ void print_borders(std::FILE* out, const BorderFacts& borders) {
                borders.beyond);
 }
 
-/// A distance as it was given, to the other side.
+/// A distance as it was given, with the other sign.
 std::string turned_round(const std::string& text) {
   if (text.starts_with('-') && text.find_first_of("+*/^( ", 1) == std::string::npos) return text.substr(1);
   const bool number = text.find_first_not_of("0123456789.eE%") == std::string::npos;
   return number ? "-" + text : fmt::format("'-({})'", text);
 }
 
-/// The option that sends what was asked for to the other side.
+/// The option that asks for the same offset to the other side.
 std::string option_for_other_side(const Job& job) {
   const std::optional<LayersRequest>& layers = job.request.layers;
   const DistanceRequest* const asked = !layers         ? &job.asked.front()
@@ -188,7 +189,7 @@ void print_disagreeing(std::FILE* out, const Job& job, const OffsetStatistics& s
                statistics.disagreeing_distances, job.curves() ? "points" : "vertices");
 }
 
-/// What of the input leaves a result in doubt.
+/// Says what about the input may make the result wrong.
 void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances) {
   print_seams(out, statistics.facts.seams, std::abs(distances.farthest()));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
@@ -206,7 +207,7 @@ void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statis
                                            : fmt::format("{} more beside them", limit.crossings_near_source));
 }
 
-/// What is between a result and its obstacles, and was at first.
+/// Prints the gap between a result and its obstacles, and that of the source.
 void print_obstacles(std::FILE* out, const ObstacleFacts& obstacles, double clearance) {
   fmt::print(out, "gap to obstacles {:.6g}, {:.6g} at the start", obstacles.gap, obstacles.starting_gap);
   if (obstacles.near > 0)
@@ -257,7 +258,7 @@ void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shel
   fmt::print(out, "\n");
 }
 
-/// What of the mesh has an inside, and how that is known.
+/// Says which parts of the mesh have an inside, and how that is known.
 void print_solids(std::FILE* out, const IsoStatistics& found) {
   const SolidFacts& solid = found.solid;
   if (!found.is_signed)
@@ -327,8 +328,8 @@ void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double d
 }
 
 void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
-                          const IsoResult& captured, const IsoResult* inner, double total_seconds) {
-  print_iso_summary(job, path, distance, captured, total_seconds);
+                          const IsoResult& iso, const IsoResult* inner, double total_seconds) {
+  print_iso_summary(job, path, distance, iso, total_seconds);
   if (inner) print_iso_summary(job, path, inner->statistics.distance, *inner, total_seconds);
   const ShellFacts& shell = hollow.facts;
   const Printout out(output_is_taken(job.request));

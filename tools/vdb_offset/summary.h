@@ -24,13 +24,13 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
 /// What --dry-run prints with --mode iso.
 void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance);
 
-/// What is printed of a captured surface.
+/// What is printed of a iso-surface.
 void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds);
 
-/// What is printed of a hollow solid; `inner` is its inner skin if that was captured beside the outer one.
+/// What is printed of a hollow solid; `inner` is its inner skin if that was made beside the outer one.
 void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
-                          const IsoResult& captured, const IsoResult* inner, double total_seconds);
+                          const IsoResult& iso, const IsoResult* inner, double total_seconds);
 
 /// What is printed of layers.
 void print_layers_summary(const Job& job, const LayersResult& result, const LayerReport& report, double total_seconds);

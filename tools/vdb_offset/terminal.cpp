@@ -16,14 +16,14 @@ namespace {
 
 constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP};
 
-/// Ends the way an uncaught signal would have, so that shells and scripts see it.
+/// Ends the process as the signal would have if it had not been caught, so that shells and scripts see it.
 void end_by(int signal) {
   if (!remove_temporaries()) return;
   std::signal(signal, SIG_DFL);
-  std::raise(signal);  // once the handler has returned
+  std::raise(signal);  // takes effect once the handler has returned
 }
 
-// All that a signal handler may touch: how the message goes on before and behind the name of the input, and that.
+// All that the signal handler uses: the message before and behind the name of the input, and that name.
 constexpr char kBeforeName[] = "vdb_offset: ",
                kBehindName[] = ", or another input: expected a file that stays as it is, got one that was cut short\n";
 std::string lost_input;
@@ -48,7 +48,7 @@ ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::show(Stage stage, double share) {
   if (!active_) return;
-  constexpr int kWidth = 40;  // characters of the bar
+  constexpr int kWidth = 40;  // characters
   const int filled = static_cast<int>(share * kWidth);
   std::string line =
       fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);
@@ -62,7 +62,7 @@ void ProgressBar::clear() {
   shown_.clear();
 }
 
-/// A terminal that has gone is no reason to end.
+// If the terminal has been closed, nothing more is drawn, and the run goes on.
 void ProgressBar::print(const std::string& text) {
   active_ = std::fwrite(text.data(), 1, text.size(), stderr) == text.size() && std::fflush(stderr) == 0;
 }
@@ -74,9 +74,10 @@ void catch_interrupts() {
   for (const int signal : kInterrupts) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup and background jobs stay so
+    if (before.sa_handler != SIG_IGN)
+      sigaction(signal, &action, nullptr);  // signals that nohup or a shell ignores stay ignored
   }
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of writing like any other
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is then an error of writing like any other
 }
 
 void ignore_interrupts() {

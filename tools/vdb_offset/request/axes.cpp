@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances by axis: what --distance-xy and --distance-z say.
+// Distances by axis: the values of --distance-xy and --distance-z.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Largest ratio of the two distances; 0 stands for it. Beyond this, the lesser distance drowns in the rounding of the
-// larger one. Not measured.
+// Largest ratio of the two distances, which a distance of 0 also gets: beyond this, the lesser distance drowns in the
+// rounding of the larger one. Not measured.
 constexpr double kMostRatio = 1000;
 
 scene::Distance parse_one(const char* option, const std::string& text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CLI11, behind CommandLine.
+// Implements CommandLine with CLI11.
 #include "request/command_line.h"
 
 #include <fmt/format.h>
@@ -16,13 +16,14 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// The words behind a program's or a subcommand's name, the last one first, as CLI11 takes them. What stands behind
-/// `--` is a file's name, whatever it starts with.
+/// The words behind the name of a program or subcommand in reverse order, as CLI11 takes them. Words behind `--` are
+/// names of files, whatever they begin with.
 std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
   std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   const auto mark = std::find(arguments.begin(), arguments.end(), "--");
   if (mark != arguments.end()) {
-    // CLI11 takes the mark for the end of what an option before it lists. As ./NAME a name looks like no option.
+    // CLI11 understands `--` as the end of the values of the option before it. So it is left out, and names behind it
+    // become ./NAME, which does not look like an option.
     for (auto name = mark + 1; name != arguments.end(); ++name)
       if (name->starts_with('-') && *name != "-") name->insert(0, "./");
     arguments.erase(mark);
@@ -86,7 +87,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
 
 bool CommandLine::has(const char* option) const { return app_->get_option(option)->count() > 0; }
 
-/// An empty value comes of a script with an empty variable, and is never meant.
+/// \throw UsageError for an empty value: it comes from a script's empty variable, and is never intended.
 void CommandLine::require_values() const {
   for (const CLI::Option* const option : app_->get_options())
     for (const std::string& value : option->results())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of an offset: the words of --help, and what each option sets.
+// The options of an offset: their texts in --help, and what each of them sets.
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -50,12 +50,12 @@ met), 4 output. Ctrl-C and the like end the process at once, by that signal, and
 once they are put in place, all together, a signal changes nothing more.
 Report keys, library and guarantees: see the guides in docs/.)";
 
-constexpr int kMostLayers = 1000;  // --layers: a mistyped number is not to fill the memory; not measured
+constexpr int kMostLayers = 1000;  // --layers: so that a mistyped number does not fill the memory; not measured
 constexpr double kAny = std::numeric_limits<double>::max();
-// What is above this is 0 or more.
+// Numbers above this are 0 or more.
 constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
 
-/// A request that is being made, and values that belong to it only if another option says so.
+/// A request that is being made, and values that become part of it only if another option says so.
 struct Draft {
   Request request;
   bool is_iso = false, no_sync = false;
@@ -64,7 +64,7 @@ struct Draft {
   std::string distance_xy, distance_z;
 };
 
-/// How far, and in which way.
+/// Declares the options that say how far the offset goes, and what kind of offset it is.
 void declare_distances(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.repeated(
@@ -117,7 +117,7 @@ void declare_distances(CommandLine& line, Draft& draft) {
               draft.distance_z);
 }
 
-/// Which faces, and what is around them.
+/// Declares the options that say which faces move, and what is around them.
 void declare_parts(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.repeated("--only", "PART",
@@ -153,7 +153,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
               request.fit);
 }
 
-/// What is made of the offset.
+/// Declares the options that say what is made of the offset.
 void declare_products(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.flag("--shell",
@@ -189,7 +189,7 @@ void declare_products(CommandLine& line, Draft& draft) {
             request.close);
 }
 
-/// How it is computed.
+/// Declares the options that say how the offset is computed.
 void declare_method(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.option("--voxel-size", "H", "Voxel size of the direction field, world units [automatic: about D]",
@@ -229,7 +229,7 @@ void declare_method(CommandLine& line, Draft& draft) {
               });
 }
 
-/// How files are written, which ones, and with what means.
+/// Declares the options for the files that are written, and for threads and memory.
 void declare_files(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.option("--format", "NAME", "Format of '-' and of files with another ending: 'obj', 'ply', 'stl' or 'off'",
@@ -257,7 +257,7 @@ void declare_files(CommandLine& line, Draft& draft) {
   line.option("--save-vdb", "FILE", "Write phi and the closest triangles as OpenVDB grids", request.vdb);
 }
 
-/// How a run goes.
+/// Declares the options for the run as a whole.
 void declare_run(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.flag("--no-sync", "Do not wait until outputs are on the disk before they get their names", draft.no_sync);
@@ -270,13 +270,13 @@ void declare_run(CommandLine& line, Draft& draft) {
   line.flag("-v,--verbose", "Print the mesh's facts and the seconds of each stage", request.verbose);
 }
 
-/// Puts in what several options say together.
+/// Completes the request by what several options say together.
 void complete(const CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   if (draft.is_iso) request.iso = draft.iso;
   if (line.has("--layers") || line.has("--heights")) request.layers = draft.layers;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;
-  constexpr std::size_t kParts = 5, kPartsTaken = 4;  // of the free memory, as --help says
+  constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of the free memory, as --help says
   if (request.max_memory == 0) request.max_memory = std::max<std::size_t>(1, available_memory() / kParts * kPartsTaken);
   request.axes = parse_axes(draft.distance_xy, draft.distance_z);
   if (request.axes)

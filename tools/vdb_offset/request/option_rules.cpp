@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which options of an offset go together, and which names of files go with them.
+// Rules about which options of an offset, and which names of files, go together.
 #include "request/option_rules.h"
 
 #include <fmt/format.h>
@@ -18,13 +18,13 @@ namespace {
 
 using Names = std::initializer_list<const char*>;
 
-/// `by` says in words which option these need.
+/// Requires that none of `options` is given without the option that they need, which `by` names.
 void require_with(const CommandLine& line, bool is_given, const char* by, Names options) {
   for (const char* const option : options)
     require(is_given || !line.has(option), fmt::format("{} needs {}", option, by));
 }
 
-/// `by` says in words which option excludes these.
+/// Requires that none of `options` is given beside the option that excludes them, which `by` names.
 void require_without(const CommandLine& line, bool is_given, const char* by, Names options) {
   for (const char* const option : options)
     require(!is_given || !line.has(option), fmt::format("{} and {} exclude each other", option, by));
@@ -34,7 +34,7 @@ void require_one(const CommandLine& line, const char* option, const char* other)
   require(!line.has(option) || !line.has(other), fmt::format("{} and {} exclude each other", option, other));
 }
 
-/// `as` says in words what is expected where there is one of those that are given.
+/// Requires that nothing of this is given; `as` says in words what is expected instead.
 void require_none(const char* as, std::initializer_list<std::pair<const char*, bool>> given) {
   for (const auto& [name, is_given] : given)
     require(!is_given, fmt::format("{}: expected {}, as this is not for {}", name, as,
@@ -48,7 +48,7 @@ void require_structured(const Request& request) {
           request.output + ": expected .vts or .xyz with --structured, and nothing else");
 }
 
-/// Curves stay curves, and have no faces.
+/// Rules for an input of curves: outputs hold curves, and options about faces are refused.
 void require_for_curves(const Request& request) {
   const auto volume = io::volume_format_of(request.output);
   const bool cells =
@@ -98,7 +98,7 @@ void require_endings(const Request& request) {
           fmt::format("{}: expected a mesh that ends in {}", request.fit, kMeshEndings));
 }
 
-/// Distances of an iso-surface are even, and not 0.
+/// Rules for iso-surfaces: distances are the same for all vertices, and not 0.
 void require_even(const Request& request) {
   if (!request.iso) return;
   for (const DistanceRequest& each : request.distances) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the texts of single options say.
+// Reads the values of single options.
 #include "request/option_values.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ void require(bool holds, const std::string& message) {
 std::size_t parse_word(const char* option, const std::string& text, std::initializer_list<const char*> words) {
   const auto word = std::find(words.begin(), words.end(), text);
   if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
-  std::string expected;  // 'A', 'B' or 'C'
+  std::string expected;  // in words: 'A', 'B' or 'C'
   for (auto each = words.begin(); each != words.end(); ++each)
     expected += fmt::format("{}'{}'", each == words.begin() ? "" : each + 1 == words.end() ? " or " : ", ", *each);
   throw UsageError(fmt::format("{}: expected {}, got '{}'", option, expected, text));
