@@ -14,11 +14,12 @@
 namespace vdb_offset::io {
 namespace {
 
-// Items of a section in a piece of a file: a MiB or so. Not measured beside other numbers.
+// Items of a section in one piece of a file: about a MiB. Not measured beside other numbers.
 constexpr std::size_t kPerPiece = 1 << 15;
 
-/// Pieces under way stand in slots of their own: what a pipeline that is broken off holds itself is lost. They leave in
-/// order, so that the piece that comes as many later finds the slot free.
+/// Makes pieces in parallel and writes them in order. Pieces that are made wait in slots of ours, not in the pipeline,
+/// which would lose their memory if it is cancelled. As pieces are written in order, the slot of a piece is free again
+/// once as many more pieces have been started as there are slots.
 void produce(const Pieces& pieces, Compression compression, const Sink& sink) {
   const auto under_way = static_cast<std::size_t>(2 * tbb::info::default_concurrency());
   std::vector<std::string> made(under_way);

@@ -18,16 +18,17 @@
 namespace vdb_offset::io {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes that are decompressed at once
-// Gzip: a window of 32 KiB, in a gzip wrapping.
+constexpr std::size_t kChunk = std::size_t{1}
+                               << 20;  // bytes that are decompressed at a time; not measured beside other sizes
+// zlib's parameter for a window of 32 KiB (15) and the format of gzip (16).
 constexpr int kGzipWindow = 15 + 16;
 
-/// Collects what is decompressed, and refuses what would fill the memory.
+/// Collects decompressed bytes, and refuses more of them than memory allows.
 class Output {
  public:
   explicit Output(const std::string& path) : path_(path), most_(available_memory() / 2) {}
 
-  /// Grows by half, each time only if that fits beside what is there.
+  /// Appends bytes. The buffer grows by half, or by just what is needed if half does not fit into memory beside it.
   void append(const char* data, std::size_t size) {
     if (size > most_ - bytes_.size())
       throw InvalidInput(
@@ -61,7 +62,7 @@ std::string from_gzip(const std::string& path, std::string_view bytes) {
   std::size_t given = 0;
   for (int status = Z_OK; status != Z_STREAM_END || given < bytes.size() || stream.avail_in > 0;) {
     if (status == Z_STREAM_END) inflateReset(&stream);
-    if (stream.avail_in == 0) {  // zlib counts in 32 bits
+    if (stream.avail_in == 0) {  // zlib counts in 32 bits: it gets its input in parts
       const std::string_view next = bytes.substr(given, std::size_t{1} << 30);
       if (next.empty()) damaged(path, bytes.size(), "the end of the gzip data", "the end of the file");
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(next.data()));

@@ -33,7 +33,7 @@ struct Descriptor {
 
 std::string read_to_end(const std::string& path, int fd) {
   std::string bytes;
-  constexpr std::size_t kReadAtOnce = 1 << 20;  // bytes; a pipe hands over less
+  constexpr std::size_t kReadAtOnce = 1 << 20;  // bytes; more than a pipe hands over at a time
   for (;;) {
     const std::size_t before = bytes.size();
     if (before + kReadAtOnce > bytes.capacity()) {

@@ -7,8 +7,8 @@
 namespace vdb_offset::io {
 namespace {
 
-// Bytes of a run. One keeps a thread busy for a while and fits its cache; not measured beside other lengths. Fuzzers
-// need shorter ones to get at what lies between two.
+// Bytes of a run of lines: enough to keep a thread busy, and few enough for its cache. Not measured beside other
+// lengths. Fuzzers set shorter runs, so that small inputs have boundaries between runs.
 #ifndef VDB_OFFSET_TEXT_RUN
 #define VDB_OFFSET_TEXT_RUN (1 << 19)
 #endif
@@ -20,7 +20,7 @@ bool is_continued(std::string_view text, std::size_t line_end) {
   return at > 0 && text[at - 1] == '\\';
 }
 
-/// The byte behind the next line end at or behind `at`.
+/// The byte behind the first line end from `at` on.
 std::size_t next_line(std::string_view text, std::size_t at) {
   const std::size_t end = text.find('\n', at);
   return end == std::string_view::npos ? text.size() : end + 1;
@@ -47,10 +47,11 @@ LineRecords::LineRecords(std::string_view text, std::size_t begin, std::size_t c
   });
   std::size_t run = 0;
   for (; run < runs && first_[run] < count; ++run) first_[run + 1] += first_[run];
-  if (run > 0 && first_[run] < count && text.back() != '\n') ++first_[run];  // the last line's end is missing
+  if (run > 0 && first_[run] < count && text.back() != '\n')
+    ++first_[run];  // the last line counts, too, if its line end is missing
   first_.resize(run + 1);
   cuts_.resize(run + 1);
-  // The last run may go on behind the last record, by a line whose end is missing, too.
+  // The last run ends with the last record, whose line end may be missing.
   if (run > 0 && first_[run] >= count) {
     std::size_t at = cuts_[run - 1];
     for (std::size_t i = first_[run - 1]; i < count; ++i) at = next_line(text, at);

@@ -11,14 +11,14 @@
 namespace vdb_offset::io {
 namespace {
 
-// Names in a message: of the ones most like a wanted one; and of a list, all of them if there are so few.
+// kHandful: names in a message that are most similar to a wanted one. kFew: the longest list that is shown whole.
 constexpr std::size_t kHandful = 5, kFew = 12;
-// Names are compared, and shown, up to so many characters; and all of them together up to the second number.
+// Bytes of a name that are compared and shown, and of all names in a message together: messages are to fit into a line
+// or two.
 constexpr std::size_t kLongestShown = 48;
 constexpr std::size_t kLongestPhrase = 160;
 
-/// How many letters have to be put in, taken out or changed to make one word of the other (Levenshtein), whatever the
-/// case of both.
+/// The number of letters to insert, remove or replace to make one word of the other (Levenshtein), regardless of case.
 std::size_t edits(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   std::vector<std::size_t> row(b.size() + 1);

@@ -15,7 +15,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// from_chars() knows no plus. False for two signs.
+/// Skips a plus sign, which from_chars() does not accept. Returns false if another sign follows.
 bool skip_plus(const char*& first, const char* last) {
   if (first == last || *first != '+') return true;
   ++first;
@@ -83,10 +83,10 @@ void Scanner::next_line() {
   for (bool goes_on = true; goes_on;) {
     const std::size_t begin = at_, end = std::min(text_.find(line_end_, begin), text_.size());
     at_ = std::min(end + 1, text_.size());
-    std::size_t last = end;  // of the line, less what a line break of two bytes leaves
+    std::size_t last = end;  // the end of the line, without the carriage return of a line break of two bytes
     if (last > begin && text_[last - 1] == '\r') --last;
     goes_on = last > begin && continuation_length(last - 1) > 0;
-    // A comment ends with its line, whatever its last character is.
+    // A comment ends with its line: a backslash at its end joins nothing.
     if (goes_on && comment_) goes_on = text_.substr(begin, end - begin).find(comment_) == std::string_view::npos;
   }
 }

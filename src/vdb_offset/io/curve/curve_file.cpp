@@ -23,7 +23,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// The lines of a text, without their ends.
+/// Walks over the lines of a text, without their line ends.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text), next_(byte_order_mark(text)) {}
@@ -45,7 +45,7 @@ class Lines {
 
 constexpr char kComment = '#';
 
-/// How many words before a comment, and whether all of them are numbers.
+/// The words of a line up to a comment: their number, and whether all of them are numbers.
 struct Words {
   int count = 0;
   bool numbers = true;
@@ -118,7 +118,8 @@ class TextParser {
     file_.polygons.close_face();
   }
 
-  /// Lednicer's order: a line of two counts, then as many points, and as many again.
+  /// Joins the two curves of an airfoil in Lednicer's format: a line with two counts, the points of the upper side,
+  /// then those of the lower side.
   void join_airfoil() {
     Polygons& read = file_.polygons;
     if (!titled_ || !curves_.planar || read.positions.size() < 5) return;
@@ -144,7 +145,7 @@ class TextParser {
   bool titled_ = false, closed_ = false;
 };
 
-/// Reads `v` lines and `l` elements; all others stay what they are.
+/// Reads `v` lines and `l` elements; all other lines will be copied as they are.
 class LineElementParser {
  public:
   explicit LineElementParser(MeshFile& file) : file_(file), scanner_(file.path, file.text(), 0, true, kComment) {}
@@ -183,7 +184,8 @@ class LineElementParser {
   MeshFile& file_;
   Scanner scanner_;
   std::vector<NumberTriple> at_;
-  std::vector<std::pair<std::uint64_t, std::size_t>> ahead_;  // indices of vertices that had not come yet
+  std::vector<std::pair<std::uint64_t, std::size_t>>
+      ahead_;  // byte and index of vertices that had not been read yet where they were named
 };
 
 CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes bytes) {
@@ -227,7 +229,7 @@ std::string as_obj(CurvesView curves, const Rounding& precision) {
   std::string text;
   for (const Vec3d& p : curves.positions) append_point(text += "v ", p, 3, precision);
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
-    if (curves.face(c).size() < 2) continue;  // a point alone is no element
+    if (curves.face(c).size() < 2) continue;  // an element has two points at least
     text += 'l';
     for (const auto p : curves.face(c)) append_integer(text += ' ', p + 1);
     text += '\n';
@@ -235,7 +237,7 @@ std::string as_obj(CurvesView curves, const Rounding& precision) {
   return text;
 }
 
-/// Point by point as the curves run; one that several curves use is written for each of them.
+/// Curves as plain text: the points of each curve in order. A point of several curves is written for each of them.
 std::string as_text(CurvesView curves, const Rounding& precision) {
   const bool planar = std::all_of(curves.corners.begin(), curves.corners.end(),
                                   [&](std::uint32_t p) { return curves.positions[p][2] == 0; });
@@ -253,7 +255,7 @@ std::string as_file(CurveFormat format, CurvesView curves, const Rounding& preci
                                       : as_text(curves, precision);
 }
 
-/// \throw InvalidInput for an unknown ending
+/// The format of a file of curves. \throw InvalidInput for an unknown ending
 CurveFormat format_of_curves(const std::string& path) {
   const auto format = curve_format_of(path);
   if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy, .svg or .obj");
@@ -277,7 +279,7 @@ std::optional<CurveFormat> curve_format_of(std::string_view path) {
 bool holds_curves(const std::string& path) {
   const auto format = curve_format_of(path);
   if (format != CurveFormat::Obj) return format.has_value();
-  // What is compressed, or a pipe, is not read twice.
+  // Compressed files and pipes are not looked into, as they cannot be read twice, or not cheaply.
   std::error_code unknown;
   if (without_compression(path) != path || !std::filesystem::is_regular_file(path, unknown)) return false;
   const FileBytes bytes = FileBytes::open(path);
@@ -286,7 +288,7 @@ bool holds_curves(const std::string& path) {
     return text.starts_with(start) || text.rfind("\n" + std::string(start)) != std::string_view::npos ||
            text.rfind("\r" + std::string(start)) != std::string_view::npos;
   };
-  // From the end, where a mesh has its faces.
+  // The end of the file is searched: that is where a mesh has its faces.
   return !has_line("f ") && !has_line("f\t") && (has_line("l ") || has_line("l\t"));
 }
 

@@ -21,7 +21,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// Reads a drawing as expat comes by its elements.
+/// Reads a drawing, called by expat for the beginning and the end of each element.
 class SvgReader {
  public:
   SvgReader(const std::string& path, std::string_view text)
@@ -39,7 +39,7 @@ class SvgReader {
   SvgLines run() {
     for (const char* const mark : {"\xff\xfe", "\xfe\xff"})
       if (text_.starts_with(mark)) fail_at(0, "a drawing in UTF-8", "UTF-16");
-    constexpr std::size_t kChunk = 1 << 26;  // bytes, as expat takes an int
+    constexpr std::size_t kChunk = 1 << 26;  // bytes that expat gets at a time: it counts them in an int
     for (std::size_t at = 0; at < text_.size() || at == 0; at += kChunk) {
       const std::string_view chunk = text_.substr(at, kChunk);
       const bool last = at + kChunk >= text_.size();
@@ -57,10 +57,10 @@ class SvgReader {
     SvgMatrix to_drawing;
     bool shown;
   };
-  // Between the namespace of an element and its name.
+  // What expat puts between the namespace of an element and its name.
   static constexpr char kNamespaceEnd = '|';
 
-  /// No exception may pass through expat.
+  /// Calls act() and keeps what it throws: no exception may pass through expat, which is C.
   template <class Do>
   void guarded(Do&& act) {
     try {
@@ -125,12 +125,12 @@ class SvgReader {
     lines_.shapes.push_back({first, last, path, to_drawing, lines_.curves.face_count() - before});
   }
 
-  /// Also called for an empty element that begin() has failed at.
+  /// Ends an element. expat also calls it for an empty element for which begin() has failed.
   void end() {
     if (!thrown_) open_.pop_back();
   }
 
-  /// The bytes of an attribute of the tag that expat is at, and has found well-formed.
+  /// Where the value of an attribute begins and ends, in the tag that expat is at. expat has checked the tag's form.
   std::pair<std::uint64_t, std::uint64_t> find_value(std::string_view wanted) const {
     std::size_t at = here() + 1;
     const std::size_t end = here() + static_cast<std::size_t>(XML_GetCurrentByteCount(parser_.get()));
@@ -165,9 +165,10 @@ class SvgReader {
     lines_.own.push_back(p);
   }
 
-  /// Relative coordinates add up to where a curve began but for rounding.
+  /// Joins the last point of a curve to its first one if only rounding keeps them apart, as the sum of relative
+  /// coordinates does.
   void join_ends(std::uint32_t first) {
-    constexpr double kRounding = 1e-13;  // of the largest coordinate: a thousand sums' worth
+    constexpr double kRounding = 1e-13;  // share of the largest coordinate: the rounding of a thousand sums
     double largest = 0;
     for (std::size_t p = first; p < lines_.own.size(); ++p)
       for (int k = 0; k < 2; ++k) largest = std::max(largest, std::abs(lines_.own[p][k]));
@@ -176,7 +177,7 @@ class SvgReader {
     lines_.curves.positions.back() = lines_.curves.positions[first];
   }
 
-  /// A curve that ends where it begins is closed as it is.
+  /// Ends a curve. A curve that ends where it begins is closed anyway.
   void end_curve(bool closed) {
     auto& curves = lines_.curves;
     const std::size_t first = curves.face_begin.back();
@@ -198,7 +199,7 @@ class SvgReader {
 
   void read_path(SvgValueScanner value) {
     Vec2d at(0.0, 0.0), start(0.0, 0.0);
-    bool drawing = false;  // a curve has been begun
+    bool drawing = false;  // whether a curve has been begun
     char command = 0;
     while (!value.at_end()) {
       if (!value.at_number()) command = take_command(value, command);
@@ -221,7 +222,7 @@ class SvgReader {
       add_point(at);
       if (!moves) continue;
       start = at;
-      command = relative ? 'l' : 'L';  // what follows without a command
+      command = relative ? 'l' : 'L';  // coordinates that follow without a command are lines
     }
     end_curve(false);
   }
@@ -251,8 +252,8 @@ void append_point(std::string& text, const Vec2d& p, const Rounding& precision =
   append_number(text += ',', precision(p[1]), precision);
 }
 
-/// A point as its shape has it. Digits are those of the drawing's coordinates, on which results are judged: undoing a
-/// transform takes all there are.
+/// Appends a point in the coordinates of its shape. Without a transform, it has the digits of the precision, as results
+/// are judged on these. With one, it has all digits, so that the point of the drawing is as exact.
 void append_own(std::string& text, const SvgMatrix& to_drawing, const Vec3d& position, const Rounding& precision) {
   if (to_drawing == kSvgIdentity) append_point(text, {position[0], position[1]}, precision);
   else append_point(text, transformed_back(to_drawing, precision(position)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transforms of SVG: their arithmetic, and what attributes say of them.
+// Transforms of SVG: their arithmetic, and reading them from attributes.
 #include "vdb_offset/io/curve/svg_transform.h"
 
 #include <algorithm>
@@ -41,8 +41,9 @@ SvgMatrix product(const SvgMatrix& outer, const SvgMatrix& inner) {
 }
 
 bool has_inverse(const SvgMatrix& m) {
-  // Squared scale of which neither square nor inverse leaves a double; and determinant by that scale, below which fewer
-  // than four digits would come back. Not measured.
+  // kLeastSize: least squared scale; its square and its inverse still fit into a double. kLeastShare: least
+  // determinant, as a share of that scale; below, undoing the transform leaves fewer than four right digits. Not
+  // measured.
   constexpr double kLeastSize = 1e-100, kLeastShare = 1e-12;
   const double size = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
   return size > kLeastSize && size < 1 / kLeastSize && std::abs(determinant(m)) > kLeastShare * size &&

@@ -15,14 +15,14 @@
 namespace vdb_offset::io {
 namespace {
 
-CornerValues<Vec3d> normals_of(const IsoResult& captured) {
+CornerValues<Vec3d> normals_of(const IsoResult& iso) {
   const Rounding single{Rounding::Kind::Single};
-  CornerValues<Vec3d> normals{captured.normals, {}, true};
+  CornerValues<Vec3d> normals{iso.normals, {}, true};
   for (Vec3d& normal : normals.value) normal = single(normal);
   return normals;
 }
 
-/// Colours of the closest points.
+/// The colours of the closest points of the source.
 std::vector<std::array<double, 4>> colours_of(const SourceLookup& lookup, PolygonView source, const Attributes& with,
                                               std::size_t vertices) {
   std::vector<std::array<double, 4>> colours(vertices, {0, 0, 0, 0});
@@ -31,12 +31,14 @@ std::vector<std::array<double, 4>> colours_of(const SourceLookup& lookup, Polygo
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 4; ++k)
         colours[v][k] += point.weight[i] * with.colours[source.corners[point.corner[i]]][k];
-    for (double& colour : colours[v]) colour = std::clamp(colour, 0.0, 1.0);  // rounding
+    for (double& colour : colours[v])
+      colour = std::clamp(colour, 0.0, 1.0);  // interpolation may round them out of range
   });
   return colours;
 }
 
-/// Numbers alike what is of equal value: seams are where values differ. What has none is alike, too.
+/// For each corner a number that is the same for equal values, kNoNormal without a value. Seams are where the numbers
+/// differ.
 std::vector<std::uint32_t> number_values(PolygonView source, const CornerValues<Vec2d>& texture) {
   std::vector<std::uint32_t> order(texture.value.size()), number(order.size()), of_corner(source.corners.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -54,7 +56,7 @@ std::vector<std::uint32_t> number_values(PolygonView source, const CornerValues<
   return of_corner;
 }
 
-/// The texture coordinates at a point, if all corners around it have some.
+/// The texture coordinates at a point. None unless all corners around it have texture coordinates.
 std::optional<Vec2d> texture_at(const SourcePoint& point, PolygonView source, const CornerValues<Vec2d>& texture) {
   Vec2d uv(0.0);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -65,18 +67,19 @@ std::optional<Vec2d> texture_at(const SourcePoint& point, PolygonView source, co
   return uv;
 }
 
-/// One value for all corners of a vertex that have the same.
-CornerValues<Vec2d> texture_of(const IsoResult& captured, SourceLookup& lookup, PolygonView source,
+/// The texture coordinates of all corners. Corners of a vertex that have equal ones share one value.
+CornerValues<Vec2d> texture_of(const IsoResult& iso, SourceLookup& lookup, PolygonView source,
                                const CornerValues<Vec2d>& texture) {
   lookup.cut_into_charts(number_values(source, texture));
-  const std::vector<std::uint32_t>& corners = captured.polygons.corners;
+  const std::vector<std::uint32_t>& corners = iso.polygons.corners;
   std::vector<std::optional<Vec2d>> at(corners.size());
   for_each_index(corners.size(),
                  [&](std::size_t c) { at[c] = texture_at(lookup.at_corner(c / 3, c % 3), source, texture); });
   CornerValues<Vec2d> result;
   result.single = texture.single;
   result.of_corner.assign(corners.size(), kNoNormal);
-  std::vector<std::uint32_t> latest(captured.polygons.positions.size(), kNoNormal), before;  // of a vertex, of a value
+  std::vector<std::uint32_t> latest(iso.polygons.positions.size(), kNoNormal),
+      before;  // of each vertex: the value that was added last; of each value: the one added before for its vertex
   for (std::size_t c = 0; c < corners.size(); ++c) {
     if (!at[c]) continue;
     std::uint32_t known = latest[corners[c]];
@@ -91,7 +94,7 @@ CornerValues<Vec2d> texture_of(const IsoResult& captured, SourceLookup& lookup, 
   return result;
 }
 
-/// Puts the triangles in the order of their materials, and what their corners name with them.
+/// Sorts the triangles by material, together with what their corners refer to.
 void sort_by_material(const SourceLookup& lookup, const Materials& materials, Content& content, Polygons& mesh) {
   const std::size_t count = mesh.face_count();
   std::vector<std::uint32_t> order(count), of_face(count);
@@ -114,7 +117,7 @@ std::vector<Part> parts_of(const Hollow& hollow) {
           {name(ShellPart::Inner), hollow.polygons.face_count() - hollow.outer_faces}};
 }
 
-/// What the corners of a hollow solid name, by what those of its source do; those of the other skin none.
+/// For each corner of a hollow solid the value that the source's corner refers to; kNoNormal on the other skin.
 template <class Value>
 std::vector<std::uint32_t> values_of_hollow(PolygonView source, const Hollow& hollow,
                                             const CornerValues<Value>& values) {
@@ -131,7 +134,7 @@ std::vector<std::uint32_t> values_of_hollow(PolygonView source, const Hollow& ho
   return of_corner;
 }
 
-/// The other skin's values behind the source's, or in front of them if that is inside.
+/// Adds the values of the other skin: behind those of the source or, if the source is the inner skin, before them.
 template <class Value>
 void add_other_skin(const Hollow& hollow, std::vector<Value> other, std::vector<Value>& values) {
   if (hollow.source == Hollow::Source::Inner) values.swap(other);
@@ -144,16 +147,15 @@ Pieces keep_alive(Pieces pieces, std::shared_ptr<const Polygons> mesh) {
 
 }  // namespace
 
-Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const IsoResult& captured,
-               WriteResult& result) {
+Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const IsoResult& iso, WriteResult& result) {
   const PolygonView mesh = source.polygons.view();
-  // Positions are what is written already.
+  // Positions are already those that will be written.
   const auto content =
       std::make_shared<Content>(Content{hollow.polygons.view(), {}, read_attributes(source), parts_of(hollow), {}});
   Attributes& with = content->with;
-  const SourceLookup lookup(captured, mesh);
+  const SourceLookup lookup(iso, mesh);
   if (!with.colours.empty())
-    add_other_skin(hollow, colours_of(lookup, mesh, with, captured.polygons.positions.size()), with.colours);
+    add_other_skin(hollow, colours_of(lookup, mesh, with, iso.polygons.positions.size()), with.colours);
   if (!with.texture.empty()) with.texture.of_corner = values_of_hollow(mesh, hollow, with.texture);
   if (!with.normals.empty()) {
     with.normals.of_corner = values_of_hollow(mesh, hollow, with.normals);
@@ -162,7 +164,7 @@ Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, cons
   }
   if (Materials materials = read_materials(source); target == Format::Obj && !materials.of_face.empty()) {
     std::erase(with.lost, "materials");
-    std::vector<std::uint32_t> other(captured.polygons.face_count());
+    std::vector<std::uint32_t> other(iso.polygons.face_count());
     for (std::size_t t = 0; t < other.size(); ++t) other[t] = materials.of_face[lookup.face_of(t)];
     add_other_skin(hollow, std::move(other), materials.of_face);
     content->materials = std::move(materials);
@@ -175,20 +177,20 @@ Pieces convert(Format target, const Hollow& hollow, WriteResult& result) {
   return encode(target, std::make_shared<Content>(Content{hollow.polygons.view(), {}, {}, parts_of(hollow), {}}));
 }
 
-Pieces convert(const MeshFile& source, Format target, const IsoResult& captured, const Transported& transported,
+Pieces convert(const MeshFile& source, Format target, const IsoResult& iso, const Transported& transported,
                const Rounding& precision, WriteResult& result) {
   const PolygonView from = source.polygons.view();
   const Attributes& of_source = transported.attributes;
-  // Sorted, the triangles are a copy, which must live as long as the pieces.
-  const auto mesh = std::make_shared<Polygons>(captured.polygons);
+  // The triangles are sorted, and so are a copy, which must live as long as the pieces.
+  const auto mesh = std::make_shared<Polygons>(iso.polygons);
   const auto content = std::make_shared<Content>(Content{mesh->view(), precision, {}, {}, {}});
   Attributes& with = content->with;
   with.lost = of_source.lost;
-  if (target != Format::Stl) with.normals = normals_of(captured);
-  SourceLookup lookup(captured, from);
+  if (target != Format::Stl) with.normals = normals_of(iso);
+  SourceLookup lookup(iso, from);
   with.has_alpha = of_source.has_alpha;
   if (!of_source.colours.empty()) with.colours = colours_of(lookup, from, of_source, mesh->positions.size());
-  if (!of_source.texture.empty()) with.texture = texture_of(captured, lookup, from, of_source.texture);
+  if (!of_source.texture.empty()) with.texture = texture_of(iso, lookup, from, of_source.texture);
   if (target == Format::Obj && !transported.materials.of_face.empty()) {
     std::erase(with.lost, "materials");
     sort_by_material(lookup, transported.materials, *content, *mesh);
@@ -198,9 +200,9 @@ Pieces convert(const MeshFile& source, Format target, const IsoResult& captured,
   return keep_alive(encode(target, content), mesh);
 }
 
-Pieces convert(Format target, const IsoResult& captured, const Rounding& precision) {
-  const auto content = std::make_shared<Content>(Content{captured.polygons.view(), precision, {}, {}, {}});
-  if (target != Format::Stl) content->with.normals = normals_of(captured);
+Pieces convert(Format target, const IsoResult& iso, const Rounding& precision) {
+  const auto content = std::make_shared<Content>(Content{iso.polygons.view(), precision, {}, {}, {}});
+  if (target != Format::Stl) content->with.normals = normals_of(iso);
   return encode(target, content);
 }
 

@@ -40,24 +40,24 @@ Precision precision_of_iso(const std::string& path, const WriteOptions& options)
 }
 
 WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
-                              const IsoResult& captured, const WriteOptions& options) {
+                              const IsoResult& iso, const WriteOptions& options) {
   WriteResult result;
-  const Pieces pieces = convert(source, require_format(path, options.format), captured, transported,
-                                precision_of_iso(path, options), result);
+  const Pieces pieces =
+      convert(source, require_format(path, options.format), iso, transported, precision_of_iso(path, options), result);
   write_pieces_of(source.path, source.bytes, path, pieces);
   return result;
 }
 
-void write_iso_surface(const std::string& path, const IsoResult& captured, const WriteOptions& options) {
-  write_pieces(path, convert(require_format(path, options.format), captured, precision_of_iso(path, options)));
+void write_iso_surface(const std::string& path, const IsoResult& iso, const WriteOptions& options) {
+  write_pieces(path, convert(require_format(path, options.format), iso, precision_of_iso(path, options)));
 }
 
-WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
-                         const IsoResult& captured, const WriteOptions& options) {
+WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow, const IsoResult& iso,
+                         const WriteOptions& options) {
   const Format format = require_format(path, options.format);
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;
-  const Pieces pieces = is_skin ? convert(*source, format, hollow, captured, result) : convert(format, hollow, result);
+  const Pieces pieces = is_skin ? convert(*source, format, hollow, iso, result) : convert(format, hollow, result);
   if (source) write_pieces_of(source->path, source->bytes, path, pieces);
   else write_pieces(path, pieces);
   return result;

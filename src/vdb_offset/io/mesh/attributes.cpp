@@ -27,13 +27,13 @@ Scanner scanner_at(const MeshFile& source, std::uint64_t byte) {
   return {source.path, source.text(), byte, source.format == Format::Obj, source.format == Format::Ply ? '\0' : '#'};
 }
 
-/// NaN for a word that is no number.
+/// The number that a word stands for; NaN if it is no number.
 double number_or_nan(std::string_view word) {
   double value = kNaN;
   return parse_double(word, value) ? value : kNaN;
 }
 
-/// Takes one of its extras off what would be lost, if it is there.
+/// Removes an extra from the list of what would be lost. Returns whether it was listed.
 bool is_kept(Attributes& attributes, const std::string& extra) { return std::erase(attributes.lost, extra) > 0; }
 
 bool has_extra(const MeshFile& source, std::string_view extra) {
@@ -56,24 +56,24 @@ void read_normals(const MeshFile& source, Attributes& attributes) {
   of_corner = source.corner_normal;
   single = source.normal_bytes == 4;
   for_each_index(value.size(), [&normals = value, &source](std::size_t n) {
-    const NumberTriple place = source.normal_at[n];
+    const NumberTriple triple = source.normal_at[n];
     for (int k = 0; k < 3; ++k)
       normals[n][k] =
           source.encoding == Encoding::Ascii
-              ? number_or_nan(scanner_at(source, place.at[k]).token())
-              : ply::binary_number(source.text().data() + place.at[k], {'f', source.normal_bytes}, source.encoding);
+              ? number_or_nan(scanner_at(source, triple.at[k]).token())
+              : ply::binary_number(source.text().data() + triple.at[k], {'f', source.normal_bytes}, source.encoding);
   });
   is_kept(attributes, "normals");
 }
 
-/// Numbers of vertices, `width` each.
+/// Numbers that stand with vertices, `width` for each.
 struct Columns {
   std::size_t width = 0;
   std::vector<double> number;
 };
 
-/// The first of the columns, three or four, as colours of which `white` is the largest value. False, and nothing is
-/// taken, if there is one out of range or none at all.
+/// Takes the first `width` columns, three or four, as colours, with `white` as the largest value. Returns false, and
+/// takes nothing, if a value is out of range or there are no such columns.
 bool take_colours(const Columns& columns, std::size_t width, double white, Attributes& attributes) {
   if (width != 3 && width != 4) return false;
   std::vector<std::array<double, 4>> colours(columns.number.size() / columns.width, {0, 0, 0, 1});
@@ -87,7 +87,7 @@ bool take_colours(const Columns& columns, std::size_t width, double white, Attri
   return true;
 }
 
-/// The columns from `first` on, two, as texture coordinates of vertices.
+/// Takes two columns, from `first` on, as texture coordinates of vertices.
 bool take_texture(const Columns& columns, std::size_t first, Attributes& attributes) {
   std::vector<Vec2d> texture;
   for (std::size_t at = first; at + 1 < columns.number.size(); at += columns.width)
@@ -97,10 +97,10 @@ bool take_texture(const Columns& columns, std::size_t first, Attributes& attribu
   return true;
 }
 
-/// The words behind the coordinates (and normals) of a text's vertices, NaN for one that is no number. None if the
-/// vertices have different numbers of them, or more than there is a meaning for.
+/// The words behind the coordinates (and normals) of a text's vertices, as numbers; NaN for a word that is no number.
+/// None if the vertices have different numbers of words, or more than are known to mean anything.
 std::optional<Columns> read_tails(const MeshFile& source) {
-  constexpr std::size_t kMost = 6;  // words: four of a colour and two of texture coordinates
+  constexpr std::size_t kMost = 6;  // words: a colour of four numbers and two texture coordinates
   const ByteOffsets& last =
       source.format == Format::Off && !source.normal_at.empty() ? source.normal_at : source.position_at;
   const auto tail = [&](std::size_t v) {
@@ -123,11 +123,12 @@ std::optional<Columns> read_tails(const MeshFile& source) {
   return columns;
 }
 
-/// Which of the texture coordinates, `so_far` of them read, a corner v/vt.. names; kNoNormal for none. False for a
-/// word that is no index.
+/// Finds which texture coordinates a corner v/vt.. names, kNoNormal for none. Negative numbers count back from the
+/// `so_far` ones that have been read. Returns false for a word that is no index.
 bool texture_of(std::string_view corner, std::size_t so_far, std::uint32_t& texture) {
   texture = kNoNormal;
-  const std::size_t slash = std::min(corner.find('/'), corner.size() - 1);  // without one, nothing stands behind it
+  const std::size_t slash =
+      std::min(corner.find('/'), corner.size() - 1);  // without a slash: the last character, so that no digits follow
   const std::string_view digits = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
   if (digits.empty()) return true;
   std::int64_t index = 0;
@@ -138,7 +139,7 @@ bool texture_of(std::string_view corner, std::size_t so_far, std::uint32_t& text
   return true;
 }
 
-/// `vt` lines, and what the corners of faces name of them. False if something is wrong with them.
+/// Reads `vt` lines, and which of them the corners of faces name. Returns false if one of them is malformed.
 bool read_obj_texture(const MeshFile& source, CornerValues<Vec2d>& texture, bool& has_depth) {
   bool are_indices = true;
   for_each_obj_line(source.path, source.text(), [&](const ObjLine& line) {
@@ -174,14 +175,14 @@ void read_obj(const MeshFile& source, Attributes& attributes) {
   if (has_depth) attributes.lost.emplace_back("third texture coordinates");
 }
 
-/// Some programs write colours as 0 .. 255, some as 0 .. 1.
+/// The value of white: 255 or 1, as some programs write colours as 0 .. 255 and some as 0 .. 1.
 double white_of(const Columns& columns, std::size_t width) {
   for (std::size_t i = 0; i < columns.number.size(); ++i)
     if (i % columns.width < width && columns.number[i] > 1) return 255;
   return 1;
 }
 
-/// Whether a face's line goes on behind its corners.
+/// Whether any face's line goes on behind its corners: with a colour.
 bool has_face_colours(const MeshFile& source) {
   const PolygonView mesh = source.polygons.view();
   Scanner scanner = scanner_at(source, source.position_at[source.position_at.size() - 1].at[2]);
@@ -196,7 +197,7 @@ bool has_face_colours(const MeshFile& source) {
 
 constexpr const char *kOffColours = "vertex colours", *kOffTexture = "texture coordinates";
 
-/// Colours, four of them, and texture coordinates.
+/// Reads colours, of four numbers, and texture coordinates of a binary file.
 void read_binary_off(const MeshFile& source, Attributes& attributes) {
   const off::Layout layout = off::layout_of(source);
   const auto columns_of = [&](std::size_t first, std::size_t width) {
@@ -209,8 +210,8 @@ void read_binary_off(const MeshFile& source, Attributes& attributes) {
   if (layout.colour && take_colours(columns_of(layout.colour, 4), 4, 1, attributes)) is_kept(attributes, kOffColours);
   if (layout.texture && take_texture(columns_of(layout.texture, 2), 0, attributes)) is_kept(attributes, kOffTexture);
   const std::uint64_t counts = source.polygons.corners.size() + 2 * source.polygons.face_count();
-  const std::vector<std::uint64_t> places = off::face_offsets(source);
-  if (places.back() - places.front() > 4 * counts) attributes.lost.emplace_back("face colours");
+  const std::vector<std::uint64_t> offsets = off::face_offsets(source);
+  if (offsets.back() - offsets.front() > 4 * counts) attributes.lost.emplace_back("face colours");
 }
 
 void read_off(const MeshFile& source, Attributes& attributes) {
@@ -231,8 +232,8 @@ void read_off(const MeshFile& source, Attributes& attributes) {
 
 using Names = std::vector<std::string>;
 
-/// Reads what properties of those names hold in every row of an element.
-/// \throw InvalidInput for a number that is none or not finite
+/// Reads the values of the properties with these names in every row of an element.
+/// \throw InvalidInput for a value that is not a finite number
 Columns read_columns(const MeshFile& source, const ply::Header& header, const ply::Element& wanted,
                      const Names& names) {
   Columns columns{names.size(), std::vector<double>(names.size() * wanted.count)};
@@ -250,7 +251,8 @@ Columns read_columns(const MeshFile& source, const ply::Header& header, const pl
   return columns;
 }
 
-/// The type of the properties of these names, if there is each of them once and they are plain numbers of one type.
+/// The common type of the properties with these names. None unless each name occurs once, and all are single numbers of
+/// one type.
 std::optional<ply::Type> common_type(const ply::Element& element, const Names& names) {
   std::optional<ply::Type> type;
   for (const std::string& name : names) {
@@ -306,7 +308,7 @@ class TextureIndex {
   std::unordered_map<std::pair<double, double>, std::uint32_t, Hash> index_;
 };
 
-/// Lists `texcoord` of faces: two numbers a corner, or none at all.
+/// Reads the lists `texcoord` of faces, which have two numbers for each corner, or are empty.
 void read_ply_texture_lists(const MeshFile& source, const ply::Header& header, Attributes& attributes) {
   if (!ply::find_faces(header) || ply::find_strips(header)) return;
   const ply::Element& faces = *ply::find_faces(header);
@@ -340,7 +342,7 @@ void read_ply_texture_lists(const MeshFile& source, const ply::Header& header, A
 void read_ply(const MeshFile& source, Attributes& attributes) {
   const ply::Header header = ply::read_header(source);
   const ply::Element *vertices = ply::find(header, "vertex"), *faces = ply::find_faces(header);
-  // Not so only if the file has changed, and then nothing will be written.
+  // This fails only if the file has changed since it was read; then nothing will be written.
   if (!vertices || vertices->count != source.polygons.positions.size() ||
       (!ply::find_strips(header) && (!faces || faces->count != source.polygons.face_count())))
     return;
@@ -348,12 +350,12 @@ void read_ply(const MeshFile& source, Attributes& attributes) {
     try {
       read(source, header, attributes);
     } catch (const InvalidInput&) {
-      // Malformed, and so it stays among what is lost.
+      // A malformed attribute is not read, and stays listed as lost.
     }
   }
 }
 
-/// What STL alone has a place for.
+/// Lists what only STL can hold, and other formats lose: the header's text, and the facets' attribute bytes.
 void read_stl(const MeshFile& source, Attributes& attributes) {
   const std::string_view bytes = source.text();
   if (source.encoding == Encoding::Ascii) {

@@ -18,8 +18,8 @@
 namespace vdb_offset::io {
 namespace {
 
-/// Turns values of corners into those of vertices, zero where a vertex is no corner. False, and they stay, if the
-/// corners of a vertex have different ones or none.
+/// Turns values of corners into values of vertices; zero for a vertex that is in no face. Returns false, and changes
+/// nothing, if the corners of a vertex have different values, or one of them has none.
 template <class Value>
 bool make_per_vertex(PolygonView mesh, CornerValues<Value>& values) {
   if (values.empty() || values.of_corner.empty()) return true;
@@ -36,14 +36,14 @@ bool make_per_vertex(PolygonView mesh, CornerValues<Value>& values) {
   return true;
 }
 
-/// Whether all colours are bytes, to the three digits that a text has of a byte.
+/// Whether all colours are bytes, as far as three decimal digits can tell.
 bool are_bytes(const std::vector<std::array<double, 4>>& colours) {
   const auto is_byte = [](double colour) { return std::abs(colour - colour_byte(colour) / 255.0) <= 0.0005; };
   return std::all_of(colours.begin(), colours.end(),
                      [&](const auto& colour) { return std::all_of(colour.begin(), colour.end(), is_byte); });
 }
 
-/// Takes the values of faces that have them at some corners only. False if there are none of these.
+/// Removes the values of faces that have them only at some corners. Returns whether there were such faces.
 template <class Value>
 bool take_off_partial_faces(PolygonView mesh, CornerValues<Value>& values) {
   bool taken = false, left = false;
@@ -60,7 +60,7 @@ bool take_off_partial_faces(PolygonView mesh, CornerValues<Value>& values) {
   return taken;
 }
 
-/// What triangles of single precision cannot hold.
+/// Lists what STL, triangles of single precision, cannot hold.
 void name_losses_of_triangles(const MeshFile& source, std::vector<std::string>& lost) {
   lost.emplace_back("shared vertices");
   const auto& begin = source.polygons.face_begin;

@@ -21,7 +21,7 @@ void append_point(std::string& text, const Vec3d& p, const Rounding& precision) 
   }
 }
 
-/// The numbers of a point, each behind a blank, with the digits of the precision that they are in.
+/// Appends the numbers of a point, each after a blank, with the digits of the type that they are stored in.
 template <class Point>
 void append_values(std::string& text, const Point& p) {
   for (int k = 0; k < Point::size; ++k) {
@@ -38,7 +38,7 @@ void append_values(std::string& bytes, const Point& p, bool single) {
     else append_binary(bytes, p[k]);
 }
 
-/// Ahead of the first face of each run that has the same.
+/// Appends a `usemtl` line if the face's material differs from that of the face before.
 void append_material(std::string& text, const Materials& materials, std::size_t f) {
   if (materials.of_face.empty()) return;
   const std::uint32_t material = materials.of_face[f], before = f > 0 ? materials.of_face[f - 1] : kNoNormal;
@@ -135,7 +135,7 @@ Pieces to_off(const SharedContent& content) {
        {mesh.face_count(), append_face}});
 }
 
-/// Whether a float holds as much of the number as its shortest decimal form says.
+/// Whether a float is enough for a number: both have the same shortest decimal form.
 bool fits_float(double value) {
   const auto narrow = static_cast<float>(value);
   std::string digits;
@@ -152,7 +152,7 @@ struct TextureLists {
       : exist(!content.with.texture.of_corner.empty()), single(content.with.texture.single), wide(false) {
     if (!exist) return;
     const auto& value = content.with.texture.value;
-    // Programs look for floats.
+    // Most programs expect floats, so that doubles are written only where floats would lose digits.
     single = single || std::all_of(value.begin(), value.end(),
                                    [](const Vec2d& uv) { return fits_float(uv[0]) && fits_float(uv[1]); });
     for (std::size_t f = 0; f < content.mesh.face_count(); ++f) wide = wide || 2 * content.mesh.face(f).size() > 255;

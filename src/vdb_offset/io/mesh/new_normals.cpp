@@ -12,7 +12,8 @@
 namespace vdb_offset::io {
 namespace {
 
-// Vertices that share a normal disagree if theirs are farther apart than this: about two degrees.
+// Least cosine between the normals of vertices that share one, about two degrees: farther apart, they disagree. Not
+// measured.
 constexpr double kLeastCosine = 0.9994;
 
 /// A face corner.
@@ -31,11 +32,12 @@ struct Users {
 };
 
 std::uint32_t normal_of(const MeshFile& source, std::size_t corner) {
-  if (source.format != Format::Obj) return source.polygons.corners[corner];  // one a vertex
+  if (source.format != Format::Obj)
+    return source.polygons.corners[corner];  // these formats have one normal for each vertex
   return source.corner_normal.empty() ? kNoNormal : source.corner_normal[corner];
 }
 
-/// Calls visit(face, corner, normal) for the corners that name one, in the file's order.
+/// Calls visit(face, corner, normal) for the corners that name a normal, in the file's order.
 template <class Visit>
 void for_each_user(const MeshFile& source, std::span<const std::uint32_t> faces, Visit&& visit) {
   const PolygonView mesh = source.polygons.view();
@@ -80,7 +82,7 @@ Vec3d unit_or_zero(const Vec3d& v) {
   return length > 0 ? v / length : Vec3d(0.0);
 }
 
-/// Whether vertices that share a normal ask for different ones now.
+/// Whether vertices that share a normal have different ones now.
 bool disagree(PolygonView mesh, std::span<const Vec3d> positions, std::span<const Corner> users, const Vec3d& mean) {
   const auto vertex = [&](const Corner& corner) { return mesh.corners[corner.index]; };
   const auto same = [&](const Corner& a) { return vertex(a) == vertex(users.front()); };
@@ -98,7 +100,7 @@ bool disagree(PolygonView mesh, std::span<const Vec3d> positions, std::span<cons
   return false;
 }
 
-/// STL: one a facet.
+/// New normals for STL, which has one for each facet.
 NewNormals facet_normals(PolygonView mesh, std::span<const Vec3d> positions, const std::vector<std::uint8_t>& moved) {
   NewNormals normals;
   normals.value.assign(mesh.face_count(), Vec3d(0.0));

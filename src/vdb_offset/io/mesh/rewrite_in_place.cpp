@@ -16,10 +16,10 @@
 namespace vdb_offset::io {
 namespace {
 
-// Bytes of a piece of a binary file. Not measured beside other sizes.
+// Bytes of a binary file that are made at a time. Not measured beside other sizes.
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 
-/// A number of a text that gets another value.
+/// A number in a text that gets another value.
 struct ChangedNumber {
   std::uint64_t at;
   double value;
@@ -45,17 +45,17 @@ class Rewriter {
  private:
   bool moved(std::size_t v) const { return has_moved(source_.polygons.positions[v], positions_[v], precision_); }
 
-  /// Cuts of a binary file of which none runs through the numbers of a vertex or a normal.
+  /// Cuts a binary file into pieces, none of them between the numbers of one vertex or one normal.
   std::vector<std::size_t> cut_between_numbers() const {
     const std::size_t size = source_.text().size();
     std::vector<std::size_t> cuts{0};
     while (cuts.back() < size) {
       std::uint64_t cut = std::min(cuts.back() + kPiece, size);
-      for (const auto& [places, bytes] :
+      for (const auto& [offsets, bytes] :
            {std::pair{&source_.position_at, source_.position_bytes}, {&source_.normal_at, source_.normal_bytes}}) {
-        const std::size_t i = places->first_from(cut);
-        if (i > 0) cut = std::max(cut, last_of((*places)[i - 1]) + bytes);
-        if (i < places->size() && first_of((*places)[i]) < cut) cut = last_of((*places)[i]) + bytes;
+        const std::size_t i = offsets->first_from(cut);
+        if (i > 0) cut = std::max(cut, last_of((*offsets)[i - 1]) + bytes);
+        if (i < offsets->size() && first_of((*offsets)[i]) < cut) cut = last_of((*offsets)[i]) + bytes;
       }
       cuts.push_back(cut);
     }
@@ -64,18 +64,18 @@ class Rewriter {
   static std::uint64_t first_of(const NumberTriple& t) { return std::min({t.at[0], t.at[1], t.at[2]}); }
   static std::uint64_t last_of(const NumberTriple& t) { return std::max({t.at[0], t.at[1], t.at[2]}); }
 
-  /// Calls visit(place, value, whether it is a normal's) for every number from `begin` to `end` that changes:
+  /// Calls visit(byte offset, value, whether it is a normal's) for every number from `begin` to `end` that changes:
   /// coordinates first, in the file's order, then normals.
   template <class Visit>
   void for_each_number(std::uint64_t begin, std::uint64_t end, Visit&& visit) const {
-    const auto each = [&](const ByteOffsets& places, bool of_normals, auto&& value_of) {
-      for (std::size_t i = places.first_from(begin); i < places.size(); ++i) {
-        const NumberTriple place = places[i];
-        if (first_of(place) >= end) return;
+    const auto each = [&](const ByteOffsets& offsets, bool of_normals, auto&& value_of) {
+      for (std::size_t i = offsets.first_from(begin); i < offsets.size(); ++i) {
+        const NumberTriple triple = offsets[i];
+        if (first_of(triple) >= end) return;
         const std::optional<Vec3d> value = value_of(i);
-        const int numbers = place.at[2] == place.at[1] ? 2 : 3;  // points of plane curves have two
+        const int numbers = triple.at[2] == triple.at[1] ? 2 : 3;  // points of plane curves have two numbers
         for (int k = 0; value && k < numbers; ++k)
-          if (place.at[k] >= begin && place.at[k] < end) visit(place.at[k], (*value)[k], of_normals);
+          if (triple.at[k] >= begin && triple.at[k] < end) visit(triple.at[k], (*value)[k], of_normals);
       }
     };
     each(source_.position_at, false, [&](std::size_t v) -> std::optional<Vec3d> {
@@ -94,7 +94,7 @@ class Rewriter {
     const std::string_view bytes = source_.text();
     std::string text;
     text.reserve((end - begin) + changes.size() * 12);
-    const Rounding of_normals{Rounding::Kind::Single};  // a normal needs no more
+    const Rounding of_normals{Rounding::Kind::Single};  // single precision is enough for a normal
     std::uint64_t copied = begin;
     for (const ChangedNumber& change : changes) {
       text.append(bytes, copied, change.at - copied);
@@ -112,7 +112,8 @@ class Rewriter {
     if (!std::is_sorted(changes.begin(), changes.end(), by_place)) std::sort(changes.begin(), changes.end(), by_place);
     return changes;
   }
-  /// Where the readers see a word end: at white space, at a comment where the format has them, at a line that goes on.
+  /// Whether a number ends at this byte: at white space, at a comment if the format has comments, or at a backslash
+  /// that joins lines.
   bool ends_number(std::uint64_t at) const {
     const char c = source_.text()[at];
     if (is_blank(c) || c == '\n') return true;

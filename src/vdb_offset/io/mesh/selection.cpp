@@ -16,10 +16,10 @@
 namespace vdb_offset::io {
 namespace {
 
-/// Names that faces are under, in the order of the file.
+/// The names of groups and materials of a file, and the faces that selectors choose by them.
 struct Labels {
-  std::set<std::string, std::less<>> groups, materials;  // that any face is under
-  std::vector<std::uint8_t> chosen;                      // of each face: by one of the selectors
+  std::set<std::string, std::less<>> groups, materials;  // names with at least one face
+  std::vector<std::uint8_t> chosen;                      // of each face: 1 if a selector chooses it
 };
 
 class Chooser {
@@ -78,11 +78,11 @@ void require_known(const MeshFile& mesh, const Labels& labels, const Selector& s
                                   nearest_names(selector.name, {known.begin(), known.end()}), selector.name));
 }
 
-/// Marks the faces that a file names: a number for each face, 0 or 1, or else indices.
+/// Marks the faces that a file lists, either by a 0 or 1 for each face or by their indices.
 void mark_from_file(const std::string& path, std::vector<std::uint8_t>& marks) {
   FileBytes bytes = FileBytes::open(path);
   Scanner scanner(path, bytes.view(), byte_order_mark(bytes.view()), false, '#');
-  // Both readings are kept until the end tells which it is: the list may be of any length.
+  // The numbers are read both ways, as only the length of the list, at the end of the file, tells which one is meant.
   std::vector<std::uint8_t> as_marks, as_indices(marks.size(), 0);
   as_marks.reserve(marks.size());
   bool may_be_marks = true;

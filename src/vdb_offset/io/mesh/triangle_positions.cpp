@@ -19,10 +19,11 @@ class TrianglePlaces {
   TrianglePlaces(PolygonView mesh, PolygonView triangles)
       : mesh_(mesh),
         triangles_(triangles),
-        place_(mesh.positions.begin(), mesh.positions.end()),
-        known_(place_.size(), 0) {}
+        position_(mesh.positions.begin(), mesh.positions.end()),
+        known_(position_.size(), 0) {}
 
-  /// Triangles and quads are split in one way; larger polygons go by the corners that these tell.
+  /// Finds the positions. Triangles and quads can only be split in one way, and go first: larger polygons are matched
+  /// with the corners that are known from them.
   std::optional<std::vector<Vec3d>> find() {
     std::size_t count = 0;
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) count += mesh_.face(f).size() - 2;
@@ -35,25 +36,25 @@ class TrianglePlaces {
         first += face.size() - 2;
       }
     }
-    return std::move(place_);
+    return std::move(position_);
   }
 
  private:
   static constexpr std::size_t kQuad = 4;  // corners
 
-  /// A polygon is split as it is after the offset, which is not known: around its first corner, or as before. Where
-  /// both could be, its corners are where they have gone less far.
+  /// Takes the positions of a polygon's corners from its triangles. These are those of the offset, in which the polygon
+  /// is split around its first corner or as in the source. Where both are possible, the corners have moved less far.
   bool take(std::span<const std::uint32_t> face, std::size_t first) {
     Split fan, ears;
     for (std::size_t k = 2; k < face.size(); ++k) fan.push_back({face[0], face[k - 1], face[k]});
     if (face.size() > kQuad) triangulate(mesh_.positions, face, ears);
-    const std::optional<double> by_fan = way_of(fan, first),
-                                by_ears = ears.empty() ? std::nullopt : way_of(ears, first);
+    const std::optional<double> by_fan = squared_displacements(fan, first),
+                                by_ears = ears.empty() ? std::nullopt : squared_displacements(ears, first);
     if (!by_fan && !by_ears) return false;
     const Split& split = !by_fan || (by_ears && *by_ears < *by_fan) ? ears : fan;
     for_each_corner(split, first, [&](std::uint32_t v, const Vec3d& there) {
       known_[v] = 1;
-      place_[v] = there;
+      position_[v] = there;
     });
     return true;
   }
@@ -64,13 +65,13 @@ class TrianglePlaces {
       for (std::size_t k = 0; k < 3; ++k) visit(split[i][k], triangles_.positions[triangles_.face(first + i)[k]]);
   }
 
-  /// How far corners have gone, squared and summed up; none if those of a vertex are apart.
-  std::optional<double> way_of(const Split& split, std::size_t first) const {
+  /// The sum of the squared displacements of the corners. None if corners of one vertex are at different positions.
+  std::optional<double> squared_displacements(const Split& split, std::size_t first) const {
     std::vector<std::pair<std::uint32_t, Vec3d>> found;
     bool fits = true;
     double way = 0;
     for_each_corner(split, first, [&](std::uint32_t v, const Vec3d& there) {
-      fits = fits && (!known_[v] || place_[v] == there);
+      fits = fits && (!known_[v] || position_[v] == there);
       way += (there - mesh_.positions[v]).lengthSqr();
       found.emplace_back(v, there);
     });
@@ -81,7 +82,7 @@ class TrianglePlaces {
   }
 
   PolygonView mesh_, triangles_;
-  std::vector<Vec3d> place_;
+  std::vector<Vec3d> position_;
   std::vector<std::uint8_t> known_;
 };
 

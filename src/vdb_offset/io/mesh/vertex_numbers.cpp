@@ -33,7 +33,7 @@ std::string number_of_vertex(std::string_view what, std::size_t v) {
 
 std::vector<double> parse_text(const std::string& path, std::string_view text, std::size_t count) {
   std::vector<double> numbers;
-  numbers.reserve(std::min(count, text.size() / 2 + 1));  // a number takes a digit and a blank
+  numbers.reserve(std::min(count, text.size() / 2 + 1));  // a number takes two bytes at least: a digit and a blank
   Scanner scanner(path, text, byte_order_mark(text), false, '#');
   std::size_t found = 0;
   for (; !scanner.at_text_end(); ++found) {
@@ -50,7 +50,7 @@ std::vector<double> parse_text(const std::string& path, std::string_view text, s
   return numbers;
 }
 
-/// What stands in front of the numbers of a NumPy array (numpy.lib.format).
+/// The header of a NumPy array (numpy.lib.format).
 struct NpyHeader {
   ply::Type type{'f', 8};
   Encoding encoding = Encoding::LittleEndian;
@@ -58,7 +58,7 @@ struct NpyHeader {
   std::size_t end = 0;  // first byte of the numbers
 };
 
-/// Reads the header: the magic, a version, a length, and a dictionary as Python writes it.
+/// Reads the header: magic bytes, a version, a length, and a dictionary as Python writes it.
 class NpyHeaderReader {
  public:
   NpyHeaderReader(const std::string& path, std::string_view bytes) : path_(path), text_(bytes) {}
@@ -105,7 +105,7 @@ class NpyHeaderReader {
   void read_type() {
     const std::size_t at = at_;
     constexpr const char* kExpected = "numbers of the types f4, f8, i1 to i8 or u1 to u8";
-    if (next_is('[')) fail(kExpected, at);  // rows of several columns
+    if (next_is('[')) fail(kExpected, at);  // the array is one of rows with several columns
     const std::string_view type = quoted(kExpected);
     if (type.size() != 3) fail_with(kExpected, shown(at, at_), at);
     const char order = type[0], kind = type[1], bytes = type[2];
@@ -118,7 +118,7 @@ class NpyHeaderReader {
     header_.encoding = order == '>' ? Encoding::BigEndian : Encoding::LittleEndian;
   }
 
-  /// The order of the axes, of which there is one that counts.
+  /// Reads the order of the axes, which does not matter: only one axis may be longer than 1.
   void read_order() {
     skip_space();
     for (const std::string_view word : {"True", "False"})
@@ -138,7 +138,7 @@ class NpyHeaderReader {
       const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), shape.emplace_back());
       if (error != std::errc()) fail("a number of rows", at_);
       at_ = static_cast<std::size_t>(end - text_.data());
-      if (at_ < text_.size() && text_[at_] == 'L') ++at_;  // as Python 2 writes it
+      if (at_ < text_.size() && text_[at_] == 'L') ++at_;  // Python 2 ends integers with an L
       if (!skip(',') && !next_is(')')) fail("',' or ')'", at_);
     }
     if (shape.empty() || shape.size() > 2 || (shape.size() == 2 && shape[1] != 1))
@@ -170,9 +170,9 @@ class NpyHeaderReader {
     return text_.substr(begin, end - begin);
   }
 
-  /// The text as a message can show it.
+  /// A part of the text as a message can show it: cut off, without control characters.
   std::string shown(std::size_t begin, std::size_t end) const {
-    constexpr std::size_t kShown = 24;  // characters, of a word in a message
+    constexpr std::size_t kShown = 24;  // bytes; a longer word is hard to read in a message
     std::string line(text_.substr(begin, std::min(end - begin, kShown)));
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return !std::isprint(c); }, '?');
@@ -201,18 +201,18 @@ std::vector<double> parse_npy(const std::string& path, std::string_view bytes, s
         fmt::format("{}, byte {}: expected {} numbers of {} bytes, got {} bytes", path, header.end, count, size, rest));
   std::vector<double> numbers(count);
   std::atomic<std::uint64_t> first_unusable = count;
-  const auto place = [&](std::size_t v) { return header.end + v * size; };
+  const auto offset_of = [&](std::size_t v) { return header.end + v * size; };
   for_each_index(count, [&](std::size_t v) {
-    numbers[v] = ply::binary_number(bytes.data() + place(v), header.type, header.encoding);
+    numbers[v] = ply::binary_number(bytes.data() + offset_of(v), header.type, header.encoding);
     if (!std::isfinite(numbers[v])) lower_to(first_unusable, v);
   });
   if (const std::size_t v = first_unusable; v < count)
-    throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", path, place(v),
+    throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", path, offset_of(v),
                                    number_of_vertex("a finite number", v), numbers[v]));
   return numbers;
 }
 
-/// The property of single numbers that has that name.
+/// The property with this name. \throw InvalidInput if there is none, or it is a list
 const ply::Property& find_scalar(const MeshFile& source, const ply::Element& vertices, const std::string& name) {
   std::vector<std::string> known;
   const ply::Property* found = nullptr;
@@ -231,7 +231,8 @@ const ply::Property& find_scalar(const MeshFile& source, const ply::Element& ver
   return *found;
 }
 
-/// The number at that byte. As text or not, it must be one of its type, and finite.
+/// The number of a property at a byte. \throw InvalidInput unless it is a finite number of the property's type, in a
+/// text as well
 double property_at(const MeshFile& source, const ply::Property& property, std::uint64_t at, std::size_t v) {
   const auto expected = [&] { return number_of_vertex(fmt::format("a finite number '{}'", property.name), v); };
   if (source.encoding != Encoding::Ascii) {
@@ -277,7 +278,7 @@ std::vector<double> vertex_property(const MeshFile& source, const std::string& n
   const ply::Header header = ply::read_header(source);
   const ply::Element* const vertices = ply::find(header, "vertex");
   const std::size_t count = source.polygons.positions.size();
-  // Not so only if the file has changed since it was read.
+  // This fails only if the file has changed since it was read.
   if (!vertices || vertices->count != count)
     throw InvalidInput(fmt::format("{}, header: expected {} vertices, as before", source.path, count));
   const ply::Property& wanted = find_scalar(source, *vertices, name);
@@ -286,7 +287,8 @@ std::vector<double> vertex_property(const MeshFile& source, const std::string& n
   std::vector<double> numbers(count);
   for (std::size_t v = 0; v < count; ++v)
     for (const ply::Property& property : vertices->properties)
-      if (&property == &wanted) numbers[v] = property_at(source, wanted, body.place(wanted.type, "a property"), v);
+      if (&property == &wanted)
+        numbers[v] = property_at(source, wanted, body.skip_number(wanted.type, "a property"), v);
       else body.skip(property);
   source.bytes.require_unchanged(source.path);
   return numbers;

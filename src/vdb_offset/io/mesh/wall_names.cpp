@@ -10,7 +10,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// Faces under names of one kind.
+/// The faces of each group, or of each object or material.
 class NamedFaces {
  public:
   void set(std::string name) { name_ = std::move(name), current_ = kUnknown; }

@@ -12,7 +12,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// What the vertices of both skins have, and splits of them.
+/// Extends values of the source's vertices to all vertices of a shell: both skins, and splits.
 template <class Value>
 void double_up(const Shell& shell, std::vector<Value>& of_vertices) {
   if (of_vertices.empty()) return;
@@ -22,8 +22,8 @@ void double_up(const Shell& shell, std::vector<Value>& of_vertices) {
   for (const Shell::Split& split : shell.splits) of_vertices.push_back(of_vertices[split.vertex]);
 }
 
-/// What the corners of a shell name, by what those of its mesh do; those of the rim what the corners of its border
-/// face do.
+/// For each corner of a shell the value that its corner of the mesh refers to. A corner of the rim has that of the face
+/// at its border.
 template <class Value>
 std::vector<std::uint32_t> values_of_shell(PolygonView mesh, const Shell& shell, const CornerValues<Value>& values) {
   std::vector<std::uint32_t> of_corner(shell.polygons.corners.size());
@@ -37,8 +37,8 @@ std::vector<std::uint32_t> values_of_shell(PolygonView mesh, const Shell& shell,
   return of_corner;
 }
 
-/// Normals of the inner skin point the other way. The rim has none of its own: in a format that has normals of vertices
-/// only, those of the skins; so have splits.
+/// Adds the normals of the inner skin, which point the other way. The rim has no normals of its own. In a format with
+/// normals of vertices only, the rim's vertices and splits have those of the skins.
 void add_inner_normals(PolygonView mesh, const Shell& shell, bool of_corners, const std::vector<Vec3d>& inner,
                        CornerValues<Vec3d>& normals) {
   const auto count = static_cast<std::uint32_t>(normals.value.size());

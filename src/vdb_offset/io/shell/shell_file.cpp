@@ -19,7 +19,7 @@
 namespace vdb_offset::io {
 namespace {
 
-// A normal needs no more.
+// Single precision is enough for a normal.
 const Rounding kNormalPrecision{Rounding::Kind::Single};
 
 void require_same_mesh(const MeshFile& source, const Shell& shell) {
@@ -49,7 +49,7 @@ Pieces in_own_format(const SharedShell& content, std::vector<std::string>& lost)
   return shell_to_stl(content, lost);
 }
 
-/// A number with the other sign; a word that is none stays.
+/// A number with the other sign. A word that is no number is not changed.
 std::string negated(std::string_view word) {
   double value = 0;
   if (!parse_double(word, value) || value == 0) return std::string(word);
@@ -160,7 +160,7 @@ WriteResult write_shell(const std::string& path, const MeshFile& source, const S
   require_same_mesh(source, shell);
   WriteResult result;
   Pieces pieces;
-  // Strips cannot be turned round face by face.
+  // The source's rows are kept unless they are strips, which cannot be reversed face by face.
   if (format == source.format && !has_strips(source)) {
     const auto content = std::make_shared<ShellContent>(ShellContent{source, shell, precision, options.normals});
     std::vector<std::string> lost;

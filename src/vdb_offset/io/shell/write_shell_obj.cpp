@@ -12,13 +12,14 @@
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 
-/// The outer skin is the source's text with its positions. Behind it come the inner skin's vertices, then the faces
-/// again, reversed, among the statements that faces depend on, and then, in the same way, the rim.
+// The file begins with the source's text, with the positions of the outer skin. Then follow the vertices of the inner
+// skin, its faces, which are the source's reversed, and the faces of the rim; both with the statements that the faces
+// depend on.
 namespace vdb_offset::io {
 namespace {
 
-/// Statements that hold for the faces behind them, and what takes them back. Groups are treated by themselves: they
-/// name the part, too.
+/// A statement that holds for the faces after it, and the one that ends it. Groups are not among these, as they also
+/// name the part of the shell.
 struct FaceState {
   std::string_view keyword, reset;
 };
@@ -39,25 +40,25 @@ std::size_t face_state_of(std::string_view keyword) {
   return i;
 }
 
-/// Faces' statements as they stand somewhere in a file: whole lines, empty where there is none yet.
+/// The statements in force at some point of a file: whole lines, empty where there has been none.
 using StateLines = std::array<std::string_view, kFaceStateCount>;
 
 bool is_element(std::string_view keyword) { return keyword == "l" || keyword == "p"; }
 
-/// What a run of lines holds, and how much there is before it.
+/// A run of lines: what it holds, and how many vertices and so on there are before it.
 struct ObjRun {
   std::size_t begin = 0, end = 0;
   std::size_t vertices = 0, textures = 0, faces = 0;
   bool has_groups = false, has_elements = false;
-  StateLines state;  // before it; while it is scanned, the last of each in it
+  StateLines state;  // in force before the run; during the scan, the last statements of the run
 };
 
-/// The runs of a file, and what there is in all of them.
+/// The runs of a file, and what is known of the whole file.
 struct ObjRuns {
   std::vector<ObjRun> runs;
   StateLines state_at_end;
   bool groups_late = true;   // the first face is in no group
-  bool objects_late = true;  // nor in an object
+  bool objects_late = true;  // the first face is in no object
   std::size_t first_face_run = 0;
 };
 
@@ -79,7 +80,7 @@ class ObjRunFinder {
   ObjRuns take() { return std::move(found_); }
 
  private:
-  /// What stands in front of a run's first face.
+  /// Whether there is a group or an object before a run's first face.
   struct Named {
     bool group = false, object = false;
   };
@@ -101,7 +102,7 @@ class ObjRunFinder {
     });
   }
 
-  /// From what each run holds to what stands before it.
+  /// Turns the counts and statements of each run into those before it.
   void put_together() {
     ObjRun before;
     for (ObjRun& run : found_.runs) {
@@ -116,7 +117,8 @@ class ObjRunFinder {
         if (!of_run[k].empty()) before.state[k] = of_run[k];
     }
     found_.state_at_end = before.state;
-    // Where a statement that comes later does not hold yet, behind a skin where it does.
+    // Statements that come later in the source are in force after a skin has been written. Runs before them need the
+    // statement that ends them.
     for (ObjRun& run : found_.runs)
       for (std::size_t k = 0; k < kFaceStateCount; ++k)
         if (run.state[k].empty() && !before.state[k].empty()) run.state[k] = kFaceStates[k].reset;
@@ -132,7 +134,7 @@ void append_line(std::string& text, std::string_view line) {
   if (!line.ends_with('\n')) text += '\n';
 }
 
-/// A g line with the part's name in front of the source's.
+/// Appends a g line: the name of the part, then the names of the source's line.
 void append_group(std::string& text, const ObjLine& line, ShellPart part) {
   const auto names = static_cast<std::size_t>(line.keyword.end() - line.whole.begin());
   text += line.whole.substr(0, names);
@@ -141,8 +143,8 @@ void append_group(std::string& text, const ObjLine& line, ShellPart part) {
   append_line(text, line.whole.substr(names));
 }
 
-/// The texture coordinates that a corner v/vt.. names, as a number from 1 on; 0 for none. `so_far`: how many have
-/// been read.
+/// The number, from 1 on, of the texture coordinates that a corner v/vt.. names; 0 for none. `so_far` is the number of
+/// texture coordinates that have been read.
 std::uint64_t texture_number(std::string_view corner, std::size_t so_far) {
   const std::size_t slash = corner.find('/');
   if (slash == std::string_view::npos) return 0;
@@ -167,11 +169,12 @@ class ObjShellWriter {
                                  [](std::uint32_t n) { return n != kNoNormal; })) {}
 
   std::size_t runs() const { return found_.runs.size(); }
-  /// The last object goes on where the inner skin starts, and no statement takes that back.
+  /// Whether faces of the inner skin come into the source's last object although theirs have none: no statement ends an
+  /// object.
   bool misplaces_faces() const { return found_.objects_late && !found_.state_at_end[kObject].empty(); }
   bool has_normals() const { return has_normals_; }
 
-  /// A run of the source with the outer skin's positions.
+  /// The text of a run of the source, with the positions of the outer skin.
   std::string outer_run(std::size_t i) const {
     const ObjRun& run = found_.runs[i];
     std::string patched = outer_.make(i);
@@ -197,7 +200,7 @@ class ObjShellWriter {
     return text;
   }
 
-  /// One of the inner skin, or behind that.
+  /// Appends a vertex of the inner skin or a split.
   void append_other_vertex(std::string& text, std::size_t i) const {
     const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
     text += 'v';
@@ -215,7 +218,7 @@ class ObjShellWriter {
     text += '\n';
   }
 
-  /// The faces of a run, reversed, and all that they depend on.
+  /// The inner skin's faces over those of a run, and the statements that they depend on.
   std::string inner_run(std::size_t i) const {
     std::string text = i == 0 && found_.groups_late ? "g inner\n" : "";
     StateLines state = found_.runs[i].state, written = i == 0 ? found_.state_at_end : state;
@@ -234,7 +237,7 @@ class ObjShellWriter {
     return text;
   }
 
-  /// The rim's faces at the borders of a run's.
+  /// The rim's faces at the borders of a run's faces, and the statements that they depend on.
   std::string rim_run(std::size_t i) const {
     auto edge = first_rim_of(found_.runs[i].faces);
     if (edge == first_rim_of(i + 1 < runs() ? found_.runs[i + 1].faces : mesh_faces())) return {};
@@ -252,13 +255,13 @@ class ObjShellWriter {
   }
 
  private:
-  /// How much has been read.
+  /// Numbers of vertices, texture coordinates and faces that have been read.
   struct Progress {
     std::size_t vertices, textures, faces;
   };
   using RimIterator = std::vector<Shell::RimOrigin>::const_iterator;
 
-  /// Calls visit(line, progress) for the lines of a run that are faces, elements, groups or statements for them.
+  /// Calls visit(line, progress) for the lines of a run that are faces, elements, groups or statements for faces.
   template <class Visit>
   void for_each_face_line(std::size_t i, Visit&& visit) const {
     const ObjRun& run = found_.runs[i];
@@ -268,7 +271,7 @@ class ObjShellWriter {
       const bool is_face = line.is("f");
       at.vertices += line.is("v");
       at.textures += line.is("vt");
-      // A file that has changed meanwhile may have more faces; it will not be put in place.
+      // There are more faces only if the file has changed meanwhile; then nothing will be put in place.
       if (is_face && at.faces >= mesh_faces()) return;
       if (is_face || line.is("g") || is_element(line.keyword) || face_state_of(line.keyword) != kNoState)
         visit(line, at);
@@ -284,13 +287,13 @@ class ObjShellWriter {
     }
   }
 
-  /// The rim meets the skins at an angle.
+  /// The statements for the rim: without smoothing, as the rim meets the skins at an angle.
   static StateLines with_flat_rim(StateLines state) {
     if (!state[kSmoothGroup].empty()) state[kSmoothGroup] = kFaceStates[kSmoothGroup].reset;
     return state;
   }
 
-  /// What holds behind all that is written before a rim's first face of a run.
+  /// The statements in force before a face of the rim is written.
   StateLines state_before(RimIterator edge) const {
     if (edge == shell_.rim.begin()) return found_.state_at_end;
     const auto next = std::partition_point(found_.runs.begin(), found_.runs.end(),
@@ -303,7 +306,7 @@ class ObjShellWriter {
                                 [&](const Shell::RimOrigin& edge) { return edge.face < face; });
   }
 
-  /// One for each corner that the face has.
+  /// The numbers of texture coordinates, one for each corner of a face's line.
   std::vector<std::uint64_t> textures_of(const ObjLine& line, const Progress& at) const {
     std::vector<std::uint64_t> textures;
     for (Scanner words = line.words(); !words.at_line_end();)
@@ -325,7 +328,7 @@ class ObjShellWriter {
   std::size_t mesh_faces() const { return source_.polygons.face_count(); }
   bool has_faces_as_they_are() const { return shell_.faces.empty() && shell_.splits.empty(); }
 
-  /// The source's line, if it names the same vertices; nothing for a face that is not part of the shell.
+  /// Appends the source's line if the face of the shell has the same vertices; nothing if the shell has no such face.
   void append_outer_face(std::string& text, const ObjLine& line, const Progress& at) const {
     const std::uint32_t face = at.faces < mesh_faces() ? shell_.skin_face(static_cast<std::uint32_t>(at.faces)) : kNone;
     if (face == kNone) return;
@@ -339,7 +342,7 @@ class ObjShellWriter {
     append_face(text, line, at, shell_.skin_faces() + face, source_.normal_at.size());
   }
 
-  /// A face of the shell over the one of a line; normals are numbered behind `first_normal`.
+  /// Appends the face of the shell over the one of a line. Numbers of normals follow `first_normal`.
   void append_face(std::string& text, const ObjLine& line, const Progress& at, std::size_t face,
                    std::size_t first_normal) const {
     const PolygonView mesh = source_.polygons.view();
@@ -366,14 +369,14 @@ class ObjShellWriter {
     text += '\n';
   }
 
-  /// Lines v/vt.. and points v, over the inner vertices.
+  /// Appends an element, a line v/vt.. or points v, with the vertices of the inner skin.
   void append_element(std::string& text, const ObjLine& line, const Progress& at) const {
     text += line.keyword;
     for (Scanner words = line.words(); !words.at_line_end();) {
       const std::string_view word = words.token();
       std::int64_t vertex = 0;
       if (!parse_integer(word.substr(0, word.find('/')), vertex)) {
-        (text += ' ') += word;  // as malformed as it was
+        (text += ' ') += word;  // malformed words are copied
         continue;
       }
       if (vertex < 0) vertex += static_cast<std::int64_t>(at.vertices) + 1;

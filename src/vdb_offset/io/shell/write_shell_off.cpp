@@ -7,8 +7,8 @@
 #include "vdb_offset/io/mesh/read/off_binary.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 
-/// The source's text up to its faces, with the outer skin's positions and other counts; all other vertices; the
-/// source's faces; all other faces.
+// The file is the source's text up to its faces, with the positions of the outer skin and other counts; then all other
+// vertices; the source's faces; all other faces.
 namespace vdb_offset::io {
 namespace {
 
@@ -21,7 +21,7 @@ void append_big(std::string& bytes, T value) {
 }
 void append_count(std::string& bytes, std::size_t value) { append_big(bytes, static_cast<std::int32_t>(value)); }
 
-/// The source's records with other numbers at some places.
+/// Writes a binary file: the source's records with some numbers replaced.
 class BinaryShellWriter {
  public:
   explicit BinaryShellWriter(const SharedShell& content)
@@ -56,7 +56,7 @@ class BinaryShellWriter {
       put(layout_.normal, Vec3d(0.0) - Vec3d(off::number_at(source_, at), off::number_at(source_, at + 4),
                                              off::number_at(source_, at + 8)));
   }
-  /// With the colour of the face that it comes from.
+  /// Appends a face, with the colour of the source's face.
   void append_face(std::string& bytes, std::size_t f) const {
     const auto face = shell_.polygons.view().face(f);
     append_count(bytes, face.size());
@@ -93,7 +93,7 @@ class OffShellWriter {
     find_faces();
   }
 
-  /// All before the faces, but for the inner skin.
+  /// The text up to the faces, without the inner skin.
   std::string start() const {
     std::string text(source_.text().substr(0, counts_begin_));
     append_integer(text, shell_.polygons.positions.size());
@@ -102,13 +102,13 @@ class OffShellWriter {
     text += source_.text().substr(counts_end_, first_of_vertex(0) - counts_end_);
     return text;
   }
-  /// The rest of a vertex's lines, comments behind it among them.
+  /// Appends a vertex of the outer skin, with the rest of its line and the comments after it.
   void append_outer_vertex(std::string& text, std::size_t v) const {
     append_numbers(text, content_->outer, v);
     const std::size_t end = v + 1 < shell_.source_vertices() ? first_of_vertex(v + 1) : face_row_.front();
     append_whole(text, source_.text().substr(end_of_numbers(v), end - end_of_numbers(v)));
   }
-  /// One of the inner skin, or behind that.
+  /// Appends a vertex of the inner skin or a split.
   void append_other_vertex(std::string& text, std::size_t i) const {
     const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
     append_numbers(text, skin, v);
@@ -120,7 +120,7 @@ class OffShellWriter {
       append_new_face(text, f);
     else append_whole(text, source_.text().substr(face_row_[row], face_row_[row + 1] - face_row_[row]));
   }
-  /// A face of the inner skin or the rim.
+  /// Appends a face of the inner skin or the rim.
   void append_other_face(std::string& text, std::size_t i) const { append_new_face(text, shell_.skin_faces() + i); }
 
  private:
@@ -142,7 +142,7 @@ class OffShellWriter {
     return scanner.position();
   }
 
-  /// The two numbers behind the keyword, and that of edges, if there is one.
+  /// Finds the counts behind the keyword: of vertices, of faces and, if it is there, of edges.
   void find_counts() {
     Scanner scanner(source_.path, source_.text(), byte_order_mark(source_.text()), false, '#');
     scanner.token_anywhere("the keyword OFF");
@@ -156,7 +156,7 @@ class OffShellWriter {
     counts_end_ = scanner.position();
   }
 
-  /// Where each face's line starts; what stands behind the last one is its own.
+  /// Finds where each face's line starts. What stands behind the last face belongs to it.
   void find_faces() {
     Scanner scanner(source_.path, source_.text(), end_of_numbers(shell_.source_vertices() - 1), false, '#');
     const std::size_t faces = source_.polygons.face_count();

@@ -11,7 +11,7 @@
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 
-/// Row by row: those of both skins, and of the rim, are the source's rows with other numbers at some places.
+// The rows of both skins, and of the rim, are the source's rows with some numbers replaced.
 namespace vdb_offset::io {
 namespace ply {
 namespace {
@@ -24,11 +24,11 @@ void append_in_order(std::string& bytes, T value, Encoding encoding) {
   bytes.append(raw, sizeof value);
 }
 
-/// A number that the type can hold.
+/// Appends the bytes of a number as a type. \pre the type can hold it
 void append_binary_as(std::string& bytes, double value, Type type, Encoding encoding) {
   const auto append = [&](auto number) { append_in_order(bytes, number, encoding); };
   if (type.kind == 'f') return type.bytes == 4 ? append(static_cast<float>(value)) : append(value);
-  // Of a signed and an unsigned number that both can hold, the bytes are the same.
+  // A whole number that both a signed and an unsigned type can hold has the same bytes in both.
   const auto whole = static_cast<std::int64_t>(value);
   if (type.bytes == 1) append(static_cast<std::uint8_t>(whole));
   else if (type.bytes == 2) append(static_cast<std::uint16_t>(whole));
@@ -41,7 +41,7 @@ std::uint64_t largest(Type type) {
   return (std::uint64_t{1} << bits) - 1;
 }
 
-/// A word of a text, or a number's bytes, and what follows.
+/// A word of a text or the bytes of a number, and where the next one begins.
 struct Cell {
   std::string_view raw;
   std::size_t end;
@@ -67,7 +67,7 @@ class PlyShellWriter {
 
   bool adds_part() const { return adds_part_; }
 
-  /// The elements in their order.
+  /// The pieces of the file: all elements, in their order.
   static Pieces pieces(const std::shared_ptr<const PlyShellWriter>& writer) {
     std::vector<Section> sections;
     for (std::size_t i = 0; i < writer->header_.elements.size(); ++i) {
@@ -86,7 +86,7 @@ class PlyShellWriter {
     return in_sections(writer->header(), std::move(sections));
   }
 
-  /// The source's lines but for the numbers of vertices and faces, and what is new of these.
+  /// The source's header with other numbers of vertices and faces, and with new properties of these.
   std::string header() const {
     const std::string_view lines = source_.text().substr(0, header_.end);
     std::string text;
@@ -185,7 +185,7 @@ class PlyShellWriter {
                        corner_list_->name);
   }
 
-  /// Where each row of vertices and faces starts, and all other elements.
+  /// Finds where each row of vertices and faces, and each other element, starts.
   void find_rows() {
     BodyReader body(source_, header_);
     for (const Element& element : header_.elements) {
@@ -219,7 +219,7 @@ class PlyShellWriter {
     return append_as_it_is(ignored, 0, property, at);
   }
 
-  // Rows of a text end with a line end, and have blanks between their numbers.
+  // In a text, the numbers of a row are separated by blanks, and a line end follows.
   void separate(std::string& bytes, std::size_t start) const {
     if (is_text() && bytes.size() > start) bytes += ' ';
   }
@@ -235,7 +235,7 @@ class PlyShellWriter {
     if (is_text()) append_integer(bytes, static_cast<std::uint64_t>(value));
     else append_binary_as(bytes, value, type, header_.encoding);
   }
-  /// Returns where the next property of the row is.
+  /// Copies a property of a row. Returns where the next property begins.
   std::size_t append_as_it_is(std::string& bytes, std::size_t start, const Property& property, std::size_t at) const {
     Cell cell = cell_at(property.count.value_or(property.type), at);
     append_cell(bytes, start, cell);
@@ -261,7 +261,8 @@ class PlyShellWriter {
     for (const auto v : face) append_number_of(bytes, start, v, index_type_);
   }
 
-  /// Two numbers a corner go where the corner goes; a list of another length stays.
+  /// Appends a list of texture coordinates: if it has two numbers for each corner, in the order of the new corners;
+  /// else as it is. Returns where the next property begins.
   std::size_t append_texture(std::string& bytes, std::size_t start, const Property& list, std::size_t at,
                              std::size_t f) const {
     const PolygonView mesh = source_.polygons.view();
@@ -283,7 +284,7 @@ class PlyShellWriter {
     return cell.end;
   }
 
-  /// An element that is neither vertices nor faces; in a text, without the line ends before it.
+  /// Appends an element other than vertices and faces. In a text, line ends before it are left out.
   void append_element(std::string& bytes, std::size_t i) const {
     std::string_view all = source_.text().substr(element_begin_[i], element_begin_[i + 1] - element_begin_[i]);
     if (is_text()) all.remove_prefix(std::min(all.find_first_not_of(" \t\r\n\v\f"), all.size()));

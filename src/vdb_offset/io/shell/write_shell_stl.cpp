@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kStlHeader = 80, kStlFirst = 84, kStlFacet = 50, kStlAttribute = 48;
 
-/// A triangle of the rim.
+/// A triangle of the rim, and the face of the source that it comes from.
 struct RimFacet {
   std::array<std::uint32_t, 3> corners;  // vertices of the shell
   std::uint32_t source_face;
@@ -36,7 +36,7 @@ class StlShellWriter {
 
   std::size_t rim_facets() const { return rim_.size(); }
 
-  /// Facet f of a skin.
+  /// Appends facet f of a skin.
   void append_text(std::string& text, ShellPart part, std::size_t f) const {
     text += "  facet normal";
     content_->skin(part).append_normal(text, shell_.source_face(f));
@@ -84,7 +84,7 @@ class StlShellWriter {
   Vec3d rim_normal(std::size_t i) const {
     const auto& [a, b, c] = rim_[i].corners;
     const Vec3d normal = (position(b) - position(a)).cross(position(c) - position(a));
-    return normal.length() > 0 ? normal / normal.length() + Vec3d(0.0) : Vec3d(0.0);  // -0 becomes 0
+    return normal.length() > 0 ? normal / normal.length() + Vec3d(0.0) : Vec3d(0.0);  // adding 0 turns -0 into 0
   }
 
   static void append_floats(std::string& bytes, const Vec3d& p) {
@@ -110,7 +110,8 @@ class StlShellWriter {
 
 using SharedStlWriter = std::shared_ptr<const StlShellWriter>;
 
-/// Behind "solid", with the blank in front of it; of a file with several the first.
+/// The name behind "solid", with the blank before it; in a file of several solids, that of the first. `solids` gets
+/// their number.
 std::string solid_name(const MeshFile& source, std::size_t& solids) {
   Scanner scanner(source.path, source.text(), byte_order_mark(source.text()));
   std::string name;

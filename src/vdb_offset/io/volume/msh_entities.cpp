@@ -9,10 +9,10 @@ namespace vdb_offset::io {
 namespace {
 
 using Index = std::uint32_t;
-// Of points: on no patch, and on several.
+// Instead of a patch: of points that lie on no patch, and of points that lie on several.
 constexpr Index kNoPatch = 0xffffffff, kPatches = 0xfffffffe;
 
-/// The only patch that each point lies on.
+/// Of each point the patch that it lies on; kNoPatch or kPatches if that is not one.
 std::vector<Index> patch_of_points(const VolumeMesh& mesh) {
   std::vector<Index> patch_of(mesh.points.size(), kNoPatch);
   for (Index i = 0; i < mesh.patches.size(); ++i)
@@ -24,14 +24,14 @@ std::vector<Index> patch_of_points(const VolumeMesh& mesh) {
 /// An edge of a patch's face.
 struct FaceEdge {
   Index low, high, patch;
-  bool upwards;  // as the face runs
-  bool same_place(const FaceEdge& other) const { return low == other.low && high == other.high; }
+  bool upwards;  // the face runs from `low` to `high`
+  bool same_edge(const FaceEdge& other) const { return low == other.low && high == other.high; }
   bool operator<(const FaceEdge& other) const {
     return std::tie(low, high, patch, upwards) < std::tie(other.low, other.high, other.patch, other.upwards);
   }
 };
 
-/// Those that several patches may have.
+/// The edges of patches that may belong to several patches, sorted: both ends lie on several.
 std::vector<FaceEdge> shared_edges(const VolumeMesh& mesh, const std::vector<Index>& patch_of) {
   std::vector<FaceEdge> edges;
   for (Index i = 0; i < mesh.patches.size(); ++i)
@@ -59,7 +59,7 @@ class EntityFinder {
     find_corners();
     for (std::size_t c = 0; c < found_.corners.size(); ++c) walk_from(found_.corners[c]);
     for (Index e = 0; e < edges_.size(); ++e)
-      if (!walked_[e]) {  // closed, from its lowest point, as edges are sorted
+      if (!walked_[e]) {  // part of a closed curve; edges are sorted, so that `low` is its lowest point
         found_.corners.push_back(edges_[e].low);
         walk(edges_[e].low, e);
       }
@@ -69,17 +69,17 @@ class EntityFinder {
   }
 
  private:
-  /// On which patches meet.
+  /// An edge on which patches meet. `group` tells which ones.
   struct Edge {
     Index low, high, group;
     Index other(Index p) const { return p == low ? high : low; }
   };
 
   void find_edges() {
-    std::map<std::vector<Index>, std::vector<Index>> by_patches;  // edges
+    std::map<std::vector<Index>, std::vector<Index>> by_patches;  // edges by the patches that meet there
     for (std::size_t begin = 0, end = 0; begin < face_edges_.size(); begin = end) {
       std::vector<Index> patches;
-      for (; end < face_edges_.size() && face_edges_[end].same_place(face_edges_[begin]); ++end)
+      for (; end < face_edges_.size() && face_edges_[end].same_edge(face_edges_[begin]); ++end)
         if (patches.empty() || patches.back() != face_edges_[end].patch) patches.push_back(face_edges_[end].patch);
       if (patches.size() < 2) continue;
       by_patches[patches].push_back(static_cast<Index>(edges_.size()));
@@ -95,7 +95,7 @@ class EntityFinder {
     std::sort(at_point_.begin(), at_point_.end());
   }
 
-  /// Point and edge.
+  /// A point, and an edge that ends there.
   using AtPoint = std::pair<Index, Index>;
   std::pair<std::vector<AtPoint>::const_iterator, std::vector<AtPoint>::const_iterator> edges_at(Index p) const {
     return {std::lower_bound(at_point_.begin(), at_point_.end(), AtPoint(p, 0)),
@@ -115,7 +115,7 @@ class EntityFinder {
     for (auto at = begin; at != end; ++at)
       if (!walked_[at->second]) walk(corner, at->second);
   }
-  /// To the next corner, or once around.
+  /// Adds the curve that begins at a corner with an edge, up to the next corner.
   void walk(Index start, Index edge) {
     MshEntities::Curve curve{{start}, edges_[edge].group};
     for (Index at = start;;) {

@@ -142,7 +142,7 @@ VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh) {
   require_consistent(path, mesh);
   require(!mesh.plane() || *format == VolumeFormat::Vtu || *format == VolumeFormat::Su2, path,
           "a name that ends in .vtu or .su2, as the cells lie in a plane");
-  // To the names of a .vtu's patches its cells refer.
+  // Empty patches are left out, but for a .vtu, whose cells refer to patches by their numbers.
   if (*format != VolumeFormat::Vtu)
     std::erase_if(mesh.patches, [](const BoundaryPatch& patch) { return patch.face_count() == 0; });
   VolumeWriteResult result;

@@ -2,7 +2,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/volume/volume_writers.h"
 
-/// In the place of the writer of .cgns, where the library is built without CGNS.
+// Stands in for write_cgns.cpp where the library is built without CGNS: writing is refused.
 namespace vdb_offset::io {
 
 void write_cgns(const std::string& path, const VolumeMesh&) {

@@ -2,7 +2,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/volume/volume_writers.h"
 
-/// In the place of VTK's writers, where the library is built without VTK.
+// Stands in for the writers that use VTK where the library is built without it: writing is refused.
 namespace vdb_offset::io {
 
 void write_vtu(const std::string& path, VolumeMesh&) {

@@ -14,11 +14,11 @@
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/volume/volume_faces.h"
 
-/// https://cgns.github.io/standard/SIDS: elements are numbered from 1, those of all sections in one row.
+// https://cgns.github.io/standard/SIDS: elements are numbered from 1, through all sections.
 namespace vdb_offset::io {
 namespace {
 
-/// CGNS keeps no more of a name.
+// Bytes of a name that CGNS keeps.
 constexpr std::size_t kLongestName = 32;
 
 class CgnsFile {
@@ -47,19 +47,20 @@ class CgnsFile {
   bool open_ = false;
 };
 
-/// No less than the file will take.
+/// An upper bound of the bytes that the file will take.
 std::size_t most_bytes(const VolumeMesh& mesh) {
   std::size_t corners = mesh.corners.size(), values = 0;
   for (const BoundaryPatch& patch : mesh.patches) corners += patch.corners.size();
   for (const auto* fields : {&mesh.point_fields, &mesh.cell_fields})
     for (const VolumeField& field : *fields) values += field.values.size();
-  // Faces of polyhedra have their own numbers, and those of prisms three times the corners.
+  // If there are polyhedra, all cells are lists of faces, and these are lists of points: the faces of a prism have
+  // three times as many corners as the prism, and there are the numbers of the faces.
   const std::size_t per_corner = sizeof(cgsize_t) * (has_polyhedra(mesh) ? 4 : 1);
-  constexpr std::size_t kNodes = 1 << 20;  // bytes for the nodes of the tree, which are some dozens
+  constexpr std::size_t kNodes = 1 << 20;  // bytes, ample for the few dozen nodes of the tree
   return kNodes + mesh.points.size() * sizeof(Vec3d) + corners * per_corner + values * sizeof(float);
 }
 
-/// Makes sure that there is room. HDF5 cannot close a file that did not fit, and crashes for it when the program ends.
+/// Checks that the disk has room. HDF5 cannot close a file that did not fit, and would crash when the program ends.
 void require_room(const std::string& temporary, const std::string& path, std::size_t bytes) {
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int error = file < 0 ? errno : ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
@@ -80,7 +81,7 @@ class CgnsZone {
     write_points();
   }
 
-  /// Faces of each patch get sections of their own, which come after the cells. Cells are put in order by their types.
+  /// Writes the cells, in a section for each type, then the faces of each patch in sections of their own.
   void write_by_types() {
     std::vector<std::uint32_t> order;
     for (std::size_t type = 0; type < std::size(kCgnsTypes); ++type) {
@@ -107,7 +108,7 @@ class CgnsZone {
     write_fields(order);
   }
 
-  /// Faces first: those between cells, then those of each patch; cells are lists of faces.
+  /// Writes polyhedra: first the faces between cells, then those of each patch, then the cells as lists of faces.
   void write_polyhedra() {
     const VolumeFaces faces(mesh_);
     std::vector<cgsize_t> face_of_side(faces.side_count());
@@ -131,7 +132,7 @@ class CgnsZone {
   }
 
  private:
-  /// Elements of different lengths.
+  /// A section of elements with different numbers of corners or faces.
   struct PolySection {
     std::vector<cgsize_t> numbers, begin{0};
     void close() { begin.push_back(static_cast<cgsize_t>(numbers.size())); }
@@ -143,7 +144,7 @@ class CgnsZone {
   };
 
   void require(int status) const { file_.require(status); }
-  /// \throw InvalidInput where the library's integers are too short.
+  /// A count as an integer of the library. \throw InvalidInput if that is too short
   static cgsize_t size_of(std::size_t count) {
     if (count > static_cast<std::size_t>(std::numeric_limits<cgsize_t>::max()))
       throw InvalidInput(
@@ -189,7 +190,7 @@ class CgnsZone {
 
   cgsize_t last_of(std::size_t count) const { return size_of(static_cast<std::size_t>(next_) + count - 1); }
 
-  /// Numbers faces as they are written; a cell whose outside a face's normal does not point to has it negative.
+  /// Writes the faces between cells, and notes their numbers; negative for the cell into which a face's normal points.
   void write_inner_faces(const VolumeFaces& faces, std::vector<cgsize_t>& face_of_side) {
     PolySection section;
     std::vector<VolumeFaces::Side> upper;
@@ -223,7 +224,7 @@ class CgnsZone {
     write_poly_section(name, CGNS_ENUMV(NGON_n), section);
   }
 
-  /// Of the elements from `first` to the last one written.
+  /// Writes a boundary condition for the elements from `first` to the last one written.
   void write_condition(const std::string& name, BoundaryPatch::Kind kind, cgsize_t first) {
     if (first == next_) return;
     const cgsize_t range[2] = {first, next_ - 1};
@@ -238,7 +239,7 @@ class CgnsZone {
     write_fields("CellFields", CGNS_ENUMV(CellCenter), mesh_.cell_fields, cells);
   }
 
-  /// The values of `order`, or all of them if that is empty.
+  /// Writes fields: their values in this order, or all values as they are if `order` is empty.
   void write_fields(const char* name, CGNS_ENUMT(GridLocation_t) location, const std::vector<VolumeField>& fields,
                     std::span<const std::uint32_t> order) {
     int solution = 0;

@@ -13,8 +13,9 @@
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/volume/volume_faces.h"
 
-/// https://doc.cfd.direct/openfoam/user-guide/mesh-description: faces between cells come first, those of each cell
-/// towards cells of higher numbers in the order of these, with their normals that way; then those of the patches.
+// https://doc.cfd.direct/openfoam/user-guide/mesh-description: faces between cells come first. Those of each cell
+// towards cells of higher numbers follow each other, in the order of these numbers, with their normals towards them.
+// Then come the faces of the patches.
 namespace vdb_offset::io {
 namespace {
 
@@ -30,7 +31,7 @@ std::string foam_header(const char* type, const char* object, const std::string&
       type, note.empty() ? "" : fmt::format("    note        \"{}\";\n", note), object);
 }
 
-/// A list: its length, and its items in brackets.
+/// A list as OpenFOAM writes it: its length, and its items in parentheses.
 Pieces foam_list(const std::string& header, std::size_t count, std::vector<Section> sections) {
   return in_a_row({in_sections(fmt::format("{}{}\n(\n", header, count), std::move(sections)), in_sections(")\n", {})});
 }
@@ -68,7 +69,8 @@ class FoamWriter {
   FoamQuality quality() const { return measure_foam(mesh_, faces_); }
 
  private:
-  /// For each cell, calls append(text, cell, its face towards a cell of a higher number).
+  /// Lines for the faces between cells: calls append(text, cell, face) for each face of a cell towards a cell of a
+  /// higher number.
   template <class Append>
   Section of_cells(Append append) const {
     return {mesh_.cell_count(), [this, append](std::string& text, std::size_t c) {

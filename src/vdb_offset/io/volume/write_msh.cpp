@@ -23,19 +23,19 @@ constexpr int kPoint = 0, kCurve = 1, kSurface = 2, kVolume = 3, kVolumeTag = 1;
 
 int tag_of(std::size_t number) { return static_cast<int>(number) + 1; }
 
-/// Of physical groups: surfaces, then the volume, then curves. Gmsh itself tells groups of several dimensions apart
-/// that have one number, but gmshToFoam names its patches by the number alone.
+/// The tag of a physical group: those of surfaces come first, then that of the volume, then those of curves. Gmsh
+/// allows groups of different dimensions to share a tag, but gmshToFoam names patches by the tag alone.
 int group_tag(const VolumeMesh& mesh, int dimension, std::size_t number) {
   const std::size_t surfaces = mesh.patches.size();
   return tag_of(dimension == kSurface ? number : dimension == kVolume ? surfaces : surfaces + 1 + number);
 }
 
-/// Elements of one type on one curve or surface or in the volume.
+/// Elements of one type, on one curve or surface or in the volume.
 struct MshBlock {
   int dimension, tag, type;
   std::size_t count;
-  std::function<std::span<const std::uint32_t>(std::size_t)> corners;  ///< Of each element.
-  std::vector<std::uint32_t> cells = {};                               ///< In the volume.
+  std::function<std::span<const std::uint32_t>(std::size_t)> corners;  ///< The corners of an element.
+  std::vector<std::uint32_t> cells = {};                               ///< The cells of a block in the volume.
   std::size_t first = 0;                                               ///< Tag of the first element.
 };
 using MshBlocks = std::vector<MshBlock>;
@@ -77,7 +77,7 @@ MshBlocks msh_blocks(const VolumeMesh& mesh, const MshEntities& entities) {
   return blocks;
 }
 
-/// Of the curves between some patches: the names of these, joined.
+/// The name of the curves between patches: the patches' names, joined.
 std::string group_name(const std::vector<std::string>& words, const std::vector<std::uint32_t>& patches) {
   std::string name;
   for (const std::uint32_t patch : patches) name += (name.empty() ? "" : "-") + words[patch];
@@ -85,7 +85,7 @@ std::string group_name(const std::vector<std::string>& words, const std::vector<
 }
 
 std::string msh_names(const VolumeMesh& mesh, const MshEntities& entities) {
-  constexpr std::size_t kLongest = 127;
+  constexpr std::size_t kLongest = 127;  // bytes of a name, as Gmsh's manual says
   const std::vector<std::string> words = patch_words(mesh, kLongest);
   std::vector<std::string> groups;
   for (const auto& patches : entities.groups) groups.push_back(group_name(words, patches));
@@ -115,7 +115,8 @@ void append_position(std::string& bytes, const Vec3d& position) {
   for (int k = 0; k < 3; ++k) append_binary(bytes, position[k]);
 }
 
-/// `bounded_by` are tags of entities of one dimension less, below 0 where these run the other way.
+/// Appends a curve, a surface or the volume. `bounded_by` are the tags of the entities around it, of one dimension
+/// less; negative for entities of the opposite direction.
 void append_entity(std::string& bytes, int tag, const std::array<Vec3d, 2>& box, int group,
                    const std::vector<int>& bounded_by) {
   append_binary(bytes, tag);
@@ -126,7 +127,7 @@ void append_entity(std::string& bytes, int tag, const std::array<Vec3d, 2>& box,
   for (const int by : bounded_by) append_binary(bytes, by);
 }
 
-/// Corners are in no physical group.
+/// Appends a corner, which is in no physical group.
 void append_corner(std::string& bytes, int tag, const Vec3d& position) {
   append_binary(bytes, tag);
   append_position(bytes, position);
@@ -161,11 +162,11 @@ std::string msh_entities(const VolumeMesh& mesh, const MshEntities& entities) {
 
 std::string msh_start(const VolumeMesh& mesh, const MshEntities& entities) {
   std::string bytes = "$MeshFormat\n4.1 1 8\n";
-  append_binary(bytes, 1);  // By which a reader finds out the order of bytes.
+  append_binary(bytes, 1);  // readers recognise the order of bytes by it
   return bytes + "\n$EndMeshFormat\n" + msh_names(mesh, entities) + msh_entities(mesh, entities);
 }
 
-/// Of one entity.
+/// The points of one entity.
 Pieces msh_nodes(const VolumeMesh& mesh, int dimension, int tag, std::span<const std::uint32_t> points) {
   std::string head;
   for (const int number : {dimension, tag, 0}) append_binary(head, number);
@@ -209,7 +210,7 @@ Pieces msh_elements(const MshBlock& block) {
                              }}});
 }
 
-/// A view of one step and one component: a tag and a value for each member.
+/// A view of one time step and one component, with a tag and a value for each point or cell.
 Pieces msh_data(const char* section, const VolumeField& field, std::vector<Section> values) {
   std::string name = field.name;
   std::replace(name.begin(), name.end(), '"', '\'');

@@ -8,12 +8,12 @@
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/volume/volume_writers.h"
 
-/// https://su2code.github.io/docs_v7/Mesh-File/: types of elements are VTK's numbers.
+// https://su2code.github.io/docs_v7/Mesh-File/: types of elements are VTK's numbers.
 namespace vdb_offset::io {
 namespace {
 
 constexpr unsigned kSu2Types[kCellTypeCount] = {10, 14, 13, 12, 0, 5, 9};
-constexpr unsigned kSu2Faces[] = {0, 0, 3, 5, 9};  // by the number of corners
+constexpr unsigned kSu2Faces[] = {0, 0, 3, 5, 9};  // type of a face by its number of corners
 
 void append_su2_element(std::string& text, unsigned type, std::span<const std::uint32_t> corners) {
   append_integer(text, type);

@@ -47,8 +47,8 @@ vtkSmartPointer<Array> vtk_copy(const std::vector<Number>& numbers) {
   return array;
 }
 
-/// VTK's prism has the triangle first whose normal points away from the other one, so that two corners of each change
-/// places; all other cells have ours.
+/// Gives prisms VTK's order of corners: the normal of the first triangle points away from the other one, so that two
+/// corners of each are exchanged. All other cells have VTK's order already.
 void turn_prisms(VolumeMesh& mesh) {
   for_each_index(mesh.cell_count(), [&](std::size_t c) {
     if (mesh.cell_types[c] != CellType::Prism) return;
@@ -58,7 +58,8 @@ void turn_prisms(VolumeMesh& mesh) {
   });
 }
 
-/// The corners stay where they are as long as VTK's 32 bits, one of which is the sign, can count them.
+/// The corners of all cells: a view of the mesh's memory if 31 bits, VTK's 32 without the sign, can count them; else a
+/// copy.
 vtkSmartPointer<vtkCellArray> vtk_corners(const VolumeMesh& mesh) {
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   if (mesh.points.size() <= kMostInt32 && mesh.corners.size() <= kMostInt32)
@@ -69,7 +70,7 @@ vtkSmartPointer<vtkCellArray> vtk_corners(const VolumeMesh& mesh) {
   return cells;
 }
 
-/// For VTK, a polyhedron has its points, each once, and a stream of faces beside them, which is ours.
+/// What VTK wants of polyhedra: the list of points, each once, and a stream of faces, which is the mesh's own.
 struct FaceStreams {
   vtkSmartPointer<vtkCellArray> points = vtkSmartPointer<vtkCellArray>::New();
   vtkSmartPointer<vtkIdTypeArray> begin = vtkSmartPointer<vtkIdTypeArray>::New();

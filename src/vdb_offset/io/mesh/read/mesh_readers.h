@@ -12,7 +12,7 @@ void parse_off(MeshFile& file);
 void parse_ply(MeshFile& file);
 void parse_stl(MeshFile& file);
 
-/// Gives a text line feeds in the place of carriage returns, if its lines end with these alone, as those of old Macs
+/// Replaces carriage returns of a text by line feeds, if its lines end with these alone, as those of old Macs
 /// do; see MeshFile.
 void use_line_feeds(MeshFile& file);
 

@@ -13,9 +13,9 @@ Layout layout_of(const MeshFile& file) {
     return std::find(file.extras.begin(), file.extras.end(), what) != file.extras.end();
   };
   Layout layout;
-  const auto take = [&](const char* what, std::size_t& place, std::size_t width) {
+  const auto take = [&](const char* what, std::size_t& offset, std::size_t width) {
     if (!holds(what)) return;
-    place = layout.width;
+    offset = layout.width;
     layout.width += width;
   };
   take("normals", layout.normal, 3);
@@ -26,7 +26,7 @@ Layout layout_of(const MeshFile& file) {
 
 std::optional<std::size_t> binary_begin(const MeshFile& file) {
   const std::string_view text = file.text();
-  constexpr std::size_t kLongestLine = 80;  // bytes; "STCN4OFF BINARY" has 15
+  constexpr std::size_t kLongestLine = 80;  // bytes; the longest first line, "STCN4OFF BINARY", has 15
   const std::size_t end = text.substr(0, kLongestLine).find_first_of("\r\n");
   if (end == std::string_view::npos) return std::nullopt;
   Scanner words(file.path, text.substr(0, end));
@@ -45,12 +45,12 @@ std::int64_t integer_at(const MeshFile& file, std::uint64_t at) {
 
 std::vector<std::uint64_t> face_offsets(const MeshFile& file) {
   const std::size_t vertices = file.polygons.positions.size();
-  std::vector<std::uint64_t> places{*binary_begin(file) + 12 + 4 * layout_of(file).width * vertices};
+  std::vector<std::uint64_t> offsets{*binary_begin(file) + 12 + 4 * layout_of(file).width * vertices};
   for (std::size_t f = 0; f < file.polygons.face_count(); ++f) {
-    const std::uint64_t colours = places.back() + 4 * (1 + file.polygons.view().face(f).size());
-    places.push_back(colours + 4 * (1 + static_cast<std::uint64_t>(integer_at(file, colours))));
+    const std::uint64_t colours = offsets.back() + 4 * (1 + file.polygons.view().face(f).size());
+    offsets.push_back(colours + 4 * (1 + static_cast<std::uint64_t>(integer_at(file, colours))));
   }
-  return places;
+  return offsets;
 }
 
 }  // namespace vdb_offset::io::off

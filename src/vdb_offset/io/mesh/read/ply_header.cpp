@@ -97,7 +97,8 @@ Header read_header(const MeshFile& file) {
       Element& element = header.elements.emplace_back();
       element.name = scanner.token();
       const std::int64_t count = scanner.integer("a number of elements");
-      // A row of one byte is the least there is; a row without properties takes none and is of no use.
+      // Each row takes a byte at least, so that a file has no more rows than bytes. (Rows without properties take none,
+      // but hold nothing either.)
       if (count < 0 || static_cast<std::uint64_t>(count) > file.text().size())
         scanner.fail(
             fmt::format("a number of '{}' that {} bytes can hold, not {},", element.name, file.text().size(), count));
@@ -142,7 +143,7 @@ std::size_t BodyReader::take_length(const Property& list) {
   return static_cast<std::size_t>(count);
 }
 
-std::uint64_t BodyReader::place(Type type, const char* what) {
+std::uint64_t BodyReader::skip_number(Type type, const char* what) {
   if (encoding_ == Encoding::Ascii) {
     text_.token_anywhere(what);
     return text_.last_token();

@@ -47,7 +47,7 @@ bool is_corner_list(const Property& property);
 
 /// The element 'face', if its rows have corners.
 const Element* find_faces(const Header& header);
-/// Strips of triangles in the place of faces: each three corners in a row are a triangle, every other one turned round,
+/// Strips of triangles instead of faces: each three corners in a row are a triangle, every other one turned round,
 /// and -1 ends a strip. None if there are faces.
 const Element* find_strips(const Header& header);
 
@@ -94,8 +94,8 @@ class BodyReader {
   double take(Type type, const char* what, std::uint64_t& at);
   /// The length of a list, from 0 on.
   std::size_t take_length(const Property& list);
-  /// First byte of a number that is not read: a normal, which may be a NaN.
-  std::uint64_t place(Type type, const char* what);
+  /// Skips a number, such as one of a normal, which may be a NaN. Returns its first byte.
+  std::uint64_t skip_number(Type type, const char* what);
   void skip(Type type, std::size_t count, const char* what);
   void skip(const Property& property);
   /// Goes from the start of the body to an element's first row.

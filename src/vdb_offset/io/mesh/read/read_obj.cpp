@@ -16,7 +16,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// What a file holds besides positions and faces, as bits; the order is that of the names.
+/// What a file holds besides positions and faces, as bits, in the order of their names.
 enum Extra : unsigned {
   kVertexData = 1,
   kNormals = 2,
@@ -29,13 +29,13 @@ enum Extra : unsigned {
 constexpr const char* kExtraNames[] = {
     "vertex weights or colours", "normals",          "texture coordinates", "materials",
     "groups and object names",   "smoothing groups", "other lines"};
-/// What corners of faces name, as further bits.
+/// What the corners of faces refer to, as further bits.
 enum Named : unsigned { kNamesTexture = 128, kNamesNormals = 256 };
 
-// Bytes of "v 0 0 0".
+// Bytes of the shortest line of a vertex, "v 0 0 0".
 constexpr std::size_t kLeastVertexLine = 7;
 
-/// How much of everything a run of lines holds, or there is before it.
+/// Numbers of vertices, normals and so on: in a run of lines, or before it.
 struct Counts {
   std::size_t vertices = 0, normals = 0, faces = 0, corners = 0;
 
@@ -49,30 +49,30 @@ struct Counts {
   bool operator==(const Counts&) const = default;
 };
 
-/// Where the parts of a mesh are put, each run of lines into its own part of the arrays.
+/// The arrays that are filled, each run of lines its own part.
 struct Arrays {
   Polygons& polygons;
   std::vector<std::uint32_t>& corner_normal;
   std::vector<NumberTriple> position_at, normal_at;
 };
 
-/// How many corners a face's line has.
+/// The number of corners in a face's line.
 std::size_t count_corners(const ObjLine& line) {
   std::size_t corners = 0;
   FastCursor cursor = line.cursor;
   while (cursor.skip_word()) ++corners;
   if (cursor.at_line_end() && cursor.position() + 1 >= line.whole.data() + line.whole.size()) return corners;
-  Scanner words = line.words();  // a comment, or a line that goes on in the next
+  Scanner words = line.words();  // the slow way: a comment follows, or the line goes on in the next one
   for (corners = 0; !words.token().empty();) ++corners;
   return corners;
 }
 
-/// Counts what a run of lines holds. Lines that are wrong are counted somehow: parsing tells.
+/// Counts what a run of lines holds. How malformed lines are counted does not matter: parsing will refuse them.
 Counts count_run(const MeshFile& file, std::size_t begin, std::size_t end) {
   Counts counts;
   for_each_obj_line(file.path, file.text(), begin, end, [&](const ObjLine& line) {
     const bool is_vertex = line.is("v"), is_face = line.is("f");
-    // Lines too short for a vertex would make much of little: they are refused before there is an array.
+    // Lines too short for a vertex are refused here, so that the size of arrays is bounded by that of the file.
     if (is_vertex && line.whole.size() < kLeastVertexLine) {
       NumberTriple ignored;
       line.words().triple("a coordinate", ignored);
@@ -98,7 +98,7 @@ class RunParser {
         to_(to),
         all_(all) {}
 
-  /// What the lines hold besides positions and faces.
+  /// Parses lines from `begin` to `end`. Returns what they hold besides positions and faces, as bits.
   unsigned run(std::size_t begin, std::size_t end) {
     for_each_obj_line(file_.path, text_, begin, end, [&](const ObjLine& line) {
       if (line.is("v")) vertex(line);
@@ -111,7 +111,7 @@ class RunParser {
   }
 
  private:
-  /// A file that says something else when it is read again; what was counted no longer holds.
+  /// Called if parsing finds something else than was counted: the file has changed.
   [[noreturn]] void changed() const {
     scanner_.fail_with("a file that stays as it is", "one that changes while it is read", 0);
   }
@@ -119,7 +119,7 @@ class RunParser {
     if (next_.*what == to_.*what) changed();
     return (next_.*what)++;
   }
-  std::uint64_t place(const char* at) const { return static_cast<std::uint64_t>(at - text_.data()); }
+  std::uint64_t offset_of(const char* at) const { return static_cast<std::uint64_t>(at - text_.data()); }
   void vertex(const ObjLine& line) {
     FastCursor cursor = line.cursor;
     const std::size_t v = take(&Counts::vertices);
@@ -128,7 +128,7 @@ class RunParser {
     bool plain = true;
     for (int k = 0; k < 3 && plain; ++k) {
       cursor.skip_blanks();
-      at.at[k] = place(cursor.position());
+      at.at[k] = offset_of(cursor.position());
       plain = cursor.number(p[k]);
     }
     if (plain && cursor.at_line_end()) return;
@@ -144,7 +144,7 @@ class RunParser {
     bool plain = true;
     for (auto& byte : at.at) {
       cursor.skip_blanks();
-      byte = place(cursor.position());
+      byte = offset_of(cursor.position());
       plain = plain && cursor.skip_word();
     }
     if (plain && cursor.at_line_end()) return;
@@ -190,7 +190,7 @@ class RunParser {
     if (!arrays_.corner_normal.empty()) arrays_.corner_normal[c] = normal;
   }
 
-  /// v, v/vt, v//vn or v/vt/vn; negative numbers count back from the last one read so far.
+  /// Parses a corner: v, v/vt, v//vn or v/vt/vn. Negative numbers count back from the last one that was read.
   void corner(std::string_view token) {
     const std::size_t at = scanner_.position() - token.size();
     std::string_view part[3];
@@ -208,7 +208,8 @@ class RunParser {
     if (!part[1].empty()) extras_ |= kNamesTexture;
     add_corner(vertex, part[2].empty() ? kNoNormal : normal_index(part[2], at));
   }
-  /// Some writers name normals that they do not write.
+  /// The index of a normal; kNoNormal in a file without `vn` lines, as some writers name normals that they do not
+  /// write.
   std::uint32_t normal_index(std::string_view text, std::size_t at) {
     if (all_.normals > 0) return index(text, next_.normals, all_.normals, "normal", at);
     std::int64_t ignored = 0;
@@ -231,7 +232,7 @@ class RunParser {
   void other(const ObjLine& line) {
     scanner_ = line.words();
     const std::string_view keyword = line.keyword;
-    // A file of random bytes is recognised by its first line that is none.
+    // A file that is no OBJ file is recognised by the first line without a plausible keyword.
     if (keyword.size() > 32 || !std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; }))
       scanner_.fail("a line of an OBJ file", scanner_.position() - keyword.size());
     if (keyword == "vt") extras_ |= kTexture;
@@ -249,7 +250,7 @@ class RunParser {
   unsigned extras_ = 0;
 };
 
-/// What stands before each run, and behind the last one.
+/// What there is before each run, and in the whole file.
 std::vector<Counts> count(const MeshFile& file, const std::vector<std::size_t>& cuts) {
   std::vector<Counts> before(cuts.size());
   tbb::parallel_for(std::size_t{1}, cuts.size(),
@@ -278,8 +279,8 @@ Arrays allocate(MeshFile& file, const Counts& all) {
 
 }  // namespace
 
-/// Reads `v`, `vn` and `f` lines; all others stay what they are, bytes that are copied. The lines are counted first, so
-/// that runs of them can be parsed in parallel, straight to where they belong.
+/// Reads `v`, `vn` and `f` lines; all others will be copied as they are. The lines are counted first, so that runs of
+/// them can be parsed in parallel, each into its own part of the arrays.
 void parse_obj(MeshFile& file) {
   use_line_feeds(file);
   const std::vector<std::size_t> cuts = cut_at_lines(file.text(), byte_order_mark(file.text()));

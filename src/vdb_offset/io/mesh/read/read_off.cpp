@@ -13,7 +13,8 @@
 namespace vdb_offset::io {
 namespace {
 
-/// [ST][C][N]OFF: which numbers stand behind a vertex's coordinates. 4OFF and nOFF have other coordinates.
+/// Whether vertices have normals, by the keyword [ST][C][N]OFF, which tells what stands behind their coordinates. 4OFF
+/// and nOFF, which have other coordinates, are refused.
 bool has_normals(const Scanner& scanner, std::string_view keyword, MeshFile& file) {
   std::string_view prefix = keyword;
   if (prefix.size() < 3 || prefix.substr(prefix.size() - 3) != "OFF") scanner.fail("the keyword OFF", 0);
@@ -31,7 +32,7 @@ bool has_normals(const Scanner& scanner, std::string_view keyword, MeshFile& fil
   return normals;
 }
 
-/// A count that the rest of the file can hold, at `least` bytes an item.
+/// Reads a count. \throw InvalidInput for more items than the rest of the file can hold, at `least` bytes each
 std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
   const std::int64_t value = scanner.integer_anywhere(what);
   if (value < 0 || static_cast<std::uint64_t>(value) > scanner.remaining() / least + 1)
@@ -40,7 +41,7 @@ std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
   return static_cast<std::size_t>(value);
 }
 
-/// Numbers of four bytes, big-endian, behind the line that says so.
+/// Parses a binary file: numbers of four bytes, big-endian, behind the first line.
 class BinaryOffParser {
  public:
   BinaryOffParser(MeshFile& file, std::size_t begin) : file_(file), at_(begin) {}
@@ -59,7 +60,7 @@ class BinaryOffParser {
   }
 
  private:
-  static constexpr std::size_t kLeastWords = 5;  // of a face: two counts and three corners
+  static constexpr std::size_t kLeastWords = 5;  // least number of words of a face: two counts and three corners
 
   void read_vertices(std::size_t count, const off::Layout& layout) {
     const std::size_t size = 4 * layout.width;
@@ -106,7 +107,7 @@ class BinaryOffParser {
     at_ += 4;
     return off::integer_at(file_, at_ - 4);
   }
-  /// A count that the rest of the file can hold, at `least` bytes an item.
+  /// Reads a count. \throw InvalidInput for more items than the rest of the file can hold, at `least` bytes each
   std::size_t count(const char* what, std::size_t least) {
     const std::int64_t value = whole(what);
     if (value < 0 || static_cast<std::uint64_t>(value) > left() / least)
@@ -136,7 +137,7 @@ void parse_off(MeshFile& file) {
   const std::size_t vertices = count(scanner, "a number of vertices", 6);
   const bool a_line_each = scanner.at_line_end();
   const std::size_t faces = count(scanner, "a number of faces", 8);
-  // Some writers leave the number of edges away, some give each number a line of its own.
+  // Some writers omit the number of edges, and some write each number on a line of its own.
   if (a_line_each) scanner.integer_anywhere("a number of edges");
   else if (!scanner.at_line_end()) scanner.integer("a number of edges");
   std::vector<NumberTriple> position_at, normal_at;

@@ -18,7 +18,7 @@ namespace vdb_offset::io {
 namespace ply {
 namespace {
 
-// Bytes of "0 0 0" and its line end.
+// Bytes of the shortest line of a vertex, "0 0 0" and a line end.
 constexpr std::size_t kLeastVertexLine = 6;
 
 class PlyParser {
@@ -32,7 +32,7 @@ class PlyParser {
     if (!faces && !strips) missing("an element 'face' or 'tristrips' with a list 'vertex_indices'");
     for (const Element& element : header_.elements) {
       if (find(header_, element.name) != &element) missing("each element once");
-      if (element.properties.empty()) continue;  // takes no bytes, however many there are
+      if (element.properties.empty()) continue;  // rows without properties take no bytes, however many there are
       if (element.name == "vertex") read_vertices(element);
       else if (&element == faces) read_faces(element);
       else if (&element == strips) read_strips(element);
@@ -61,7 +61,7 @@ class PlyParser {
     if (file_.encoding == Encoding::Ascii) file_.position_bytes = file_.normal_bytes = 0;
   }
 
-  /// Which component, 0..2 of the position and 3..5 of the normal, each property is; -1 for none.
+  /// For each property, which component it is: 0 .. 2 of the position, 3 .. 5 of the normal, -1 of neither.
   struct VertexLayout {
     std::vector<int> component;
     bool normals = false;
@@ -91,7 +91,7 @@ class PlyParser {
     return layout;
   }
 
-  /// Binary vertices without lists: the same number of bytes each. False if they are of another kind.
+  /// Reads binary vertices without lists, which all take the same number of bytes. Returns false if they have lists.
   bool read_vertex_records(const Element& element, const VertexLayout& layout) {
     std::uint64_t size = 0;
     std::array<std::uint64_t, 3> offset[2] = {};
@@ -103,24 +103,24 @@ class PlyParser {
     }
     const std::size_t begin = body_.position(), count = element.count;
     if (count > (file_.text().size() - begin) / size) return false;
-    const ByteOffsets places(count, begin, size, offset[0]);
+    const ByteOffsets offsets(count, begin, size, offset[0]);
     const Type type{'f', file_.position_bytes};
     std::atomic<bool> finite = true;
     require_memory(count * sizeof(Vec3d), file_.path);
     file_.polygons.positions.resize(count);
     for_each_index(count, [&](std::size_t v) {
-      const NumberTriple place = places[v];
+      const NumberTriple triple = offsets[v];
       Vec3d& p = file_.polygons.positions[v];
-      for (int k = 0; k < 3; ++k) p[k] = binary_number(file_.text().data() + place.at[k], type, file_.encoding);
+      for (int k = 0; k < 3; ++k) p[k] = binary_number(file_.text().data() + triple.at[k], type, file_.encoding);
       if (!p.isFinite()) finite = false;
     });
-    file_.position_at = places;
+    file_.position_at = offsets;
     if (layout.normals) file_.normal_at = ByteOffsets(count, begin, size, offset[1]);
     if (finite) body_.go_to(begin + count * size);
     return finite;
   }
 
-  /// Vertices that fill a line each. False if they are of another kind.
+  /// Reads vertices of a text that fill a line each. Returns false if they do not.
   bool read_vertex_lines(const Element& element, const VertexLayout& layout) {
     for (const Property& p : element.properties)
       if (p.count) return false;
@@ -164,7 +164,7 @@ class PlyParser {
         }
         const auto c = static_cast<std::size_t>(layout.component[i]);
         if (c >= 3) {
-          at[1].at[c - 3] = body_.place(property.type, "a component of a normal");
+          at[1].at[c - 3] = body_.skip_number(property.type, "a component of a normal");
           continue;
         }
         const double value = body_.take(property.type, "a coordinate", at[0].at[c]);
@@ -198,9 +198,10 @@ class PlyParser {
     file_.extras.emplace_back("triangle strips (the triangles are there)");
     read_lists(element, [&](const Property& property, std::size_t) { read_strip(property); });
   }
-  /// A corner that repeats one of the two before leads on to another place, without a triangle.
+  /// Reads a strip of triangles. Three corners of which two are equal make no triangle: writers use them to go on
+  /// elsewhere.
   void read_strip(const Property& property) {
-    // Without a sign, -1 is the largest number, if that is no vertex.
+    // In a list of unsigned numbers, -1, which ends a strip, is the largest number, unless that is a vertex.
     const double largest = std::ldexp(1.0, 8 * property.type.bytes) - 1;
     const bool largest_ends =
         property.type.kind == 'u' && static_cast<double>(find(header_, "vertex")->count) <= largest;
@@ -228,7 +229,7 @@ class PlyParser {
   }
 
   void read_faces(const Element& element) {
-    if (element.count == 0) return;  // there may be strips
+    if (element.count == 0) return;  // the file may have strips instead
     for (const Property& p : element.properties)
       if (!is_corner_list(p)) file_.extras.push_back("face property '" + p.name + "'");
     const auto lists = std::count_if(element.properties.begin(), element.properties.end(),
@@ -238,7 +239,8 @@ class PlyParser {
     if (!plain) read_faces_one_by_one(element);
   }
 
-  /// Binary faces with a single list. False if something is wrong with them.
+  /// Reads binary faces whose only list is that of their corners. Returns false if there are other lists, or for
+  /// malformed faces.
   bool read_face_records(const Element& element) {
     const auto list = std::find_if(element.properties.begin(), element.properties.end(), is_corner_list);
     std::uint64_t before = 0, around = list->count->bytes;
@@ -279,8 +281,8 @@ class PlyParser {
     return v >= 0 && v <= kMostVertices;
   }
 
-  /// Faces that fill a line each: first their numbers of corners are read, then the corners. False if they are of
-  /// another kind.
+  /// Reads faces of a text that fill a line each: first their numbers of corners, then the corners. Returns false if
+  /// they do not.
   bool read_face_lines(const Element& element) {
     const LineRecords lines(file_.text(), body_.position(), element.count);
     if (!lines.complete()) return false;

@@ -61,12 +61,12 @@ class AsciiStlParser {
     const auto v = static_cast<std::uint32_t>(file_.polygons.positions.size());
     file_.polygons.add_face({v - 3, v - 2, v - 1});
   }
-  /// Some writers put words of their own behind the end of a loop or a facet.
+  /// Skips words behind the end of a loop or a facet: some writers add remarks there.
   void skip_remark() {
     const std::string_view next = Scanner(scanner_).token();
     if (!next.starts_with("end") && !next.starts_with("END") && !is_word(next, "facet")) scanner_.next_line();
   }
-  /// Words and infinities in the place of a normal are common.
+  /// Skips a normal without reading its numbers: words and infinities are common there.
   void normal() { scanner_.skip_triple("three numbers of a normal", normal_at_.emplace_back()); }
   void expect(const char* word) {
     const bool ended = scanner_.at_text_end();
@@ -129,7 +129,7 @@ void parse_stl(MeshFile& file) {
   const std::string_view bytes = file.text();
   const bool says_solid = is_word(Scanner(file.path, bytes, byte_order_mark(bytes)).first_word(), "solid");
   const bool holds_header = bytes.size() >= kHeaderBytes;
-  // Binary files may start with "solid" too; then their size tells. Bytes behind the last facet are kept.
+  // Binary files may also start with "solid": their size tells them from texts. Bytes behind the last facet are kept.
   if (holds_header && (bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)} ||
                        (!says_solid && bytes.size() > kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)})))
     return parse_binary(file);
