@@ -26,8 +26,9 @@ Vec2d turned(const Vec2d& along, const Vec2d& x) {
 using Traits = std::array<double, 3>;
 
 Traits traits_of(const Vec2d& along, const Vec2d& a, const Vec2d& b) {
-  const Vec2d middle = turned(along, (a + b) * 0.5), way = turned(along, b - a);
-  return {middle[0], middle[1], way[0] < 0 ? -way[1] / way.length() : way[1] / way.length()};
+  const Vec2d middle = turned(along, (a + b) * 0.5), direction = turned(along, b - a);
+  return {middle[0], middle[1],
+          direction[0] < 0 ? -direction[1] / direction.length() : direction[1] / direction.length()};
 }
 
 }  // namespace
@@ -61,9 +62,11 @@ void OrientedBoxes::build(std::size_t level, std::size_t node) {
 Vec2d OrientedBoxes::mean_direction(std::span<const std::uint32_t> segments) const {
   Vec2d sum(0.0);
   for (const auto s : segments) {
-    const Vec2d way = end_of(s, 1) - end_of(s, 0);
-    const double length = way.length();
-    if (length > 0) sum += Vec2d((way[0] - way[1]) * (way[0] + way[1]), 2 * way[0] * way[1]) / length;
+    const Vec2d direction = end_of(s, 1) - end_of(s, 0);
+    const double length = direction.length();
+    if (length > 0)
+      sum += Vec2d((direction[0] - direction[1]) * (direction[0] + direction[1]), 2 * direction[0] * direction[1]) /
+             length;
   }
   const double angle = std::atan2(sum[1], sum[0]) / 2;
   return {std::cos(angle), std::sin(angle)};

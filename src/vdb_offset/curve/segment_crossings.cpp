@@ -24,7 +24,7 @@ bool boxes_meet(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) 
   return true;
 }
 
-/// Whether the ways from p to b and to d run along the same line to the same side.
+/// Whether the segments from p to b and from p to d lie on one line and run in the same direction.
 bool overlap_from(const Vec2d& p, const Vec2d& b, const Vec2d& d) {
   if (side_of(p, b, d) != 0) return false;
   const int k = p[0] != b[0] ? 0 : 1;

@@ -12,8 +12,8 @@
 namespace vdb_offset {
 
 /// Fans of segments: those out of a point that many share. Two of a fan meet elsewhere than in it only if they
-/// run the same way, so that they are kept in the order of their directions (by exact predicates), and none is compared
-/// with all. A segment between two such points is in the fan of the first. Memory: 60 bytes a segment in fans.
+/// run in the same direction, so that they are kept in the order of their directions (by exact predicates), and none is
+/// compared with all. A segment between two such points is in the fan of the first. Memory: 60 bytes a segment in fans.
 class SegmentFans {
  public:
   /// Fewer segments than this around a point are compared faster one by one.
@@ -37,8 +37,8 @@ class SegmentFans {
     return empty() || fan_of_[segment] == kNoFan ? Row{} : fans_[fan_of_[segment]].row;
   }
 
-  /// Calls is_it(t) for each other segment t of the same fan that runs the same way, until one is what is looked for;
-  /// whether one is.
+  /// Calls is_it(t) for each other segment t of the same fan that runs in the same direction, until one is what is
+  /// looked for; whether one is.
   template <class IsIt>
   bool any_along(std::uint32_t segment, IsIt&& is_it) const;
 

@@ -61,7 +61,8 @@ Json facts_json(const MeshFacts& facts) {
           {"longest_sliver", facts.longest_sliver}};
 }
 
-/// Names of files and parts may hold bytes that are no UTF-8, which JSON has no place for.
+/// A report as text. Names of files and parts may hold bytes that are no UTF-8, and so not allowed in JSON: they are
+/// replaced.
 std::string as_text(const Json& report) { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json faults_json(const FaultCounts& counts) {
@@ -277,7 +278,7 @@ Json surface_json(const IsoStatistics& found) {
           {"face_interior_error", interior_json(found.interior)}};
 }
 
-/// `achieved` sums up what became of the vertices, of which `distance` was the farthest that was asked.
+/// The report of an offset. `achieved` sums up what became of the vertices; `distance` is the farthest one asked for.
 std::string report_of(const OffsetStatistics& statistics, double distance, const AchievedSummary& achieved,
                       const RunFacts& run) {
   Json seconds = Json::object(), states = Json::object();

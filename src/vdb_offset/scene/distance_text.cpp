@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances as users write them: numbers, percent and expressions.
+// Reads distances as users write them: numbers, percentages and expressions.
 #include <fmt/format.h>
 
 #include <string_view>

@@ -11,12 +11,12 @@ namespace vdb_offset::scene {
 
 Vec3d Answer::lifted(const Vec3d& source, double distance) const {
   const double x = std::abs(source[0]), y = std::abs(source[1]);
-  constexpr double kOnEdge = 1e-9;  // world units, of scenes of size 1 or so
+  constexpr double kOnEdge = 1e-9;  // world units; scenes have a size near 1
   if (std::max(x, y) > radius + kOnEdge) return source;
   if (std::max(x, y) < radius - kOnEdge) return source + Vec3d(0, 0, distance);
-  Vec3d way(x < radius - kOnEdge ? 0.0 : std::copysign(shift[0], source[0]),
-            y < radius - kOnEdge ? 0.0 : std::copysign(shift[1], source[1]), shift[2]);
-  return way.lengthSqr() > 0 ? source + way.unit() * distance : source;
+  Vec3d direction(x < radius - kOnEdge ? 0.0 : std::copysign(shift[0], source[0]),
+                  y < radius - kOnEdge ? 0.0 : std::copysign(shift[1], source[1]), shift[2]);
+  return direction.lengthSqr() > 0 ? source + direction.unit() * distance : source;
 }
 
 Vec3d Answer::operator()(const Vec3d& source, double distance) const {
@@ -54,7 +54,7 @@ std::vector<std::string> unmet(const Expectations& expect, PolygonView source, c
     ++used;
     const bool there = result.states[v] == VertexState::Reached;
     reached += there;
-    // An obstacle's answer holds for those that it stops, too.
+    // The answer for a vertex under an obstacle also holds where the obstacle stops it.
     if (expect.answer && (there || expect.answer->form == Answer::Form::Under))
       worst =
           std::max(worst, (result.positions[v] - (*expect.answer)(source.positions[v], result.distances[v])).length());

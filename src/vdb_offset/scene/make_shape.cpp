@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes of scenes by their names, with the numbers that each asks for.
+// Makes the shapes of scenes by their names, and reads the numbers that each of them takes.
 #include <algorithm>
 #include <functional>
 #include <map>

@@ -78,7 +78,7 @@ Distance read_distance(JsonObject& offset) {
   return {offset.number("distance"), false, {}};
 }
 
-/// The faces that lie in a box, corners and all.
+/// Marks the faces that lie in a box with all of their corners.
 std::vector<std::uint8_t> faces_within(JsonObject box, PolygonView mesh) {
   const Vec3d lower = box.vector("lower"), upper = box.vector("upper");
   box.finish();
@@ -93,7 +93,7 @@ std::vector<std::uint8_t> faces_within(JsonObject box, PolygonView mesh) {
   return marks;
 }
 
-/// A mesh beside the scene's own, and how near they may be.
+/// Reads a mesh beside the scene's own, and the clearance to it.
 Polygons read_beside(JsonObject beside, double& clearance) {
   const Vec3d at = beside.vector("at");
   clearance = beside.number("clearance", 0);
@@ -113,8 +113,8 @@ void read_part_and_obstacle(JsonObject& offset, Scene& scene) {
   if (offset.find("obstacle")) scene.obstacle = read_beside(offset.object("obstacle"), scene.clearance);
 }
 
-/// How far the shape goes.
-void read_ways(JsonObject& offset, Scene& scene) {
+/// Reads how far the shape is offset: a distance, or a mesh to fit.
+void read_distances(JsonObject& offset, Scene& scene) {
   if (!offset.find("fit")) {
     scene.distance = read_distance(offset);
     return;
@@ -125,7 +125,7 @@ void read_ways(JsonObject& offset, Scene& scene) {
   if (!(scene.clearance > 0)) offset.fail("'fit' with a 'clearance' above 0");
 }
 
-/// Refuses a key that an object has twice, one of which the parser would drop without a word.
+/// Refuses a key that an object has twice, since the parser would silently drop one of the two.
 json::parser_callback_t require_keys_once(const std::string& path) {
   return [&path, keys = std::vector<std::set<std::string>>()](int, json::parse_event_t event, json& parsed) mutable {
     if (event == json::parse_event_t::object_start) keys.emplace_back();
@@ -138,9 +138,9 @@ json::parser_callback_t require_keys_once(const std::string& path) {
 }
 
 json parse_file(const std::string& path) {
-  constexpr std::size_t kLongestError = 200;  // characters; the parser repeats what it has read
-  // Bytes in memory for a byte of text, as an array of digits has them; and size of a text that is not worth a
-  // question.
+  constexpr std::size_t kLongestError = 200;  // bytes; the parser's message repeats what it has read
+  // kMostPerByte: bytes in memory for a byte of text, as in an array of digits. kSmall: bytes; smaller texts are not
+  // worth asking the system for the memory in use.
   constexpr std::size_t kMostPerByte = 32, kSmall = std::size_t{1} << 20;
   const io::FileBytes bytes = io::FileBytes::open(path);
   if (bytes.view().size() > kSmall) require_memory(kMostPerByte * bytes.view().size(), path);
@@ -175,7 +175,7 @@ Scene read_scene(const std::string& path) {
   if (root.find("file")) scene.mesh_path = (std::filesystem::path(path).parent_path() / root.text("file")).string();
   else scene.shape = make_shape(root.object("shape"));
   JsonObject offset = root.object("offset");
-  read_ways(offset, scene);
+  read_distances(offset, scene);
   if (offset.find("collision")) {
     const std::string collision = offset.text("collision");
     if (collision != "limit" && collision != "merge") offset.fail("a collision among limit, merge");

@@ -18,7 +18,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kMostDivisions = 20000;  // a mistyped number is not to fill the memory, nor its square an int
+constexpr int kMostDivisions =
+    20000;  // a mistyped number must not fill the memory, and its square has to fit into an int
 
 void require_count(const char* what, int value, int least) {
   if (value < least || value > kMostDivisions)
@@ -29,9 +30,10 @@ void require_length(const char* what, double value) {
     throw InvalidInput(fmt::format("shape: expected {} > 0, got {}", what, value));
 }
 
-/// \throw OutOfBudget if so many more faces do not fit, with as many points and, of each, its number by its position.
+/// \throw OutOfBudget if so many more faces do not fit into memory, with as many points and their entries in Builder's
+/// map.
 void require_room(std::size_t faces) {
-  constexpr std::size_t kFaceBytes = 5 * 4, kPointBytes = sizeof(Vec3d) + 80;  // the map's node, as libstdc++ has it
+  constexpr std::size_t kFaceBytes = 5 * 4, kPointBytes = sizeof(Vec3d) + 80;  // 80: a node of the map, in libstdc++
   require_memory(faces * (kFaceBytes + kPointBytes), "shape");
 }
 
@@ -44,7 +46,7 @@ class Builder {
     if (added) mesh_.positions.push_back(p);
     return at->second;
   }
-  /// Corners that coincide are left out, so that a quad at a pole becomes a triangle.
+  /// Adds a face. Corners that coincide are left out, so that a quad at a pole becomes a triangle.
   void face(std::initializer_list<Vec3d> points) {
     std::vector<std::uint32_t> corners;
     for (const Vec3d& p : points) {
@@ -55,7 +57,7 @@ class Builder {
     mesh_.corners.insert(mesh_.corners.end(), corners.begin(), corners.end());
     mesh_.close_face();
   }
-  /// The quads of a map from the unit square, counter-clockwise in (u, v).
+  /// Adds the quads of a map from the unit square, counter-clockwise in (u, v).
   template <class Map>
   void grid(int nu, int nv, Map&& at) {
     require_room(static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv));
@@ -69,7 +71,7 @@ class Builder {
   std::map<std::array<double, 3>, std::uint32_t> index_;
 };
 
-/// The six sides of a box; `inward` turns all faces round.
+/// Adds the six sides of a box. `inward` reverses all faces.
 void add_box(Builder& builder, const Vec3d& lower, const Vec3d& upper, int divisions, bool inward = false) {
   const auto at = [&](int axis, int n) {
     return n == divisions ? upper[axis] : lower[axis] + (upper[axis] - lower[axis]) * n / divisions;
@@ -102,7 +104,7 @@ Vec3d on_circle(double radius, int i, int segments, double z) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// A closed outline in x and y with a hole, of as many points, extruded along z.
+/// Adds a closed outline in x and y with a hole, both of the same number of points, extruded along z.
 template <class Outer, class Inner>
 void add_extrusion(Builder& builder, int points, double height, int stacks, Outer&& outer, Inner&& inner) {
   const auto level = [&](int k) { return -height / 2 + height * k / stacks; };
@@ -115,7 +117,7 @@ void add_extrusion(Builder& builder, int points, double height, int stacks, Oute
   }
 }
 
-/// Of a sphere, from one latitude up to its pole.
+/// The part of a sphere from a latitude up to the north pole.
 Polygons zone(double radius, int segments, int rings, double lowest) {
   require_length("a radius", radius);
   require_count("segments", segments, 3);
@@ -312,7 +314,8 @@ Polygons naca_wing(const std::string& digits, double chord, double span, int poi
   const double camber = (digits[0] - '0') / 100.0, camber_at = (digits[1] - '0') / 10.0,
                thickness = ((digits[2] - '0') * 10 + (digits[3] - '0')) / 100.0;
   require_length("a thickness (the last two digits)", thickness);
-  // Upper (side = 1) or lower side at the i-th of points + 1 places from nose to trailing edge, dense at both.
+  // The i-th of points + 1 points from nose to trailing edge, on the upper (side = 1) or the lower side (-1). They are
+  // denser at both ends.
   const auto section = [&](int i, int side, double y) {
     const double x = (1 - std::cos(pi * i / points)) / 2;
     const double t =
@@ -363,7 +366,7 @@ Polygons bumpy_sphere(double radius, double amplitude, double frequency, unsigne
   require_length("a frequency", frequency);
   if (!(std::abs(amplitude) < radius)) throw InvalidInput("shape: expected an amplitude below the radius");
   Polygons mesh = icosphere(radius, subdivisions);
-  // The engine's raw numbers are the same everywhere; the library's distributions need not be.
+  // Raw numbers of the engine are used: they are the same everywhere, unlike those of the library's distributions.
   std::mt19937 engine(seed);
   const auto random = [&] { return static_cast<double>(engine()) / 4294967296.0; };
   struct Wave {

@@ -28,15 +28,16 @@ struct CellPoints {
   }
 };
 
-/// The scaled Jacobian of a tetrahedron: the products at all corners have one sign, and the least size is at the corner
-/// with the longest edges, below 0 as well.
+/// The scaled Jacobian of a tetrahedron: its triple products are the same at all corners, so that the scaled one is
+/// least in size where the edges are longest. That one counts if it is below 0, too.
 double tetrahedron_jacobian(const CellPoints& x, std::size_t a, std::size_t b, std::size_t c, std::size_t apex) {
   return std::numbers::sqrt2 * std::min({x.at_corner(a, b, c, apex), x.at_corner(b, c, a, apex),
                                          x.at_corner(c, a, b, apex), x.at_corner(apex, b, a, c)},
                                         [](double p, double q) { return std::abs(p) < std::abs(q); });
 }
 
-/// The scaled Jacobian of a pyramid. Each of its four tetrahedra has 1 / sqrt 2 if all edges are of one length.
+/// The scaled Jacobian of a pyramid: the least of its four tetrahedra, scaled so that a pyramid with edges of one
+/// length, where each has 1 / sqrt 2, has 1.
 double pyramid_jacobian(const CellPoints& x) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 4; ++k) least = std::min(least, tetrahedron_jacobian(x, k, (k + 1) % 4, (k + 2) % 4, 4));
@@ -55,28 +56,28 @@ struct EdgeLengths {
   double ratio() const { return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity(); }
 };
 
-Vec3Of<double> way_to(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+Vec3Of<double> one_lane(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
 CellQuality prism_quality(const CellPoints& x) {
-  const PrismLevel<double> below({way_to(x[0]), way_to(x[1]), way_to(x[2])}),
-      above({way_to(x[3]), way_to(x[4]), way_to(x[5])});
+  const PrismLevel<double> below({one_lane(x[0]), one_lane(x[1]), one_lane(x[2])}),
+      above({one_lane(x[3]), one_lane(x[4]), one_lane(x[5])});
   return prism_quality_of(prism_squares(below, above));
 }
 
-Vec3Of<double2> ways(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
+Vec3Of<double2> differences(const Vec3d& from, const Vec3d& to, const Vec3d& other_from, const Vec3d& other_to) {
   return {double2{to[0] - from[0], other_to[0] - other_from[0]}, double2{to[1] - from[1], other_to[1] - other_from[1]},
           double2{to[2] - from[2], other_to[2] - other_from[2]}};
 }
 
-/// The quality of a hexahedron, with its base and its top at once in two lanes.
+/// The quality of a hexahedron. Base and top are computed at once, in two lanes.
 CellQuality hexahedron_quality(const CellPoints& x) {
   EdgeLengths lengths;
   Vec3Of<double2> along[4], up[4];
   double2 along2[4], up2[4];
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t next = (k + 1) % 4;
-    along[k] = ways(x[k], x[next], x[4 + k], x[4 + next]);
-    up[k] = ways(x[k], x[4 + k], x[k], x[4 + k]);
+    along[k] = differences(x[k], x[next], x[4 + k], x[4 + next]);
+    up[k] = differences(x[k], x[4 + k], x[k], x[4 + k]);
     along2[k] = along[k].dot(along[k]);
     up2[k] = up[k].dot(up[k]);
     for (const double squared : {along2[k][0], along2[k][1], up2[k][0]}) lengths.add(squared);
@@ -95,7 +96,7 @@ CellQuality hexahedron_quality(const CellPoints& x) {
   return {std::min(unit_triple(u, v, w), corners.jacobian), corners.aspect};
 }
 
-/// Twice the area vector of a face with so many corners at(0), at(1) ...
+/// Twice the area vector of a face with corners at(0), at(1) ...
 template <class At>
 Vec3d twice_area(std::size_t corners, At&& at) {
   Vec3d sum(0.0);
@@ -202,7 +203,7 @@ std::array<VolumeField, 2> quality_fields(const VolumeMesh& mesh) {
 }
 
 double enclosed_volume(const VolumeMesh& mesh) {
-  // Faces that are summed up in order by one thread. For speed alone; not measured.
+  // Faces that one thread adds up in order. The sum depends on it in its last bits; not measured beside other sizes.
   constexpr std::size_t kBlock = 4096;
   double sum = 0;
   for (const BoundaryPatch& patch : mesh.patches) {
@@ -227,7 +228,7 @@ double wall_angle(std::span<const Vec3d> wall, std::span<const Vec3d> first) {
   for (std::size_t k = 0; k < wall.size(); ++k) rise += first[k] - wall[k];
   const bool edge = wall.size() == 2;
   const Vec3d axis = edge ? wall[1] - wall[0] : twice_area(wall.size(), [&](std::size_t k) { return wall[k]; });
-  // By the tangent, since the cosine is too flat to tell small angles.
+  // Computed from the tangent, as the cosine hardly changes at small angles.
   double along = std::abs(axis.dot(rise)), across = axis.cross(rise).length();
   if (edge) std::swap(along, across);
   return along > 0 ? std::atan2(across, along) * 180 / std::numbers::pi : 90;

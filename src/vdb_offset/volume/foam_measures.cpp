@@ -39,7 +39,7 @@ FoamFace foam_face_of(std::size_t size, At&& at) {
   return {centres / (3 * areas), normals / 2};
 }
 
-/// The faces of a cell as OpenFOAM sees them, outward.
+/// The centres and area vectors of a cell's faces, outward.
 std::span<const FoamFace> faces_of(const VolumeMesh& mesh, std::size_t cell) {
   thread_local std::vector<FoamFace> faces;
   faces.clear();
@@ -69,27 +69,27 @@ bool is_seen_from_inside(const FoamFace& face, const Vec3d& centre) {
   // The least cosine between the face's area vector and the direction from the centre: what OpenFOAM computes in
   // another order may be off by a few 1e-16. Not measured.
   constexpr double kLeast = 1e-9;
-  const Vec3d way = face.centre - centre;
-  const double volume = face.area.dot(way);
-  return volume > 0 && volume * volume > kLeast * kLeast * face.area.lengthSqr() * way.lengthSqr();
+  const Vec3d direction = face.centre - centre;
+  const double volume = face.area.dot(direction);
+  return volume > 0 && volume * volume > kLeast * kLeast * face.area.lengthSqr() * direction.lengthSqr();
 }
 
 /// The distance of a face's centre from the line between two cells' centres, in the face, divided by the face's size in
 /// that direction.
-/// \param way from the one centre to the other
-/// \param least_size of the face, as a share of `way`
+/// \param line from one centre to the other
+/// \param least_size the least size of the face that counts, as a share of the length of `line`
 double skewness_of(const VolumeMesh& mesh, std::span<const std::uint32_t> corners, const FoamFace& face,
-                   const Vec3d& centre, const Vec3d& way, double least_size) {
+                   const Vec3d& centre, const Vec3d& line, double least_size) {
   const Vec3d to_face = face.centre - centre;
-  const Vec3d beside = to_face - (face.area.dot(to_face) / (face.area.dot(way) + kRootVerySmall)) * way;
+  const Vec3d beside = to_face - (face.area.dot(to_face) / (face.area.dot(line) + kRootVerySmall)) * line;
   const double length = beside.length();
   const Vec3d direction = beside / (length + kRootVerySmall);
-  double size = least_size * way.length() + kRootVerySmall;
+  double size = least_size * line.length() + kRootVerySmall;
   for (const std::uint32_t p : corners) size = std::max(size, std::abs(direction.dot(mesh.points[p] - face.centre)));
   return length / size;
 }
 
-/// Sums over faces, which are added up block by block in order.
+/// Sums over faces. They are made block by block, and blocks are added in order.
 struct Sums {
   FoamQuality quality;
   double cosines = 0;
@@ -125,7 +125,8 @@ class FoamMeasurer {
  private:
   template <class Add>
   static Sums sum_up(std::size_t count, Add&& add) {
-    // Cells, or faces, that are summed up in order by one thread. For speed alone; not measured.
+    // Cells, or faces, that one thread adds up in order. Sums depend on it in their last bits; not measured beside
+    // other sizes.
     constexpr std::size_t kFoamBlock = 2048;
     std::vector<Sums> blocks((count + kFoamBlock - 1) / kFoamBlock);
     for_each_index(
@@ -153,16 +154,16 @@ class FoamMeasurer {
 
   void add_inner_face(std::size_t c, std::size_t other, std::span<const std::uint32_t> corners, Sums& sums) const {
     const FoamFace seen = foam_face(mesh_, corners);
-    const Vec3d way = centres_[other] - centres_[c];
+    const Vec3d line = centres_[other] - centres_[c];
     const bool from_other = is_seen_from_inside({seen.centre, -seen.area}, centres_[other]);
     sums.quality.wrong_faces += !is_seen_from_inside(seen, centres_[c]) || !from_other;
-    const double cosine = seen.area.dot(way) / (seen.area.length() * way.length() + kVerySmall);
+    const double cosine = seen.area.dot(line) / (seen.area.length() * line.length() + kVerySmall);
     const double degrees = degrees_of(cosine);
     ++sums.inner_faces;
     sums.cosines += cosine;
     sums.quality.non_orthogonality = std::max(sums.quality.non_orthogonality, degrees);
     sums.quality.non_orthogonal_faces += degrees > FoamQuality::kMostDegrees;
-    add_skewness(skewness_of(mesh_, corners, seen, centres_[c], way, 0.2), sums);
+    add_skewness(skewness_of(mesh_, corners, seen, centres_[c], line, 0.2), sums);
   }
 
   void add_boundary_face(const BoundaryPatch& patch, std::size_t f, Sums& sums) const {
@@ -170,8 +171,8 @@ class FoamMeasurer {
     const Vec3d& centre = centres_[patch.cell[f]];
     sums.quality.wrong_faces += !is_seen_from_inside(seen, centre);
     const Vec3d normal = seen.area / (seen.area.length() + kRootVerySmall);
-    const Vec3d way = normal * normal.dot(seen.centre - centre);
-    add_skewness(skewness_of(mesh_, patch.face(f), seen, centre, way, 0.4), sums);
+    const Vec3d line = normal * normal.dot(seen.centre - centre);
+    add_skewness(skewness_of(mesh_, patch.face(f), seen, centre, line, 0.4), sums);
   }
 
   static void add_skewness(double skewness, Sums& sums) {

@@ -9,7 +9,7 @@
 namespace vdb_offset {
 namespace {
 
-/// By hand, as <cctype> depends on the locale.
+/// Whether a byte is an ASCII letter. Not by <cctype>, which depends on the locale.
 bool is_ascii_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) {
   return is_ascii_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';

@@ -14,11 +14,11 @@ namespace vdb_offset {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-// The number of corners up to which all splits of a polygon are searched, at O(corners^3); polygons of more have one
-// split. Not measured.
+// Largest number of corners of a polygon whose best split is searched, which takes O(corners^3). A larger polygon is
+// split in one way only. Not measured.
 constexpr std::size_t kFewCorners = 32;
 
-/// Twice the area vector of a polygon, as seen from behind.
+/// Twice the area vector of a polygon, in the direction from which it runs clockwise.
 Vec3d area_from_below(const std::vector<Vec3d>& ring) {
   Vec3d sum(0.0);
   for (std::size_t k = ring.size() - 1; k > 1; --k) sum += (ring[k] - ring[0]).cross(ring[k - 1] - ring[0]);
@@ -31,8 +31,8 @@ struct Corner {
       : previous(ring[(k + ring.size() - 1) % ring.size()]), at(ring[k]), next(ring[(k + 1) % ring.size()]) {}
 
   bool turns_outwards(const Vec3d& from_below) const {
-    // The least sine of the angle by which a corner has to turn: corners that are straight but for rounding say nothing
-    // about the prism. Far above rounding, far below all corners that are meant; not measured.
+    // Least sine of the angle at a corner that counts: corners that are straight but for rounding say nothing about the
+    // prism. Far above rounding, far below corners that are intended. Not measured.
     constexpr double kStraight = 1e-6;
     return unit_triple(at - next, previous - at, from_below) >= kStraight;
   }
@@ -52,8 +52,8 @@ double least_at_corners(const PolygonPrism& prism) {
   return least;
 }
 
-/// The least cosine between the edges upwards and the triangles' normals of the prism over three corners; infinite if
-/// all three are flat.
+/// The least cosine between the edges upwards and the normals of base and top, of the prism over three corners.
+/// Infinite if all three corners are flat.
 double least_lean(const PolygonPrism& prism, const std::array<std::size_t, 3>& corners) {
   const auto normal = [&](const std::vector<Vec3d>& ring) {
     return (ring[corners[1]] - ring[corners[0]]).cross(ring[corners[2]] - ring[corners[0]]);
@@ -71,7 +71,7 @@ double least_lean(const PolygonPrism& prism, const std::array<std::size_t, 3>& c
   return least;
 }
 
-/// The least lean in the split in which it is largest. best[i][j] is that of the polygon from corner i to j and back.
+/// The least lean in the best split of the base. best[i][j] is that of the polygon from corner i to corner j and back.
 double best_split(const PolygonPrism& prism) {
   const std::size_t n = prism.size();
   std::vector<double> best(n * n, kUnbounded);

@@ -23,7 +23,7 @@ std::uint32_t lowest_corner(const Face& face, std::size_t size) {
   return lowest;
 }
 
-/// Calls visit(local, face) for all faces of a cell. The stream of a polyhedron is gone through once.
+/// Calls visit(local, face) for all faces of a cell. The stream of a polyhedron is read once.
 template <class Visit>
 void for_each_face(const VolumeMesh& mesh, std::size_t c, Visit&& visit) {
   const auto corners = mesh.cell(c);
@@ -65,7 +65,8 @@ SidesByPoint by_lowest_corner(const VolumeMesh& mesh, std::size_t side_count) {
   return result;
 }
 
-/// A side with a key that tells faces with the same lowest corner apart if they have three corners.
+/// A side, with a key of the face's corners. Of faces with three corners and the same lowest one, equal keys mean equal
+/// faces.
 struct KeyedSide {
   std::uint64_t key;
   VolumeFaces::Side side;
@@ -75,7 +76,7 @@ struct KeyedSide {
   }
 };
 
-/// Buffers of a thread, kept from point to point.
+/// Buffers of a thread, reused from point to point.
 struct MatchBuffers {
   std::vector<KeyedSide> sides;
   std::vector<std::uint32_t> first, second;
