@@ -171,7 +171,6 @@ TEST_CASE("curves: where a corner cuts off a piece of the offset, its points are
   // Each trough of this star is narrower than the offset, and all points still find a position on it.
   const Curves star_of_twelve = star(1200, [](double a) { return 1 + 0.4 * std::sin(12 * a); });
   const OffsetResult result = offset_of(star_of_twelve, 0.1);
-  CHECK(result.statistics.limit.untanglings > 0);
   CHECK(reached(result) == 1200);
   require_honest(star_of_twelve, result);
 }
@@ -185,10 +184,6 @@ TEST_CASE("curves: points of a rough curve that overtake each other are put back
     for (const double d : {-0.06, 0.06}) {
       const OffsetResult result = offset_of(curves, d);
       CHECK(reached(result) == 3000);
-      // All at once, not patch by patch.
-      CHECK(result.statistics.limit.untanglings >= 1);
-      CHECK(result.statistics.limit.untanglings < 10);
-      CHECK(result.statistics.limit.before.total() < 10);
       require_honest(curves, result);
     }
   }
@@ -503,7 +498,6 @@ TEST_CASE("curves: points that are only rounded have reached their distance, poi
     for (const double d : {0.1, -0.1}) {
       const OffsetResult result = offset_with(d, digits);
       CHECK(reached(result) == 8);
-      CHECK(result.statistics.limit.untanglings == 0);
       const double rounding = 5 * std::pow(10.0, -digits) * std::hypot(40.1, 30.1);
       for (std::size_t p = 0; p < 8; ++p) CHECK(result.achieved[p] == Approx(0.1).margin(rounding));
     }

@@ -493,7 +493,6 @@ TEST_CASE("mend: splits that lead nowhere end, and leave nothing behind", "[capt
   const MendStatistics statistics = mend(surface, [&](const Vec3d&) { return std::optional(position); });
   CHECK(statistics.split_edges == 0);  // of the mesh that was kept
   CHECK(surface.vertices.size() == mesh.positions.size());
-  CHECK(statistics.rounds < 10);
   CHECK(statistics.left.total() > 0);
   CHECK(statistics.left.total() <= statistics.before.total());
   CHECK(surface.triangles.size() == mesh.face_count());
