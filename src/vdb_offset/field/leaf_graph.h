@@ -92,12 +92,12 @@ inline constexpr int padded_index(int n) { return padded_index(n >> 6, n >> 3 & 
 namespace detail {
 template <int kFace, class Visit>
 void for_each_halo_voxel(Visit&& visit) {
-  constexpr int axis = kFace / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-  constexpr int padded = kFace % 2 ? kLeafWidth + 1 : 0, there = kFace % 2 ? 0 : kLeafWidth - 1;
+  constexpr int kAxis = kFace / 2, kU = kAxis == 0 ? 1 : 0, kV = kAxis == 2 ? 1 : 2;
+  constexpr int kPadded = kFace % 2 ? kLeafWidth + 1 : 0, kThere = kFace % 2 ? 0 : kLeafWidth - 1;
   for (int a = 0; a < kLeafWidth; ++a)
     for (int b = 0; b < kLeafWidth; ++b)
-      visit(padded * kPaddedStride[axis] + (a + 1) * kPaddedStride[u] + (b + 1) * kPaddedStride[v],
-            there * kLeafStride[axis] + a * kLeafStride[u] + b * kLeafStride[v]);
+      visit(kPadded * kPaddedStride[kAxis] + (a + 1) * kPaddedStride[kU] + (b + 1) * kPaddedStride[kV],
+            kThere * kLeafStride[kAxis] + a * kLeafStride[kU] + b * kLeafStride[kV]);
 }
 }  // namespace detail
 

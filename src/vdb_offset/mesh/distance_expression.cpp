@@ -65,13 +65,13 @@ struct Evaluator {
 
 /// Names of functions, and how many arguments each takes: -1 for one or more.
 const std::map<std::string, int, std::less<>>& functions() {
-  static const auto known = [] {
+  static const auto kKnown = [] {
     std::map<std::string, int, std::less<>> arguments;
     const mu::Parser parser;
     for (const auto& [name, callback] : parser.GetFunDef()) arguments[name] = callback.GetArgc();
     return arguments;
   }();
-  return known;
+  return kKnown;
 }
 
 std::string known_names() {

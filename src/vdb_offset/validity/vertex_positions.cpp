@@ -60,7 +60,7 @@ VertexPositions::VertexPositions(const ConstrainedSurface& constrained, std::spa
       distance_(source.size()),
       closest_(source.size(), kNone),
       right_side_(source.size(), 1),
-      nearness_(source.size(), Sole) {
+      nearness_(source.size(), Nearness::Sole) {
   VDB_OFFSET_ASSERT(source.size() == surface_.vertices.size());
   VDB_OFFSET_ASSERT(distances.uniform() || distances.count() == source.size());
   VDB_OFFSET_ASSERT(!constrained.file || constrained.file->source.size() == source.size());
@@ -119,14 +119,15 @@ void VertexPositions::measure(std::span<const std::uint32_t> vertices, const Pat
       distance_[v] = 0;
       closest_[v] = kNone;
       right_side_[v] = 1;
-      nearness_[v] = Sole;
+      nearness_[v] = Nearness::Sole;
       continue;
     }
     const Vec3d x = in_frame(v);
     if (ends && is_known(v, x, *ends)) {
       std::uint32_t triangle = ends->closest[v];
       const TrianglePoint nearest = moving_part.walk_to_closest(x, triangle);
-      take(v, x, {std::sqrt(nearest.squared_distance), triangle, nearest.feature, false, nearest.point}, Found);
+      take(v, x, {std::sqrt(nearest.squared_distance), triangle, nearest.feature, false, nearest.point},
+           Nearness::Found);
     } else {
       unknown.push_back(v);
     }
@@ -145,7 +146,7 @@ void VertexPositions::measure_exactly(std::span<const std::uint32_t> vertices) {
   std::vector<Closest> answers(points.size());
   constrained_.moving_part.answer_together(points, hints, answers);
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    take(vertices[i], points[i], answers[i], answers[i].tied ? Tied : Sole);
+    take(vertices[i], points[i], answers[i], answers[i].tied ? Nearness::Tied : Nearness::Sole);
 }
 
 void VertexPositions::take(std::uint32_t v, const Vec3d& x, const Closest& closest, Nearness nearness) {
@@ -166,7 +167,7 @@ void VertexPositions::find_ties_around(const Indices& triangles) {
   for (const auto t : triangles) {
     const auto& corners = surface_.triangles[t];
     if (!constrained_.triangle_on_part(t) || std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-          return chosen[v] || (nearness_[v] != Found && distance_[v] >= near_);
+          return chosen[v] || (nearness_[v] != Nearness::Found && distance_[v] >= near_);
         }))
       continue;
     // The corner where the triangle most clearly is the right way round, as far as is known.
@@ -174,7 +175,7 @@ void VertexPositions::find_ties_around(const Indices& triangles) {
     std::uint32_t best = kNone;
     double most = 0;
     for (const auto v : corners) {
-      if (nearness_[v] != Found) continue;
+      if (nearness_[v] != Nearness::Found) continue;
       const double along = outward.dot(away_[v]) / distance_[v];
       if (best == kNone || along > most) best = v, most = along;
     }
@@ -231,7 +232,8 @@ bool VertexPositions::looks_away(const Vec3d& outward, const Vec3d& x, const Vec
 
 bool VertexPositions::looks_away(const Vec3d& outward, std::uint32_t v) const {
   const Vec3d x = in_frame(v);
-  if (nearness_[v] != Found) return looks_away(outward, x, away_[v], distance_[v], nearness_[v] == Tied);
+  if (nearness_[v] != Nearness::Found)
+    return looks_away(outward, x, away_[v], distance_[v], nearness_[v] == Nearness::Tied);
   const Closest closest = constrained_.moving_part(x, closest_[v]);
   return looks_away(outward, x, x - closest.point, closest.distance, closest.tied);
 }
@@ -243,7 +245,7 @@ bool VertexPositions::faces_against_part(std::uint32_t t) const {
   // Corners of which ties are known cost next to nothing, and go first.
   for (const bool known : {true, false})
     for (const auto v : {a, b, c}) {
-      if (distance_[v] < near_ || (nearness_[v] != Found) != known) continue;
+      if (distance_[v] < near_ || (nearness_[v] != Nearness::Found) != known) continue;
       any = true;
       if (looks_away(outward, v)) return false;
     }

@@ -28,13 +28,18 @@ inline Vec3d twice_area(const Surface& surface, std::uint32_t triangle, std::spa
 /// middle sheet of a wall: then a face is to look away from each of them.
 class VertexPositions {
  public:
+  /// What is known of the moving part near a vertex: Found, the closest point of the triangles around the one that a
+  /// path has found; Sole, the closest point of all, with none as near; Tied, with others as near.
+  enum class Nearness : std::uint8_t { Found, Sole, Tied };
+
   /// What is known of a vertex.
   struct Standing {
     Vec3d position, written;  ///< World coordinates, and those in the file: another space if there is a metric.
     Vec3d away;               ///< From the closest point to the position.
     double distance;
     std::uint32_t closest;
-    std::uint8_t right_side, nearness;
+    std::uint8_t right_side;
+    Nearness nearness;
   };
 
   /// The vertices stand at `source`, world coordinates. Keeps references to all but the last.
@@ -77,10 +82,6 @@ class VertexPositions {
   bool faces_against_part(std::uint32_t triangle) const;
 
  private:
-  /// What is known of the moving part near a vertex: Found, the closest point of the triangles around the one that a
-  /// path has found; Sole, the closest point of all, with none as near; Tied, with others as near.
-  enum Nearness : std::uint8_t { Found, Sole, Tied };
-
   void put(std::uint32_t vertex, const Vec3d& position);
   void measure(std::span<const std::uint32_t> vertices, const Paths* ends);
   void measure_exactly(std::span<const std::uint32_t> vertices);
@@ -102,7 +103,8 @@ class VertexPositions {
   std::vector<Vec3d> written_;  // its coordinates in the file, if those are of another space
   std::vector<double> distance_;
   std::vector<std::uint32_t> closest_;
-  std::vector<std::uint8_t> right_side_, nearness_;
+  std::vector<std::uint8_t> right_side_;
+  std::vector<Nearness> nearness_;
 };
 
 }  // namespace vdb_offset
