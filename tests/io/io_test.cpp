@@ -289,7 +289,7 @@ TEST_CASE("io: a write that fails half-way leaves the old file and nothing else"
 
 TEST_CASE("obj: lines out of the ordinary are read as plain ones are, in files of many runs", "[io]") {
   const Folder folder;
-  // The same grid of quads twice: plainly, and with all that an OBJ file may hold in between.
+  // One grid of quads is written twice: plainly, and with all that an OBJ file may hold in between.
   constexpr int kSide = 150;
   std::string plain, odd = "\xef\xbb\xbf";
   const auto at = [](int i, int j) { return i * (kSide + 1) + j + 1; };

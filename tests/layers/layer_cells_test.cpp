@@ -56,7 +56,7 @@ LayersResult layers_up(const Polygons& mesh, const std::vector<double>& heights,
   return layers_along(mesh, std::vector<Vec3d>(mesh.positions.size(), Vec3d(0, 0, 1)), heights, std::move(share));
 }
 
-/// The same cycle for any first corner.
+/// A face's cycle of corners, which does not depend on its first corner.
 Face rotated(std::span<const std::uint32_t> face) {
   Face cycle(face.begin(), face.end());
   std::rotate(cycle.begin(), std::min_element(cycle.begin(), cycle.end()), cycle.end());
@@ -108,7 +108,7 @@ void check_cells(const VolumeMesh& volume) {
       CHECK(field.values.size() == (fields == &volume.cell_fields ? volume.cell_count() : volume.points.size()));
 }
 
-/// The same, and what is measured of cells that have not been made is what they have.
+/// Checks the cells of layers, and that cells that are only numbered are measured like those that are made.
 void check_cells(const Polygons& mesh, const LayersResult& layers) {
   const LayerCells cells = number_cells(mesh.view(), layers);
   const LayerQuality quality = measure_cells(layers, cells);

@@ -40,7 +40,7 @@ struct Tetrahedron {
     const Vec3d n = (b - a).cross(c - a).unit();
     return n.dot(corner[k] - a) > 0 ? -n : n;
   }
-  /// The same, each face moved inward.
+  /// The tetrahedron with each face moved inward by a distance.
   Tetrahedron inset(double distance) const {
     Tetrahedron inner;
     for (std::size_t k = 0; k < 4; ++k) {

@@ -43,7 +43,8 @@ TEST_CASE("room: layers into a tube that its faces point to the inside of are to
   CHECK(inside.here < 0.2);
   CHECK(inside.there == 1);
   CHECK(inside.suggests_other());
-  // The same by the sign; and nothing to tell where all get there.
+  // Faces that point outward and a negative distance suggest the other side, too. Nothing is known where all vertices
+  // reach their distance.
   CHECK(room_of(round_tube(false), -1.5).suggests_other());
   CHECK_FALSE(room_of(round_tube(false), 1.5).known);
   CHECK_FALSE(room_of(round_tube(true), 0.3).known);

@@ -111,11 +111,11 @@ TEST_CASE("closest: points on ways up from the surface have the answers of one b
 
 namespace {
 
-/// Whether collect_together() has all triangles that meet random balls near the mesh, and visit_nearer() all of those
-/// that are nearer than it is told, before and after planes have been moved; and how many it visits in vain, as a
-/// share.
+/// Counts the triangles that collect_together() misses of those that meet random balls near the mesh, and
+/// visit_nearer() of those that are nearer than a distance, before and after planes have been moved; the triangles that
+/// are visited; and those of them that are not nearer.
 struct Planes {
-  std::size_t missed = 0, visited = 0, in_vain = 0;
+  std::size_t missed = 0, visited = 0, needless = 0;
 };
 Planes try_planes(const Polygons& mesh, double size) {
   Surface surface = build_surface(mesh.view(), {});
@@ -151,7 +151,7 @@ Planes try_planes(const Polygons& mesh, double size) {
         const double at = std::sqrt(point.squared_distance);
         found.missed += visited[n] == 0 && at < limit;
         found.visited += visited[n];
-        found.in_vain += visited[n] != 0 && at > 1.1 * limit;
+        found.needless += visited[n] != 0 && at > 1.1 * limit;
         if (random() % 3 == 0) near.hold_back(n, x, x - point.point, at);
       }
     }
@@ -236,7 +236,7 @@ TEST_CASE("closest: triangles near a ball stay behind their planes", "[closest]"
     const Planes found = try_planes(scene::icosphere(scale, 4), 0.1 * scale);
     CHECK(found.missed == 0);
     CHECK(found.visited > 1000);
-    CHECK(found.in_vain < found.visited / 2);
+    CHECK(found.needless < found.visited / 2);
   }
   CHECK(try_planes(scene::bumpy_sphere(1, 0.3, 1.5, 3, 4), 0.3).missed == 0);
   CHECK(try_planes(scene::plates(1, 0.01, 0.001, 20), 0.01).missed == 0);

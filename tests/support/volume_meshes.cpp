@@ -158,7 +158,7 @@ std::string output_of(const Folder& folder, const std::string& command) {
 
 namespace {
 
-// Debian leaves it to who calls to tell where the settings are.
+// In Debian's package, the caller has to say where the settings are.
 const std::string kFoamSettings = "WM_PROJECT_DIR=${WM_PROJECT_DIR:-/usr/share/openfoam} ";
 
 /// A case for OpenFOAM that has no mesh yet.

@@ -22,7 +22,7 @@ std::vector<Corners> faces_of(CellType type, std::span<const std::uint32_t> cell
 /// pyramid, one of which stands on the upper prism, too. Cells are in no order.
 VolumeMesh mixed_cells();
 
-/// The same with cubes and prisms as polyhedra.
+/// mixed_cells() with cubes and prisms as polyhedra.
 VolumeMesh with_polyhedra();
 
 /// Faces seen from outside ccw make a cell: they close it, and the volume is positive; it is returned.

@@ -47,7 +47,8 @@ Polygons cut(const Polygons& mesh, double at) {
   return pieces;
 }
 
-/// The same with those vertices moved by `gap` in some direction each. Behind the mesh's own stand the copies.
+/// A mesh that is cut as by cut(), with each copied vertex moved by `gap` in some direction. The copies stand behind
+/// the mesh's own vertices.
 Polygons cracked(const Polygons& mesh, double gap, double at = 0) {
   Polygons pieces = cut(mesh, at);
   std::mt19937 random(7);
@@ -130,7 +131,7 @@ TEST_CASE("seams: the file's precision tells what is one position", "[seams]") {
     const double tolerance = MeshFacts::tolerance_above(apart.seams.widest_near);
     CHECK(facts_of(rounded(cracked(whole, 12 * unit), precision), {true, tolerance}).closed());
   }
-  // The same digits, but every coordinate as good as it looks.
+  // A crack of 1e-4, with coordinates that are as precise as they look, is no rounding.
   CHECK(facts_of(cracked(whole, 1e-4)).seams.vertices == 0);
   WeldOptions told = WeldOptions::automatic();
   told.precision = 1e-5;

@@ -8,13 +8,13 @@
 #include "vdb_offset/curve/polyline.h"
 #include "vdb_offset/curve/ribbon.h"
 
-/// From curves to the polyline that distances are measured from, for offsets of curves and for their check.
+/// Makes of curves the polyline that distances are measured from, for offsets of curves and for their check.
 namespace vdb_offset {
 
 /// Curves in their plane, joined.
 struct PlaneChains {
   PlaneFrame frame;
-  std::vector<Vec2d> points;  ///< The input's, in the plane.
+  std::vector<Vec2d> points;  ///< The points of the input, in the plane.
   CurveChains chains;
 };
 /// Finds the curves' plane, and joins them in it. \throw InvalidInput for curves that do not lie in one plane, or have
@@ -28,10 +28,10 @@ MeshFacts facts_of(CurvesView curves, const PlaneChains& plane);
 /// A polyline, and how its vertices are related to the curves' points.
 struct DrawnLine {
   Polyline line;
-  std::vector<std::uint32_t> vertex;  ///< Of each point; kNone if it is on no curve.
-  std::vector<Vec2d> source;          ///< Of each vertex, in the plane.
+  std::vector<std::uint32_t> vertex;  ///< Of each point: its vertex; kNone if it is on no curve.
+  std::vector<Vec2d> source;          ///< Of each vertex: its position in the plane.
 };
-/// Puts the line into the frame with this origin, at the height z.
+/// Makes the polyline, in the frame with this origin, at the height z.
 DrawnLine draw_line(const PlaneChains& plane, const Vec3d& origin, double z);
 
 }  // namespace vdb_offset

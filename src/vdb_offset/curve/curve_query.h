@@ -48,7 +48,7 @@ class CurveQuery {
   bool is_crowded() const;
 
   const Polyline& line_;
-  std::vector<std::uint32_t> distinct_;  // those that the tree holds: what is there several times, once
+  std::vector<std::uint32_t> distinct_;  // the segments in the tree, without repeated ones
   BoxTree tree_;
   std::optional<OrientedBoxes> crowd_;  // if the curves are crowded
 };

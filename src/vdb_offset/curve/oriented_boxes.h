@@ -14,8 +14,8 @@ namespace vdb_offset {
 /// around those in a row hold nearly everything: a tree of boxes that each lie along their segments, which are put into
 /// groups by where they lie and which way they run.
 ///
-/// Of those as near as the closest one, but for rounding (some 1e-15 of the extent), the first found ends the search:
-/// thousands on one line would all have to be asked otherwise. Memory: 28 bytes a segment.
+/// Segments that are as near as the closest one found, but for rounding (some 1e-15 of the extent), are not looked at:
+/// otherwise thousands of segments on one line would all have to be. Memory: 28 bytes a segment.
 class OrientedBoxes {
  public:
   /// Keeps a reference. `segments` are those of the line that count, at least one.

@@ -39,8 +39,8 @@ struct Polyline {
   /// See Surface::is_held.
   bool is_held(std::uint32_t) const { return false; }
   TrianglePoint closest_on(std::uint32_t segment, const Vec3d& x) const;
-  /// Whether the whole line of a segment is clearly farther off: boxes around long tilted segments hold much else, and
-  /// to find the closest point takes several times as long.
+  /// Whether the line through a segment is clearly farther from x than a squared distance. A quick test: boxes around
+  /// long tilted segments are large, and finding the closest point takes several times as long.
   bool is_farther(std::uint32_t segment, const Vec3d& x, double squared_distance) const {
     constexpr double kRounding = 1e-14, kShare = 1 + 1e-12;
     const Vec3d &a = vertices[segments[segment][0]], &b = vertices[segments[segment][1]];

@@ -11,25 +11,26 @@
 
 namespace vdb_offset {
 
-/// Fans of segments: those out of a point that many share. Two of a fan meet elsewhere than in it only if they
-/// run in the same direction, so that they are kept in the order of their directions (by exact predicates), and none is
-/// compared with all. A segment between two such points is in the fan of the first. Memory: 60 bytes a segment in fans.
+/// Segment fans: the segments out of a point that many share. Two segments of a fan meet elsewhere than in that point
+/// only if they run in the same direction, so that they are kept in the order of their directions (by exact
+/// predicates), and none is compared with all. A segment between two such points is in the fan of the first. Memory: 60
+/// bytes a segment in fans.
 class SegmentFans {
  public:
-  /// Fewer segments than this around a point are compared faster one by one.
+  /// Least number of segments in a fan: fewer of them are faster compared one by one. Not measured more closely.
   static constexpr std::size_t kLeast = 64;
 
-  /// Of these segments; they are put in an order in which those of each fan stand in a row, behind all others. Keeps
-  /// references to the segments of which these are some, and to the positions.
+  /// Makes the fans of some segments. `some` is reordered: the segments of each fan follow each other, behind all
+  /// others. Keeps references to `segments` and `positions`.
   SegmentFans(std::span<const Segment> segments, std::span<const Vec2d> positions, std::vector<std::uint32_t>& some);
   SegmentFans(const SegmentFans&) = delete;
   SegmentFans& operator=(const SegmentFans&) = delete;
 
   bool empty() const { return fans_.empty(); }
-  /// To be told of segments whose points have moved.
+  /// To be called for segments whose points have moved.
   void update(std::span<const std::uint32_t> segments);
 
-  /// Which of those put in order are in the same fan as a segment.
+  /// The range of the reordered segments that are in one fan.
   struct Row {
     std::size_t begin = 0, end = 0;
   };
@@ -37,8 +38,8 @@ class SegmentFans {
     return empty() || fan_of_[segment] == kNoFan ? Row{} : fans_[fan_of_[segment]].row;
   }
 
-  /// Calls is_it(t) for each other segment t of the same fan that runs in the same direction, until one is what is
-  /// looked for; whether one is.
+  /// Calls is_it(t) for each other segment t of the same fan that runs in the same direction, until it
+  /// returns true. Returns whether it did.
   template <class IsIt>
   bool any_along(std::uint32_t segment, IsIt&& is_it) const;
 
@@ -54,7 +55,7 @@ class SegmentFans {
   struct Fan {
     std::uint32_t point;
     Row row;
-    Ordered ordered;  // by direction; without segments that have no length
+    Ordered ordered;  // segments with a length, by direction
   };
 
   void insert(std::uint32_t segment);
@@ -66,7 +67,7 @@ class SegmentFans {
   std::span<const Segment> segments_;
   std::span<const Vec2d> positions_;
   std::vector<Fan> fans_;
-  std::vector<std::uint32_t> fan_of_;        // of each segment; empty if there are none
+  std::vector<std::uint32_t> fan_of_;        // of each segment: its fan, or kNoFan; empty if there are no fans
   std::vector<Ordered::const_iterator> at_;  // of each segment: where it stands in its fan
 };
 

@@ -18,8 +18,8 @@ struct TrianglePoint {
   Feature feature;
 };
 
-/// True of a triangle whose height is below 1e-12 of its longest edge: rounding decides its normal then, and its
-/// edges stand for it with an error of that height. Takes |ab x ac|^2 and the longest edge's squared length.
+/// Whether the height of a triangle is below 1e-12 of its longest edge. Rounding decides its normal then, and its edges
+/// are taken instead, with an error of that height. Takes |ab x ac|^2 and the longest edge's squared length.
 inline bool is_needle(double normal_squared, double longest_squared) {
   return !(normal_squared > 1e-24 * longest_squared * longest_squared);
 }
@@ -65,8 +65,8 @@ inline TrianglePoint closest_on_segment(const Vec3d& x, const Vec3d& a, const Ve
   return closest_on_segment(x, a, b, from_b - from_a, to_x - from_a, to_x - from_b, at_a, at_b, between);
 }
 
-/// For slivers: the sub-areas come from cross products at the nearest corner, the distance from the plane, which loses
-/// fewer digits than the general form; a triangle without area is the union of its edges.
+/// The closest point of a sliver. Sub-areas are computed from cross products at the nearest corner, and the distance
+/// from the plane, which loses fewer digits than the general form. A triangle without area is the union of its edges.
 inline TrianglePoint closest_on_sliver(const Vec3d& x, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using enum Feature;
   const Components to_x = Components::of(x), from_a = Components::of(a), from_b = Components::of(b),
@@ -101,8 +101,8 @@ inline TrianglePoint closest_on_triangle(const Vec3d& x, const Vec3d& a, const V
   const Components from_a = Components::of(a), ab = Components::of(b) - from_a, ac = Components::of(c) - from_a,
                    ax = Components::of(x) - from_a;
   const double ab_ab = ab.dot(ab), ac_ac = ac.dot(ac), ab_ac = ab.dot(ac);
-  // Height over length, as sines: sub-areas from products of projections lose digits as the square of length over
-  // height, here 12 of 16 at most. Not measured beside other bounds.
+  // Sine of the angle (height over length) below which a triangle is a sliver. Sub-areas from products of projections
+  // lose digits as the square of length over height: 12 of 16 at this bound. Not measured beside other bounds.
   constexpr double kSliver = 1e-6;
   const double longest = std::max(std::max(ab_ab, ac_ac), ab_ab + ac_ac - 2 * ab_ac);
   if (!(ab_ab * ac_ac - ab_ac * ab_ac > kSliver * longest * longest)) return detail::closest_on_sliver(x, a, b, c);

@@ -22,8 +22,8 @@ struct Closest {
   Vec3d point;
 };
 
-/// The ball of radius phi(x) around x holds no surface, so that a step from x which is shorter crosses nothing. A step
-/// may be this share of phi(x) long: less than all of it, to allow for an error of phi. Not measured beside others.
+/// Longest step from x, as a share of phi(x): the ball of radius phi(x) around x holds no surface, so that a shorter
+/// step crosses nothing. Less than 1, to allow for an error of phi. Not measured beside others.
 inline constexpr double kFreeShare = 0.9;
 
 /// Exact distance to a surface: phi(x) without a grid's error.
@@ -34,25 +34,26 @@ inline constexpr double kFreeShare = 0.9;
 /// threads.
 class ClosestQuery {
  public:
-  /// Keeps a reference to the surface. \pre the surface is placed and has a triangle.
+  /// Keeps a reference to the surface. \pre the surface is in its local frame, and has a triangle.
   explicit ClosestQuery(const Surface& surface);
 
   /// The closest point of the surface to x. Among equally close triangles the answer depends only on x, the hint
   /// and the surface. `hint` is any triangle, best one that was close to a point nearby.
   Closest operator()(const Vec3d& x, std::uint32_t hint) const;
 
-  /// The closest point among the triangles that a walk from a first one comes by: see Surface::walk_to_closest.
+  /// The closest point that a walk from a first triangle finds, which need not be the closest of all: see
+  /// Surface::walk_to_closest.
   TrianglePoint near(const Vec3d& x, std::uint32_t& triangle) const { return surface_.walk_to_closest(x, triangle); }
 
   /// Finds the closest points of several points that are near each other, as those of neighbouring vertices are, with a
-  /// hint each: in a third of the time of single queries, as what is far from all of the points is left out once for
-  /// all. The answers depend only on the points together, the hints and the surface. \pre as many hints and answers as
-  /// points
+  /// hint each: in a third of the time of single queries, as boxes that are far from all of the points are left out
+  /// once for all. The answers depend only on the points together, the hints and the surface. \pre as many hints and
+  /// answers as points
   void answer_together(std::span<const Vec3d> points, std::span<const std::uint32_t> hints,
                        std::span<Closest> answers) const;
 
   /// Finds the closest points of points on several paths up from the surface, as the positions of a vertex at several
-  /// distances are: what is close to one path is looked for once. Path i has points begin[i] .. begin[i + 1] - 1. The
+  /// distances are: the triangles near a path are looked for once. Path i has points begin[i] .. begin[i + 1] - 1. The
   /// answers depend only on the points together, the hints and the surface. \pre as many hints and answers as points,
   /// and begin ends with that number
   void answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,
@@ -76,9 +77,9 @@ class ClosestQuery {
     Vec3d centre;
     double radius;  ///< World units.
   };
-  /// Calls take(i, near) for each of some balls, which are near each other, in their order: `near` are all triangles
-  /// that meet ball i, and some that are hardly farther. It may be changed. The order of these depends on the balls
-  /// together.
+  /// Calls take(i, near) for each of some balls, which are near each other, in their order: `near` holds all
+  /// triangles that meet ball i, and some that are hardly farther, in an order that depends on all balls. `near` may be
+  /// changed.
   void collect_together(std::span<const Ball> balls,
                         const std::function<void(std::size_t, NearTriangles& near)>& take) const;
 
@@ -88,8 +89,8 @@ class ClosestQuery {
   static constexpr int kWidth = BoxTree::kWidth;
   static constexpr int kLeafSize = 8;  // triangles in a lowest box: as many as a box has children, two rows of lanes
 
-  /// What bounds the distance of a lowest box's triangles from below: a rectangle around each, in its plane, along its
-  /// longest edge.
+  /// Rectangles around the triangles of a lowest box, each in the plane of its triangle and along the longest edge.
+  /// They bound the distances of the triangles from below.
   struct Rectangles {
     float centre[3][kLeafSize], normal[3][kLeafSize], edge[3][kLeafSize], half_length[kLeafSize], half_width[kLeafSize];
   };
@@ -97,8 +98,8 @@ class ClosestQuery {
   class Group;
   class Collector;
   class AlongPaths;
-  // Blocks of lowest boxes that are looked through for each of some balls; with more of them, the balls are taken by
-  // halves, and a ball alone descends from the root. Not measured beside other numbers.
+  // Most blocks of lowest boxes that are looked through for each ball of a group. A group that needs more is halved,
+  // and a single ball descends from the root. Not measured beside other numbers.
   static constexpr std::size_t kMostBlocks = 48;
   using Blocks = std::array<std::uint32_t, kMostBlocks>;
 
@@ -117,8 +118,8 @@ class ClosestQuery {
   const Surface& surface_;
   std::vector<Rectangles> rectangles_;
   BoxTree tree_;
-  double scale_;  // power of two that brings the surface to size 1
-  float slack_;   // more than the rounding of a box or a query point to float
+  double scale_;  // the power of two that scales coordinates to a size near 1
+  float slack_;   // scaled; more than the rounding of a box or a query point to float
 };
 
 /// The exact query at many points, answered in the order of a space-filling curve, each with the one before as its

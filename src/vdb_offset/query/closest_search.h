@@ -16,8 +16,8 @@
 
 namespace vdb_offset {
 
-/// Which of eight boxes are no farther from a point than the root of `limit`, as bits; and how far they all are,
-/// squared.
+/// Tells, as bits, which of eight boxes are no farther from a point than the root of `limit`. Also finds the squared
+/// distances of all eight.
 inline unsigned ClosestQuery::near_siblings(const BoxTree::Siblings& box, const float* local, float limit,
                                             float* squared) {
   unsigned near = 0;
@@ -34,15 +34,15 @@ inline unsigned ClosestQuery::near_siblings(const BoxTree::Siblings& box, const 
   return near;
 }
 
-/// Some rectangles as a point sees them: how far it is from their centres, over their planes, along their edges and
-/// across, how far beyond their ends and sides.
+/// Where a point is, seen from some rectangles: from their centres along the normal, along the edge and across it; and
+/// how far it is beyond their ends and sides.
 struct RectangleView {
   Lanes away[3], normal[3], edge[3], height, along, across, beyond_end, beyond_side;
-  Lanes squared;  // distance, no larger than it is
+  Lanes squared;  // squared distance, rounded downwards
 };
 
-/// Rectangles i .. i + kLanes - 1 of some. One millionth makes up for rounding. Of a triangle without a normal, all
-/// that is not along its edge is across.
+/// The view from rectangles i .. i + kLanes - 1. One millionth is taken off, which is more than rounding adds. For a
+/// triangle without a normal, all that is not along its edge counts as across.
 template <class Rectangles>
 RectangleView view_rectangles(const Rectangles& some, int i, const float* local) {
   RectangleView view{};
@@ -63,8 +63,8 @@ RectangleView view_rectangles(const Rectangles& some, int i, const float* local)
   return view;
 }
 
-/// The triangles of a lowest box that may be nearer to a point, in the tree's units, than the root of `limit`, a bit
-/// for each; and how near they may be, squared.
+/// Tells, as bits, which triangles of a lowest box may be nearer to a point, in the tree's units, than the root of
+/// `limit`. Also finds lower bounds of their squared distances.
 inline unsigned ClosestQuery::near_rectangles(const Rectangles& some, const float* local, float limit,
                                               float* least_squared) {
   unsigned near = 0;
@@ -76,7 +76,7 @@ inline unsigned ClosestQuery::near_rectangles(const Rectangles& some, const floa
   return near;
 }
 
-/// One query's descent through the tree, nearest boxes first.
+/// The descent of one query through the tree. The nearest boxes are taken first.
 class ClosestQuery::Search {
  public:
   Search(const ClosestQuery& query, const Vec3d& x, std::uint32_t hint) : Search(query, x, hint, {}) {
@@ -91,7 +91,7 @@ class ClosestQuery::Search {
     tighten();
   }
 
-  /// Through these blocks of lowest boxes, which must hold all that may be nearer.
+  /// Finds the closest point in these blocks of lowest boxes. \pre they hold all triangles that may be nearer
   Closest run_through(std::span<const std::uint32_t> blocks) {
     for (const auto block : blocks) open(0, block);
     return {std::sqrt(best_.squared_distance), triangle_, best_.feature, tied_, best_.point};
@@ -108,7 +108,7 @@ class ClosestQuery::Search {
   }
 
  private:
-  /// The siblings `node` of level `level`, and how far away the box is that holds them.
+  /// The siblings `node` of level `level`, and the distance of the box around them.
   struct Visit {
     float squared_distance;
     std::uint32_t level, node;
@@ -178,7 +178,7 @@ class ClosestQuery::Search {
   TrianglePoint best_;
   float local_[3];  // x in the tree's units
   float rounding_, limit_ = 0;
-  double tie_ = 0;  // a point no farther than the root of this is as near as the closest
+  double tie_ = 0;  // squared: a point that is no farther ties with the closest one
   bool tied_ = false;
   std::array<Visit, kWidth * 12> stack_;  // 8^12 leaves are far more than 2^31 triangles
   std::size_t depth_ = 0;

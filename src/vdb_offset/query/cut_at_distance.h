@@ -27,8 +27,8 @@ inline Sample sample_at(const Vec3d& x, std::uint32_t triangle, const TrianglePo
   return {x, std::sqrt(nearest.squared_distance), x - nearest.point, triangle, nearest.feature};
 }
 
-/// The share of a displacement at which the feature that is closest to a position is at a distance from it, if that
-/// distance ever grows to this.
+/// The share of a displacement at which a position is at a distance from the feature that is closest to it now. None if
+/// the distance from that feature never grows so far.
 template <class Shape>
 std::optional<double> share_to_distance(const Shape& shape, const Sample& from, const Vec3d& displacement,
                                         double distance) {
@@ -46,8 +46,8 @@ std::optional<double> share_to_distance(const Shape& shape, const Sample& from, 
 template <class Shape, class Measure, class Settled>
 Sample cut_at_distance(const Shape& shape, const Sample& near, const Sample& far, double distance, Measure&& measure,
                        Settled&& settled) {
-  // Bisection alone gains 100 bits in as many steps, more than a double has; 8 are left to false position, which is
-  // slow where it is one-sided. Not measured.
+  // kMostSteps: bisection alone gains a bit in each step, and a double has fewer. kLetFall: steps of false position,
+  // which is slow where it is one-sided, before bisection. Not measured.
   constexpr int kMostSteps = 100, kLetFall = 8;
   const Vec3d segment = far.x - near.x;
   double low = 0, below = near.phi - distance, high = 1, above = far.phi - distance;

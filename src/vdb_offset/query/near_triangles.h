@@ -16,7 +16,7 @@ namespace vdb_offset {
 /// below anywhere, as distances to what is convex are convex, and tells most triangles that were not the closest at one
 /// position of a smooth path from the closest at the next without looking at them.
 ///
-/// Four planes at once, in floats, in a unit near the ball's radius; what they round inside the ball is made up for.
+/// Four planes at once, in floats, in a unit near the ball's radius; their rounding inside the ball is allowed for.
 class NearTriangles {
  public:
   void begin(const Vec3d& centre, double unit) {
@@ -58,8 +58,8 @@ class NearTriangles {
       if (height(i) < height(found)) found = i;
     return found;
   }
-  /// Calls look(i) for all triangles that may be nearer to x than `distance`. look() returns the distance from then on,
-  /// lowered or not.
+  /// Calls look(i) for all triangles that may be nearer to x than `distance`. look() returns the distance that counts
+  /// from then on, which may be less.
   template <class Look>
   void visit_nearer(const Vec3d& x, double distance, Look&& look) const {
     const Vec3d from_centre = (x - centre_) * scale_;
@@ -87,8 +87,8 @@ class NearTriangles {
   }
 
  private:
-  // In units of the ball: more than what planes of its size round, and far less than what tells triangles from each
-  // other. kNowhere is the height of unused lanes, above any limit.
+  // kSlack, in units of the ball: more than the rounding of planes in it, and far less than the distances between
+  // triangles that matter; not measured. kNowhere: the height of unused lanes, above any limit.
   static constexpr float kSlack = 4e-6F, kNowhere = 1e18F;
   struct PlaneLanes {
     float normal[3][kLanes]{}, height[kLanes];

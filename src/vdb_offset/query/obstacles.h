@@ -24,7 +24,7 @@ struct StartingGaps {
 struct Obstacles {
   const ClosestQuery& query;
   double clearance;
-  const StartingGaps* start = nullptr;  ///< Without: everything stands clear of them.
+  const StartingGaps* start = nullptr;  ///< Null: all faces keep the clearance at the start.
 };
 
 }  // namespace vdb_offset

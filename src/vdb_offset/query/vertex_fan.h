@@ -11,8 +11,8 @@
 
 namespace vdb_offset {
 
-/// The triangles around a vertex as points near it see them, two at once. Slivers are not among them: their areas would
-/// lose digits.
+/// Distances to the triangles around a vertex, for points near it; two triangles at once. Slivers are left out, as
+/// their areas would lose digits.
 ///
 /// With y the vector from the vertex to a point, the squared distance to any point p of a triangle, seen from the
 /// vertex, is |y|^2 less a gain of 2 p.y - p.p; the closest point is the one with the largest gain: y's foot where that
@@ -24,7 +24,7 @@ class VertexFan {
     size_ = believed_ = 0;
     for (const auto t : surface.triangles_around(vertex)) add(surface, t, vertex);
     whole_ = size_ == surface.triangles_around(vertex).size();
-    // An odd triangle takes both lanes.
+    // If the number is odd, the last triangle takes both lanes.
     if (size_ % 2 != 0) {
       const std::size_t size = size_;
       add(surface, pairs_[size_ / 2].triangle[0], vertex);

@@ -16,7 +16,7 @@ struct Surface;
 struct Wall {
   std::uint32_t vertex;
   SymmetryPlane plane;
-  double slack;  ///< What the input's own rounding may put above it, world units.
+  double slack;  ///< World units: vertices may be above the plane by this, by the input's own rounding.
 };
 
 /// Decides which vertices of a surface stay in planes, and has its conormals say so: along_border() takes from a vector
@@ -24,11 +24,11 @@ struct Wall {
 ///
 /// If no planes are named, these are the vertices of borders, or of pieces of borders, that lie in a plane to the
 /// precision of a file of seven digits, if the faces there rise from that plane by at least 12 degrees, so that
-/// displacements in the plane lead off all of them; of straight pieces, those along which the faces are in one plane,
-/// too: they stay in the plane across that. Where the surface lies on one side of a plane, that becomes a wall: of a
-/// border's plane for what hangs together with it no farther off than `reach`, the farthest that vertices go; of a
-/// named plane for all that hangs together. \pre conormals and normals are those of the surface as it stands. \throw
-/// InvalidInput if there is no vertex on a plane that is named
+/// displacements in the plane lead off all of them; and vertices of straight pieces along which the
+/// faces are in one plane: they stay in the plane at right angles to it. Where the surface lies on one side of a plane,
+/// that becomes a wall: for a border's plane, of the vertices that are connected with it within `reach`, the farthest
+/// that vertices go; for a named plane, of all that are connected with it. \pre conormals and normals are those of the
+/// surface as it stands. \throw InvalidInput if there is no vertex on a plane that is named
 void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
 
 /// Whether a position of a vertex is beyond one of its walls, by more than `slack`.

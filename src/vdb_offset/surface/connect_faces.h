@@ -27,8 +27,8 @@ void keep_triangles(Surface& surface, IsKept&& is_kept) {
   surface.face.resize(kept);
 }
 
-/// Connects the triangles over edges and settles which side is outward. Sheets that lie on each other, as doubled faces
-/// do, would be connected over edges of four faces and have no side at all: one of them stands for all.
+/// Connects the triangles over edges and settles which side is outward. Faces that repeat each other would be
+/// connected over edges of four faces, and have no side: one of them stands for all.
 void join_and_settle(PolygonView polygons, Orient orient, Surface& surface);
 
 }  // namespace vdb_offset

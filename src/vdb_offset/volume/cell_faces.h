@@ -8,7 +8,7 @@
 
 namespace vdb_offset {
 
-/// A face of a cell: the positions of its corners in the list of the cell's corners, ccw seen from outside.
+/// A face of a cell: the numbers of its corners among the cell's corners, ccw seen from outside.
 struct LocalFace {
   std::uint8_t size;
   std::uint8_t local_corners[4];

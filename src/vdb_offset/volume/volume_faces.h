@@ -24,7 +24,7 @@ struct CellFace {
 /// Number of faces of a cell.
 std::size_t face_count(CellType type, std::span<const std::uint32_t> corners);
 
-/// Sorts the corners of a face by their numbers, by which it is told from others.
+/// Sorts the corners of a face: two faces are the same if their sorted corners are.
 template <class Face>
 void sort_corners(const Face& face, std::size_t size, std::vector<std::uint32_t>& corners) {
   corners.clear();
@@ -32,13 +32,13 @@ void sort_corners(const Face& face, std::size_t size, std::vector<std::uint32_t>
   std::sort(corners.begin(), corners.end());
 }
 
-/// Face `local` of cell c, counted from 0. Cost of a polyhedron's: O(local).
+/// Face `local` of cell c, counted from 0. Cost: O(1), for polyhedra O(local).
 CellFace face(const VolumeMesh& mesh, std::size_t c, std::size_t local);
 
-/// The cell behind each face of each cell.
+/// Tells for each face of each cell which cell lies behind it.
 class VolumeFaces {
  public:
-  /// Instead of a cell, behind a face on the boundary.
+  /// Stands for a cell behind a face on the boundary, where there is none.
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   /// A face of a cell and the cell behind it.
@@ -46,8 +46,8 @@ class VolumeFaces {
     std::uint32_t cell, local;
   };
 
-  /// Matches faces by their corners, in parallel; the result does not depend on the number of threads. Takes some 13
-  /// bytes a face and side, 4 of them for good. \throw InvalidInput for a face that more than two cells have, and
+  /// Matches faces by their corners, in parallel; the result does not depend on the number of threads. Memory: 13 bytes
+  /// for each side of a face, of which 4 stay. \throw InvalidInput for a face that more than two cells have, and
   /// unless the faces of the patches are those that one cell has, each once.
   explicit VolumeFaces(const VolumeMesh& mesh);
 

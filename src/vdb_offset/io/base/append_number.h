@@ -10,7 +10,8 @@
 
 namespace vdb_offset::io {
 
-/// Appends a number with the fewest digits that read back to the same number, of its kind; or the digits asked for.
+/// Appends a number, with the digits that the precision asks for or, by default, the fewest that read back to the same
+/// number of its type.
 inline void append_number(std::string& text, double value, const Rounding& precision = {}) {
   char digits[40];
   char* const first = std::begin(digits);

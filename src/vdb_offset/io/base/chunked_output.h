@@ -24,10 +24,10 @@ struct Section {
 /// A header, then all items of the sections.
 Pieces in_sections(const std::string& header, std::vector<Section> sections);
 
-/// All pieces of the first, then all of the second, and so on.
+/// One file made of several, one after the other.
 Pieces in_a_row(std::vector<Pieces> files);
 
-/// Writes the pieces one behind the other to `path` through replace_file() (output_files.h), a few of them in memory at
+/// Writes the pieces in order to `path` through replace_file() (output_files.h), a few of them in memory at
 /// a time; compressed, piece by piece, if the path ends in .gz or .zst. \throw WriteError
 void write_pieces(const std::string& path, const Pieces& pieces);
 
@@ -36,7 +36,7 @@ void write_pieces(const std::string& path, const Pieces& pieces);
 /// \throw ReadError
 void write_pieces_of(const std::string& source, const FileBytes& bytes, const std::string& path, const Pieces& pieces);
 
-/// All pieces behind each other, in memory.
+/// All pieces as one text in memory.
 std::string join(const Pieces& pieces);
 
 }  // namespace vdb_offset::io

@@ -14,11 +14,11 @@ Compression compression_of(std::string_view path);
 /// The path without .gz or .zst.
 std::string_view without_compression(std::string_view path);
 
-/// All members (gzip) or frames (zstd) of `bytes`, decompressed. \throw InvalidInput (`path`, byte, what was expected)
+/// Decompresses all members (gzip) or frames (zstd) of `bytes`. \throw InvalidInput (`path`, byte, what was expected)
 /// if they are damaged, end early, or would not fit into memory, OutOfBudget if they would pass its limit.
 std::string decompress(Compression compression, const std::string& path, std::string_view bytes);
 
-/// Compresses bytes to one member or frame; several behind each other are a file as well.
+/// Compresses bytes to one member or frame. A file may consist of several.
 std::string compress(Compression compression, const std::string& bytes);
 
 }  // namespace vdb_offset::io

@@ -15,18 +15,19 @@
 
 namespace vdb_offset::io {
 
-/// What separates words within a line.
+/// Whether a character separates words within a line.
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-/// Longer words are no numbers that a program would write: that of the largest one, written out, has 309 digits.
+/// Longest word, in bytes, that is read as a number. No program writes longer ones: the largest double, written out,
+/// has 309 digits.
 inline constexpr std::size_t kLongestNumber = 330;
 
 /// Cuts a text into runs of whole lines of about half a MiB: boundaries from `begin` to its end. A line that a
 /// backslash joins to the next one is not cut.
 std::vector<std::size_t> cut_at_lines(std::string_view text, std::size_t begin);
 
-/// Reads the plain forms that nearly all lines have, and nothing else: all that is out of the ordinary, mistakes among
-/// it, is left to a Scanner.
+/// A fast path: reads the plain forms that nearly all lines have. Anything else, mistakes included, is left to a
+/// Scanner.
 class FastCursor {
  public:
   FastCursor(const char* at, const char* end) : at_(at), end_(end) {}
@@ -36,19 +37,20 @@ class FastCursor {
   void skip_blanks() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
   }
-  /// Blanks, then the end of the line or of the text.
+  /// Skips blanks. Returns whether the end of the line or of the text follows.
   bool at_line_end() {
     skip_blanks();
     return at_ == end_ || *at_ == '\n';
   }
-  /// What may start a comment or join lines ends a word, too, so that a line with either is left to others.
+  /// Whether a word ends here. Characters that may start a comment or join lines end it, too: such lines are then left
+  /// to a Scanner.
   bool at_word_end() const { return at_ == end_ || *at_ == '\n' || is_blank(*at_) || *at_ == '#' || *at_ == '\\'; }
   bool take(char c) {
     if (at_ == end_ || *at_ != c) return false;
     ++at_;
     return true;
   }
-  /// A finite number that is a whole word.
+  /// Reads a finite number that is a whole word.
   bool number(double& value) {
     skip_blanks();
     const auto [after, error] = std::from_chars(at_, end_, value);
@@ -57,7 +59,7 @@ class FastCursor {
     at_ = after;
     return at_word_end();
   }
-  /// Up to nine digits.
+  /// Reads an integer of up to nine digits.
   bool digits(std::uint32_t& value) {
     const char* const begin = at_;
     value = 0;
@@ -83,7 +85,7 @@ class FastCursor {
 /// Records of a text that fill a line each.
 class LineRecords {
  public:
-  /// Finds the `count` lines from `begin` on. There may be fewer; then the text is not of this kind.
+  /// Finds the `count` lines from `begin` on. If there are fewer, records do not fill a line each: see complete().
   LineRecords(std::string_view text, std::size_t begin, std::size_t count);
 
   bool complete() const { return first_.back() >= count_; }
@@ -93,8 +95,8 @@ class LineRecords {
     return cuts_.back();
   }
 
-  /// Calls read(i, cursor) in parallel for every record i, with a FastCursor at its start. False, and not all need have
-  /// been read, if one returned false or did not stop at the end of its line: then the text is of another kind.
+  /// Calls read(i, cursor) in parallel for every record i, with a FastCursor at its start. Returns
+  /// false if read() did, or did not stop at the end of the line; then not all records need have been read.
   template <class Read>
   bool for_each(Read&& read) const;
 

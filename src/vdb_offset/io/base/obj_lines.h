@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The lines of OBJ files, for all that read them: a keyword and words behind it. `#` starts a comment, and a backslash
+// The lines of OBJ files, for all readers of them: a keyword and words behind it. `#` starts a comment, and a backslash
 // at the end of a line joins it to the next one, unless it stands in a comment.
 
 #include <cstring>
@@ -17,7 +17,7 @@ namespace vdb_offset::io {
 /// A line of an OBJ file, with those that backslashes join to it.
 struct ObjLine {
   const std::string& path;
-  std::string_view text;     ///< All that the line is part of.
+  std::string_view text;     ///< The text that the line is part of.
   std::string_view whole;    ///< The line and its end.
   std::string_view keyword;  ///< Its first word; empty in blank lines and comments.
   FastCursor cursor;         ///< Behind the keyword; at a backslash, which is no plain form, if there is one before.
@@ -47,7 +47,8 @@ inline const char* obj_line_end(const char* line, const char* end) {
     at = newline + 1;
     const char* last = newline != line && newline[-1] == '\r' ? newline - 1 : newline;
     if (last == line || last[-1] != '\\') return at;
-    // A comment ends with its line. Only what has come since is looked at, however many lines are joined.
+    // A comment ends with its line. Each joined line is searched once, so that the cost does not grow with their
+    // square.
     if (std::memchr(part, '#', static_cast<std::size_t>(newline - part))) return at;
     if (at == end) return end;
   }
@@ -69,7 +70,7 @@ void for_each_obj_line(const std::string& path, std::string_view text, std::size
     if (next - word > 1 && word[1] == ' ' && *word > '#' && *word != '\\') cursor = FastCursor(word + 1, next);
     else cursor.skip_word();
     std::string_view keyword(word, static_cast<std::size_t>(cursor.position() - word));
-    // A keyword behind a backslash, or with one in it, is not plain.
+    // A keyword behind a backslash, or with one in it, is left to a Scanner.
     if (FastCursor ahead = cursor; ahead.take('\\'))
       keyword = Scanner(path, text, static_cast<std::size_t>(line - text.data()), true, '#').token();
     visit(ObjLine{path, text, {line, static_cast<std::size_t>(next - line)}, keyword, cursor});
@@ -77,13 +78,13 @@ void for_each_obj_line(const std::string& path, std::string_view text, std::size
   }
 }
 
-/// Calls visit(ObjLine) for all lines of a text, behind a byte order mark.
+/// Calls visit(ObjLine) for all lines of a text, without its byte order mark.
 template <class Visit>
 void for_each_obj_line(const std::string& path, std::string_view text, Visit&& visit) {
   for_each_obj_line(path, text, byte_order_mark(text), text.size(), visit);
 }
 
-/// Words behind the ones that were read, with single blanks between them.
+/// The words of a line that have not been read, with single blanks between them.
 inline std::string rest_of_line(Scanner& scanner) {
   std::string rest;
   while (!scanner.at_line_end()) {

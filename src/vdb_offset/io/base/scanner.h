@@ -11,7 +11,7 @@
 
 namespace vdb_offset::io {
 
-/// Walks over the text of a mesh file, token by token, and knows how to say where something is wrong.
+/// Walks over the text of a mesh file, token by token, and throws errors that say where something is wrong.
 class Scanner {
  public:
   /// `continues`: a backslash at the end of a line joins it to the next one (OBJ).
@@ -43,10 +43,10 @@ class Scanner {
   /// A finite number that is the whole next token of this line, of no more than kLongestNumber characters. `at`
   /// receives its first byte.
   double number(const char* expected, std::uint64_t* at = nullptr);
-  /// Three tokens of this line, whatever they hold: normals, which are replaced and never used.
+  /// Skips three tokens of this line without reading numbers: normals, which are replaced and never used.
   void skip_triple(const char* expected, NumberTriple& at);
   std::int64_t integer(const char* expected);
-  /// A count or an index, which may stand on a later line. \throw InvalidInput as integer()
+  /// An integer, which may stand on a later line. \throw InvalidInput as integer()
   std::int64_t integer_anywhere(const char* expected);
   Vec3d triple(const char* expected, NumberTriple& at);
 

@@ -21,8 +21,9 @@ namespace vdb_offset::io {
 /// segments, other shapes and `use`, which would not be offset along with these, and for transforms in a style
 SvgLines parse_svg(const std::string& path, std::string_view text);
 
-/// The drawing with points at other positions: attributes of shapes of which a point has moved are written anew,
-/// in absolute coordinates; all other bytes stay. `source` are the curves of `lines`, where they may not be any more.
+/// Rewrites a drawing with points at other positions: attributes of shapes of which a point has moved are written anew,
+/// in absolute coordinates; all other bytes stay. `source` are the curves of `lines`, which may have been moved out of
+/// there.
 std::string rewrite_svg(std::string_view text, const SvgLines& lines, CurvesView source,
                         std::span<const Vec3d> positions, const Rounding& precision);
 

@@ -23,10 +23,10 @@ namespace vdb_offset::io {
 using SvgMatrix = std::array<double, 6>;
 inline constexpr SvgMatrix kSvgIdentity = {1, 0, 0, 1, 0, 0};
 
-/// First `inner`, then `outer`.
+/// The transform that applies `inner` first, then `outer`.
 SvgMatrix product(const SvgMatrix& outer, const SvgMatrix& inner);
 
-/// Whether what a transform does to a drawing can be undone in doubles.
+/// Whether a transform can be undone in doubles.
 bool has_inverse(const SvgMatrix& m);
 
 Vec3d transformed(const SvgMatrix& m, const Vec2d& p);
@@ -64,7 +64,7 @@ class SvgValueScanner {
 
   char letter() { return value_[at_++]; }
 
-  /// What stands before the next "(", and that.
+  /// Skips the name of a function and "(". Returns the name.
   std::string_view function_name() {
     const std::size_t open = value_.find('(', at_);
     if (open == std::string_view::npos) fail("a transform such as 'translate(1 2)'");

@@ -19,23 +19,22 @@ namespace vdb_offset::io {
 Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> positions, const Rounding& precision,
                Normals normals, WriteResult& result);
 
-// For all that is made of a mesh file and is to have what that holds:
+// The functions below are for all conversions of mesh files, to shells and iso-surfaces as well.
 
 /// Replaces the normals of faces that moved. They are computed from the coordinates as written, in single precision.
 void update_normals(const NewNormals& computed, std::vector<Vec3d>& normals, WriteResult& result);
 
-/// Drops attributes that the format has no place for, and names them in `attributes.lost`.
+/// Drops attributes that the format cannot hold, and names them in `attributes.lost`.
 void fit_to_format(Format target, PolygonView mesh, Attributes& attributes);
 
-/// Encodes the content without attributes that are no numbers or that the format has no place for; `result` names
-/// these.
+/// Encodes the content without attributes that are not finite or that the format cannot hold; `result` names these.
 Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
                       WriteResult& result);
 
 /// Whether a format has names or properties of faces, for the parts of a solid.
 bool keeps_parts(Format format);
 
-/// The name of what the other formats lose.
+/// The name of what formats without names for parts lose.
 inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";
 
 }  // namespace vdb_offset::io

@@ -15,17 +15,17 @@ struct Part {
   std::size_t faces;
 };
 
-/// The content of a file.
+/// The content of a file that is to be written.
 struct Content {
   PolygonView mesh;
   Rounding precision;  ///< Precision of coordinates in a text.
   Attributes with;
-  std::vector<Part> parts;  ///< One behind the other, over all faces; or empty.
+  std::vector<Part> parts;  ///< Of all faces, in their order; or empty.
   Materials materials;      ///< Kept in OBJ.
 };
 using SharedContent = std::shared_ptr<const Content>;
 
-/// The content as a file of that format. PLY: binary, coordinates are doubles. STL: binary, triangles and nothing else.
+/// Encodes the content in a format. PLY: binary, coordinates are doubles. STL: binary, triangles and nothing else.
 /// OBJ: all attributes, parts are groups. \pre in other formats than OBJ normals are those of vertices, and in OFF
 /// texture coordinates as well. PLY: the faces of parts have a property `part`, 0 for the first. The pieces refer to
 /// the mesh.

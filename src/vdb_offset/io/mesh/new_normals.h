@@ -20,7 +20,8 @@ inline bool has_moved(const Vec3d& before, const Vec3d& after, const Rounding& p
   return !(after == before) && !(precision(after) == before);
 }
 
-/// Faces of a file over other vertices than its own. Empty spans: all faces, over the file's vertices.
+/// Faces of a file over other vertices than its own, as in a skin of a shell. Empty spans: all faces, over the file's
+/// vertices.
 struct PlacedFaces {
   std::span<const std::uint32_t> faces;    ///< The faces that count.
   std::span<const std::uint32_t> corners;  ///< For each of the file's corners the index of its position.
@@ -28,7 +29,7 @@ struct PlacedFaces {
 };
 
 /// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners
-/// that name a normal, of the corner's face normal times its angle. They are those of the positions as written.
+/// that name a normal, of the corner's face normal times its angle. Computed from positions as they are written.
 NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed = {});
 

@@ -15,7 +15,7 @@ namespace vdb_offset::io {
 Pieces rewrite_in_place(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                         NewNormals normals = {});
 
-/// A text with line feeds in that source's format as it has its lines end.
+/// A text whose lines end with line feeds, with the line ends of a source.
 Pieces with_line_ends_of(const MeshFile& source, Pieces pieces);
 
 }  // namespace vdb_offset::io

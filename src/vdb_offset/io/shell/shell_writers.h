@@ -13,7 +13,8 @@
 
 namespace vdb_offset::io {
 
-/// One skin of a shell, as a file of its source's format has it. Refers to the source and the shell.
+/// One skin of a shell, with the numbers that a file in the source's format has for it. Refers to the source and the
+/// shell.
 ///
 /// Its vertices are numbered as the source's; behind those come the splits of both skins.
 class Skin {
@@ -27,12 +28,13 @@ class Skin {
   bool is_source() const;
   /// The vertex of the source that vertex v is, or is a split of.
   std::size_t source_of(std::size_t v) const { return v < vertices() ? v : shell_.splits[v - vertices()].vertex; }
-  /// The source's normals as they are now, not turned round.
+  /// The new values of the source's normals, not reversed for the inner skin.
   const NewNormals& new_normals() const { return normals_; }
 
   /// The positions as written.
   Vec3d position(std::size_t v) const;
-  /// None for a vertex, or a normal, that keeps its numbers, but for an inner normal's sign.
+  /// The new position of a vertex, or the new value of a normal; none if it keeps its numbers (but for the sign of an
+  /// inner normal).
   std::optional<Vec3d> new_position(std::size_t v) const;
   std::optional<Vec3d> new_normal(std::size_t n) const;
 
@@ -55,17 +57,17 @@ class Skin {
   std::uint32_t first_vertex_;
   Rounding precision_;
   NewNormals normals_;
-  std::vector<Vec3d> vertex_normals_;  // of the shell's vertices, where splits need some of their own
+  std::vector<Vec3d> vertex_normals_;  // of the shell's vertices, if splits need normals of their own
 };
 
-/// The normals of a file's corners, as a skin of its shell has them; not turned round.
+/// New values of the normals of a file, for a skin of its shell; not reversed for the inner skin.
 NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision);
 
 /// Normals of a shell's vertices, outward: means of the faces of both skins by angle, without the rim. Zero where a
 /// vertex has none.
 std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& precision);
 
-/// A shell that is to be a file of its source's format. Refers to the source and the shell.
+/// A shell that is to be written in the format of its source. Refers to the source and the shell.
 struct ShellContent {
   const MeshFile& source;
   const Shell& shell;
@@ -88,8 +90,8 @@ struct ShellContent {
 };
 using SharedShell = std::shared_ptr<const ShellContent>;
 
-// One writer a format. They add to `lost` what they do not keep. \throw InvalidInput if the source's file is not what
-// it was.
+// The writers of all formats. They add to `lost` what they cannot keep. \throw InvalidInput if the source's file has
+// changed.
 Pieces shell_to_obj(const SharedShell& content, std::vector<std::string>& lost);
 Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost);
 Pieces shell_to_ply(const SharedShell& content, std::vector<std::string>& lost);

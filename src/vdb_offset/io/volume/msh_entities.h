@@ -8,9 +8,10 @@
 
 namespace vdb_offset::io {
 
-/// A mesh's points by the entity of the lowest dimension that they lie on, as Gmsh asks for: the volume, its patches,
-/// the curves on which patches meet, and the corners at which curves end or meet. A closed curve has a corner, too, its
-/// point of the lowest number; so has a point at which patches touch that share no edge there.
+/// The entities of a mesh, as Gmsh wants them: the volume, its patches, the curves on which patches meet, and the
+/// corners at which curves end or meet. Each point belongs to the entity of the lowest dimension that it lies on. A
+/// closed curve has a corner, too, its point of the lowest number; so has a point at which patches touch that share no
+/// edge there.
 struct MshEntities {
   /// A curve from corner to corner. All of its edges are between the same patches.
   struct Curve {

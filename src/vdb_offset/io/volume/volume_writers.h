@@ -10,8 +10,8 @@
 
 namespace vdb_offset::io {
 
-// One writer a format. \pre the mesh's arrays fit each other. \throw WriteError, InvalidInput (volume_file.h). That of
-// VTK changes the order of cells' corners to VTK's.
+// The writers of all formats. \pre the mesh's arrays fit each other. \throw WriteError, InvalidInput (volume_file.h).
+// write_vtu() gives cells VTK's order of corners.
 void write_vtu(const std::string& path, VolumeMesh& mesh);
 void write_msh(const std::string& path, const VolumeMesh& mesh);
 void write_cgns(const std::string& path, const VolumeMesh& mesh);
@@ -21,11 +21,11 @@ FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh);
 
 bool has_polyhedra(const VolumeMesh& mesh);
 
-/// Refuses cells that a format has not. \throw InvalidInput for polyhedra, and for faces of patches with more than four
+/// For formats without polyhedra. \throw InvalidInput for polyhedra, and for faces of patches with more than four
 /// corners. `ending` is for messages.
 void require_standard_cells(const std::string& path, const VolumeMesh& mesh, const char* ending);
 
-/// Words of at most `longest` bytes, no two alike: the later ones end in _2, _3 ...
+/// Makes words distinct: of equal ones, the later ones end in _2, _3 ... They have at most `longest` bytes.
 std::vector<std::string> distinct_words(std::span<const std::string> words, std::size_t longest);
 
 /// The patches' names as every format can hold them: ASCII letters, digits and _ - + . alone, a letter or _ first, at

@@ -5,7 +5,7 @@
 
 namespace vdb_offset::io {
 
-// One reader a format. Each takes a file with `path` and `bytes` set and fills in the rest.
+// The readers of all formats. Each takes a file with `path` and `bytes` set, and fills in the rest.
 // \throw InvalidInput for content that is no such mesh.
 void parse_obj(MeshFile& file);
 void parse_off(MeshFile& file);
@@ -16,7 +16,7 @@ void parse_stl(MeshFile& file);
 /// do; see MeshFile.
 void use_line_feeds(MeshFile& file);
 
-/// The format as told, else by the file's ending. \throw InvalidInput for an ending that is unknown.
+/// The format that was given, or else that of the file's ending. \throw InvalidInput for an ending that is unknown.
 Format require_format(const std::string& path, const std::optional<Format>& told);
 
 /// Vertex indices are 32 bits wide; the largest value means "none".

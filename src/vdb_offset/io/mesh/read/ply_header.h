@@ -23,7 +23,7 @@ struct Type {
 struct Property {
   std::string name;
   Type type;
-  std::optional<Type> count;  // of a list
+  std::optional<Type> count;  // the type of a list's length; none for a single number
 };
 
 struct Element {
@@ -39,7 +39,7 @@ struct Header {
   char line_end = '\n';  // of the header's lines: a carriage return if no line feed follows the first one
 };
 
-/// The first element of that name, or none.
+/// The first element with a name, or none.
 const Element* find(const Header& header, std::string_view element);
 
 /// Whether a property is the list of a face's corners, or of those of strips of triangles.
