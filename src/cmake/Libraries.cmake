@@ -17,10 +17,12 @@ endforeach()
 # An archive's inline functions, and those of the headers that it was compiled with, are weak: a program that has compiled
 # one of them with flags of its own, as -mfma, would put its own in their place, and results would have other bits. So the
 # objects become one, in which they are local. Sanitizers need them as they are.
+# LLVM's linker cannot join groups, and CMake takes it for clang.
+find_program(VDB_OFFSET_LINKER NAMES ld.bfd ${CMAKE_LINKER})
 find_program(VDB_OFFSET_OBJCOPY NAMES ${CMAKE_OBJCOPY} objcopy)
 set(is_sealed OFF)
-if(NOT BUILD_SHARED_LIBS AND NOT VDB_OFFSET_SANITIZE AND NOT VDB_OFFSET_FUZZ AND VDB_OFFSET_OBJCOPY AND CMAKE_NM
-   AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+if(NOT BUILD_SHARED_LIBS AND NOT VDB_OFFSET_SANITIZE AND NOT VDB_OFFSET_SANITIZE_THREADS AND NOT VDB_OFFSET_FUZZ
+   AND VDB_OFFSET_LINKER AND VDB_OFFSET_OBJCOPY AND CMAKE_NM AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
   set(is_sealed ON)
 endif()
 
@@ -30,7 +32,7 @@ function(vdb_offset_archive component)
     set(sealed ${CMAKE_CURRENT_BINARY_DIR}/sealed/vdb_offset_${component}.o)
     file(GENERATE OUTPUT ${sealed}.objects CONTENT "$<JOIN:${objects},\n>")
     add_custom_command(OUTPUT ${sealed}
-      COMMAND ${CMAKE_COMMAND} -DLINKER=${CMAKE_LINKER} -DNM=${CMAKE_NM} -DOBJCOPY=${VDB_OFFSET_OBJCOPY} -DOUTPUT=${sealed}
+      COMMAND ${CMAKE_COMMAND} -DLINKER=${VDB_OFFSET_LINKER} -DNM=${CMAKE_NM} -DOBJCOPY=${VDB_OFFSET_OBJCOPY} -DOUTPUT=${sealed}
               -P ${CMAKE_CURRENT_SOURCE_DIR}/src/cmake/seal.cmake
       DEPENDS ${objects} src/cmake/seal.cmake VERBATIM COMMENT "Sealing ${component}")
     set(objects ${sealed})
