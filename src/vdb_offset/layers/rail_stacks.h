@@ -34,9 +34,8 @@ struct AskedLayers {
 /// The stacks of vertices while layers grow: the rail that each stands on, the share of its heights that it keeps, and
 /// the positions of its layers.
 ///
-/// start() chooses the rail of a vertex, once; set_share() says how much of its heights a vertex keeps from then on;
-/// and put_down() moves its layers there, or whatever else writes to of(). Different vertices may be handled in
-/// parallel.
+/// start() chooses the rail of a vertex, once; set_share() says how much of its heights the vertex keeps from then on;
+/// put_down(), or a caller that writes to of(), moves its layers there. Vertices may be handled in parallel.
 class RailStacks {
  public:
   /// Keeps references.
@@ -115,27 +114,7 @@ class RailStacks {
     return true;
   }
 
- private:
-  /// Where on its rail the outermost layer of a vertex was when it was last put, and with which share.
-  struct LastPut {
-    double share = 1, eta = std::numeric_limits<double>::infinity();  // infinite: it has not been put yet
-  };
-
- public:
-  /// Some vertices, with all that put_down() has set of their layers.
-  class Snapshot {
-   public:
-    /// \pre `vertices` are sorted
-    Snapshot(const RailStacks& stacks, const Indices& vertices);
-    /// Puts the layers of a vertex back to where they were. Returns false if it is not in the snapshot.
-    bool restore(std::uint32_t v, RailStacks& stacks) const;
-
-   private:
-    Indices vertices_;
-    std::vector<Vec3d> positions_;
-    std::vector<double> first_achieved_;
-    std::vector<LastPut> last_put_;
-  };
+  class Snapshot;
 
   /// What has been grown, for good.
   struct Finished {
@@ -145,12 +124,32 @@ class RailStacks {
   Finished finish() && { return {std::move(positions_), std::move(share_), std::move(first_achieved_)}; }
 
  private:
+  /// Where on its rail the outermost layer of a vertex was when it was last put, and with which share.
+  struct LastPut {
+    double share = 1, eta = std::numeric_limits<double>::infinity();  // infinite: it has not been put yet
+  };
+
   const AskedLayers& asked_;
   const Paths& paths_;
   VertexStacks positions_;
   // Of each vertex.
   std::vector<double> most_, share_, first_achieved_;
   std::vector<Vec3d> bend_;  // of its rail: zero where its layers stand on a straight line
+  std::vector<LastPut> last_put_;
+};
+
+/// Some vertices, with all that put_down() has set of their layers.
+class RailStacks::Snapshot {
+ public:
+  /// \pre `vertices` are sorted
+  Snapshot(const RailStacks& stacks, const Indices& vertices);
+  /// Puts the layers of a vertex back to where they were. Returns false if it is not in the snapshot.
+  bool restore(std::uint32_t v, RailStacks& stacks) const;
+
+ private:
+  Indices vertices_;
+  std::vector<Vec3d> positions_;
+  std::vector<double> first_achieved_;
   std::vector<LastPut> last_put_;
 };
 

@@ -11,8 +11,8 @@
 namespace vdb_offset {
 namespace {
 
-/// The triangle around a vertex that leads from there, as lead() tells of corners, nearest; `from` if none but that
-/// leads nearer.
+/// Of the triangles around a vertex, the one whose corner leads nearest to x, by lead(corner); `from` if no other leads
+/// nearer at all.
 template <class Lead>
 inline std::uint32_t leading_around(const Surface& surface, std::uint32_t centre, std::uint32_t from, Lead&& lead) {
   std::uint32_t first = from;
