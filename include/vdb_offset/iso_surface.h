@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
-#include "vdb_offset/metric.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/precision.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
@@ -31,7 +31,7 @@ struct VDB_OFFSET_API IsoOptions {
   Orient orient = Orient::Keep;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
-  ProgressCallback progress;   ///< See progress.h; may cancel.
+  ProgressCallback progress;   ///< See run.h; may cancel.
 };
 
 /// What a run will need, known before it starts.

@@ -1,15 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/layer_facts.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/patch_names.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
+
+/// What became of a face of the mesh.
+enum class FaceRole : std::uint8_t {
+  Bare,        ///< It was not asked to carry layers.
+  Full,        ///< It carries one cell in each layer, or two prisms on a split quad; none of its corners is flat.
+  Transition,  ///< Some of its corners keep no height: it carries cells of other types, which close the layers there.
+  Flat,        ///< None of its corners keeps any height: it is left out.
+  Degenerate,  ///< It has fewer than three positions, or one of them twice: it is left out.
+  Repeated,    ///< It lies over the corners of an earlier face, either way round: it is left out.
+};
+
+inline constexpr std::size_t kFaceRoleCount = 6;
+
+/// The role's name in reports.
+VDB_OFFSET_API const char* name(FaceRole role);
+
+/// What making cells found.
+struct LayerCellFacts {
+  std::vector<FaceRole> role;        ///< Of each face of the input.
+  std::vector<std::uint8_t> cells;   ///< Of each face of the input: the number of cells in each layer.
+  std::size_t turned_faces = 0;      ///< Faces whose cells lie on the side opposite to the sign of the heights.
+  std::size_t border_sides = 0;      ///< Sides of a layer's cells on edges of one face that carries cells.
+  std::size_t unpaired_sides = 0;    ///< Sides of a layer's cells on other edges, without a cell of opposite direction.
+  std::size_t split_points = 0;      ///< Points of the wall that were added for unpaired sides.
+  std::size_t coincident_sides = 0;  ///< Unpaired sides that have the points of other sides nevertheless.
+};
+
+/// Measures of the cells over layers.
+struct LayerQuality {
+  std::vector<CellType> types;  ///< Of the cells of one layer: all layers have the same.
+  /// Of all cells, layer by layer (see cell_quality.h).
+  std::vector<float> scaled_jacobian, aspect_ratio;
+  /// Degrees, of the cells of one layer: at the wall, in the column that the cell is in (see cell_quality.h).
+  std::vector<float> wall_angle;
+  double volume = 0;  ///< Of all cells, world units^3; of cells in a plane their area, world units^2.
+  std::size_t points = 0;
+  bool plane = false;  ///< The layers are on curves.
+  /// On curves: the shortest segment of any layer, as a share of the segment of the wall that it stands on.
+  double least_segment = 1;
+};
 
 struct LayerCells;
 
@@ -58,5 +103,57 @@ class VDB_OFFSET_API MeasuredCells {
   std::unique_ptr<LayerCells> cells_;
   LayerQuality quality_;
 };
+
+/// Makes one structured block of the layers on a grid of quads: i and j over the grid, k from the wall outward. All
+/// cells but inverted_cells() have positive volumes. Row and column 0 are at the corner of the grid with the lowest
+/// vertex. A grid that is closed in a direction, as a tube is, is cut open, and its first points are repeated as the
+/// last. Point fields: share, height and state, as make_cells() has them. \throw InvalidInput as require_layers_of(),
+/// and unless the faces that carry layers are quads that make one such grid, with its vertices welded.
+VDB_OFFSET_API StructuredBlock make_block(PolygonView mesh, const LayersResult& layers);
+
+/// Counts a block's hexahedra whose scaled Jacobian (cell_quality.h) is not above 0: cells of no height where layers
+/// end, which a block cannot leave out, and cells on quads that would otherwise carry two prisms. \pre nk > 1
+VDB_OFFSET_API std::size_t inverted_cells(const StructuredBlock& block);
+
+/// Figures of the layers on a part of the wall, or on all of it. On curves, faces are segments and areas lengths.
+struct LayerFigures {
+  std::string name;  ///< Of the patch.
+  std::array<std::size_t, kFaceRoleCount> faces_by_role{};
+  std::array<std::size_t, kCellTypeCount> cells_by_type{};
+  std::size_t cells = 0, transition_cells = 0;
+  double area = 0;                ///< Of the faces that were asked to carry layers, world units^2.
+  double layers_reached = 0;      ///< Number of layers times the share of heights kept, mean over that area.
+  double coverage = 0;            ///< Share of that area whose faces have all of their heights at all of their corners.
+  Spread asked, reached;          ///< Thickness of all layers, means over faces' corners, by area; world units.
+  std::size_t full_vertices = 0;  ///< Vertices that keep all of their heights. Copies of a position count separately.
+  /// Relative errors of the first heights of those vertices: the largest, and the 99 % quantile.
+  double first_error = 0, first_error_99 = 0;
+  Spread scaled_jacobian, aspect_ratio;  ///< Of cells (see cell_quality.h).
+  std::size_t inverted_cells = 0;        ///< Cells whose scaled Jacobian is not above 0.
+  Spread wall_angle;                     ///< Degrees, of the cells at the wall: 0 is best.
+};
+
+struct LayerReport {
+  std::size_t layers = 0;
+  LayerFigures all;
+  std::vector<LayerFigures> patches;  ///< In the order of the walls in VolumeMesh::patches.
+  bool plane = false;                 ///< Layers on curves.
+  double least_segment = 1;           ///< See LayerQuality.
+  double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
+  std::size_t points = 0;
+  LayerStatistics growing;
+  std::optional<FoamQuality> foam;       ///< If a mesh has been written for OpenFOAM.
+  std::size_t inverted_block_cells = 0;  ///< Cells of a structured block that was written, with a Jacobian not above 0.
+  std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;
+};
+
+/// Sums up layers and the cells over them, for each boundary patch and for all.
+/// \param names of the faces
+/// \throw InvalidInput as require_names()
+VDB_OFFSET_API LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const WallNames& names,
+                                         const LayerCellFacts& facts, const LayerQuality& quality);
+
+/// A few lines of text for a terminal, each with a line end.
+VDB_OFFSET_API std::string summary(const LayerReport& report);
 
 }  // namespace vdb_offset

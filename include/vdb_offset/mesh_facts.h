@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <map>
+#include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/vec.h"
+#include "vdb_offset/numbers.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 
@@ -76,5 +78,29 @@ struct VDB_OFFSET_API MeshFacts {
   }
   bool oriented() const { return unsettled_conflicts == 0 && non_manifold_left == 0; }
 };
+
+/// A plane: all x with normal . x = offset; the normal has unit length.
+struct VDB_OFFSET_API SymmetryPlane {
+  Vec3d normal{0.0};
+  double offset = 0;
+
+  /// Signed height of a position above the plane, world units.
+  double height(const Vec3d& x) const;
+};
+
+struct SymmetryOptions {
+  bool find = true;  ///< Borders stay in the planes that they lie in.
+  std::vector<SymmetryPlane>
+      planes;  ///< World coordinates. All vertices on one of these stay in it, whatever is around them.
+};
+
+/// Diagonal of the bounding box of the vertices that faces use, which percentages of a distance refer to.
+VDB_OFFSET_API double used_diagonal(PolygonView mesh);
+
+/// Unit normals of the mesh's vertices, outward: of the welded surface and weighted by angles, as the offset itself
+/// takes them. Zero for a vertex that no face uses, and where the faces around have no normals or these cancel out.
+/// \throw InvalidInput as build_surface()
+VDB_OFFSET_API std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld = {},
+                                                 Orient orient = Orient::Keep);
 
 }  // namespace vdb_offset

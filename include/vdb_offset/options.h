@@ -9,11 +9,9 @@
 #include "vdb_offset/distances.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
-#include "vdb_offset/metric.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/precision.h"
-#include "vdb_offset/progress.h"
-#include "vdb_offset/symmetry.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 
@@ -60,11 +58,11 @@ struct VDB_OFFSET_API OffsetOptions {
   Orient orient = Orient::Keep;
   int threads = 0;  ///< 0: as many as the machine has.
   /// Bytes for the whole run, by the plan; 0: no limit. What is read, and lists that may grow to anything, keep to that
-  /// of the process (set_memory_limit in memory.h).
+  /// of the process (set_memory_limit in run.h).
   std::size_t max_memory = 0;
   bool keep_field = false;    ///< Hand the distance field out with the result.
   bool keep_paths = false;    ///< Hand the vertices' paths out with the result; not for layers.
-  ProgressCallback progress;  ///< See progress.h; may cancel.
+  ProgressCallback progress;  ///< See run.h; may cancel.
 };
 
 }  // namespace vdb_offset

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/vec.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
 

@@ -7,7 +7,7 @@
 #include "vdb_offset/api.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/iso_surface.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shell.h"
 

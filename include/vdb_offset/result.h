@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "vdb_offset/distances.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/statistics.h"
-#include "vdb_offset/vec.h"
 
 namespace vdb_offset {
 

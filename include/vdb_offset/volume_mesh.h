@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -72,6 +73,33 @@ struct StructuredBlock {
   std::uint32_t ni = 0, nj = 0, nk = 0;  ///< Points in each direction.
   std::vector<Vec3d> points;             ///< ni nj nk of them, world units.
   std::vector<VolumeField> point_fields;
+};
+
+/// The names of the parts of a mesh: one for each face.
+struct WallNames {
+  std::vector<std::string> names;
+  std::vector<std::uint32_t> of_face;  ///< Index into `names`, of each face of the input. Empty: all are "wall".
+};
+
+/// \throw InvalidInput unless each of so many faces has one of the names, or no face has any
+VDB_OFFSET_API void require_names(const WallNames& walls, std::size_t faces);
+
+/// The names of the boundary patches of a volume mesh, in the order of `names`; {"wall"} if there are none. They hold
+/// only ASCII letters, digits and _ - . and start with a letter, as OpenFOAM's words and SU2's tags ask for: other
+/// characters become _, and a name that starts otherwise gets wall_ in front. Where two names would be equal, or one
+/// would be "outer" or "sides", the later gets _2, _3 ... behind it.
+VDB_OFFSET_API std::vector<std::string> patch_names(const WallNames& walls);
+
+/// The quality of a volume mesh in OpenFOAM's terms.
+struct FoamQuality {
+  static constexpr double kMostDegrees = 70, kMostSkewness = 4;  ///< checkMesh warns above these.
+
+  std::size_t wrong_faces = 0;  ///< Faces whose pyramid from the centre of a cell has a volume not above 0.
+  double non_orthogonality =
+      0;  ///< Largest angle between a face's normal and the line between cells' centres, degrees.
+  double mean_non_orthogonality = 0;  ///< The angle of the mean cosine over the faces between two cells, degrees.
+  double skewness = 0;  ///< Largest distance of a face's centre from that line, as a share of the face's size there.
+  std::size_t non_orthogonal_faces = 0, skew_faces = 0;  ///< Faces beyond the limits.
 };
 
 }  // namespace vdb_offset

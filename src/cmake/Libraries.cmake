@@ -85,13 +85,10 @@ add_library(vdb_offset::vdb_offset ALIAS vdb_offset)
 
 # The public headers: what is not named here is not installed.
 set(public_headers
-  api.h check.h curve_cells.h curve_check.h curve_offset.h curves.h decimal.h distance_expression.h distance_field.h
-  distances.h error.h fit.h foam_quality.h grid.h hollow.h iso_surface.h layer_cells.h layer_facts.h layer_report.h
-  layers.h memory_limit.h mesh_facts.h mesh_measures.h metric.h offset.h options.h output_files.h patch_names.h
-  polygons.h precision.h progress.h report.h result.h scene.h shapes.h shell.h spread.h statistics.h
-  structured_block.h symmetry.h vec.h version.h vertex_stacks.h vertex_state.h volume_mesh.h io/attributes.h
-  io/byte_offsets.h io/curve_file.h io/file_bytes.h io/iso_file.h io/mesh_file.h io/selection.h io/shell_file.h
-  io/states_file.h io/triangle_positions.h io/vertex_numbers.h io/volume_file.h io/wall_names.h)
+  api.h check.h curve_offset.h curves.h distance_field.h distances.h error.h grid.h iso_surface.h layer_cells.h layers.h
+  mesh_facts.h numbers.h offset.h options.h output_files.h polygons.h report.h result.h run.h scene.h shell.h
+  statistics.h version.h volume_mesh.h io/attributes.h io/curve_file.h io/file_bytes.h io/iso_file.h io/mesh_file.h
+  io/shell_file.h io/states_file.h io/volume_file.h)
 if(VDB_OFFSET_OPENMESH)
   list(APPEND public_headers openmesh.h)
 endif()

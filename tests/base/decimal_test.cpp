@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/decimal.h"
+#include "vdb_offset/numbers.h"
 
 #include <catch2/catch.hpp>
 

@@ -14,7 +14,7 @@
 
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;

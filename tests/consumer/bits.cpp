@@ -4,7 +4,7 @@
 #include <vdb_offset/curve_offset.h>
 #include <vdb_offset/iso_surface.h>
 #include <vdb_offset/offset.h>
-#include <vdb_offset/shapes.h>
+#include <vdb_offset/scene.h>
 #include <vdb_offset/shell.h>
 
 #include <bit>

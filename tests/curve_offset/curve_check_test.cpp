@@ -5,8 +5,6 @@
 
 #include "support/curve_oracles.h"
 #include "vdb_offset/curve/curve_line.h"
-#include "vdb_offset/curve_cells.h"
-#include "vdb_offset/curve_check.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 

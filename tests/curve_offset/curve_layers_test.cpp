@@ -13,13 +13,12 @@
 #include "support/curve_oracles.h"
 #include "support/folder.h"
 #include "vdb_offset/base/rounding.h"
-#include "vdb_offset/curve_cells.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/layer_report.h"
-#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/volume/cell_quality.h"
 
 using namespace vdb_offset;

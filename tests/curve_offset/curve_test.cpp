@@ -12,7 +12,7 @@
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/mesh_facts.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

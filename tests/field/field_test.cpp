@@ -10,7 +10,7 @@
 #include "vdb_offset/field/direction_field.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

@@ -7,7 +7,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

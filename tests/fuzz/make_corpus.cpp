@@ -12,8 +12,8 @@
 
 #include "support/bytes.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;

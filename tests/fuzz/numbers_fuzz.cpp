@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "vdb_offset/error.h"
-#include "vdb_offset/io/vertex_numbers.h"
+#include "vdb_offset/io/attributes.h"
 
 using namespace vdb_offset;
 

@@ -16,9 +16,9 @@
 
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/vertex_numbers.h"
 
 using namespace vdb_offset;
 

@@ -7,7 +7,6 @@
 
 #include "support/folder.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/triangle_positions.h"
 
 using namespace vdb_offset;
 

@@ -12,7 +12,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/output_files.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;

@@ -6,13 +6,13 @@
 
 #include "support/volume_meshes.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/volume/msh_entities.h"
 #include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/io/wall_names.h"
 #include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers/cells/make_cells.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

@@ -12,9 +12,7 @@
 #include "vdb_offset/io/base/nearest_names.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/selection.h"
 #include "vdb_offset/io/shell_file.h"
-#include "vdb_offset/io/vertex_numbers.h"
 #include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;

@@ -16,7 +16,7 @@
 #include "vdb_offset/iso/iso_grid.h"
 #include "vdb_offset/iso/mend.h"
 #include "vdb_offset/iso/source_lookup.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;

@@ -12,10 +12,10 @@
 
 #include "support/oracles.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/io/wall_names.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/layer_cells.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/volume/cell_faces.h"
 #include "vdb_offset/volume/cell_quality.h"
 #include "vdb_offset/volume/prism_quality_columns.h"

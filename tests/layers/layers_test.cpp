@@ -10,11 +10,10 @@
 #include "support/random_scenes.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers/cells/make_cells.h"
 #include "vdb_offset/layers/growth_columns.h"
-#include "vdb_offset/shapes.h"
-#include "vdb_offset/structured_block.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 #include "vdb_offset/volume/cell_quality.h"
 

@@ -6,10 +6,9 @@
 #include <set>
 
 #include "support/volume_meshes.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers/cells/make_cells.h"
-#include "vdb_offset/shapes.h"
-#include "vdb_offset/structured_block.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/volume/cell_quality.h"
 #include "vdb_offset/volume/foam_measures.h"
 #include "vdb_offset/volume/polygon_prism.h"

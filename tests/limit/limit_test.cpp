@@ -12,7 +12,7 @@
 #include "support/random_scenes.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/check.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/validity/fault_finder.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 

@@ -4,7 +4,7 @@
 #include "support/oracles.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/limit/warm_start.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

@@ -13,12 +13,11 @@
 #include "support/bytes.h"
 #include "support/folder.h"
 #include "support/oracles.h"
-#include "vdb_offset/distance_expression.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/base/compression.h"
-#include "vdb_offset/io/vertex_numbers.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;

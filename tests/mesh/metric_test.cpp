@@ -13,7 +13,7 @@
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/mesh/in_metric.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;

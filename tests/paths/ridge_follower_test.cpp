@@ -4,7 +4,7 @@
 
 #include "vdb_offset/paths/ridge_path.h"
 #include "vdb_offset/query/closest_query.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

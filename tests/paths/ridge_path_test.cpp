@@ -8,7 +8,7 @@
 #include "support/oracles.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/offset.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

@@ -6,7 +6,7 @@
 #include "support/curve_oracles.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

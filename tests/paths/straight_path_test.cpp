@@ -10,7 +10,7 @@
 
 #include "support/oracles.h"
 #include "vdb_offset/query/closest_query.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

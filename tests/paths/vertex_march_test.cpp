@@ -11,7 +11,7 @@
 #include "support/oracles.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

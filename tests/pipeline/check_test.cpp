@@ -5,7 +5,7 @@
 
 #include "support/oracles.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

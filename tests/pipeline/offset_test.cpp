@@ -10,7 +10,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/openmesh.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 using test::judge;

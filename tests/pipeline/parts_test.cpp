@@ -7,8 +7,8 @@
 #include "support/oracles.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/io/selection.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/validity/clearance.h"
 
 using namespace vdb_offset;

@@ -8,7 +8,7 @@
 #include "vdb_offset/layers.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/pipeline/prepared_mesh.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

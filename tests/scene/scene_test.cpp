@@ -7,8 +7,7 @@
 
 #include "support/oracles.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/fit.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;

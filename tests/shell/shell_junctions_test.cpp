@@ -8,7 +8,7 @@
 #include "vdb_offset/io/shell_file.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/sheets/sheet_sides.h"
 #include "vdb_offset/shell.h"
 #include "vdb_offset/validity/triangle_crossings.h"

@@ -14,7 +14,7 @@
 #include "vdb_offset/base/index_set.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/shell_file.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/validity/rim_crossings.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 

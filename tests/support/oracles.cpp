@@ -6,12 +6,12 @@
 #include <limits>
 #include <numbers>
 
-#include "vdb_offset/layer_facts.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/layers/cells/number_cells.h"
 #include "vdb_offset/result.h"
-#include "vdb_offset/shapes.h"
-#include "vdb_offset/vertex_state.h"
+#include "vdb_offset/scene.h"
+#include "vdb_offset/statistics.h"
 #include "vdb_offset/volume/cell_quality.h"
 
 namespace vdb_offset::test {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset::test {
 namespace {

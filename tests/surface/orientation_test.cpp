@@ -7,7 +7,7 @@
 #include "support/oracles.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 using test::share;

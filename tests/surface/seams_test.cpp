@@ -11,7 +11,7 @@
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/shell.h"
 
 using namespace vdb_offset;

@@ -11,7 +11,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/openmesh.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

@@ -7,9 +7,9 @@
 
 #include "support/oracles.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/shell.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 

@@ -6,7 +6,7 @@
 #include "support/oracles.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 #include "vdb_offset/validity/clearance.h"
 
 using namespace vdb_offset;

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "vdb_offset/precision.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/numbers.h"
+#include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
 

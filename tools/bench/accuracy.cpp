@@ -8,7 +8,6 @@
 
 #include "vdb_offset/offset.h"
 #include "vdb_offset/scene.h"
-#include "vdb_offset/shapes.h"
 
 namespace vdb_offset {
 namespace {

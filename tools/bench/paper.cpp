@@ -20,7 +20,7 @@
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
 #include "vdb_offset/offset.h"
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset {
 namespace {

@@ -7,17 +7,14 @@
 
 #include "run_files.h"
 #include "summary.h"
-#include "vdb_offset/curve_cells.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/states_file.h"
 #include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/io/wall_names.h"
 #include "vdb_offset/layer_cells.h"
-#include "vdb_offset/layer_report.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/structured_block.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -15,7 +15,7 @@
 #include "summary.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/fit.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
 

@@ -14,9 +14,8 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/file_bytes.h"
-#include "vdb_offset/io/vertex_numbers.h"
 #include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/mesh_facts.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "messages.h"
 #include "outputs.h"
-#include "vdb_offset/io/selection.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"
 

@@ -6,7 +6,7 @@
 
 #include "messages.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/memory_limit.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -9,8 +9,8 @@
 #include "messages.h"
 #include "run_files.h"
 #include "vdb_offset/curves.h"
-#include "vdb_offset/hollow.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "job.h"
 #include "outputs.h"
-#include "vdb_offset/hollow.h"
 #include "vdb_offset/iso_surface.h"
-#include "vdb_offset/layer_report.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::tool {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 

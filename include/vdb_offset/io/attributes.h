@@ -2,11 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset::io {
 
@@ -48,5 +52,44 @@ VDB_OFFSET_API Materials read_materials(const MeshFile& source);
 /// Texture coordinates, one for each vertex: those of the first corner at the vertex that has any, NaNs if none has.
 /// Zero for a vertex that no face uses. \throw InvalidInput if the file holds no texture coordinates at all.
 VDB_OFFSET_API std::vector<Vec2d> vertex_texture(const MeshFile& source);
+
+/// What a file calls its faces. OBJ: by groups, a line's names joined by _; by materials if no face is in a group, and
+/// by objects if none has a material either. ASCII STL: by solids. Names are in the order of their first faces; faces
+/// without one are "wall". None if the file names nothing.
+VDB_OFFSET_API WallNames wall_names(const MeshFile& mesh);
+
+/// Names some faces of a mesh.
+struct Selector {
+  enum class By {
+    Group,     ///< OBJ: a name of a `g` or `o` line; ASCII STL: the name of a solid.
+    Material,  ///< OBJ: a name of a `usemtl` line.
+    File,      ///< A text file: a 0 or 1 for each face, or else the indices of faces, counted from 0.
+  };
+  By by;
+  std::string name;
+};
+
+/// \throw InvalidOption unless the text is `group=NAME`, `material=NAME` or `faces=FILE`.
+VDB_OFFSET_API Selector parse_selector(const std::string& text);
+
+/// One number a face: 1 if any of the selectors names it. \throw InvalidOption for a name that no face has; it tells
+/// those that there are. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this mesh.
+VDB_OFFSET_API std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors);
+
+/// Reads a number for each of `count` vertices, in their order: from text (numbers between blanks and line ends, '#'
+/// starts a comment) or from an array that NumPy saved (.npy, versions 1 to 3: floating or whole numbers of 1 to 8
+/// bytes, either byte order, of shape (n,) or (n, 1)), which its first bytes tell. `.gz` and `.zst` are decompressed;
+/// "-" is standard input. \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was
+/// expected, what was found) for content that is neither, another count, or a number that is not finite (the vertex,
+/// counted from 0). Never allocates more than a small multiple of `count`, or of the file's size if that is less.
+VDB_OFFSET_API std::vector<double> read_vertex_numbers(const std::string& path, std::size_t count);
+
+/// Reads numbers as read_vertex_numbers() does from bytes in memory; `name` is for messages.
+VDB_OFFSET_API std::vector<double> parse_vertex_numbers(const std::string& name, std::string_view bytes,
+                                                        std::size_t count);
+
+/// The numbers that a PLY file holds for its vertices under that name.
+/// \throw InvalidInput if the file is no PLY, has no such property of single numbers, or holds one that is not finite.
+VDB_OFFSET_API std::vector<double> vertex_property(const MeshFile& source, const std::string& name);
 
 }  // namespace vdb_offset::io

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/hollow.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::io {
 

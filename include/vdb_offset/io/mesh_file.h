@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/io/byte_offsets.h"
 #include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/precision.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 
@@ -96,5 +95,10 @@ VDB_OFFSET_API Precision precision_of(const std::string& path, const MeshFile& s
 
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
 VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
+
+/// Where a mesh's vertices stand in a file of its triangles alone, as STL is written of it: three vertices for each,
+/// face by face. Vertices of no face are where they are in the mesh. None if these are not its triangles, or if the
+/// corners of a vertex are apart.
+VDB_OFFSET_API std::optional<std::vector<Vec3d>> positions_in_triangles(PolygonView mesh, PolygonView triangles);
 
 }  // namespace vdb_offset::io

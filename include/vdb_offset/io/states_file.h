@@ -7,7 +7,7 @@
 #include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/vertex_state.h"
+#include "vdb_offset/statistics.h"
 
 namespace vdb_offset::io {
 

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/foam_quality.h"
 #include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset::io {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vdb_offset/memory_limit.h"
+#include "vdb_offset/run.h"
 namespace vdb_offset {
 
 /// Bytes that this process holds now (its resident set).

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vdb_offset/vec.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
 

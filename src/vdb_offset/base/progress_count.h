@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 namespace vdb_offset {
 
 /// Tells one callback of several like pieces of work that are done at the same time as if they were one.

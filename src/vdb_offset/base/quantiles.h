@@ -13,7 +13,7 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
-#include "vdb_offset/spread.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "vdb_offset/precision.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <chrono>
 
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

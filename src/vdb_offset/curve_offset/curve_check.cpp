@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/curve_check.h"
+#include "vdb_offset/curve_offset.h"
 
 #include <tbb/task_arena.h>
 

@@ -7,7 +7,7 @@
 #include "vdb_offset/curve_offset/restore_order.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/paths/propagate.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "vdb_offset/field/field_grids.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

@@ -3,7 +3,7 @@
 
 #include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "vdb_offset/field/field_grids.h"
-#include "vdb_offset/progress.h"
 #include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/surface/inside.h"
 
 namespace vdb_offset {

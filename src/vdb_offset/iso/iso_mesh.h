@@ -4,7 +4,7 @@
 #include "vdb_offset/iso/iso_grid.h"
 #include "vdb_offset/iso/iso_level.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

@@ -9,7 +9,6 @@
 #include "vdb_offset/layers.h"
 #include "vdb_offset/parts/constrained_surface.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/vertex_stacks.h"
 
 namespace vdb_offset {
 

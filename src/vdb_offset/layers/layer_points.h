@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vdb_offset/base/assert.h"
-#include "vdb_offset/vec.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "vdb_offset/base/index_set.h"
+#include "vdb_offset/layers.h"
 #include "vdb_offset/layers/rails.h"
 #include "vdb_offset/paths/propagate.h"
-#include "vdb_offset/vertex_stacks.h"
 
 namespace vdb_offset {
 

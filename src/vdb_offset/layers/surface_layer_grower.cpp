@@ -156,7 +156,8 @@ class SurfaceWall final : public LayerWall {
           at_end ? paths_.displacement[v]
                  : round_displacement((*slides_)(v, height) - constrained_.surface.vertices[v], target);
       stack[k + 1] = source_[v] + displacement;
-      const double achieved = constrained_.moving_part(stack[k + 1] - moving_part_.origin, constrained_.hint(v)).distance;
+      const double achieved =
+          constrained_.moving_part(stack[k + 1] - moving_part_.origin, constrained_.hint(v)).distance;
       stacks_.set_first_achieved(v, achieved);
       if (!(std::abs(achieved - target) <= kReachedTolerance * target)) return false;
     }

@@ -12,7 +12,7 @@
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/parts/border_slide.h"
 #include "vdb_offset/paths/propagate.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/validity/fault_finder.h"
 
 namespace vdb_offset {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/vertex_stacks.h"
+#include "vdb_offset/layers.h"
 
 #include "vdb_offset/base/parallel.h"
 

@@ -5,7 +5,7 @@
 
 #include "vdb_offset/limit/warm_start.h"
 #include "vdb_offset/paths/propagate.h"
-#include "vdb_offset/progress.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/statistics.h"
 #include "vdb_offset/validity/fault_finder.h"
 

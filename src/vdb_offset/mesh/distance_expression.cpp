@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/distance_expression.h"
+#include "vdb_offset/distances.h"
 
 #include <fmt/format.h>
 #include <muParser.h>

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/metric.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/precision.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/distance_expression.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
 
 // Stands in for distance_expression.cpp where the library is built without muParser: any expression is refused.

@@ -8,9 +8,9 @@
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/field/direction_field.h"
-#include "vdb_offset/progress.h"
 #include "vdb_offset/query/obstacles.h"
-#include "vdb_offset/vertex_state.h"
+#include "vdb_offset/run.h"
+#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/fit.h"
+#include "vdb_offset/offset.h"
 
 #include <algorithm>
 #include <array>

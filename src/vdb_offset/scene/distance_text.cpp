@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "vdb_offset/decimal.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::scene {

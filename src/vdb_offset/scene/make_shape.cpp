@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "vdb_offset/scene.h"
 #include "vdb_offset/scene/json_object.h"
-#include "vdb_offset/shapes.h"
 
 namespace vdb_offset::scene {
 

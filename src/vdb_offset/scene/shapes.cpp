@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/shapes.h"
+#include "vdb_offset/scene.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/hollow.h"
+#include "vdb_offset/shell.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/symmetry.h"
 
 /// Planes that vertices stay in: those of symmetry, of half models, and those that borders lie in.
 namespace vdb_offset {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/mesh_measures.h"
+#include "vdb_offset/mesh_facts.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>

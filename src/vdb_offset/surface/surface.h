@@ -11,7 +11,6 @@
 
 #include "vdb_offset/mesh/point_triangle.h"
 #include "vdb_offset/mesh_facts.h"
-#include "vdb_offset/mesh_measures.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/surface/border_planes.h"
 

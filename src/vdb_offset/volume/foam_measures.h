@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "vdb_offset/foam_quality.h"
 #include "vdb_offset/volume/volume_faces.h"
 #include "vdb_offset/volume_mesh.h"
 

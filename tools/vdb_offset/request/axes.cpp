@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "request/option_values.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/mesh_measures.h"
-#include "vdb_offset/metric.h"
+#include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/scene.h"
 

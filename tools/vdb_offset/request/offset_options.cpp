@@ -8,7 +8,7 @@
 #include "request/option_rules.h"
 #include "request/option_values.h"
 #include "request/request.h"
-#include "vdb_offset/memory_limit.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/version.h"
 
 namespace vdb_offset::tool {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "request/request.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/io/iso_file.h"
-#include "vdb_offset/metric.h"
 #include "vdb_offset/polygons.h"
 
 // What the texts of single options say. Each throws UsageError, with the option and what it takes, for another text.

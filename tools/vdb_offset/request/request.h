@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/iso_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/selection.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/scene.h"

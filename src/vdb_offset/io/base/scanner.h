@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "vdb_offset/io/byte_offsets.h"
-#include "vdb_offset/vec.h"
+#include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset::io {
 

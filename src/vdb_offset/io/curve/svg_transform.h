@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "vdb_offset/io/base/line_records.h"
-#include "vdb_offset/vec.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset::io {
 

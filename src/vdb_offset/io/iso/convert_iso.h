@@ -2,11 +2,11 @@
 #pragma once
 
 #include "vdb_offset/base/rounding.h"
-#include "vdb_offset/hollow.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/iso_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/shell.h"
 
 namespace vdb_offset::io {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "vdb_offset/layer_facts.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers/cells/number_cells.h"
 #include "vdb_offset/volume_mesh.h"
 

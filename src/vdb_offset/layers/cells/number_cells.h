@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/layer_facts.h"
+#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/layers/layer_points.h"
-#include "vdb_offset/patch_names.h"
 #include "vdb_offset/surface/weld.h"
+#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/structured_block.h"
+#include "vdb_offset/layer_cells.h"
 
 #include <algorithm>
 #include <atomic>

@@ -20,4 +20,16 @@ VDB_OFFSET_API const char* name(Stage stage);
 /// then throws Cancelled. Calls never overlap, but come from whichever thread has something to tell.
 using ProgressCallback = std::function<bool(Stage, double)>;
 
+/// Bytes that this process may still take: what the system has free, or its control group leaves, if less.
+VDB_OFFSET_API std::size_t available_memory();
+
+/// Most bytes that this process has held at once since it started (its resident set).
+VDB_OFFSET_API std::size_t peak_memory();
+
+/// Most bytes that this process is to hold, 0 for no limit, as it is at first. It counts for what is not planned as a
+/// whole: files as they are decompressed and read, scenes as they are built, lists that may grow to anything.
+VDB_OFFSET_API void set_memory_limit(std::size_t bytes);
+
+VDB_OFFSET_API std::size_t memory_limit();
+
 }  // namespace vdb_offset
