@@ -16,11 +16,13 @@ struct VDB_OFFSET_API CheckOptions {
   /// The distance that was asked for, world units, negative inward, one for all vertices or one for each; empty: the
   /// median of the distances found, with the sign of most of them.
   std::optional<Distances> distance;
-  /// Marks of the faces that were offset. This and the next three are as they were for the offset (see OffsetOptions).
+  /// Marks of the faces that were offset. This and the next five are as they were for the offset (see OffsetOptions).
   std::vector<std::uint8_t> only;
   Border border = Border::Slide;
   PolygonView obstacles;
   double clearance = 0;
+  Corners corners = Corners::Round;
+  double miter_limit = 4;
   WeldOptions weld = WeldOptions::automatic();
   Metric metric;  ///< Of the space in which distances are measured.
   Orient orient = Orient::Keep;
@@ -33,8 +35,8 @@ struct CheckResult {
   double distance = 0;  ///< The distance asked for, or found, world units; the farthest if vertices differ.
   Distances distances;  ///< The distance of each vertex of the source.
   MeshFacts facts;      ///< Of the source.
-  /// Of each vertex of the source: Reached (to 1e-6 of the distance and the rounding of coordinates), Limited (nearer
-  /// or farther) or Unused.
+  /// Of each vertex of the source: Reached (to 1e-6 of the distance and the rounding of coordinates), Mitred or Cut
+  /// (at the end of its miter, as exactly), Limited (nearer or farther) or Unused.
   std::vector<VertexState> states;
   std::vector<double> achieved;  ///< Of each vertex: the exact distance to the source, world units.
   std::size_t beyond = 0;        ///< Vertices farther than the distance.
@@ -43,7 +45,7 @@ struct CheckResult {
   FaultCounts faults;
   std::size_t source_crossings = 0, crossings_near_source = 0;
   bool more_source_crossings = false;  ///< There are more source crossings than these; faces near them are not judged.
-  FaceInteriorError interior;          ///< Of all faces.
+  FaceError faces;
   std::optional<ObstacleFacts> obstacles;  ///< If there are obstacles.
 
   bool valid() const { return faults.total() + wrong_side + torn == 0; }

@@ -84,7 +84,7 @@ struct IsoStatistics {
   std::size_t turned_edges = 0;           ///< Edges whose two faces run through them in the same direction.
   MendStatistics mending;                 ///< Crossings and needles, and what was done about them.
   double worst_error = 0, rms_error = 0;  ///< Of vertices: |distance to the source - target| / target.
-  FaceInteriorError interior;             ///< Between vertices, on 10,000 triangles, evenly taken from all.
+  FaceError faces;                        ///< Its causes are not told.
 
   bool closed() const { return border_edges == 0 && non_manifold_edges == 0; }
   bool manifold() const { return non_manifold_edges == 0 && pinched_vertices == 0 && turned_edges == 0; }

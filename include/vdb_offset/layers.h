@@ -98,11 +98,12 @@ struct VDB_OFFSET_API LayersResult {
   SharedStacks stacks;  ///< Of the input's vertices: on the wall, which is the mesh itself, and at each height.
   /// Of each input vertex: the first vertex that it moves with; kNone if it is in no face. Empty on curves.
   std::vector<std::uint32_t> welded_to;
-  std::vector<Distances> heights;      ///< Asked of each input vertex, one set a layer; all of one sign.
-  std::vector<double> share;           ///< Of each input vertex: the share of its heights that it keeps, 0 .. 1.
-  std::vector<VertexState> states;     ///< Of the outermost surface's vertices.
-  std::vector<double> achieved;        ///< Exact distance of the outermost surface's vertices, world units.
-  std::vector<double> first_achieved;  ///< Exact distance of the first layer's vertices, world units.
+  std::vector<Distances> heights;   ///< Asked of each input vertex, one set a layer; all of one sign.
+  std::vector<double> share;        ///< Of each input vertex: the share of its heights that it keeps, 0 .. 1.
+  std::vector<VertexState> states;  ///< Of the outermost surface's vertices.
+  /// Exact distance of the outermost surface's vertices, and of the first layer's, world units; of mitred vertices that
+  /// of the faces beside them.
+  std::vector<double> achieved, first_achieved;
   /// Of each face of the input: 0 if it carries no layers, since it is not offset or has no area; 1 if it carries
   /// layers; 2 or 3 if it is a quad that carries them as two triangles, on both sides of its diagonal from corner 0
   /// or 1. Empty: all faces carry layers.

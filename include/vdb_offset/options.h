@@ -33,6 +33,13 @@ enum class Collision {
   Merge,  ///< The paper's weak solution: every vertex goes as far as phi allows; faces there may fold or collapse.
 };
 
+/// What becomes of sharp corners on the side where the offset of a corner is round: the vertex cannot be at the
+/// distance, and have its faces at the distance, too.
+enum class Corners {
+  Round,  ///< Every vertex is at the distance (phi = d, as in the paper); faces beside it are nearer.
+  Miter,  ///< A vertex on a crease goes to where the planes around it meet that are moved by the distance.
+};
+
 struct VDB_OFFSET_API OffsetOptions {
   /// World units, one for all or one for each vertex of the input; negative is inward, 0 leaves a vertex where it is.
   /// Vertices welded together use the mean of their distances.
@@ -53,7 +60,9 @@ struct VDB_OFFSET_API OffsetOptions {
   Metric metric;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
-  Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
+  Corners corners = Corners::Round;
+  double miter_limit = 4;  ///< The longest that a miter may be, in distances, >= 1; one that would be longer is cut.
+  Precision precision;     ///< What the file that the result is for keeps; validity is checked on that.
   WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
   int threads = 0;  ///< 0: as many as the machine has.

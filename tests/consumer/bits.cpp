@@ -43,7 +43,7 @@ int main() {
   for (const double distance : {0.05, -0.2}) {
     const auto result = vdb_offset::offset(ball.view(), {.distance = distance});
     print("offset", result.positions);
-    print("achieved", {Vec3d(result.statistics.interior.mean, result.statistics.limit.thickness_lost, 0)});
+    print("achieved", {Vec3d(result.statistics.faces.mean, result.statistics.limit.thickness_lost, 0)});
   }
   print("iso", vdb_offset::make_iso_surface(ball.view(), {.distance = 0.1}).polygons.positions);
   // Products of such lengths are small; a program that flushes what is tiny to zero must not have the library do so.

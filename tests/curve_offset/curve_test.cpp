@@ -49,10 +49,10 @@ TEST_CASE("curves: the circle of 40 points goes where the exact offset of its po
   for (const double d : {-0.1, 0.1}) {
     const OffsetResult result = offset_of(circle, d);
     CHECK(reached(result) == 40);
-    CHECK(result.statistics.interior.samples == 40);
+    CHECK(result.statistics.faces.samples == 40 * 65);
     // Inward segments lie on parallels; outward their middles are nearer by what a chord is nearer than its arc.
     const double sag = d < 0 ? 0 : (0.5 - 0.6) * std::cos(std::numbers::pi / 40) + 0.1;
-    CHECK(result.statistics.interior.worst == Approx(sag / 0.1).margin(1e-9));
+    CHECK(result.statistics.faces.worst == Approx(sag / 0.1).margin(1e-9));
     // Inward the corners lie on both neighbours' parallels; outward they are as far from the corner itself.
     const double radius = d < 0 ? 0.5 - 0.1 / std::cos(std::numbers::pi / 40) : 0.6;
     for (std::size_t p = 0; p < 40; ++p)

@@ -29,13 +29,13 @@ std::vector<std::set<std::uint32_t>> patches_of_points(const VolumeMesh& mesh) {
 }
 
 /// Of each edge of the boundary the patches that it lies on.
-std::map<Corners, std::set<std::uint32_t>> patches_of_edges(const VolumeMesh& mesh) {
-  std::map<Corners, std::set<std::uint32_t>> patches;
+std::map<CornerList, std::set<std::uint32_t>> patches_of_edges(const VolumeMesh& mesh) {
+  std::map<CornerList, std::set<std::uint32_t>> patches;
   for (std::uint32_t i = 0; i < mesh.patches.size(); ++i)
     for (std::size_t f = 0; f < mesh.patches[i].face_count(); ++f) {
       const auto face = mesh.patches[i].face(f);
       for (std::size_t k = 0; k < face.size(); ++k) {
-        Corners edge = {face[k], face[(k + 1) % face.size()]};
+        CornerList edge = {face[k], face[(k + 1) % face.size()]};
         std::sort(edge.begin(), edge.end());
         patches[edge].insert(i);
       }
@@ -72,7 +72,7 @@ void check_entities(const VolumeMesh& mesh) {
     CHECK(corners.contains(points.back()));
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
       if (k > 0) ++seen[points[k]];
-      Corners edge = {points[k], points[k + 1]};
+      CornerList edge = {points[k], points[k + 1]};
       std::sort(edge.begin(), edge.end());
       REQUIRE(of_edge.contains(edge));
       CHECK(of_edge[edge] == std::set<std::uint32_t>(patches.begin(), patches.end()));
@@ -220,9 +220,9 @@ TEST_CASE("msh: points and edges belong to corners, curves, surfaces and the vol
   const io::MshEntities equator = io::find_entities(closed);
   CHECK(equator.groups == std::vector<std::vector<std::uint32_t>>{{0, 1}});
   REQUIRE(equator.curves.size() == 1);
-  CHECK(equator.curves[0].points == Corners{0, 2, 1, 3, 0});
-  CHECK(equator.corners == Corners{0});  // where it is cut open
-  CHECK(equator.on_patch[0] == Corners{4});
+  CHECK(equator.curves[0].points == CornerList{0, 2, 1, 3, 0});
+  CHECK(equator.corners == CornerList{0});  // where it is cut open
+  CHECK(equator.on_patch[0] == CornerList{4});
   CHECK(equator.on_patch[2].size() == 6);  // the outer surface touches no wall
   CHECK(equator.inside.size() == 6);
   check_entities(pipe());
@@ -237,14 +237,14 @@ TEST_CASE("msh: patches that touch at a point have a corner there", "[msh]") {
   for (std::uint32_t c = 0; c < 2; ++c) {
     BoundaryPatch& patch = mesh.patches.emplace_back();
     patch.name = "wall_" + std::to_string(c);
-    for (const Corners& face : faces_of(mesh.cell_types[c], mesh.cell(c))) {
+    for (const CornerList& face : faces_of(mesh.cell_types[c], mesh.cell(c))) {
       patch.corners.insert(patch.corners.end(), face.begin(), face.end());
       patch.face_begin.push_back(static_cast<std::uint32_t>(patch.corners.size()));
       patch.cell.push_back(c);
     }
   }
   check_entities(mesh);
-  CHECK(io::find_entities(mesh).corners == Corners{0});
+  CHECK(io::find_entities(mesh).corners == CornerList{0});
 }
 
 TEST_CASE("msh: each opening of a pipe is a patch, and curves are named by what they part", "[msh]") {

@@ -22,7 +22,7 @@ using io::Format;
 namespace odd_files {
 namespace {
 
-using Corners = std::vector<std::uint32_t>;
+using CornerList = std::vector<std::uint32_t>;
 
 std::vector<Vec3d> shifted(std::vector<Vec3d> positions, const Vec3d& by) {
   for (Vec3d& p : positions) p += by;
@@ -71,7 +71,7 @@ std::string strips_header(const std::string& encoding, const std::string& index,
          fmt::format("element tristrips {}\nproperty list int {} vertex_indices\nend_header\n", strips, index);
 }
 const std::string kPoints = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
-const Corners kTetrahedron = {0, 1, 2, 2, 1, 3, 2, 3, 0, 0, 3, 1};
+const CornerList kTetrahedron = {0, 1, 2, 2, 1, 3, 2, 3, 0, 0, 3, 1};
 
 std::string binary_strips(bool big, const std::string& index) {
   std::string bytes = strips_header(big ? "binary_big_endian" : "binary_little_endian", index, 1);
@@ -105,7 +105,7 @@ const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 TEST_CASE("ply: strips of triangles are faces, and stay strips", "[io]") {
   const std::string text = strips_header("ascii", "int", 3) + kPoints + "6 0 1 2 3 0 1\n0\n9 0 1 2 -1 3 3 0 1 -1\n";
   const io::MeshFile file = parse(Format::Ply, text);
-  Corners expected = kTetrahedron;
+  CornerList expected = kTetrahedron;
   // A new strip starts its turns anew; a corner that is there twice leads to the next triangle.
   expected.insert(expected.end(), {0, 1, 2, 0, 3, 1});
   CHECK(file.polygons.corners == expected);
@@ -153,7 +153,7 @@ TEST_CASE("ply: strips that are wrong are refused, and beside faces they are no 
                                     "element face 1\nproperty list uchar int vertex_index\nend_header\n") +
                            kPoints + "3 0 1 2\n3 1 2 3\n";
   const io::MeshFile file = parse(Format::Ply, both);
-  CHECK(file.polygons.corners == Corners{1, 2, 3});
+  CHECK(file.polygons.corners == CornerList{1, 2, 3});
   CHECK(file.extras == std::vector<std::string>{"element 'tristrips'"});
 }
 
@@ -187,7 +187,7 @@ TEST_CASE("ply: a header whose lines end in carriage returns, before a text or b
       bytes += "0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r";
     }
     const io::MeshFile file = io::read_mesh(folder.write("a.ply", bytes));
-    CHECK(file.polygons.corners == Corners{0, 1, 2});
+    CHECK(file.polygons.corners == CornerList{0, 1, 2});
     CHECK(file.polygons.positions[2] == Vec3d(0, 1, 0));
     CHECK(io::patched_bytes(file, file.polygons.positions) == bytes);
     if (!binary) CHECK_THAT(moved(file, {0, 0, 2}), Catch::Contains("0 0 2\r1 0 2\r0 1 2\r3 0 1 2\r"));
@@ -207,7 +207,7 @@ TEST_CASE("ply: the last line may lack its end, even if no other follows the ver
     const io::MeshFile file = parse(
         Format::Ply, fmt::format("ply\nformat ascii 1.0\n{}element {} 1\nproperty list uchar int vertex_indices\n{}",
                                  vertices, name, rows));
-    CHECK(file.polygons.corners == Corners{0, 1, 2});
+    CHECK(file.polygons.corners == CornerList{0, 1, 2});
   }
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("io: texts whose lines end in carriage returns are read and kept", "[i
     const std::string bytes = replaced(text, "\n", "\r");
     const io::MeshFile file = io::read_mesh(folder.write(std::string("a.") + io::name(format), bytes)),
                        other = parse(format, text);
-    CHECK(file.polygons.corners == Corners{0, 1, 2});
+    CHECK(file.polygons.corners == CornerList{0, 1, 2});
     CHECK(io::patched_bytes(file, file.polygons.positions) == bytes);
     CHECK(moved(file, {0.5, 0, 0}) == replaced(moved(other, {0.5, 0, 0}), "\n", "\r"));
     std::string lost;
@@ -254,7 +254,7 @@ TEST_CASE("off: binary files are read, and kept but for coordinates and normals"
   const Folder folder;
   const std::string plain = binary_off("OFF", kSquare);
   const io::MeshFile file = parse(Format::Off, plain);
-  CHECK(file.polygons.corners == Corners{0, 1, 2, 0, 2, 3});
+  CHECK(file.polygons.corners == CornerList{0, 1, 2, 0, 2, 3});
   CHECK(file.polygons.positions[3] == Vec3d(0, 1, 0.1f));
   CHECK(io::patched_bytes(file, file.polygons.positions) == plain);
   CHECK(moved(file, {0, 0, 2}) == binary_off("OFF", {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2.1f}}));
@@ -306,7 +306,7 @@ TEST_CASE("off: binary files that are cut short or lie are refused", "[io]") {
 
 TEST_CASE("obj: corners that name what there is none of are read, and told", "[io]") {
   const io::MeshFile normals = parse(Format::Obj, kTriangle + "f 1//1 2//-2 3//7\n");
-  CHECK(normals.polygons.corners == Corners{0, 1, 2});
+  CHECK(normals.polygons.corners == CornerList{0, 1, 2});
   REQUIRE(normals.remarks.size() == 1);
   CHECK_THAT(normals.remarks[0], Catch::Contains("no 'vn' line"));
   const io::MeshFile both = parse(Format::Obj, kTriangle + "f 1/1/1 2/1/1 3/1/1\n");

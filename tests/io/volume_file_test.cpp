@@ -145,7 +145,7 @@ TEST_CASE("volume file: vtu of polyhedra read back by VTK", "[volume_file]") {
     vtkCell* const cell = grid->GetCell(static_cast<vtkIdType>(c));
     CHECK((cell->GetCellType() == VTK_POLYHEDRON) == (mesh.cell_types[c] == CellType::Polyhedron));
     if (cell->GetCellType() != VTK_POLYHEDRON) continue;
-    std::vector<Corners> faces(static_cast<std::size_t>(cell->GetNumberOfFaces()));
+    std::vector<CornerList> faces(static_cast<std::size_t>(cell->GetNumberOfFaces()));
     for (int f = 0; f < cell->GetNumberOfFaces(); ++f)
       for (vtkIdType k = 0; k < cell->GetFace(f)->GetNumberOfPoints(); ++k)
         faces[static_cast<std::size_t>(f)].push_back(
@@ -182,7 +182,7 @@ TEST_CASE("volume file: su2 parsed back", "[volume_file]") {
     return count;
   };
   const auto row = [&in](std::size_t size) {
-    Corners numbers(size);
+    CornerList numbers(size);
     for (std::uint32_t& number : numbers) in >> number;
     return numbers;
   };
@@ -190,7 +190,7 @@ TEST_CASE("volume file: su2 parsed back", "[volume_file]") {
   REQUIRE(count_of("NELEM=") == mesh.cell_count());
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) {
     constexpr std::uint32_t kTypes[] = {10, 14, 13, 12};
-    Corners expected = {kTypes[static_cast<std::size_t>(mesh.cell_types[c])]};
+    CornerList expected = {kTypes[static_cast<std::size_t>(mesh.cell_types[c])]};
     expected.insert(expected.end(), mesh.cell(c).begin(), mesh.cell(c).end());
     expected.push_back(c);
     CHECK(row(expected.size()) == expected);
@@ -200,7 +200,7 @@ TEST_CASE("volume file: su2 parsed back", "[volume_file]") {
     Vec3d point;
     in >> point[0] >> point[1] >> point[2];
     CHECK(point == mesh.points[p]);
-    CHECK(row(1) == Corners{p});
+    CHECK(row(1) == CornerList{p});
   }
   REQUIRE(count_of("NMARK=") == mesh.patches.size());
   for (const BoundaryPatch& patch : mesh.patches) {
@@ -210,7 +210,7 @@ TEST_CASE("volume file: su2 parsed back", "[volume_file]") {
     CHECK(tag == (patch.kind == BoundaryPatch::Kind::Wall ? "the__wall_" : patch.name));
     REQUIRE(count_of("MARKER_ELEMS=") == patch.face_count());
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
-      Corners expected = {patch.face(f).size() == 3 ? 5u : 9u};
+      CornerList expected = {patch.face(f).size() == 3 ? 5u : 9u};
       expected.insert(expected.end(), patch.face(f).begin(), patch.face(f).end());
       CHECK(row(expected.size()) == expected);
     }
@@ -262,8 +262,8 @@ Vec3d read_vector(std::istream& in) {
   return vector;
 }
 
-Corners read_face(std::istream& in) {
-  Corners face(read_label(in));
+CornerList read_face(std::istream& in) {
+  CornerList face(read_label(in));
   expect_character(in, '(');
   for (std::uint32_t& corner : face) corner = read_label(in);
   expect_character(in, ')');
@@ -293,7 +293,7 @@ void check_foam(const std::string& path, const VolumeMesh& mesh) {
   const auto owner = foam_list(path + "/owner", read_label), neighbour = foam_list(path + "/neighbour", read_label);
   CHECK(points == mesh.points);
   REQUIRE(owner.size() == faces.size());
-  std::vector<std::vector<Corners>> cells(mesh.cell_count());
+  std::vector<std::vector<CornerList>> cells(mesh.cell_count());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     cells.at(owner[f]).push_back(faces[f]);
     if (f >= neighbour.size()) continue;
@@ -314,7 +314,7 @@ void check_foam(const std::string& path, const VolumeMesh& mesh) {
     REQUIRE(patches[i].faces == mesh.patches[i].face_count());
     for (std::size_t f = 0; f < patches[i].faces; ++f, ++next) {
       const auto face = mesh.patches[i].face(f);
-      CHECK(faces.at(next) == Corners(face.begin(), face.end()));
+      CHECK(faces.at(next) == CornerList(face.begin(), face.end()));
       CHECK(owner[next] == mesh.patches[i].cell[f]);
     }
   }
@@ -412,7 +412,7 @@ TEST_CASE("volume file: cells of cgns by faces are closed and have the mesh's vo
   int file = 0, sections = 0, parents = 0, boundary = 0;
   REQUIRE(cg_open(folder.file("mesh.cgns").c_str(), CG_MODE_READ, &file) == CG_OK);
   REQUIRE(cg_nsections(file, 1, 1, &sections) == CG_OK);
-  std::vector<Corners> faces;
+  std::vector<CornerList> faces;
   std::size_t cells = 0;
   for (int s = 1; s <= sections; ++s) {
     char name[33];
@@ -423,8 +423,8 @@ TEST_CASE("volume file: cells of cgns by faces are closed and have the mesh's vo
     std::vector<cgsize_t> numbers(static_cast<std::size_t>(size)), begin(static_cast<std::size_t>(last - first) + 2);
     REQUIRE(cg_poly_elements_read(file, 1, 1, s, numbers.data(), begin.data(), nullptr) == CG_OK);
     for (std::size_t i = 0; i + 1 < begin.size(); ++i) {
-      std::vector<Corners> of_cell;
-      Corners face;
+      std::vector<CornerList> of_cell;
+      CornerList face;
       for (auto n = static_cast<std::size_t>(begin[i]); n < static_cast<std::size_t>(begin[i + 1]); ++n) {
         if (type == CGNS_ENUMV(NGON_n)) {
           face.push_back(static_cast<std::uint32_t>(numbers[n] - 1));

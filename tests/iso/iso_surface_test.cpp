@@ -258,7 +258,7 @@ TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]")
   const IsoResult inner = captured(scene::box({1, 0.7, 0.52}, 3, true), -0.1, 0.03);
   check_sound(inner);
   CHECK(volume(inner.polygons) == Approx(0.8 * 0.5 * 0.32).epsilon(1e-7));
-  CHECK(inner.statistics.interior.worst < 1e-7);
+  CHECK(inner.statistics.faces.worst < 1e-7);
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3d at(corner & 1 ? 0.4 : -0.4, corner & 2 ? 0.25 : -0.25, corner & 4 ? 0.16 : -0.16);
     double least = 1;

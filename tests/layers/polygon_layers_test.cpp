@@ -21,19 +21,19 @@ namespace {
 /// A mesh's faces, some of which have been joined with a neighbour, again and again: polygons of up to `most` corners,
 /// as concave and bent as may be.
 Polygons joined(const Polygons& mesh, std::size_t joins, std::size_t most, std::mt19937& random) {
-  std::vector<Corners> faces;
+  std::vector<CornerList> faces;
   for (std::size_t f = 0; f < mesh.face_count(); ++f)
     faces.emplace_back(mesh.view().face(f).begin(), mesh.view().face(f).end());
   for (; joins > 0; --joins) {
     const std::size_t i = random() % faces.size(), k = random() % faces[i].size();
     const std::uint32_t a = faces[i][k], b = faces[i][(k + 1) % faces[i].size()];
-    const auto follows = [&](const Corners& face) {
+    const auto follows = [&](const CornerList& face) {
       const auto at = std::find(face.begin(), face.end(), b);
       return at != face.end() && face[static_cast<std::size_t>(at + 1 - face.begin()) % face.size()] == a;
     };
     const auto other = std::find_if(faces.begin(), faces.end(), follows);
     if (other == faces.end() || faces[i].size() + other->size() - 2 > most) continue;
-    Corners ring = faces[i], rest = *other;
+    CornerList ring = faces[i], rest = *other;
     std::rotate(ring.begin(), std::find(ring.begin(), ring.end(), b), ring.end());
     std::rotate(rest.begin(), std::find(rest.begin(), rest.end(), a), rest.end());
     ring.insert(ring.end(), rest.begin() + 1, rest.end() - 1);
@@ -43,7 +43,7 @@ Polygons joined(const Polygons& mesh, std::size_t joins, std::size_t most, std::
   }
   Polygons result;
   result.positions = mesh.positions;
-  for (const Corners& face : faces) {
+  for (const CornerList& face : faces) {
     result.corners.insert(result.corners.end(), face.begin(), face.end());
     result.close_face();
   }

@@ -432,7 +432,7 @@ TEST_CASE("limit: a vertex that a face is folded over at gets off the surface", 
 TEST_CASE("limit: the smaller offset lies inside the larger", "[limit][property]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 2, 5, 3);
   const OffsetResult small = limited(mesh, 0.1), large = limited(mesh, 0.2);
-  REQUIRE(large.statistics.interior.worst * 0.2 * 2 < 0.1);
+  REQUIRE(large.statistics.faces.worst * 0.2 * 2 < 0.1);
   Polygons outer = mesh;
   outer.positions = large.positions;
   for (std::size_t v = 0; v < mesh.positions.size(); v += 7) CHECK(test::is_inside(outer.view(), small.positions[v]));

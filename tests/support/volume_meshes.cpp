@@ -10,21 +10,21 @@
 namespace vdb_offset::test {
 namespace {
 
-Corners sorted(Corners face) {
+CornerList sorted(CornerList face) {
   std::sort(face.begin(), face.end());
   return face;
 }
 
 /// Faces that one cell alone has go to the lower wall, the side or the outer patch, by their height.
 void add_patches(VolumeMesh& mesh) {
-  std::map<Corners, int> cells;
+  std::map<CornerList, int> cells;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    for (const Corners& face : faces_of(mesh.cell_types[c], mesh.cell(c))) ++cells[sorted(face)];
+    for (const CornerList& face : faces_of(mesh.cell_types[c], mesh.cell(c))) ++cells[sorted(face)];
   mesh.patches = {{"the \"wall\"", BoundaryPatch::Kind::Wall, {}, {0}, {}},
                   {"outer", BoundaryPatch::Kind::Outer, {}, {0}, {}},
                   {"side", BoundaryPatch::Kind::Side, {}, {0}, {}}};
   for (std::uint32_t c = 0; c < mesh.cell_count(); ++c)
-    for (const Corners& face : faces_of(mesh.cell_types[c], mesh.cell(c))) {
+    for (const CornerList& face : faces_of(mesh.cell_types[c], mesh.cell(c))) {
       if (cells[sorted(face)] > 1) continue;
       double low = 1e9, high = -1e9;
       for (const std::uint32_t v : face) {
@@ -39,7 +39,7 @@ void add_patches(VolumeMesh& mesh) {
 }
 
 /// Twice the face's area vector, and six times the volume between it and the origin.
-std::pair<Vec3d, double> area_and_volume(const std::vector<Vec3d>& points, const Corners& face) {
+std::pair<Vec3d, double> area_and_volume(const std::vector<Vec3d>& points, const CornerList& face) {
   Vec3d area(0);
   double volume = 0;
   for (std::size_t k = 2; k < face.size(); ++k) {
@@ -52,25 +52,25 @@ std::pair<Vec3d, double> area_and_volume(const std::vector<Vec3d>& points, const
 
 }  // namespace
 
-void add_cell(VolumeMesh& mesh, CellType type, const Corners& corners) {
+void add_cell(VolumeMesh& mesh, CellType type, const CornerList& corners) {
   mesh.cell_types.push_back(type);
   mesh.corners.insert(mesh.corners.end(), corners.begin(), corners.end());
   mesh.cell_begin.push_back(mesh.corners.size());
 }
 
-std::vector<Corners> faces_of(CellType type, std::span<const std::uint32_t> cell) {
-  static const std::map<CellType, std::vector<Corners>> kFaces = {
+std::vector<CornerList> faces_of(CellType type, std::span<const std::uint32_t> cell) {
+  static const std::map<CellType, std::vector<CornerList>> kFaces = {
       {CellType::Tetrahedron, {{2, 1, 0}, {1, 3, 0}, {2, 3, 1}, {0, 3, 2}}},
       {CellType::Pyramid, {{3, 2, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}},
       {CellType::Prism, {{2, 1, 0}, {3, 4, 5}, {1, 4, 3, 0}, {2, 5, 4, 1}, {0, 3, 5, 2}}},
       {CellType::Hexahedron, {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
-  std::vector<Corners> faces;
+  std::vector<CornerList> faces;
   if (type == CellType::Polyhedron) {
     for (std::size_t at = 1; at < cell.size(); at += cell[at] + 1)
       faces.emplace_back(&cell[at] + 1, &cell[at] + 1 + cell[at]);
   } else {
     faces = kFaces.at(type);
-    for (Corners& face : faces)
+    for (CornerList& face : faces)
       for (std::uint32_t& v : face) v = cell[v];
   }
   return faces;
@@ -108,12 +108,12 @@ VolumeMesh with_polyhedra() {
     const CellType type = plain.cell_types[c];
     const auto cell = plain.cell(c);
     if (type != CellType::Hexahedron && type != CellType::Prism) {
-      add_cell(mesh, type, Corners(cell.begin(), cell.end()));
+      add_cell(mesh, type, CornerList(cell.begin(), cell.end()));
       continue;
     }
     const auto faces = faces_of(type, cell);
-    Corners stream = {static_cast<std::uint32_t>(faces.size())};
-    for (const Corners& face : faces) {
+    CornerList stream = {static_cast<std::uint32_t>(faces.size())};
+    for (const CornerList& face : faces) {
       stream.push_back(static_cast<std::uint32_t>(face.size()));
       stream.insert(stream.end(), face.begin(), face.end());
     }
@@ -122,10 +122,10 @@ VolumeMesh with_polyhedra() {
   return mesh;
 }
 
-double volume_of(const std::vector<Vec3d>& points, const std::vector<Corners>& faces) {
+double volume_of(const std::vector<Vec3d>& points, const std::vector<CornerList>& faces) {
   Vec3d area(0);
   double volume = 0;
-  for (const Corners& face : faces) {
+  for (const CornerList& face : faces) {
     const auto [of_face, below] = area_and_volume(points, face);
     area += of_face;
     volume += below / 6;

@@ -11,12 +11,12 @@
 
 namespace vdb_offset::test {
 
-using Corners = std::vector<std::uint32_t>;
+using CornerList = std::vector<std::uint32_t>;
 
-void add_cell(VolumeMesh& mesh, CellType type, const Corners& corners);
+void add_cell(VolumeMesh& mesh, CellType type, const CornerList& corners);
 
 /// The faces of a cell, seen from outside ccw.
-std::vector<Corners> faces_of(CellType type, std::span<const std::uint32_t> cell);
+std::vector<CornerList> faces_of(CellType type, std::span<const std::uint32_t> cell);
 
 /// Two cubes one above the other with two prisms beside them, a pyramid on the upper cube, and two tetrahedra on the
 /// pyramid, one of which stands on the upper prism, too. Cells are in no order.
@@ -26,7 +26,7 @@ VolumeMesh mixed_cells();
 VolumeMesh with_polyhedra();
 
 /// Faces seen from outside ccw make a cell: they close it, and the volume is positive; it is returned.
-double volume_of(const std::vector<Vec3d>& points, const std::vector<Corners>& faces);
+double volume_of(const std::vector<Vec3d>& points, const std::vector<CornerList>& faces);
 
 std::vector<double> volumes_of(const VolumeMesh& mesh);
 

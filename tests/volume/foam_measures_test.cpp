@@ -21,7 +21,7 @@ VolumeMesh row_of_cells(const std::vector<double>& across) {
     for (const auto& [y, z] : {std::pair(0., 0.), {1., 0.}, {1., 1.}, {0., 1.}})
       mesh.points.emplace_back(double(i), across[i] + y, z);
   BoundaryPatch patch{"all", BoundaryPatch::Kind::Wall, {}, {0}, {}};
-  const auto add = [&](const Corners& face, std::uint32_t c) {
+  const auto add = [&](const CornerList& face, std::uint32_t c) {
     patch.corners.insert(patch.corners.end(), face.begin(), face.end());
     patch.face_begin.push_back(static_cast<std::uint32_t>(patch.corners.size()));
     patch.cell.push_back(c);
@@ -52,12 +52,12 @@ TEST_CASE("foam cells: areas and centres of faces and cells, by closed forms", "
   VolumeMesh mesh;
   // An L of area 3: squares around (0.5, 0.5), (1.5, 0.5) and (0.5, 1.5).
   mesh.points = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
-  const FoamFace concave = foam_face(mesh, Corners{0, 1, 2, 3, 4, 5});
+  const FoamFace concave = foam_face(mesh, CornerList{0, 1, 2, 3, 4, 5});
   CHECK((concave.area - Vec3d(0, 0, 3)).length() < 1e-14);
   // OpenFOAM weights triangles by their areas without signs. None is turned round here, seen from the mean (1, 1):
   // that lies on a corner.
   CHECK((concave.centre - Vec3d(2.5 / 3, 2.5 / 3, 0)).length() < 1e-14);
-  const FoamFace triangle = foam_face(mesh, Corners{0, 1, 5});
+  const FoamFace triangle = foam_face(mesh, CornerList{0, 1, 5});
   CHECK((triangle.area - Vec3d(0, 0, 2)).length() < 1e-14);
   CHECK((triangle.centre - Vec3d(2 / 3., 2 / 3., 0)).length() < 1e-14);
 
@@ -68,7 +68,7 @@ TEST_CASE("foam cells: areas and centres of faces and cells, by closed forms", "
     const Vec3d apex = mixed.points[mixed.cell(c)[0]];
     Vec3d sum(0.0);
     double volumes = 0;
-    for (const Corners& corners : faces_of(mixed.cell_types[c], mixed.cell(c))) {
+    for (const CornerList& corners : faces_of(mixed.cell_types[c], mixed.cell(c))) {
       const FoamFace face = foam_face(mixed, corners);
       const double volume = face.area.dot(face.centre - apex) / 3;
       sum += volume * (0.75 * face.centre + 0.25 * apex);

@@ -16,6 +16,7 @@
 #include "request/option_values.h"
 #include "run_files.h"
 #include "source.h"
+#include "summary.h"
 #include "terminal.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_offset.h"
@@ -70,6 +71,10 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
                 [&made](const std::string& text) { made.obstacles.push_back(text); });
   line.option("--clearance", "C", "How near to obstacles is too near [0]",
               [&made](const std::string& text) { made.clearance = parse_clearance(text); });
+  line.option("--corners", "KIND", "What became of sharp corners: 'round' or 'miter' [round]",
+              [&made](const std::string& text) { made.corners = parse_corners(text); });
+  line.option("--miter-limit", "L", "With --corners miter: how many distances vertices went at most [4]",
+              [&made](const std::string& text) { made.miter_limit = parse_miter_limit(text); });
   line.option(
       "--precision", "N", "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]",
       [&made](const std::string& text) { made.write.digits = parse_count("--precision", text, 1, kMostDigits); });
@@ -104,7 +109,10 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   line.option("--report", "FILE", "Write what is found as JSON", made.report);
   line.flag("--json", "Print JSON, not text", request.json);
   line.flag("--strict", "Exit with 3 if a vertex in use is not at the distance", made.strict);
+  line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
+              [&made](const std::string& text) { made.strict_faces = parse_strict_faces(text); });
   if (!line.parse(argc, argv)) return std::nullopt;
+  require(!line.has("--miter-limit") || line.has("--corners"), "--miter-limit needs --corners miter");
   require(!line.has("--clearance") || line.has("--obstacle"), "--clearance needs --obstacle");
   require(!line.has("--distance") || !line.has("--distance-from"), "--distance-from and --distance exclude each other");
   request.axes = parse_axes(distance_xy, distance_z);
@@ -175,9 +183,11 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
   fmt::print(out, "achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
              achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,
              achieved.most);
-  fmt::print(out, "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 samples, {:.3g} % at most\n",
-             curves ? "at middles  " : "in faces    ", 100 * result.interior.mean, 100 * result.interior.quantile_99,
-             100 * result.interior.worst);
+  fmt::print(out,
+             "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 points, {:.3g} % at most; {:.3g} % of the {} within "
+             "1 %\n",
+             curves ? "along       " : "in faces    ", 100 * result.faces.mean, 100 * result.faces.quantile_99,
+             100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "segments" : "area");
   fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
              result.faults.collapsed,
              result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
@@ -212,6 +222,8 @@ CheckResult measure_curves(const CheckRequest& request) {
   require_same_points(made, source.file.polygons, offset.file.polygons);
   CheckOptions options;
   options.threads = made.threads;
+  options.corners = made.corners.value_or(Corners::Round);
+  options.miter_limit = made.miter_limit.value_or(options.miter_limit);
   if (const auto distance = parse_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
   return check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
 }
@@ -230,6 +242,8 @@ CheckResult measure_meshes(const CheckRequest& request) {
   options.border = job.options.border;
   options.obstacles = job.options.obstacles;
   options.clearance = job.options.clearance;
+  options.corners = job.options.corners;
+  options.miter_limit = job.options.miter_limit;
   options.weld = job.options.weld;
   options.orient = job.options.orient;
   options.precision = io::precision_of(made.output, offset, made.write);
@@ -264,6 +278,7 @@ int run_check(int argc, const char* const* argv) {
   if (request->json) fmt::print(out, "{}", json);
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
+  if (made.strict_faces && !are_within(result.faces, *made.strict_faces, "--strict-faces")) return kProcessing;
   return result.valid() && (all_there || !made.strict) ? kDone : kProcessing;
 }
 

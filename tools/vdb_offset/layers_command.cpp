@@ -110,9 +110,8 @@ bool are_valid(const LayerReport& report) {
 bool is_as_asked(const Grown& grown) {
   const LayersResult& layers = grown.layers;
   if (layers.statistics.obstacles && layers.statistics.obstacles->near > 0) return false;
-  return are_valid(grown.report) && std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) {
-           return state == VertexState::Reached || state == VertexState::Unused;
-         });
+  return are_valid(grown.report) &&
+         std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) { return !falls_short(state); });
 }
 
 void require_names(const Request& request, std::size_t layers) {

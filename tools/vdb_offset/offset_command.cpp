@@ -87,6 +87,11 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
     for (std::string& expectation : scene::unmet(job.expect, *shell)) failed.push_back(std::move(expectation));
   for (const std::string& expectation : failed) tell(fmt::format("{}: {}", job.request.input, expectation));
   if (!failed.empty() || tell_faults(job, results)) return kProcessing;
+  const auto& bound = job.request.strict_faces;
+  const bool faces_there = std::all_of(results.begin(), results.end(), [&](const OffsetResult& result) {
+    return !bound || are_within(result.statistics.faces, *bound, "--strict-faces");
+  });
+  if (!faces_there) return kProcessing;
   if (!job.request.strict) return kDone;
   const bool all = std::all_of(results.begin(), results.end(),
                                [&](const OffsetResult& result) { return is_as_asked(result, job.curves()); });

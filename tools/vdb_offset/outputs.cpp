@@ -88,6 +88,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"voxel-size", number(options.grid.voxel_size)},
           {"voxels-per-distance", number(options.grid.voxels_per_distance)},
           {"collision", options.collision == Collision::Merge ? "merge" : "limit"},
+          {"corners", options.corners == Corners::Miter ? "miter" : "round"},
+          {"miter-limit", options.corners == Corners::Miter ? fmt::format("{}", options.miter_limit) : ""},
           {"solver", options.solver == Solver::Eikonal ? "eikonal" : "closest"},
           {"weld", request.weld_text},
           {"orient", request.orient_text},

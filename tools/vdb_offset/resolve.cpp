@@ -214,6 +214,8 @@ Job resolve_options(const Request& request, const Source& source) {
   if (source.scene) settle_scene(job);
   if (request.solver) job.options.solver = *request.solver;
   if (request.collision) job.options.collision = *request.collision;
+  if (request.corners) job.options.corners = *request.corners;
+  if (request.miter_limit) job.options.miter_limit = *request.miter_limit;
   settle_surroundings(job);
   if (!request.layers) job.distances = distances_of(job);
   else job.distances = request.layers->heights.empty() ? geometric_heights(job) : read_heights(job);

@@ -12,8 +12,8 @@
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/curve/curve_line.h"
 #include "vdb_offset/curve_offset/curve_faults.h"
+#include "vdb_offset/curve_offset/segment_error.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/validity/face_error.h"
 
 namespace vdb_offset {
 namespace {
@@ -50,7 +50,10 @@ class CurveChecker {
       if (drawn_.vertex[p] != kNone) result_.states[p] = VertexState::Reached;
     if (result_.distance == 0) return;
     const Distances distances(result_.distance);
-    const PlaneCurves curves{query_, drawn_.source, distances, {}};
+    std::vector<Miter> miters;
+    if (options_.corners == Corners::Miter)
+      miters = MiterFinder<CurveQuery>(query_, options_.miter_limit, nullptr).all(distances);
+    const PlaneCurves curves{query_, drawn_.source, distances, {}, miters};
     CurveFaults faults(curves);
     Indices all(positions_.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -59,8 +62,11 @@ class CurveChecker {
     result_.source_crossings = faults.source_crossings();
     result_.more_source_crossings = faults.more_in_source();
     result_.crossings_near_source = faults.crossings_near_source();
-    judge_points(faults);
-    measure_middles();
+    judge_points(curves, faults);
+    std::vector<VertexState> states(positions_.size(), VertexState::Reached);
+    for (std::size_t p = 0; p < drawn_.vertex.size(); ++p)
+      if (drawn_.vertex[p] != kNone) states[drawn_.vertex[p]] = result_.states[p];
+    result_.faces = measure_segments(curves, positions_, states);
   }
 
  private:
@@ -104,7 +110,7 @@ class CurveChecker {
     return outside < 0 ? -*middle : *middle;
   }
 
-  void judge_points(const CurveFaults& faults) {
+  void judge_points(const PlaneCurves& curves, const CurveFaults& faults) {
     const double target = std::abs(result_.distance), epsilon = Rounding(options_.precision).epsilon();
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p) {
       const std::uint32_t v = drawn_.vertex[p];
@@ -112,20 +118,16 @@ class CurveChecker {
       const double distance = faults.distance_of(v), error = distance - target,
                    tolerance = kReachedTolerance * target + epsilon * positions_[v].length();
       result_.achieved[p] = distance;
-      if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
-      result_.beyond += error > tolerance;
+      const Miter* const miter = curves.miter_of(v);
+      const bool is_mitred =
+          miter &&
+          (positions_[v] - curves.source[v] - Vec2d(miter->displacement[0], miter->displacement[1])).length() <=
+              tolerance;
+      if (is_mitred) result_.states[p] = miter->state;
+      else if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
+      result_.beyond += error > tolerance && !is_mitred;
       result_.wrong_side += faults.on_wrong_side(v);
     }
-  }
-
-  void measure_middles() {
-    const double target = std::abs(result_.distance);
-    std::vector<double> errors(drawn_.line.segments.size());
-    for_each_index(errors.size(), [&](std::size_t s) {
-      const auto [a, b] = drawn_.line.segments[s];
-      errors[s] = std::abs(closest_to((positions_[a] + positions_[b]) * 0.5, a).distance - target) / target;
-    });
-    result_.interior = sum_up_errors(std::move(errors));
   }
 
   PlaneChains plane_;

@@ -115,7 +115,9 @@ void CurveFaults::measure(std::uint32_t point) {
   const bool sided = line.facts.closed() && closest.distance > kOnSource * target;
   const double towards = line.pseudonormal(closest.triangle, closest.feature).dot(x - closest.point);
   wrong_side_[point] = sided && towards * curves_.side(point) < 0;
-  misplaced_at_[point] = wrong_side_[point] || closest.distance > target * (1 + kReachedTolerance) + rounding(point);
+  const Miter* const miter = curves_.miter_of(point);
+  const double farthest = miter ? std::max(target, miter->distance) : target;
+  misplaced_at_[point] = wrong_side_[point] || closest.distance > farthest * (1 + kReachedTolerance) + rounding(point);
 }
 
 double CurveFaults::rounding(std::uint32_t point) const {

@@ -10,6 +10,7 @@
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/curve/segment_crossings.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/paths/miters.h"
 #include "vdb_offset/validity/fault_finder.h"
 
 namespace vdb_offset {
@@ -20,7 +21,10 @@ struct PlaneCurves {
   std::span<const Vec2d> source;  ///< Positions of the polyline's vertices in the plane.
   const Distances& distances;     ///< Of the polyline's vertices.
   Rounding precision;             ///< Of the coordinates that will be written.
+  std::span<const Miter> miters;  ///< Of vertices at corners, sorted by vertex; empty if corners are not mitred.
 
+  /// The miter of a vertex; nullptr if it has none.
+  const Miter* miter_of(std::uint32_t vertex) const { return find_miter(miters, vertex); }
   const Polyline& line() const { return query.surface(); }
   /// A point of the plane in the polyline's frame.
   Vec3d in_frame(const Vec2d& x) const {
@@ -34,8 +38,9 @@ struct PlaneCurves {
 ///
 /// A segment is inverted if its outer side, by the direction in which its source runs, faces the source at its middle
 /// and at both ends (the offset has folded over there). It is collapsed if it is shorter than 1e-6 of its source. New
-/// crossings are found with exact predicates. A point is misplaced if it is farther off than asked, or on the other
-/// side. All is judged on coordinates as they will be written. The result does not depend on the number of threads.
+/// crossings are found with exact predicates. A point is misplaced if it is farther off than asked, or than its miter
+/// is, or on the other side. All is judged on coordinates as they will be written. The result does not depend on the
+/// number of threads.
 class CurveFaults {
  public:
   /// Starts with all points at their source. Keeps a reference to `curves`.

@@ -92,7 +92,8 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   std::vector<Vec3d> source;
   source.reserve(curves.source.size());
   for (const Vec2d& p : curves.source) source.emplace_back(p[0], p[1], z);
-  const AskedLayers asked(source, curves.line().origin, heights);
+  AskedLayers asked(source, curves.line().origin, heights);
+  asked.stretch_mitred(paths);
   RailStacks stacks(asked, paths);
   CurveWall wall(curves, faults, stacks);
   LayerStack stack = grow_on(wall, paths, progress);

@@ -33,10 +33,12 @@ constexpr int kBridges[] = {0, 2, 8};
 
 class CurveLimiter {
  public:
-  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback, Spacing spacing)
+  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback, Spacing spacing,
+               std::size_t& miters_taken_back)
       : curves_(curves),
         paths_(paths),
         spacing_(spacing),
+        miters_taken_back_(miters_taken_back),
         faults_(curves),
         displacement_(curves.source.size(), Vec2d(0.0)),
         share_(curves.source.size(), 1.0),
@@ -49,6 +51,7 @@ class CurveLimiter {
   LimitStatistics run() {
     statistics_.untanglings += put_in_order(curves_, paths_, displacement_, spacing_) > 0;
     move(points_);
+    miter();
     statistics_.before = faults_.count();
     statistics_.source_crossings = faults_.source_crossings();
     statistics_.more_source_crossings = faults_.more_in_source();
@@ -71,6 +74,38 @@ class CurveLimiter {
       positions.push_back(curves_.source[p] + Vec2d(displacement[0], displacement[1]));
     }
     faults_.move(points, positions);
+  }
+
+  /// Moves the points at corners that have been left where their paths led to the ends of their miters, and those of
+  /// them back that are at faults there.
+  void miter() {
+    std::vector<std::pair<std::uint32_t, Vec2d>> before;
+    Indices moved;
+    for (const Miter& miter : curves_.miters) {
+      const std::uint32_t p = miter.vertex;
+      const Vec3d& path = paths_.displacement[p];
+      if (displacement_[p] != Vec2d(path[0], path[1])) continue;
+      before.emplace_back(p, displacement_[p]);
+      displacement_[p] = {miter.displacement[0], miter.displacement[1]};
+      moved.push_back(p);
+    }
+    while (!moved.empty()) {
+      move(moved);
+      moved.clear();
+      std::erase_if(before, [&](const auto& old) {
+        if (!faults_.any_around({old.first})) return false;
+        moved.push_back(old.first);
+        displacement_[old.first] = old.second;
+        return true;
+      });
+      miters_taken_back_ += moved.size();
+    }
+  }
+
+  /// Whether a point stands at the end of its miter.
+  bool is_mitred(std::uint32_t p) const {
+    const Miter* const miter = curves_.miter_of(p);
+    return miter && share_[p] == 1 && displacement_[p] == Vec2d(miter->displacement[0], miter->displacement[1]);
   }
 
   /// The displacement that a point will be handed back with. Faults are looked for at exactly that: where two curves
@@ -242,7 +277,8 @@ class CurveLimiter {
       paths_.achieved[p] = faults_.distance_of(p);
       if (target == 0) continue;
       const double error = std::abs(paths_.achieved[p] - target);
-      if (error <= kReachedTolerance * target + faults_.rounding(p)) paths_.state[p] = VertexState::Reached;
+      if (is_mitred(p)) paths_.state[p] = curves_.miter_of(p)->state;
+      else if (error <= kReachedTolerance * target + faults_.rounding(p)) paths_.state[p] = VertexState::Reached;
       else if (pulled || paths_.state[p] == VertexState::Reached) paths_.state[p] = VertexState::Limited;
       statistics_.limited_vertices += paths_.state[p] == VertexState::Limited;
       lost += std::max(0.0, before - paths_.achieved[p]) / target;
@@ -253,6 +289,7 @@ class CurveLimiter {
   const PlaneCurves& curves_;
   Paths& paths_;
   Spacing spacing_;
+  std::size_t& miters_taken_back_;
   CurveFaults faults_;
   Indices points_;
   std::vector<Vec2d> displacement_;  // of each point, from its source
@@ -263,10 +300,11 @@ class CurveLimiter {
 
 }  // namespace
 
-LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress,
-                             Spacing spacing) {
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress, Spacing spacing,
+                             MiterFacts* miters) {
   VDB_OFFSET_ASSERT(paths.displacement.size() == curves.source.size() && paths.state.size() == curves.source.size());
-  return CurveLimiter(curves, paths, progress, spacing).run();
+  std::size_t taken_back = 0;
+  return CurveLimiter(curves, paths, progress, spacing, miters ? miters->taken_back : taken_back).run();
 }
 
 }  // namespace vdb_offset

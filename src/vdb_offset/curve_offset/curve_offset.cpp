@@ -10,32 +10,20 @@
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/curve_offset/curve_limit.h"
 #include "vdb_offset/curve_offset/prepared_curves.h"
+#include "vdb_offset/curve_offset/segment_error.h"
 #include "vdb_offset/data/count_states.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh/in_metric.h"
 #include "vdb_offset/pipeline/moved_input.h"
-#include "vdb_offset/validity/face_error.h"
 
 namespace vdb_offset {
 namespace {
 
-// Segments whose ends are asked for less than this share of the farthest distance are not measured at their middles:
-// an error relative to next to nothing says nothing. Not measured; as kOnSource of faces (see measure_interior()).
-constexpr double kLeastMeasured = 1e-3;
-
-/// How far off segments are at their middles, relative to the mean distance that their ends are asked for.
-FaceInteriorError measure_segments(const PreparedCurves& curves, const Distances& distances, const Paths& paths) {
-  const Polyline& line = curves.line();
-  std::vector<double> errors(line.segments.size(), -1);
-  for_each_index(errors.size(), [&](std::size_t s) {
-    const auto [a, b] = line.segments[s];
-    const double target = std::abs(distances[a] + distances[b]) / 2;
-    if (target <= kLeastMeasured * distances.scale()) return;
-    const Vec3d middle = (line.vertices[a] + paths.displacement[a] + line.vertices[b] + paths.displacement[b]) * 0.5;
-    errors[s] = std::abs(curves.query()(middle, static_cast<std::uint32_t>(s)).distance - target) / target;
-  });
-  std::erase(errors, -1);
-  return sum_up_errors(std::move(errors));
+/// Where the vertices of the polyline are at the ends of their paths, in the plane.
+std::vector<Vec2d> ends_of(const PreparedCurves& curves, const Paths& paths) {
+  std::vector<Vec2d> ends(curves.source().begin(), curves.source().end());
+  for (std::size_t v = 0; v < ends.size(); ++v) ends[v] += Vec2d(paths.displacement[v][0], paths.displacement[v][1]);
+  return ends;
 }
 
 /// Makes the paths valid, if that is asked for, and hands them out as the result of one set of distances.
@@ -43,13 +31,20 @@ OffsetResult make_result(const PreparedCurves& curves, const Distances& distance
   const OffsetOptions& options = curves.options();
   OffsetResult result = unmoved_result(curves.points());
   result.statistics = curves.statistics();
+  MiterFacts& facts = result.statistics.miters;
+  std::vector<Miter> miters;
+  if (options.corners == Corners::Miter)
+    miters = MiterFinder<CurveQuery>(curves.query(), options.miter_limit, nullptr)(distances, facts);
+  const PlaneCurves plane{curves.query(), curves.source(), distances, options.precision, miters};
   if (options.collision == Collision::Limit) {
     const StageTimer timer(result.statistics.seconds, Stage::Limit);
-    result.statistics.limit =
-        limit_curves({curves.query(), curves.source(), distances, options.precision}, paths, options.progress);
+    result.statistics.limit = limit_curves(plane, paths, options.progress, Spacing::AsItIs, &facts);
+  } else {
+    MitredPaths(miters, paths);
   }
+  count_mitred(paths.state, facts);
   result.statistics.room = curves.room(paths, distances);
-  result.statistics.interior = measure_segments(curves, distances, paths);
+  result.statistics.faces = measure_segments(plane, ends_of(curves, paths), paths.state);
   move_vertices(curves.points(), paths, result);
   if (options.keep_paths) hand_out_paths(curves.points(), paths, result);
   result.distances = distances_of_input(curves.points(), distances);

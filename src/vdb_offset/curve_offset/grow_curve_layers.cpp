@@ -37,7 +37,8 @@ LayersResult hand_over(const PreparedCurves& curves, OffsetStatistics statistics
     std::fill(to.begin(), to.end(), points.positions()[p]);
     if (v == kNone) continue;
     result.share[p] = stack.share[v];
-    result.first_achieved[p] = stack.first_achieved[v];
+    result.first_achieved[p] = stack.height_at(v, stack.first_achieved[v]);
+    result.achieved[p] = stack.height_at(v, result.achieved[p]);
     const auto positions = stack.stacks.of(v);
     for (std::size_t k = 0; k < heights.size(); ++k) {
       asked[k][p] = heights[k][v];
@@ -65,10 +66,13 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
   const std::vector<double> marched_distances = paths.achieved;
   OffsetStatistics statistics = curves.statistics();
   statistics.disagreeing_distances = most_disagreeing;
-  const PlaneCurves plane{curves.query(), curves.source(), outer, options.precision};
+  std::vector<Miter> miters;
+  if (options.corners == Corners::Miter)
+    miters = MiterFinder<CurveQuery>(curves.query(), options.miter_limit, nullptr)(outer, statistics.miters);
+  const PlaneCurves plane{curves.query(), curves.source(), outer, options.precision, miters};
   {
     const StageTimer timer(statistics.seconds, Stage::Limit);
-    statistics.limit = limit_curves(plane, paths, options.progress, Spacing::Even);
+    statistics.limit = limit_curves(plane, paths, options.progress, Spacing::Even, &statistics.miters);
   }
   LayerStack stack;
   {
@@ -79,6 +83,7 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
     statistics.limit.crossings_near_source = faults.crossings_near_source();
   }
   count_held_back(paths, outer, marched_distances, statistics.limit);
+  count_mitred(paths.state, statistics.miters);
   statistics.room = curves.room(paths, outer);
   return hand_over(curves, std::move(statistics), asked, paths, stack);
 }

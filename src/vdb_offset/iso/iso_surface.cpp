@@ -279,13 +279,11 @@ bool IsoSurfaceMaker::is_valid(const Surface& in_file, const MeshFaults& left) {
 }
 
 void IsoSurfaceMaker::measure_faces(const Surface& written) {
-  // Triangles on which the error between vertices is measured: its 99 % quantile is made of a hundred of them.
-  constexpr std::size_t kInteriorSamples = 10000;
   const std::vector<std::uint32_t> none(written.vertices.size(), kNone);  // no vertex of it is one of the source's
   const ConstrainedSurface constrained{result_.source->query, written, none, {}, {}};
   const StageTimer timer(result_.statistics.seconds, Stage::Measure);
-  result_.statistics.interior =
-      measure_interior(constrained, written.vertices, Distances(level_->distance()), kInteriorSamples);
+  const Distances distance(level_->distance());
+  result_.statistics.faces = vdb_offset::measure_faces({constrained, written.vertices, distance, {}, {}});
 }
 
 /// Measures the distances and normals of vertices, and finds the triangles that are closest to them.

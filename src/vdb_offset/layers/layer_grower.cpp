@@ -205,9 +205,10 @@ double LayerGrower::share_at_end(std::uint32_t v, Vec3d& bend) const {
   if (!wall_.moves(v) || !(paths_.achieved[v] > 0)) return 0;
   const Vec3d& whole = paths_.displacement[v];
   const Vec3d start = wall_.direction_of(v) * (stacks_.asked().side * whole.length());
-  if (!wall_.is_bound(v) && wall_.sees_all_faces(v, start)) bend = start - whole;
+  const bool may_bend = !wall_.is_bound(v) && !stacks_.asked().is_mitred(v);
+  if (may_bend && wall_.sees_all_faces(v, start)) bend = start - whole;
   else if (!wall_.sees_all_faces(v, whole)) return 0;
-  if (paths_.state[v] == VertexState::Reached) return 1;
+  if (!falls_short(paths_.state[v])) return 1;
   return kept(std::min(1.0, paths_.achieved[v] / stacks_.asked().thickness(v)));
 }
 
@@ -315,7 +316,7 @@ LayerStack LayerGrower::finish(const PutLayers& layers) {
     paths_.state[v] = VertexState::Limited;
   }
   auto [positions, share, first_achieved] = std::move(stacks_).finish();
-  return {std::move(positions), std::move(share), std::move(first_achieved), statistics_};
+  return {std::move(positions), std::move(share), std::move(first_achieved), stacks_.asked().stretch, statistics_};
 }
 
 }  // namespace

@@ -12,6 +12,14 @@ AskedLayers::AskedLayers(std::span<const Vec3d> positions, const Vec3d& origin, 
   }));
 }
 
+void AskedLayers::stretch_mitred(const Paths& paths) {
+  for (std::uint32_t v = 0; v < paths.state.size(); ++v) {
+    if (paths.state[v] != VertexState::Mitred && paths.state[v] != VertexState::Cut) continue;
+    stretch.resize(source.size(), 1.0);
+    stretch[v] = paths.achieved[v] / std::abs(heights.back()[v]);
+  }
+}
+
 RailStacks::RailStacks(const AskedLayers& asked, const Paths& paths)
     : asked_(asked),
       paths_(paths),

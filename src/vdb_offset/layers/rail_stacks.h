@@ -21,14 +21,26 @@ namespace vdb_offset {
 struct AskedLayers {
   /// \pre there is a set of heights, and each has one for each vertex
   AskedLayers(std::span<const Vec3d> positions, const Vec3d& origin, std::span<const Distances> of_layers);
+  /// Finds how much farther than the heights mitred vertices go. \param paths of the vertices, to the outermost layer
+  void stretch_mitred(const Paths& paths);
 
   std::span<const Vec3d> source;  ///< Positions of the vertices on the wall.
   Vec3d front_origin;             ///< `source` less this is in the frame of the queries that rails are put down by.
   std::span<const Distances> heights;  ///< Of the vertices, one set for each layer, all of one sign.
   int side;                            ///< 1 outward, -1 inward.
 
-  /// The height of a vertex's outermost layer, without its sign.
-  double thickness(std::uint32_t v) const { return std::abs(heights.back()[v]); }
+  /// Of each vertex: how many times as far as a height the vertex is from the wall where its faces have that height; 1
+  /// but for mitred ones, whose layers stand on the straight line to the end of the miter. Empty if none is mitred.
+  std::vector<double> stretch;
+
+  /// How far a layer of a vertex is to be from the wall.
+  double distance(std::size_t layer, std::uint32_t v) const { return stretched(std::abs(heights[layer][v]), v); }
+  /// How far the outermost layer of a vertex is to be from the wall.
+  double thickness(std::uint32_t v) const { return distance(heights.size() - 1, v); }
+  bool is_mitred(std::uint32_t v) const { return !stretch.empty() && stretch[v] != 1; }
+
+ private:
+  double stretched(double height, std::uint32_t v) const { return stretch.empty() ? height : height * stretch[v]; }
 };
 
 /// The stacks of vertices while layers grow: the rail that each stands on, the share of its heights that it keeps, and
@@ -103,7 +115,7 @@ class RailStacks {
     RailPoint above{top, distance.find(origin + rail(top))};
     if (top < 1 && above.phi.value < share * asked_.thickness(v)) return false;
     for (std::size_t k = layers; k-- > 0;) {
-      const double target = share * std::abs(asked_.heights[k][v]);
+      const double target = share * asked_.distance(k, v);
       const bool at_end = k + 1 == layers && share == most_[v];
       if (!at_end) above = point_on(rail, origin, above, target, distance);
       stack[k + 1] = wall + (at_end ? rail.whole : round_displacement(rail(above.eta), target));

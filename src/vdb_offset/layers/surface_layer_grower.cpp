@@ -225,7 +225,7 @@ class SurfaceWall final : public LayerWall {
   }
 
   bool is_at_height(std::uint32_t v, std::size_t k, double distance) const {
-    const double height = stacks_.share(v) * std::abs(heights_[k][v]);
+    const double height = stacks_.share(v) * asked_.distance(k, v);
     return std::abs(distance - height) <= kReachedTolerance * height;
   }
 
@@ -255,7 +255,8 @@ LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlide
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
-  const AskedLayers asked(source, constrained.moving_part.surface().origin, heights);
+  AskedLayers asked(source, constrained.moving_part.surface().origin, heights);
+  asked.stretch_mitred(paths);
   RailStacks stacks(asked, paths);
   SurfaceWall wall(constrained, slides, columns, faults, paths, stacks);
   return grow_on(wall, paths, progress);

@@ -55,7 +55,7 @@ void write_paths(LimitState& state, std::vector<std::uint8_t>& mended) {
     paths.closest[v] = state.faults.closest_to(v);
     if (std::abs(distance - target) <= kReachedTolerance * target + state.faults.rounding(v)) {
       paths.state[v] = VertexState::Reached;  // a collided vertex may have slid to where there is room
-    } else if (state.share[v] != 1 || paths.state[v] == VertexState::Reached) {
+    } else if (state.share[v] != 1 || !falls_short(paths.state[v])) {
       paths.state[v] = VertexState::Limited;
       ++state.statistics.limited_vertices;
     }

@@ -50,6 +50,10 @@ struct ConstrainedSurface {
   /// Empty: that skin is the source.
   std::span<const Vec3d> other_skin;
 
+  /// Of each vertex: how far from the moving part it may be, if that is farther than its distance. Empty: no vertex
+  /// may.
+  std::span<const double> farther;
+
   const FileFrame* file = nullptr;  ///< If distances are measured in the space of a metric.
 
   /// The index of a vertex on the moving part; kNone if it is not there.
@@ -89,7 +93,8 @@ struct ConstrainedSurface {
     const auto fits = [](const auto& some, std::size_t count) { return some.empty() || some.size() == count; };
     return surface.origin == moving_part.surface().origin && fits(part_vertex, surface.vertices.size()) &&
            fits(off_part, surface.triangles.size()) && fits(bound, surface.vertices.size()) &&
-           fits(other_skin, surface.vertices.size()) && part_vertex.empty() == off_part.empty() &&
+           fits(other_skin, surface.vertices.size()) && fits(farther, surface.vertices.size()) &&
+           part_vertex.empty() == off_part.empty() &&
            (!obstacles || obstacles->query.surface().origin == surface.origin);
   }
 };

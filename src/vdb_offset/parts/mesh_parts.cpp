@@ -115,4 +115,12 @@ Distances distances_of_input(const Surface& surface, const Distances& distances)
   return Distances(std::move(each));
 }
 
+Distances distances_of_part(const MeshParts& parts, const Distances& of_all) {
+  if (parts.part_vertex.empty() || of_all.uniform()) return of_all;
+  std::vector<double> each(parts.moving_part.vertices.size(), 0.0);
+  for (std::size_t w = 0; w < parts.part_vertex.size(); ++w)
+    if (parts.part_vertex[w] != kNone) each[parts.part_vertex[w]] = of_all[w];
+  return Distances(std::move(each));
+}
+
 }  // namespace vdb_offset

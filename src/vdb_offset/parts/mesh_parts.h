@@ -58,6 +58,9 @@ void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& 
 Distances distances_on_parts(const MeshParts& parts, Border border, const Distances& of_input,
                              std::size_t& disagreeing);
 
+/// The distances of the moving part's vertices, picked from those of all vertices.
+Distances distances_of_part(const MeshParts& parts, const Distances& of_all);
+
 /// The distances of the input's vertices, from those of a surface's; 0 for vertices that no face uses.
 Distances distances_of_input(const Surface& surface, const Distances& distances);
 

@@ -346,7 +346,8 @@ std::vector<Paths> march_all(const Query& query, const DirectionField& direction
 }  // namespace
 
 const char* name(VertexState state) {
-  constexpr const char* kNames[kVertexStateCount] = {"reached", "collision", "limited", "outside_field", "unused"};
+  constexpr const char* kNames[kVertexStateCount] = {"reached", "collision", "limited", "outside_field",
+                                                     "unused",  "mitred",    "cut"};
   return kNames[static_cast<std::size_t>(state)];
 }
 

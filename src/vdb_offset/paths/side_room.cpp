@@ -52,8 +52,8 @@ bool falls_short(std::span<const VertexState> states) {
   constexpr double kFew = 0.02;  // share of the vertices; not measured
   const auto used =
                  std::count_if(states.begin(), states.end(), [](auto state) { return state != VertexState::Unused; }),
-             reached = std::count(states.begin(), states.end(), VertexState::Reached);
-  return static_cast<double>(used - reached) > kFew * static_cast<double>(used);
+             in_want = std::count_if(states.begin(), states.end(), [](auto state) { return falls_short(state); });
+  return static_cast<double>(in_want) > kFew * static_cast<double>(used);
 }
 
 bool SideRoom::suggests_other() const { return known && here < kRoomEnough && there > here + kMoreRoom; }

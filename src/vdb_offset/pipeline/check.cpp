@@ -10,6 +10,7 @@
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/parts/part_miters.h"
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/validity/face_error.h"
@@ -81,9 +82,26 @@ double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3
   return outside < 0 ? -*middle : *middle;
 }
 
+/// The miters of the vertices of all parts, and how far from the moving part each of them may be therefore.
+struct WantedMiters {
+  std::vector<Miter> of_vertex;  // sorted by vertex
+  std::vector<double> farther;
+};
+
+WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
+                         const Distances& distances, const CheckOptions& options) {
+  if (options.corners == Corners::Round) return {};
+  WantedMiters miters{
+      miters_of_all(parts, MiterFinder(query, options.miter_limit, obstacles).all(distances_of_part(parts, distances))),
+      std::vector<double>(parts.surface().vertices.size(), 0.0)};
+  for (const Miter& miter : miters.of_vertex) miters.farther[miter.vertex] = miter.distance;
+  return miters;
+}
+
 /// Judges the states and distances of the input's vertices.
-void judge_vertices(const Surface& surface, const FaultFinder& finder, const Distances& distances,
-                    const Rounding& precision, CheckResult& result) {
+void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const FaultFinder& finder,
+                    const Distances& distances, const WantedMiters& miters, const Rounding& precision,
+                    CheckResult& result) {
   const double epsilon = precision.epsilon();
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     const std::uint32_t w = surface.welded[v];
@@ -91,8 +109,12 @@ void judge_vertices(const Surface& surface, const FaultFinder& finder, const Dis
     const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
                  tolerance = kReachedTolerance * target + epsilon * finder.positions()[w].length();
     result.achieved[v] = finder.distance_of(w);
-    result.states[v] = std::abs(error) <= tolerance ? VertexState::Reached : VertexState::Limited;
-    result.beyond += error > tolerance;
+    const Miter* const miter = find_miter(miters.of_vertex, w);
+    const bool is_mitred = miter && (finder.positions()[w] - source[w] - miter->displacement).length() <= tolerance;
+    result.states[v] = is_mitred                      ? miter->state
+                       : std::abs(error) <= tolerance ? VertexState::Reached
+                                                      : VertexState::Limited;
+    result.beyond += error > tolerance && !is_mitred;
     result.wrong_side += !finder.on_right_side(w);
   }
 }
@@ -128,6 +150,8 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
+  const WantedMiters miters = find_miters(parts, query, constrained.obstacles, distances, options);
+  constrained.farther = miters.farther;
   std::optional<SelfCrossings> source_crossings;
   if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
   FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));
@@ -136,8 +160,11 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
   result.crossings_near_source = finder.crossings_near_source();
   result.more_source_crossings = finder.source_crossings().has_more();
-  judge_vertices(surface, finder, distances, options.precision, result);
-  result.interior = measure_interior(constrained, in_offset, distances);
+  judge_vertices(surface, source, finder, distances, miters, options.precision, result);
+  std::vector<VertexState> states(source.size(), VertexState::Reached);
+  for (std::size_t w = 0; w < states.size(); ++w)
+    if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];
+  result.faces = measure_faces({constrained, in_offset, distances, source, states});
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "vdb_offset/layers/surface_layer_grower.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/mesh/layer_heights.h"
+#include "vdb_offset/pipeline/faulty_miters.h"
 #include "vdb_offset/pipeline/prepared_mesh.h"
 #include "vdb_offset/validity/fault_finder.h"
 
@@ -115,9 +116,9 @@ LayersResult hand_over(const PreparedMesh& mesh, OffsetStatistics statistics, co
     const auto w = surface.welded[v];
     if (w == kNone) return;
     result.states[v] = paths.state[w];
-    result.achieved[v] = paths.achieved[w];
+    result.achieved[v] = stack.height_at(w, paths.achieved[w]);
     result.share[v] = stack.share[w];
-    result.first_achieved[v] = stack.first_achieved[w];
+    result.first_achieved[v] = stack.height_at(w, stack.first_achieved[w]);
   });
   result.stacks = stacks_of_input(mesh, std::move(stack.stacks));
   result.welded_to = first_at_position(surface);
@@ -133,15 +134,17 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   const Distances& outer = asked.of_all.back();
   PreparedMesh::Marched marched = std::move(mesh.march({&outer, 1}, Ridges::Smooth).front());
   Paths& paths = marched.paths;
-  const std::vector<double> marched_distances = paths.achieved;
   OffsetStatistics statistics = mesh.statistics();
   statistics.disagreeing_distances = asked.disagreeing;
   const ConstrainedSurface constrained = mesh.constrained(marched, true, mesh.slides() ? mesh.mesh().face_count() : 0);
   std::optional<FaultFinder> faults;
+  std::vector<double> marched_distances;
   {
     const StageTimer timer(statistics.seconds, Stage::Limit);
     faults.emplace(constrained, mesh.source(), outer, options.precision, mesh.known_crossings());
     faults->move_to_ends(paths);
+    take_faulty_miters_back(*faults, mesh.surface(), marched);
+    marched_distances = paths.achieved;
     statistics.limit = untangle(*faults, {constrained, mesh.source(), outer, paths}, options.progress);
   }
   std::optional<GrowthColumns> columns;
@@ -156,6 +159,8 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   statistics.limit.left = faults->count();
   statistics.limit.crossings_near_source = faults->crossings_near_source();
   count_held_back(paths, outer, marched_distances, statistics.limit);
+  statistics.miters = marched.miters;
+  count_mitred(paths.state, statistics.miters);
   statistics.borders = mesh.borders(paths);
   statistics.room = mesh.room(paths, outer);
   if (mesh.surroundings()) {

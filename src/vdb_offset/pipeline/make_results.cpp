@@ -17,6 +17,7 @@
 #include "vdb_offset/field/grid_plan.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/limit/warm_start.h"
+#include "vdb_offset/pipeline/faulty_miters.h"
 #include "vdb_offset/pipeline/moved_input.h"
 #include "vdb_offset/sheets/sheet_sides.h"
 #include "vdb_offset/validity/face_error.h"
@@ -24,10 +25,6 @@
 
 namespace vdb_offset {
 namespace {
-
-// Triangles on which the error between vertices is measured, evenly taken from all: their 99 % quantile is made of a
-// hundred of them. On larger meshes measuring all would take longer than the march. Told in OffsetStatistics::interior.
-constexpr std::size_t kInteriorTriangles = 10000;
 
 bool is_junction(const MeshParts& parts, const std::vector<std::uint8_t>& junctions, std::size_t vertex) {
   if (junctions.empty()) return false;
@@ -64,7 +61,7 @@ class ResultMaker {
     if (count > 1 && has_to_be_valid() && !source_crossings_)
       source_crossings_ = CrossingFinder(mesh_.surface(), file_ ? file_source_ : mesh_.source()).listed();
     for (std::size_t i = 0; i < count; ++i)
-      drafts_.push_back({constrained(marched_[i]), distances_.moved[i], marched_[i].paths, mesh_.statistics(), {}, {}});
+      drafts_.push_back({constrained(marched_[i]), distances_.moved[i], marched_[i], mesh_.statistics(), {}, {}});
     results_.resize(count);
     if (options_.inner_skin_last) make_inner_skin();
     make_others(count - options_.inner_skin_last);
@@ -76,7 +73,7 @@ class ResultMaker {
   struct Draft {
     ConstrainedSurface constrained;
     const Distances& distances;
-    Paths& paths;
+    PreparedMesh::Marched& marched;
     OffsetStatistics statistics;
     std::optional<FaultFinder> faults;  // from look_for_faults() to make_valid(), if the result has to be valid
     WarmStart warm_start;               // for the results that begin with this one
@@ -143,11 +140,12 @@ class ResultMaker {
     const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
-    draft.faults->move_to_ends(draft.paths);
+    draft.faults->move_to_ends(draft.marched.paths);
+    take_faulty_miters_back(*draft.faults, mesh_.surface(), draft.marched);
   }
 
   static bool needs_mending(const Draft& draft) {
-    const auto& states = draft.paths.state;
+    const auto& states = draft.marched.paths.state;
     return draft.faults &&
            (draft.faults->any() || std::find(states.begin(), states.end(), VertexState::Collision) != states.end());
   }
@@ -158,8 +156,9 @@ class ResultMaker {
   void make_valid(Draft& draft, const ProgressCallback& progress, const WarmStart* start, WarmStart* to_start) const {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
-    draft.statistics.limit = limit(*draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.paths},
-                                   progress, start, to_start);
+    draft.statistics.limit =
+        limit(*draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths}, progress, start,
+              to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     draft.faults.reset();
   }
@@ -172,19 +171,22 @@ class ResultMaker {
     result.statistics = draft.statistics;
     result.has_turned_faces = mesh_.has_turned_faces();
     result.statistics.disagreeing_distances = distances_.disagreeing[number];
-    result.statistics.straight_vertices = draft.paths.straight;
-    move_vertices(vertices, draft.paths, result);
-    if (options_.keep_paths) hand_out_paths(vertices, draft.paths, result);
-    result.statistics.borders = mesh_.borders(draft.paths);
-    result.statistics.room = mesh_.room(draft.paths, draft.distances);
+    result.statistics.miters = draft.marched.miters;
+    result.statistics.straight_vertices = draft.marched.paths.straight;
+    move_vertices(vertices, draft.marched.paths, result);
+    if (options_.keep_paths) hand_out_paths(vertices, draft.marched.paths, result);
+    result.statistics.borders = mesh_.borders(draft.marched.paths);
+    result.statistics.room = mesh_.room(draft.marched.paths, draft.distances);
     if (file_) bring_to_file(result);
     result.distances = distances_of_input(mesh_.surface(), distances_.asked[number]);
     mark_junctions(result);
-    const std::vector<Vec3d> positions = ends_as_written(draft.paths);
+    count_mitred(draft.marched.paths.state, result.statistics.miters);
+    const std::vector<Vec3d> positions = ends_as_written(draft.marched.paths);
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
       if (mesh_.surroundings()) result.statistics.obstacles = mesh_.surroundings()->facts(positions);
-      result.statistics.interior = measure_interior(draft.constrained, positions, draft.distances, kInteriorTriangles);
+      result.statistics.faces =
+          measure_faces({draft.constrained, positions, draft.distances, mesh_.source(), draft.marched.paths.state});
     }
     return result;
   }

@@ -11,6 +11,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/grid_plan.h"
 #include "vdb_offset/parts/border_facts.h"
+#include "vdb_offset/parts/part_miters.h"
 #include "vdb_offset/pipeline/moved_input.h"
 
 namespace vdb_offset {
@@ -18,15 +19,6 @@ namespace {
 
 // Bytes that a vertex takes while a result in which much is held back is made valid; measured: up to 430.
 constexpr std::size_t kLimitBytes = 500;
-
-/// The distances of the moving part's vertices, picked from those of all vertices.
-Distances distances_of_part(const MeshParts& parts, const Distances& of_all) {
-  if (parts.part_vertex.empty() || of_all.uniform()) return of_all;
-  std::vector<double> each(parts.moving_part.vertices.size(), 0.0);
-  for (std::size_t w = 0; w < parts.part_vertex.size(); ++w)
-    if (parts.part_vertex[w] != kNone) each[parts.part_vertex[w]] = of_all[w];
-  return Distances(std::move(each));
-}
 
 /// The paths of all vertices from those of the moving part's; all other vertices stay, as was asked.
 Paths paths_of_all(const MeshParts& parts, Paths of_part) {
@@ -121,6 +113,8 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   std::vector<Paths> of_part =
       propagate(*query_, directions, on_part, obstacles(), options_.progress, march_options(options_, ridges));
   VDB_OFFSET_ASSERT(of_part.size() == distances.size());
+  std::optional<MiterFinder<ClosestQuery>> miters;
+  if (options_.corners == Corners::Miter) miters.emplace(*query_, options_.miter_limit, obstacles());
   std::vector<Marched> marched;
   for (std::size_t i = 0; i < of_part.size(); ++i) {
     if (slides_) slide_borders(parts_, *slides_, *query_, on_part[i], of_part[i]);
@@ -129,6 +123,11 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
     each.bound = std::exchange(parts_.bound, {});  // what is bound at one distance may be free at another
     if (surroundings_) surroundings_->hold(each.paths, distances[i], each.bound);
     end_traces(each.paths);
+    if (miters) {
+      std::vector<Miter> of_all = miters_of_all(parts_, (*miters)(on_part[i], each.miters));
+      std::erase_if(of_all, [&](const Miter& miter) { return !each.bound.empty() && each.bound[miter.vertex]; });
+      each.mitred = MitredPaths(of_all, each.paths);
+    }
   }
   return marched;
 }
@@ -138,6 +137,7 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
   VDB_OFFSET_ASSERT(marched.bound.empty() || marched.bound.size() == surface().vertices.size());
   ConstrainedSurface constrained = parts_.constrained(*query_, obstacles(), off_source, resting_faces);
   constrained.bound = marched.bound;
+  constrained.farther = marched.mitred.farther();
   return constrained;
 }
 

@@ -14,6 +14,7 @@
 #include "vdb_offset/options.h"
 #include "vdb_offset/parts/border_slide.h"
 #include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/paths/miters.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/query/closest_query.h"
@@ -69,6 +70,8 @@ class PreparedMesh {
   struct Marched {
     Paths paths;
     std::vector<std::uint8_t> bound;  ///< Of each vertex; empty if none must.
+    MitredPaths mitred;               ///< With Corners::Miter, the vertices whose paths are miters.
+    MiterFacts miters;
   };
   /// Marches once for several sets of distances of all vertices. \pre some vertex moves
   std::vector<Marched> march(std::span<const Distances> distances, Ridges ridges);

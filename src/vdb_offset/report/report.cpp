@@ -136,8 +136,19 @@ Json achieved_json(const AchievedSummary& achieved) {
           {"worst_reached_error", achieved.worst_reached_error}};
 }
 
-Json interior_json(const FaceInteriorError& error) {
-  return {{"samples", error.samples}, {"mean", error.mean}, {"quantile_99", error.quantile_99}, {"worst", error.worst}};
+Json faces_json(const FaceError& error) {
+  return {
+      {"samples", error.samples},
+      {"mean_error", error.mean},
+      {"error_quantile_99", error.quantile_99},
+      {"worst_error", error.worst},
+      {"share_within_1_percent", error.at_distance},
+      {"causes", {{"held_back", error.held_back}, {"sharp_corners", error.corners}, {"coarse_faces", error.coarse}}}};
+}
+
+Json miters_json(const MiterFacts& miters) {
+  return {{"on_creases", miters.on_creases}, {"mitred", miters.mitred},         {"cut", miters.cut},
+          {"unproven", miters.unproven},     {"taken_back", miters.taken_back}, {"worst_excess", miters.excess}};
 }
 
 Json shell_json(const ShellFacts& shell) {
@@ -275,7 +286,7 @@ Json surface_json(const IsoStatistics& found) {
             {"flipped_edges", mending.flipped_edges},
             {"split_edges", mending.split_edges}}},
           {"distance_error", {{"worst", found.worst_error}, {"rms", found.rms_error}}},
-          {"face_interior_error", interior_json(found.interior)}};
+          {"faces", faces_json(found.faces)}};
 }
 
 /// The report of an offset. `achieved` sums up what became of the vertices; `distance` is the farthest one asked for.
@@ -303,9 +314,10 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"vertices_straight", statistics.straight_vertices},
                  {"limit", limit_json(statistics.limit)},
                  {"borders", borders_json(statistics.borders)},
+                 {"miters", miters_json(statistics.miters)},
                  {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)},
-                 {"face_interior_error", interior_json(statistics.interior)}};
+                 {"faces", faces_json(statistics.faces)}};
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
   if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
   if (run.shell) report["shell"] = shell_json(*run.shell);
@@ -330,8 +342,8 @@ AchievedSummary summarise(std::span<const VertexState> states, std::span<const d
     asked += distances[v];
     summary.asked_least = std::min(summary.asked_least, distances[v]);
     summary.asked_most = std::max(summary.asked_most, distances[v]);
+    reached += !falls_short(states[v]);
     if (states[v] != VertexState::Reached) continue;
-    ++reached;
     const double target = std::abs(distances[v]);
     if (target > 0)
       summary.worst_reached_error = std::max(summary.worst_reached_error, std::abs(achieved.back() - target) / target);
@@ -404,7 +416,7 @@ std::string check_json(const CheckResult& result, const std::string& source, con
                  {"vertices_on_wrong_side", result.wrong_side},
                  {"vertices_torn", result.torn},
                  {"achieved", achieved_json(summarise(result.states, result.achieved, result.distances))},
-                 {"face_interior_error", interior_json(result.interior)}};
+                 {"faces", faces_json(result.faces)}};
   if (result.obstacles) report["obstacles"] = obstacles_json(*result.obstacles);
   return as_text(report);
 }

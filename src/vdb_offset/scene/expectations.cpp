@@ -52,7 +52,7 @@ std::vector<std::string> unmet(const Expectations& expect, PolygonView source, c
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     if (result.states[v] == VertexState::Unused) continue;
     ++used;
-    const bool there = result.states[v] == VertexState::Reached;
+    const bool there = !falls_short(result.states[v]);
     reached += there;
     // The answer for a vertex under an obstacle also holds where the obstacle stops it.
     if (expect.answer && (there || expect.answer->form == Answer::Form::Under))

@@ -13,10 +13,10 @@
 namespace vdb_offset {
 namespace {
 
-// The longest mitre, in thicknesses: sheets at less than 29 degrees get a blunt corner instead of a long spike. Not
+// The longest miter, in thicknesses: sheets at less than 29 degrees get a blunt corner instead of a long spike. Not
 // measured.
-constexpr double kLongestMitre = 4;
-// The distance from a junction, in thicknesses, within which vertices make room for it: beyond the longest mitre, with
+constexpr double kLongestMiter = 4;
+// The distance from a junction, in thicknesses, within which vertices make room for it: beyond the longest miter, with
 // some room to fade out. Not measured.
 constexpr double kRoom = 6;
 // The distance from a junction, in thicknesses, within which vertices are entirely on the planes of their faces; from
@@ -99,7 +99,7 @@ class WedgePositionFinder {
     result_.weight.assign(sides_.wedges, 0.0);
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.weight[w] = weight_of(w);
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.is_near[w] = result_.weight[w] > 0;
-    mitre();
+    miter();
     make_room();
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) result_.position[w] += origin(w);
     return std::move(result_);
@@ -218,7 +218,7 @@ class WedgePositionFinder {
   }
 
   /// Puts each wedge that is near a junction onto the planes of its sides.
-  void mitre() {
+  void miter() {
     slot_.assign(sides_.wedges, 0);
     std::uint32_t near = 0;
     for (std::uint32_t w = 0; w < sides_.wedges; ++w)
@@ -245,7 +245,7 @@ class WedgePositionFinder {
     for (std::uint32_t w = 0; w < sides_.wedges; ++w) {
       if (!result_.is_near[w] || has_first_side[w]) continue;
       planes_[slot_[w]].solve();
-      const double length = planes_[slot_[w]].solution().length(), most = kLongestMitre * thickness_[w];
+      const double length = planes_[slot_[w]].solution().length(), most = kLongestMiter * thickness_[w];
       result_.position[w] =
           length > most ? planes_[slot_[w]].solution() * (most / length) : planes_[slot_[w]].solution();
     }

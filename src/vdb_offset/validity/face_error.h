@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,15 +10,27 @@
 
 namespace vdb_offset {
 
-/// Measures how far faces are off their distance between their vertices: at a triangle's centre and at the middles of
-/// its edges, where the mean of the corners' distances is asked for. Samples of distance 0, and triangles that are not
-/// on the moving part, are left out. The result does not depend on the number of threads. \param positions of the
-/// constrained surface's vertices, world coordinates \param most triangles that are measured, evenly taken from all; 0:
-/// all are
-FaceInteriorError measure_interior(const ConstrainedSurface& constrained, std::span<const Vec3d> positions,
-                                   const Distances& distances, std::size_t most = 0);
+/// The mean error beyond which its causes are told. Not measured.
+inline constexpr double kWorthTelling = 0.01;
 
-/// Mean, 99 % quantile and maximum of the errors of samples, each relative to the distance that was asked there.
-FaceInteriorError sum_up_errors(std::vector<double> errors);
+/// What faces are measured against.
+struct MeasuredFaces {
+  const ConstrainedSurface& constrained;
+  std::span<const Vec3d> positions;  ///< Of the constrained surface's vertices, world coordinates.
+  const Distances& distances;        ///< Of these vertices.
+  /// Of the vertices in the source, world coordinates; empty where the faces are not those of the source, moved.
+  std::span<const Vec3d> source;
+  std::span<const VertexState> states;  ///< Of the vertices; empty: none falls short.
+};
+
+/// Measures how far the faces of the moving part are off their distance: at points evenly spread over the area that
+/// they have in the offset, where the distance asked for is that of the corners, interpolated. A point is at its
+/// distance if the moving part is as far, or where it is farther, as beside a miter, if the plane of its own face in
+/// the source is. Where nearly nothing is asked for, nothing is measured. The result does not depend on the number of
+/// threads.
+FaceError measure_faces(const MeasuredFaces& faces);
+
+/// Sums up errors relative to the distance that was asked, each of the same share of the area or length.
+FaceError sum_up_errors(std::vector<double> errors);
 
 }  // namespace vdb_offset

@@ -89,12 +89,21 @@ void FaultFinder::move_all(const PositionOf& position_of) {
   move(all, position_of, nullptr, Crossings::All);
 }
 
+FaultFinder::Trial FaultFinder::try_ends(const Paths& paths, const Indices& moved) {
+  return try_out(
+      moved, [&](std::uint32_t v) { return source_[v] + paths.displacement[v]; }, Crossings::OneOfEach);
+}
+
 void FaultFinder::move_to_ends(const Paths& paths) {
   VDB_OFFSET_ASSERT(paths.displacement.size() == source_.size());
   Indices all(source_.size());
   std::iota(all.begin(), all.end(), 0u);
+  move_to_ends(paths, all);
+}
+
+void FaultFinder::move_to_ends(const Paths& paths, const Indices& moved) {
   move(
-      all, [&](std::uint32_t v) { return source_[v] + paths.displacement[v]; }, &paths, Crossings::All);
+      moved, [&](std::uint32_t v) { return source_[v] + paths.displacement[v]; }, &paths, Crossings::All);
 }
 
 void FaultFinder::move(const Indices& moved, const PositionOf& position_of, const Paths* ends) {

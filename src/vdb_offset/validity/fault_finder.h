@@ -58,10 +58,14 @@ class FaultFinder {
   /// \pre `moved` is sorted, each once; no other trial is open
   [[nodiscard]] Trial try_out(const Indices& moved, const PositionOf& position_of,
                               Crossings crossings = Crossings::All);
+  /// Moves some vertices to the ends of their paths, by a trial that finds one crossing of each triangle at least.
+  [[nodiscard]] Trial try_ends(const Paths& paths, const Indices& moved);
   /// Moves all vertices, and finds all faults.
   void move_all(const PositionOf& position_of);
   /// Moves all vertices to the ends of their paths, and finds all faults.
   void move_to_ends(const Paths& paths);
+  /// Moves some vertices there, and finds the faults around them. \pre `moved` is sorted, each once; no trial is open
+  void move_to_ends(const Paths& paths, const Indices& moved);
 
   /// Whether any face is faulty or any triangles meet anew; misplaced vertices do not count.
   bool any() const;

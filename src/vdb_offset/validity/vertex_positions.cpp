@@ -208,8 +208,9 @@ double VertexPositions::rounding(std::uint32_t v) const {
 }
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
+  const double farther = constrained_.farther.empty() ? 0 : constrained_.farther[v];
   return is_beyond_wall(v) || !right_side_[v] ||
-         distance_[v] > std::abs(distances_[v]) * (1 + kReachedTolerance) + rounding(v);
+         distance_[v] > std::max(farther, std::abs(distances_[v])) * (1 + kReachedTolerance) + rounding(v);
 }
 
 bool VertexPositions::is_beyond_wall(std::uint32_t v) const {

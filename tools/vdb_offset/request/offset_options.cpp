@@ -80,6 +80,13 @@ void declare_distances(CommandLine& line, Draft& draft) {
               [&draft](const std::string& text) {
                 draft.is_iso = parse_word("--mode", text, {"topology", "iso"}) == 1;
               });
+  line.option("--corners", "KIND",
+              "At sharp corners 'round' puts vertices at the distance, and faces beside them are nearer; 'miter' puts "
+              "faces at the distance, and vertices on creases are farther [round]",
+              [&request](const std::string& text) { request.corners = parse_corners(text); });
+  line.option("--miter-limit", "L",
+              "With --corners miter: a vertex goes no farther than so many distances, at least 1 [4]",
+              [&request](const std::string& text) { request.miter_limit = parse_miter_limit(text); });
   line.option(
       "--adaptivity", "X",
       "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [triangles are "
@@ -265,6 +272,8 @@ void declare_run(CommandLine& line, Draft& draft) {
             "Exit with 3 if a vertex in use falls short of its distance, a cell of layers is not valid, or an obstacle "
             "or the mesh to fit is nearer than asked",
             request.strict);
+  line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
+              [&request](const std::string& text) { request.strict_faces = parse_strict_faces(text); });
   line.flag("--dry-run", "Read the input, print what would be done, write nothing", request.dry_run);
   line.flag("-q,--quiet", "Print nothing but errors", request.quiet);
   line.flag("-v,--verbose", "Print the mesh's facts and the seconds of each stage", request.verbose);

@@ -132,6 +132,21 @@ Border parse_border(const std::string& text) {
   return kBorders[parse_word("--border", text, {"slide", "fixed", "free"})];
 }
 
+Corners parse_corners(const std::string& text) {
+  constexpr Corners kCorners[] = {Corners::Round, Corners::Miter};
+  return kCorners[parse_word("--corners", text, {"round", "miter"})];
+}
+
+double parse_miter_limit(const std::string& text) {
+  return parse_number("--miter-limit", text, "a number of at least 1", std::nextafter(1.0, 0.0),
+                      std::numeric_limits<double>::max());
+}
+
+double parse_strict_faces(const std::string& text) {
+  return parse_number("--strict-faces", text, "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),
+                      std::numeric_limits<double>::max());
+}
+
 scene::Distance parse_clearance(const std::string& text) {
   scene::Distance clearance;
   try {

@@ -56,6 +56,14 @@ io::Selector parse_part(const std::string& text);
 /// 'slide', 'fixed' or 'free'.
 Border parse_border(const std::string& text);
 
+/// 'round' or 'miter'.
+Corners parse_corners(const std::string& text);
+/// A number of at least 1.
+double parse_miter_limit(const std::string& text);
+
+/// Percent, 0 or more.
+double parse_strict_faces(const std::string& text);
+
 /// World units or percent, 0 or more.
 scene::Distance parse_clearance(const std::string& text);
 

@@ -73,6 +73,8 @@ struct Request {
   std::optional<Border> border;
   std::optional<Solver> solver;
   std::optional<Collision> collision;
+  std::optional<Corners> corners;
+  std::optional<double> miter_limit;
 
   GridOptions grid;
   WeldOptions weld = WeldOptions::automatic();
@@ -89,6 +91,7 @@ struct Request {
   std::optional<io::Format> format;        ///< Of files with an ending that names none.
   io::WriteOptions write;                  ///< All but its format, which is the output's alone.
   OutputFiles::Sync sync = OutputFiles::Sync::Yes;
+  std::optional<double> strict_faces;  ///< Percent.
   bool strict = false, dry_run = false, quiet = false, verbose = false;
 };
 

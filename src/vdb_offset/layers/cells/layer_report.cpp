@@ -73,7 +73,7 @@ class FigureCollector {
   }
 
  private:
-  bool full(std::uint32_t v) const { return layers_.share[v] == 1 && layers_.states[v] == VertexState::Reached; }
+  bool full(std::uint32_t v) const { return layers_.share[v] == 1 && !falls_short(layers_.states[v]); }
 
   /// A face's area, and means over its corners.
   struct OnFace {

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/curve_offset/segment_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/curve/curve_corners.h"
+#include "vdb_offset/validity/face_error.h"
+
+namespace vdb_offset {
+namespace {
+
+// Points that are measured, and points of a segment on average where there are few: an odd number, so that the middles
+// of even segments are among them. Not measured.
+constexpr std::size_t kMostPoints = 40000, kMostOfSegment = 65;
+// Share of the farthest distance below which a point counts as asked to stay. Reasoned: errors are relative.
+constexpr double kLeastMeasured = 1e-3;
+
+/// A point on the offset, and what is asked there.
+struct SegmentSample {
+  std::uint32_t segment;
+  double share;  // of the way from its first end to its second
+};
+
+/// Points at the middles of parts of the same length.
+std::vector<SegmentSample> spread_over(const Polyline& line, std::span<const Vec2d> positions) {
+  std::vector<double> up_to;
+  double sum = 0;
+  for (const auto& [a, b] : line.segments) up_to.push_back(sum += (positions[b] - positions[a]).length());
+  if (!(sum > 0)) return {};
+  std::vector<SegmentSample> samples(std::min(kMostPoints, kMostOfSegment * up_to.size()));
+  std::uint32_t segment = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double at = sum * (static_cast<double>(i) + 0.5) / static_cast<double>(samples.size());
+    while (segment + 1 < up_to.size() && !(up_to[segment] > at)) ++segment;
+    const double begin = segment == 0 ? 0 : up_to[segment - 1], length = up_to[segment] - begin;
+    samples[i] = {segment, length > 0 ? std::clamp((at - begin) / length, 0.0, 1.0) : 0.5};
+  }
+  return samples;
+}
+
+/// Sums up which part of all errors comes of which cause. \param errors of the samples, below 0 if not measured
+void find_causes(const PlaneCurves& curves, std::span<const SegmentSample> samples, std::span<const double> errors,
+                 std::span<const VertexState> states, FaceError& result) {
+  const std::vector<std::uint8_t> at_corner = vertices_on_creases(curves.line());
+  double sum = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (errors[i] < 0) continue;
+    bool is_short = false, is_round = false;
+    for (const auto v : curves.line().segments[samples[i].segment]) {
+      is_short |= !states.empty() && falls_short(states[v]);
+      is_round |= at_corner[v] && (states.empty() || states[v] != VertexState::Mitred);
+    }
+    sum += errors[i];
+    (is_short ? result.held_back : is_round ? result.corners : result.coarse) += errors[i];
+  }
+  for (double* const cause : {&result.held_back, &result.corners, &result.coarse}) *cause /= sum;
+}
+
+}  // namespace
+
+FaceError measure_segments(const PlaneCurves& curves, std::span<const Vec2d> positions,
+                           std::span<const VertexState> states) {
+  const Polyline& line = curves.line();
+  VDB_OFFSET_ASSERT(positions.size() == line.vertices.size());
+  const std::vector<SegmentSample> samples = spread_over(line, positions);
+  std::vector<double> errors(samples.size(), -1);
+  for_each_index(
+      samples.size(),
+      [&](std::size_t i) {
+        const auto& [s, share] = samples[i];
+        const auto [a, b] = line.segments[s];
+        const double asked = curves.distances[a] * (1 - share) + curves.distances[b] * share, wanted = std::abs(asked);
+        if (!(wanted > kLeastMeasured * curves.distances.scale())) return;
+        const Vec3d x = curves.in_frame(positions[a] * (1 - share) + positions[b] * share);
+        double off = curves.query(x, s).distance - wanted;
+        if (off > 0) off = std::min(off, std::abs(line.triangle_normals[s].dot(x - line.vertices[a]) - asked));
+        errors[i] = std::abs(off) / wanted;
+      },
+      64);
+  std::vector<double> measured = errors;
+  std::erase(measured, -1);
+  FaceError result = sum_up_errors(std::move(measured));
+  if (result.mean > kWorthTelling) find_causes(curves, samples, errors, states, result);
+  return result;
+}
+
+}  // namespace vdb_offset

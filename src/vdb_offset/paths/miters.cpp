@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/paths/miters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/curve/curve_corners.h"
+#include "vdb_offset/mesh/miter_point.h"
+#include "vdb_offset/paths/obstacle_guard.h"
+#include "vdb_offset/surface/creases.h"
+
+namespace vdb_offset {
+namespace {
+
+// Miters that are proven together, as the exact query answers neighbours together. Not measured.
+constexpr std::size_t kMitersTogether = 64;
+// The largest sine of the angle between normals of faces on one plane. Reasoned: far above the rounding of coordinates
+// with seven digits, far below all bends that are meant.
+constexpr double kOnePlane = 1e-4;
+// How far from a vertex, in distances, what is nearer to the end of its miter still belongs to its corner: edges broken
+// by less are details of it. Not measured.
+constexpr double kDetail = 0.1;
+// A miter with which a plane would go farther than the distance by more than this share of it is none. Not measured.
+constexpr double kMostExcess = 0.5;
+// Share by which exact distances may differ that ought to be the same. Reasoned: far below the promised 1e-6, far above
+// rounding.
+constexpr double kSameMiterDistance = 1e-9;
+
+double area_of(const Surface& surface, std::uint32_t triangle) {
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return (surface.vertices[b] - surface.vertices[a]).cross(surface.vertices[c] - surface.vertices[a]).length();
+}
+double area_of(const Polyline& line, std::uint32_t segment) {
+  const auto& [a, b] = line.segments[segment];
+  return (line.vertices[b] - line.vertices[a]).length();
+}
+
+/// The normals of the planes around a vertex, each once: of the largest of the faces on it, which tells best.
+template <class Shape>
+std::vector<Vec3d> planes_around(const Shape& shape, std::uint32_t vertex) {
+  std::vector<std::pair<double, std::uint32_t>> faces;
+  for (const auto t : shape.triangles_around(vertex))
+    if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-area_of(shape, t), t);
+  std::sort(faces.begin(), faces.end());
+  std::vector<Vec3d> planes;
+  for (const auto& [area, t] : faces) {
+    const Vec3d& normal = shape.triangle_normals[t];
+    if (std::none_of(planes.begin(), planes.end(),
+                     [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < kOnePlane * kOnePlane; }))
+      planes.push_back(normal);
+  }
+  return planes;
+}
+
+/// Distance of a point from the faces around a vertex alone.
+template <class Shape>
+double distance_from_fan(const Shape& shape, std::uint32_t vertex, const Vec3d& x) {
+  double squared = (x - shape.vertices[vertex]).lengthSqr();
+  for (const auto t : shape.triangles_around(vertex))
+    squared = std::min(squared, shape.closest_on(t, x).squared_distance);
+  return std::sqrt(squared);
+}
+
+/// Whether a triangle goes on in the plane of one of those around a vertex.
+template <class Shape>
+bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
+  const Vec3d &normal = shape.triangle_normals[closest.triangle], away = closest.point - shape.vertices[vertex];
+  const auto around = shape.triangles_around(vertex);
+  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Vec3d& own = shape.triangle_normals[t];
+    return own.lengthSqr() > 0 && (own - normal).lengthSqr() < kOnePlane * kOnePlane &&
+           std::abs(own.dot(away)) <= kOnePlane * away.length();
+  });
+}
+
+}  // namespace
+
+template <class Query>
+MiterFinder<Query>::MiterFinder(const Query& query, double longest, const Obstacles* obstacles)
+    : query_(query), obstacles_(obstacles) {
+  VDB_OFFSET_ASSERT(longest >= 1);
+  const auto& shape = query.surface();
+  const std::vector<std::uint8_t> on_crease = vertices_on_creases(shape);
+  for (std::uint32_t v = 0; v < on_crease.size(); ++v)
+    if (on_crease[v]) miters_.push_back({v, Vec3d(0.0), 0, false});
+  for_each_index(
+      miters_.size(),
+      [&](std::size_t i) {
+        UnitMiter& miter = miters_[i];
+        std::vector<Vec3d> planes = planes_around(shape, miter.vertex);
+        for (Vec3d& plane : planes) plane = shape.along_border(miter.vertex, plane);
+        const auto point = miter_point(planes);
+        if (!point || point->excess > kMostExcess) return;
+        const double length = point->position.length();
+        miter.excess = point->excess;
+        miter.is_cut = length > longest;
+        miter.end = miter.is_cut ? point->position * (longest / length) : point->position;
+      },
+      kMitersTogether);
+}
+
+template <class Query>
+bool MiterFinder<Query>::is_proven(const Miter& miter, const Vec3d& end, const Closest& closest,
+                                   double distance) const {
+  const auto& shape = query_.surface();
+  const Vec3d& start = shape.vertices[miter.vertex];
+  const double asked = std::abs(distance);
+  const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
+                      (closest.point - start).length() <= kDetail * asked || goes_on(shape, miter.vertex, closest);
+  return is_own && closest.distance >= asked * (1 - kReachedTolerance) &&
+         (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
+}
+
+template <class Query>
+void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances& distances, std::span<Miter> miters,
+                               std::span<std::uint8_t> proven) const {
+  const auto& shape = query_.surface();
+  std::vector<Vec3d> ends;
+  std::vector<std::uint32_t> hints;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const double distance = distances[some[i].vertex];
+    const Vec3d displacement =
+        distance == 0 ? Vec3d(0.0) : round_displacement(some[i].end * distance, std::abs(distance));
+    miters[i] = {some[i].vertex, displacement, 0, 0, some[i].is_cut ? VertexState::Cut : VertexState::Mitred,
+                 some[i].excess};
+    ends.push_back((shape.vertices[some[i].vertex] + shape.origin) + displacement - shape.origin);
+    hints.push_back(shape.triangles_around(some[i].vertex).front());
+  }
+  std::vector<Closest> closest(ends.size());
+  query_.answer_together(ends, hints, closest);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const double distance = distances[some[i].vertex];
+    miters[i].distance = closest[i].distance;
+    miters[i].closest = closest[i].triangle;
+    if (std::abs(miters[i].distance - std::abs(distance)) <= kReachedTolerance * std::abs(distance))
+      miters[i].state = VertexState::Reached;
+    proven[i] = miters[i].displacement != Vec3d(0.0) && is_proven(miters[i], ends[i], closest[i], distance);
+  }
+}
+
+template <class Query>
+std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(const Distances& distances) const {
+  std::vector<Miter> miters(miters_.size());
+  std::vector<std::uint8_t> proven(miters_.size(), 0);
+  for_each_index((miters_.size() + kMitersTogether - 1) / kMitersTogether,
+                 [&](std::size_t block) {
+                   const std::size_t begin = block * kMitersTogether,
+                                     count = std::min(kMitersTogether, miters_.size() - begin);
+                   prove(std::span(miters_).subspan(begin, count), distances, std::span(miters).subspan(begin, count),
+                         std::span(proven).subspan(begin, count));
+                 },
+                 1);
+  return {std::move(miters), std::move(proven)};
+}
+
+template <class Query>
+std::vector<Miter> MiterFinder<Query>::all(const Distances& distances) const {
+  std::vector<Miter> miters = prove(distances).first;
+  std::erase_if(miters, [](const Miter& miter) { return miter.displacement == Vec3d(0.0); });
+  return miters;
+}
+
+template <class Query>
+std::vector<Miter> MiterFinder<Query>::operator()(const Distances& distances, MiterFacts& facts) const {
+  const auto [miters, proven] = prove(distances);
+  std::vector<Miter> kept;
+  for (std::size_t i = 0; i < miters.size(); ++i) {
+    if (distances[miters[i].vertex] == 0) continue;
+    ++facts.on_creases;
+    if (!proven[i]) {
+      ++facts.unproven;
+      continue;
+    }
+    kept.push_back(miters[i]);
+    facts.excess = std::max(facts.excess, miters[i].excess);
+  }
+  return kept;
+}
+
+const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex) {
+  const auto at = std::lower_bound(miters.begin(), miters.end(), vertex,
+                                   [](const Miter& miter, std::uint32_t v) { return miter.vertex < v; });
+  return at != miters.end() && at->vertex == vertex ? &*at : nullptr;
+}
+
+template class MiterFinder<ClosestQuery>;
+template class MiterFinder<CurveQuery>;
+
+void count_mitred(std::span<const VertexState> states, MiterFacts& facts) {
+  facts.mitred = static_cast<std::size_t>(std::count(states.begin(), states.end(), VertexState::Mitred));
+  facts.cut = static_cast<std::size_t>(std::count(states.begin(), states.end(), VertexState::Cut));
+}
+
+MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {
+  if (miters.empty()) return;
+  farther_.assign(paths.displacement.size(), 0.0);
+  Indices all;
+  for (const Miter& miter : miters) {
+    all.push_back(miter.vertex);
+    others_.push_back(
+        {miter.vertex, miter.displacement, miter.distance, miter.state, miter.closest, {}, miter.distance, false});
+  }
+  exchange(all, paths, false);
+}
+
+std::vector<MitredPaths::Other>::const_iterator MitredPaths::find(std::uint32_t vertex) const {
+  const auto at = std::lower_bound(others_.begin(), others_.end(), vertex,
+                                   [](const Other& other, std::uint32_t v) { return other.vertex < v; });
+  return at != others_.end() && at->vertex == vertex ? at : others_.end();
+}
+
+bool MitredPaths::is_mitred(std::uint32_t vertex) const {
+  const auto at = find(vertex);
+  return at != others_.end() && at->is_mitred;
+}
+
+Indices MitredPaths::taken_back() const {
+  Indices vertices;
+  for (const Other& other : others_)
+    if (!other.is_mitred) vertices.push_back(other.vertex);
+  return vertices;
+}
+
+Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitred) {
+  Indices exchanged;
+  for (const auto v : vertices) {
+    const auto at = find(v);
+    if (at == others_.end() || at->is_mitred != are_mitred) continue;
+    Other& other = others_[static_cast<std::size_t>(at - others_.begin())];
+    std::swap(paths.displacement[v], other.displacement);
+    std::swap(paths.achieved[v], other.achieved);
+    std::swap(paths.state[v], other.state);
+    std::swap(paths.closest[v], other.closest);
+    if (!paths.trace.empty()) std::swap(paths.trace[v], other.trace);
+    other.is_mitred = !are_mitred;
+    farther_[v] = are_mitred ? 0 : other.farther;
+    exchanged.push_back(v);
+  }
+  return exchanged;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/base/index_set.h"
+#include "vdb_offset/curve/curve_query.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/query/obstacles.h"
+#include "vdb_offset/statistics.h"
+
+namespace vdb_offset {
+
+/// The miter of a vertex: its displacement to where the planes around it meet that are moved by its distance.
+struct Miter {
+  std::uint32_t vertex;
+  Vec3d displacement;     ///< World units; rounded as those of paths are.
+  double distance;        ///< Exact unsigned distance to the surface there.
+  std::uint32_t closest;  ///< The triangle of the surface that is closest there.
+  VertexState state;      ///< Reached, where the end is at the distance as well; Mitred; or Cut.
+  double excess;          ///< By how much more than its distance a plane is moved, as a share of the distance.
+};
+
+/// The miter of a vertex among some that are sorted by vertex; nullptr if it has none.
+const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
+
+/// Finds the miters of the vertices on creases, of a Surface and of a Polyline alike.
+///
+/// Distinct planes around a vertex move along their normals by its distance; its miter is the smallest displacement to
+/// a point on all of them, or beyond (see miter_point()); at a border, of those that keep to it. A miter is proven by
+/// one exact distance: the surface is no nearer to its end than the distance, and what is nearest there is one of the
+/// faces around the vertex, goes on in the plane of one, or is a detail of the corner. Vertices whose miter is not
+/// proven have none, nor have those on edges of more than two faces.
+template <class Query>
+class MiterFinder {
+ public:
+  /// Finds creases, and the miters for a distance of 1. Keeps references.
+  /// \param longest a miter may be so many distances long, at least 1
+  /// \param obstacles to keep off; nullptr without any
+  MiterFinder(const Query& query, double longest, const Obstacles* obstacles);
+
+  /// The miters that are proven for some distances of the surface's vertices, sorted by vertex. `facts` receives how
+  /// many were tried and why others were not kept. The result does not depend on the number of threads.
+  std::vector<Miter> operator()(const Distances& distances, MiterFacts& facts) const;
+  /// All miters, proven or not: to tell where somebody else has put vertices.
+  std::vector<Miter> all(const Distances& distances) const;
+
+ private:
+  struct UnitMiter {
+    std::uint32_t vertex;
+    Vec3d end;
+    double excess;
+    bool is_cut;
+  };
+
+  /// Miters, and of each whether it is proven.
+  std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(const Distances& distances) const;
+  void prove(std::span<const UnitMiter> some, const Distances& distances, std::span<Miter> miters,
+             std::span<std::uint8_t> proven) const;
+  bool is_proven(const Miter& miter, const Vec3d& end, const Closest& closest, double distance) const;
+
+  const Query& query_;
+  const Obstacles* obstacles_;
+  std::vector<UnitMiter> miters_;  // of all vertices on creases, sorted; `end` is zero of one without a miter
+};
+
+extern template class MiterFinder<ClosestQuery>;
+extern template class MiterFinder<CurveQuery>;
+
+/// Counts the vertices that are mitred in the end.
+void count_mitred(std::span<const VertexState> states, MiterFacts& facts);
+
+/// Vertices whose paths lead to the ends of their miters, and can be given back the paths that they had before.
+class MitredPaths {
+ public:
+  MitredPaths() = default;
+  /// Gives vertices their miters for paths: straight ones. \pre the miters are sorted by vertex, which paths have
+  MitredPaths(std::span<const Miter> miters, Paths& paths);
+
+  bool empty() const { return others_.empty(); }
+  /// Of each vertex of the paths: the distance of its end from the surface if that is farther than was asked, as it is
+  /// mitred; 0 of the others. Empty if no vertex is mitred.
+  std::span<const double> farther() const { return farther_; }
+  /// Whether a vertex's path leads to the end of its miter now.
+  bool is_mitred(std::uint32_t vertex) const;
+  /// The vertices whose miters have been taken back.
+  Indices taken_back() const;
+  /// Gives those of some vertices that are mitred the paths back that they had before, and returns them.
+  Indices take_back(const Indices& vertices, Paths& paths) { return exchange(vertices, paths, true); }
+  /// Gives those of some vertices whose miters have been taken back these again, and returns them.
+  Indices miter_again(const Indices& vertices, Paths& paths) { return exchange(vertices, paths, false); }
+
+ private:
+  /// The other path of a vertex: that before it was mitred, or where that has been given back, the miter.
+  struct Other {
+    std::uint32_t vertex;
+    Vec3d displacement;
+    double achieved;
+    VertexState state;
+    std::uint32_t closest;
+    std::vector<Vec3d> trace;
+    double farther;  // of the miter, always
+    bool is_mitred = true;
+  };
+
+  std::vector<Other>::const_iterator find(std::uint32_t vertex) const;
+  Indices exchange(const Indices& vertices, Paths& paths, bool are_mitred);
+
+  std::vector<Other> others_;  // sorted by vertex
+  std::vector<double> farther_;
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/pipeline/faulty_miters.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/base/hash_mix.h"
+
+namespace vdb_offset {
+namespace {
+
+// Of the mitred corners of a fault those with the least area around them go back, and those with no more than so many
+// times that: a narrow slot then costs its own miters, and not those at the far corners of the plate around it. Not
+// measured.
+constexpr double kAlike = 4;
+// Miters that have been taken back are tried again in so many rounds, one in kTriedEvery of them at a time, each twice:
+// of those that got into each other's way some have room. Not measured.
+constexpr std::uint64_t kTrials = 6, kTriedEvery = 3;
+
+/// Takes back what is faulty of miters, and tries again what may have been taken back for others.
+class MiterJudge {
+ public:
+  MiterJudge(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched)
+      : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {}
+
+  void take_back() {
+    for (Indices back = faulty_miters(); !back.empty(); back = faulty_miters())
+      faults_.move_to_ends(paths_, mitred_.take_back(back, paths_));
+    const Indices taken_back = mitred_.taken_back();
+    for (std::uint64_t trial = 0; trial < kTrials && !taken_back.empty(); ++trial) {
+      Indices some = taken_back;
+      std::erase_if(some, [&](std::uint32_t v) {
+        const std::uint64_t turn = trial / kTriedEvery;
+        return (mix(turn << 32 | v) + trial) % kTriedEvery != 0;
+      });
+      try_again(some);
+    }
+  }
+
+ private:
+  double area_around(std::uint32_t v) const {
+    double area = 0;
+    for (const auto t : surface_.triangles_around(v)) {
+      const auto& [a, b, c] = surface_.triangles[t];
+      area += (surface_.vertices[b] - surface_.vertices[a]).cross(surface_.vertices[c] - surface_.vertices[a]).length();
+    }
+    return area;
+  }
+
+  /// The mitred vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
+  Indices faulty_miters() const {
+    Indices vertices;
+    for (const auto v : faults_.misplaced())
+      if (mitred_.is_mitred(v)) vertices.push_back(v);
+    faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+      std::vector<std::pair<double, std::uint32_t>> corners;
+      for (const auto triangle : {s, t})
+        for (const auto v : surface_.triangles[triangle])
+          if (mitred_.is_mitred(v)) corners.emplace_back(area_around(v), v);
+      if (corners.empty()) return;
+      const double least = std::min_element(corners.begin(), corners.end())->first;
+      for (const auto& [area, v] : corners)
+        if (area <= kAlike * least) vertices.push_back(v);
+    });
+    // What the rim of a shell meets is told by its corners alone.
+    faults_.for_each_faulty_corner(
+        [&](std::uint32_t v) {
+          if (mitred_.is_mitred(v)) vertices.push_back(v);
+        },
+        [](std::uint32_t) { return true; });
+    sort_unique(vertices);
+    return vertices;
+  }
+
+  /// Miters vertices again, and takes those back that come to be at faults.
+  void try_again(const Indices& vertices) {
+    const Indices tried = mitred_.miter_again(vertices, paths_);
+    if (tried.empty()) return;
+    FaultFinder::Trial trial = faults_.try_ends(paths_, tried);
+    for (Indices back = tried; !back.empty();) {
+      const Indices faulty = faults_.faulty_vertices();
+      back.clear();
+      std::set_intersection(tried.begin(), tried.end(), faulty.begin(), faulty.end(), std::back_inserter(back));
+      back = mitred_.take_back(back, paths_);
+      trial.take_back(back);
+    }
+  }
+
+  FaultFinder& faults_;
+  const Surface& surface_;
+  MitredPaths& mitred_;
+  Paths& paths_;
+};
+
+}  // namespace
+
+void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched) {
+  if (marched.mitred.empty()) return;
+  MiterJudge(faults, surface, marched).take_back();
+  marched.miters.taken_back = marched.mitred.taken_back().size();
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Marks the vertices that lie on creases: 1 of each of those, 0 of the others.
+///
+/// A crease is a line of edges at which the surface bends sharply, and far more than beside it: so are the edges of a
+/// part that was drawn, however coarse its curved faces are. Where the surface bends everywhere, as scans do, no edge
+/// is one, nor are a few sharp edges in a row that end on both sides. Edges of more than two faces are none.
+std::vector<std::uint8_t> vertices_on_creases(const Surface& surface);
+
+}  // namespace vdb_offset

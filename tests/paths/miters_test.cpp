@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/paths/miters.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/oracles.h"
+#include "vdb_offset/check.h"
+#include "vdb_offset/curve_offset.h"
+#include "vdb_offset/layers.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/scene.h"
+#include "vdb_offset/sheets/sheet_sides.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+using Outline = std::vector<std::pair<double, double>>;
+
+/// A prism over an outline, counter-clockwise, whose top and bottom are one face each.
+Polygons prism(const Outline& outline, double height) {
+  Polygons mesh;
+  const auto n = static_cast<std::uint32_t>(outline.size());
+  for (const double z : {0.0, height})
+    for (const auto& [x, y] : outline) mesh.positions.emplace_back(x, y, z);
+  for (std::uint32_t i = n; i-- > 0;) mesh.corners.push_back(i);
+  mesh.close_face();
+  for (std::uint32_t i = 0; i < n; ++i) mesh.corners.push_back(n + i);
+  mesh.close_face();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    mesh.add_face({i, j, n + j, n + i});
+  }
+  return mesh;
+}
+
+Outline regular(int sides) {
+  Outline outline;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    outline.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return outline;
+}
+
+const Outline kSquare = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+const Outline kBracket = {{0, 0}, {2, 0}, {2, 0.6}, {0.6, 0.6}, {0.6, 2}, {0, 2}};
+const Outline kWedge = {{0, 0}, {1, 0}, {1, 1}};
+
+/// A square plate with a square hole through it.
+Polygons plate_with_hole() {
+  Polygons mesh;
+  for (const double z : {0.0, 1.0})
+    for (const double half : {2.0, 1.0})
+      for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+        mesh.positions.emplace_back(half * x, half * y, z);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t j = (i + 1) % 4;
+    mesh.add_face({i, i + 4, j + 4, j});            // bottom
+    mesh.add_face({i + 8, j + 8, j + 12, i + 12});  // top
+    mesh.add_face({i, j, j + 8, i + 8});            // outside
+    mesh.add_face({i + 4, i + 12, j + 12, j + 4});  // inside
+  }
+  return mesh;
+}
+
+Polygons tetrahedron() {
+  Polygons mesh;
+  mesh.positions = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  mesh.add_face({0, 1, 2});
+  mesh.add_face({0, 3, 1});
+  mesh.add_face({0, 2, 3});
+  mesh.add_face({1, 3, 2});
+  return mesh;
+}
+
+double diagonal(const Polygons& mesh) {
+  Vec3d least(1e300), most(-1e300);
+  for (const Vec3d& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) {
+      least[k] = std::min(least[k], p[k]);
+      most[k] = std::max(most[k], p[k]);
+    }
+  return (most - least).length();
+}
+
+OffsetOptions mitred(Distances distance) {
+  OffsetOptions options;
+  options.distance = std::move(distance);
+  options.corners = Corners::Miter;
+  return options;
+}
+
+/// How far corners are from the planes of their faces in the source, less what is asked of them.
+double worst_off_planes(PolygonView source, const OffsetResult& result) {
+  double worst = 0;
+  for (std::size_t f = 0; f < source.face_count(); ++f) {
+    const auto face = source.face(f);
+    const Vec3d normal = newell_normal(source, f).unit();
+    for (const auto v : face)
+      worst =
+          std::max(worst, std::abs(normal.dot(result.positions[v] - source.positions[face[0]]) - result.distances[v]));
+  }
+  return worst;
+}
+
+std::size_t in_state(const OffsetResult& result, VertexState state) {
+  return result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
+}
+
+void require_valid(PolygonView source, const OffsetResult& result, const OffsetOptions& options) {
+  CheckOptions check;
+  check.distance = options.distance;
+  check.corners = options.corners;
+  check.miter_limit = options.miter_limit;
+  const CheckResult found = check_offset(source, result.positions, check);
+  CHECK(found.valid());
+  CHECK(found.states == result.states);
+  CHECK(result.statistics.limit.left.total() == 0);
+}
+
+}  // namespace
+
+TEST_CASE("miter: all faces of polyhedra are at the distance, on both sides", "[miter]") {
+  const std::vector<std::pair<const char*, Polygons>> kShapes = {
+      {"cube", prism(kSquare, 1)},          {"bracket", prism(kBracket, 0.5)},      {"wedge", prism(kWedge, 1)},
+      {"prism of 8", prism(regular(8), 1)}, {"prism of 40", prism(regular(40), 1)}, {"tetrahedron", tetrahedron()},
+      {"hole", plate_with_hole()}};
+  for (const auto& [name, mesh] : kShapes)
+    for (const double share : {0.01, 0.05, -0.01, -0.05}) {
+      CAPTURE(name, share);
+      const double distance = share * diagonal(mesh);
+      const OffsetOptions options = mitred(distance);
+      const OffsetResult result = offset(mesh.view(), options);
+      CHECK(worst_off_planes(mesh.view(), result) <= 1e-9 * std::abs(distance));
+      CHECK(in_state(result, VertexState::Mitred) + in_state(result, VertexState::Reached) == mesh.positions.size());
+      CHECK(result.statistics.faces.worst <= 1e-9);
+      CHECK(result.statistics.faces.at_distance == 1);
+      require_valid(mesh.view(), result, options);
+    }
+}
+
+TEST_CASE("miter: inward at convex edges, and outward at concave ones, it is what round corners are", "[miter]") {
+  const Polygons cube = prism(kSquare, 1), room = scene::room_corner(1, 3);
+  for (const auto& [mesh, distance] : {std::pair(&cube, -0.1), {&room, 0.1}}) {
+    OffsetOptions options = mitred(distance);
+    const OffsetResult miter = offset(mesh->view(), options);
+    options.corners = Corners::Round;
+    const OffsetResult round = offset(mesh->view(), options);
+    CHECK(miter.states == round.states);
+    for (std::size_t v = 0; v < round.positions.size(); ++v)
+      CHECK((miter.positions[v] - round.positions[v]).length() <= 1e-9 * std::abs(distance));
+  }
+}
+
+TEST_CASE("miter: what is smooth has the same bits as with round corners", "[miter]") {
+  for (const Polygons& mesh : {scene::bumpy_sphere(1, 0.1, 4, 3, 4), scene::torus(1, 0.3, 40, 20)})
+    for (const double distance : {0.05, -0.05}) {
+      OffsetOptions options = mitred(distance);
+      const OffsetResult miter = offset(mesh.view(), options);
+      options.corners = Corners::Round;
+      CHECK((miter.positions == offset(mesh.view(), options).positions));
+    }
+}
+
+TEST_CASE("miter: uneven distances hold on the faces at each vertex", "[miter]") {
+  const Polygons box = scene::box(Vec3d(1), 4, false);
+  std::vector<double> each;
+  for (const Vec3d& p : box.positions) each.push_back(0.05 + 0.02 * p[0]);
+  const OffsetResult result = offset(box.view(), mitred(Distances(each)));
+  CHECK(worst_off_planes(box.view(), result) <= 1e-9);
+  CHECK(in_state(result, VertexState::Mitred) == 44);  // three on each edge, and the corners
+}
+
+TEST_CASE("miter: sharper edges than the limit allows are cut there", "[miter]") {
+  const double angle = 10 * std::numbers::pi / 180;
+  const Polygons blade = prism({{0, 0}, {2, -2 * std::tan(angle / 2)}, {2, 2 * std::tan(angle / 2)}}, 1);
+  OffsetOptions options = mitred(0.05);
+  const OffsetResult cut = offset(blade.view(), options);
+  CHECK(cut.states[0] == VertexState::Cut);
+  CHECK((cut.positions[0] - blade.positions[0]).length() == Approx(4 * 0.05));
+  CHECK(in_state(cut, VertexState::Cut) == 2);
+  CHECK(in_state(cut, VertexState::Mitred) == 4);
+  require_valid(blade.view(), cut, options);
+  options.miter_limit = 20;
+  const OffsetResult whole = offset(blade.view(), options);
+  CHECK(whole.states[0] == VertexState::Mitred);
+  CHECK(worst_off_planes(blade.view(), whole) <= 1e-10);
+}
+
+TEST_CASE("miter: where something else is nearer, vertices go where round corners have them", "[miter]") {
+  // In a slot narrower than twice the distance the mitred rims would run into each other.
+  const Outline kSlotted = {{0, 0}, {3, 0}, {3, 1}, {1.6, 1}, {1.6, 0.5}, {1.4, 0.5}, {1.4, 1}, {0, 1}};
+  const Polygons slotted = prism(kSlotted, 1);
+  const OffsetOptions options = mitred(0.15);
+  const OffsetResult result = offset(slotted.view(), options);
+  CHECK(result.statistics.miters.on_creases == 16);
+  CHECK(result.statistics.miters.unproven + result.statistics.miters.taken_back >= 8);
+  CHECK(in_state(result, VertexState::Mitred) >= 4);
+  require_valid(slotted.view(), result, options);
+  // An obstacle within the miter's reach, and not within the distance.
+  const Polygons cube = prism(kSquare, 1);
+  Polygons wall = scene::box(Vec3d(4, 4, 0.1), 1, false);
+  for (Vec3d& p : wall.positions) p += Vec3d(0, 0, 1.2);
+  OffsetOptions beside = mitred(0.1);
+  beside.obstacles = wall.view();
+  beside.clearance = 0.06;
+  const OffsetResult kept_off = offset(cube.view(), beside);
+  CHECK(kept_off.statistics.obstacles->gap >= 0.06 * (1 - 1e-6));
+}
+
+TEST_CASE("miter: of five planes that have no common point all are as far or farther, and the excess is told",
+          "[miter]") {
+  // A roof's tip over an irregular pentagon.
+  Polygons roof;
+  roof.positions = {{1, 0, 0}, {0.4, 0.9, 0}, {-0.9, 0.5, 0}, {-0.8, -0.7, 0}, {0.3, -1, 0}, {0.1, 0.05, 0.8}};
+  roof.corners = {4, 3, 2, 1, 0};
+  roof.close_face();
+  for (std::uint32_t i = 0; i < 5; ++i) roof.add_face({i, (i + 1) % 5, 5});
+  const OffsetOptions options = mitred(0.05);
+  const OffsetResult result = offset(roof.view(), options);
+  CHECK(result.states[5] == VertexState::Mitred);
+  CHECK(result.statistics.miters.excess > 0.001);
+  CHECK(result.statistics.miters.excess < 0.5);
+  double least = 1, most = 0;
+  for (std::size_t f = 1; f < 6; ++f) {
+    const Vec3d normal = newell_normal(roof.view(), f).unit();
+    const double moved = normal.dot(result.positions[5] - roof.positions[5]);
+    least = std::min(least, moved);
+    most = std::max(most, moved);
+  }
+  CHECK(least == Approx(0.05).epsilon(1e-9));
+  CHECK(most == Approx(0.05 * (1 + result.statistics.miters.excess)).epsilon(1e-9));
+  require_valid(roof.view(), result, options);
+}
+
+TEST_CASE("miter: two boxes that share an edge stay apart there", "[miter]") {
+  const Polygons one = prism(kSquare, 1);
+  Polygons two = one;
+  const auto count = static_cast<std::uint32_t>(one.positions.size());
+  for (const Vec3d& p : one.positions) two.positions.push_back(p + Vec3d(1, 1, 0));
+  for (std::size_t f = 0; f < one.face_count(); ++f) {
+    for (const auto v : one.view().face(f)) two.corners.push_back(v + count);
+    two.close_face();
+  }
+  const OffsetOptions options = mitred(0.05);
+  const OffsetResult result = offset(two.view(), options);
+  CHECK(in_state(result, VertexState::Mitred) >= 8);
+  CHECK(result.statistics.limit.left.total() == 0);
+}
+
+TEST_CASE("miter: faces at the corners of curves, and a kerf of the right width", "[miter][curves]") {
+  for (const Outline& outline : {kSquare, kBracket, kWedge, regular(8), regular(40)})
+    for (const double distance : {0.02, 0.1, -0.02, -0.1}) {
+      CAPTURE(outline.size(), distance);
+      Curves curve;
+      for (const auto& [x, y] : outline) curve.positions.emplace_back(x, y, 0);
+      for (std::uint32_t i = 0; i <= outline.size(); ++i)
+        curve.corners.push_back(i % static_cast<std::uint32_t>(outline.size()));
+      curve.close_face();
+      const std::vector<Distances> distances{Distances(distance)};
+      const OffsetOptions options = mitred(distance);
+      const OffsetResult result = offset_curves(curve.view(), distances, options).front();
+      double worst = 0;
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const std::size_t j = (i + 1) % outline.size();
+        const Vec3d along = (curve.positions[j] - curve.positions[i]).unit(), outward(along[1], -along[0], 0);
+        for (const std::size_t v : {i, j})
+          worst = std::max(worst, std::abs(outward.dot(result.positions[v] - curve.positions[i]) - distance));
+      }
+      CHECK(worst <= 1e-9 * std::abs(distance));
+      CHECK(result.statistics.faces.worst <= 1e-9);
+      CheckOptions check;
+      check.distance = distance;
+      check.corners = Corners::Miter;
+      const CheckResult found = check_curves(curve.view(), result.positions, check);
+      CHECK(found.valid());
+      CHECK(found.states == result.states);
+    }
+}
+
+TEST_CASE("miter: each layer has its height on the faces, up to the edges", "[miter][layers]") {
+  const Polygons box = scene::box(Vec3d(1, 1, 0.4), 3, false);
+  std::vector<Distances> heights;
+  for (const double h : {0.01, 0.03, 0.07}) heights.emplace_back(h);
+  OffsetOptions options;
+  options.corners = Corners::Miter;
+  const LayersResult layers = grow_layers(box.view(), heights, options);
+  double worst = 0;
+  for (std::size_t f = 0; f < box.face_count(); ++f) {
+    const Vec3d normal = newell_normal(box.view(), f).unit();
+    for (const auto v : box.view().face(f))
+      for (std::size_t k = 0; k < heights.size(); ++k)
+        worst =
+            std::max(worst, std::abs(normal.dot(layers.stacks.of(v)[k + 1] - box.positions[v]) / heights[k][v] - 1));
+  }
+  CHECK(worst <= 1e-9);
+  for (std::size_t v = 0; v < box.positions.size(); ++v) {
+    CHECK(layers.share[v] == 1);
+    CHECK(layers.first_achieved[v] == Approx(0.01).epsilon(1e-6));
+    CHECK(layers.achieved[v] == Approx(0.07).epsilon(1e-6));
+  }
+}
