@@ -16,16 +16,16 @@
 namespace vdb_offset {
 namespace {
 
-using Corners = std::span<const std::uint32_t>;
+using FaceCorners = std::span<const std::uint32_t>;
 
 /// A hash of a face's corners that does not depend on their order.
-std::uint32_t hash(Corners face) {
+std::uint32_t hash(FaceCorners face) {
   std::uint64_t sum = face.size();
   for (const auto v : face) sum += mix(v + 1);
   return static_cast<std::uint32_t>(mix(sum));
 }
 
-bool same_cycle(Corners a, Corners b) {
+bool same_cycle(FaceCorners a, FaceCorners b) {
   const std::size_t n = a.size();
   if (b.size() != n) return false;
   for (std::size_t start = 0; start < n; ++start) {
@@ -46,7 +46,7 @@ struct HashedFace {
   bool operator<(const HashedFace& o) const { return std::tie(hash, face) < std::tie(o.hash, o.face); }
 };
 
-std::uint32_t greatest(Corners corners) {
+std::uint32_t greatest(FaceCorners corners) {
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, corners.size()), std::uint32_t{0},
       [&](const auto& range, std::uint32_t most) {

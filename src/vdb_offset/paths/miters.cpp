@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMitersTogether = 64;
 // The largest sine of the angle between normals of faces on one plane. Reasoned: far above the rounding of coordinates
 // with seven digits, far below all bends that are meant.
-constexpr double kOnePlane = 1e-4;
+constexpr double kOnePlaneSine = 1e-4;
 // How far from a vertex, in distances, what is nearer to the end of its miter still belongs to its corner: edges broken
 // by less are details of it. Not measured.
 constexpr double kDetail = 0.1;
@@ -49,7 +49,7 @@ std::vector<Vec3d> planes_around(const Shape& shape, std::uint32_t vertex) {
   for (const auto& [area, t] : faces) {
     const Vec3d& normal = shape.triangle_normals[t];
     if (std::none_of(planes.begin(), planes.end(),
-                     [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < kOnePlane * kOnePlane; }))
+                     [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine; }))
       planes.push_back(normal);
   }
   return planes;
@@ -71,8 +71,8 @@ bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
   const auto around = shape.triangles_around(vertex);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
     const Vec3d& own = shape.triangle_normals[t];
-    return own.lengthSqr() > 0 && (own - normal).lengthSqr() < kOnePlane * kOnePlane &&
-           std::abs(own.dot(away)) <= kOnePlane * away.length();
+    return own.lengthSqr() > 0 && (own - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine &&
+           std::abs(own.dot(away)) <= kOnePlaneSine * away.length();
   });
 }
 

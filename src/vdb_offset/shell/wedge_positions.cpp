@@ -24,7 +24,7 @@ constexpr double kRoom = 6;
 constexpr double kOnPlanes = 3;
 // The largest sine of the angle between the normals of two faces across an edge that are on one plane. Far above the
 // rounding of single precision, far below all bends that are meant. Not measured.
-constexpr double kSamePlane = 1e-4;
+constexpr double kOneSheetPlane = 1e-4;
 // The share of the sum of squared normals that an axis must have for the planes to say where a corner is along it:
 // normals that are 7 degrees apart have less. Not measured.
 constexpr double kFlatCorner = 0.004;
@@ -151,7 +151,7 @@ class WedgePositionFinder {
     visit_edges(mesh_, sheets_.welded_to, [&](auto, std::span<const EdgeSide> sides) {
       if (sides.size() != 2) return;
       const std::uint32_t a = face_of(sides[0].corner), b = face_of(sides[1].corner);
-      if (!(unit_normal(a).cross(unit_normal(b)).length() < kSamePlane)) return;
+      if (!(unit_normal(a).cross(unit_normal(b)).length() < kOneSheetPlane)) return;
       others[a].push_back(b);
       others[b].push_back(a);
     });

@@ -67,7 +67,7 @@ struct TestedPair {
 // Share of the product of lengths by which rounding may change a dot product. Reasoned: differences of coordinates are
 // exact to 2^-53 of themselves; a dot product of three with a cross product, or with a sum of such differences, is off
 // by far less than this.
-constexpr double kRounding = 1e-14;
+constexpr double kCrossingRounding = 1e-14;
 
 /// A number that is no less than a vector's length, and found faster.
 double no_shorter(const Vec3d& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
@@ -78,7 +78,7 @@ class Plane {
   explicit Plane(const std::array<Vec3d, 3>& triangle) : point_(triangle[0]) {
     const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
     normal_ = ab.cross(ac);
-    size_ = kRounding * no_shorter(ab) * no_shorter(ac);
+    size_ = kCrossingRounding * no_shorter(ab) * no_shorter(ac);
   }
 
   /// 1 for a point that is clearly above the plane, -1 for one that is clearly below, 0 for all others.
@@ -133,7 +133,7 @@ bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b
     if (!(length > 0)) return false;
     w += edge[i] * ((i < 2 ? 1 : -1) / length);
   }
-  const double margin = kRounding * w.length();
+  const double margin = kCrossingRounding * w.length();
   for (std::size_t i = 0; i < 4; ++i)
     if (!((i < 2 ? 1 : -1) * w.dot(edge[i]) > margin * edge[i].length())) return false;
   return true;

@@ -16,7 +16,7 @@ namespace vdb_offset {
 namespace {
 
 // Vertices that are measured together, as the exact query answers neighbours together. Not measured.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kVerticesTogether = 64;
 
 // Share of the largest distance: a position that is nearer to the moving part says nothing about sides. Reasoned: its
 // direction away is mostly rounding.
@@ -25,9 +25,10 @@ constexpr double kNear = 1e-3;
 /// Calls work(some) for runs of vertices, in parallel.
 template <class Work>
 void for_each_block(std::span<const std::uint32_t> vertices, Work&& work) {
-  for_each_index((vertices.size() + kBlock - 1) / kBlock,
+  for_each_index((vertices.size() + kVerticesTogether - 1) / kVerticesTogether,
                  [&](std::size_t block) {
-                   work(vertices.subspan(block * kBlock, std::min(kBlock, vertices.size() - block * kBlock)));
+                   work(vertices.subspan(block * kVerticesTogether,
+                                         std::min(kVerticesTogether, vertices.size() - block * kVerticesTogether)));
                  },
                  1);
 }

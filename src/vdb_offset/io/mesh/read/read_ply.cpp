@@ -19,7 +19,7 @@ namespace ply {
 namespace {
 
 // Bytes of the shortest line of a vertex, "0 0 0" and a line end.
-constexpr std::size_t kLeastVertexLine = 6;
+constexpr std::size_t kLeastPlyVertexLine = 6;
 
 class PlyParser {
  public:
@@ -125,7 +125,7 @@ class PlyParser {
     for (const Property& p : element.properties)
       if (p.count) return false;
     const LineRecords lines(file_.text(), body_.position(), element.count);
-    if (!lines.complete() || element.count > file_.text().size() / kLeastVertexLine) return false;
+    if (!lines.complete() || element.count > file_.text().size() / kLeastPlyVertexLine) return false;
     std::vector<NumberTriple> at[2];
     require_memory(element.count * (sizeof(Vec3d) + sizeof(NumberTriple) * (layout.normals ? 2 : 1)), file_.path);
     at[0].resize(element.count);
