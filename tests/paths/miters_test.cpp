@@ -304,3 +304,29 @@ TEST_CASE("miter: each layer has its height on the faces, up to the edges", "[mi
     CHECK(layers.achieved[v] == Approx(0.07).epsilon(1e-6));
   }
 }
+
+TEST_CASE("miter: the edge of a part meets the planes of the faces that stay", "[miter][parts]") {
+  // A cut pyramid, of which the lid, or the lid and a flank, are moved.
+  Polygons mesh;
+  for (const auto& [width, z] : {std::pair(1.0, 0.0), {0.6, 1.0}})
+    for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+      mesh.positions.emplace_back(width * x, width * y, z);
+  mesh.add_face({3, 2, 1, 0});
+  mesh.add_face({4, 5, 6, 7});
+  for (std::uint32_t i = 0; i < 4; ++i) mesh.add_face({i, (i + 1) % 4, (i + 1) % 4 + 4, i + 4});
+  for (const std::vector<std::uint8_t>& only : {std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0}, {0, 1, 1, 0, 0, 0}})
+    for (const double distance : {0.05, -0.05}) {
+      CAPTURE(only[2], distance);
+      OffsetOptions options = mitred(distance);
+      options.only = only;
+      const OffsetResult result = offset(mesh.view(), options);
+      double worst = 0;
+      for (std::size_t f = 0; f < only.size(); ++f) {
+        const Vec3d normal = newell_normal(mesh.view(), f).unit();
+        for (const auto v : mesh.view().face(f))
+          worst = std::max(worst, std::abs(normal.dot(result.positions[v] - mesh.positions[v]) - only[f] * distance));
+      }
+      CHECK(worst <= 1e-9);
+      CHECK(result.statistics.limit.left.total() == 0);
+    }
+}

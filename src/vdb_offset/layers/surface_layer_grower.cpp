@@ -118,7 +118,8 @@ class SurfaceWall final : public LayerWall {
     std::vector<double> distances;
     for (const auto v : vertices) {
       stacks_.flatten(v);
-      if (!(stacks_.share(v) > 0) || (slides_ && constrained_.is_bound(v) && put_along_border(v))) continue;
+      const bool slides = slides_ && constrained_.is_bound(v) && !asked_.is_mitred(v);
+      if (!(stacks_.share(v) > 0) || (slides && put_along_border(v))) continue;
       const double top = stacks_.top_of(v), radius = put_on_fan(v, top, fan, distances);
       if (radius < kInfinity) by_fan.add(v, top, {source_[v] - moving_part_.origin, radius});
       else by_ball.add(v, top, ball_of_rail(v, top));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
@@ -55,6 +56,17 @@ std::vector<Vec3d> planes_around(const Shape& shape, std::uint32_t vertex) {
   return planes;
 }
 
+/// Normals less their parts along those of walls, which are in the way.
+void keep_to_walls(std::span<const Vec3d> walls, std::vector<Vec3d>& normals) {
+  const Vec3d first = walls[0];
+  std::optional<Vec3d> second;
+  if (walls.size() > 1) second = (walls[1] - first * first.dot(walls[1])).unit();
+  for (Vec3d& n : normals) {
+    n -= first * first.dot(n);
+    if (second) n -= *second * second->dot(n);
+  }
+}
+
 /// Distance of a point from the faces around a vertex alone.
 template <class Shape>
 double distance_from_fan(const Shape& shape, std::uint32_t vertex, const Vec3d& x) {
@@ -79,11 +91,13 @@ bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
 }  // namespace
 
 template <class Query>
-MiterFinder<Query>::MiterFinder(const Query& query, double longest, const Obstacles* obstacles)
+MiterFinder<Query>::MiterFinder(const Query& query, double longest, const Obstacles* obstacles,
+                                std::span<const MiterWalls> walls)
     : query_(query), obstacles_(obstacles) {
   VDB_OFFSET_ASSERT(longest >= 1);
   const auto& shape = query.surface();
-  const std::vector<std::uint8_t> on_crease = vertices_on_creases(shape);
+  std::vector<std::uint8_t> on_crease = vertices_on_creases(shape);
+  for (const MiterWalls& each : walls) on_crease[each.vertex] = 1;
   for (std::uint32_t v = 0; v < on_crease.size(); ++v)
     if (on_crease[v]) miters_.push_back({v, Vec3d(0.0), 0, false});
   for_each_index(
@@ -91,7 +105,12 @@ MiterFinder<Query>::MiterFinder(const Query& query, double longest, const Obstac
       [&](std::size_t i) {
         UnitMiter& miter = miters_[i];
         std::vector<Vec3d> planes = planes_around(shape, miter.vertex);
-        for (Vec3d& plane : planes) plane = shape.along_border(miter.vertex, plane);
+        const auto own_walls =
+            std::lower_bound(walls.begin(), walls.end(), miter.vertex,
+                             [](const MiterWalls& each, std::uint32_t vertex) { return each.vertex < vertex; });
+        if (own_walls != walls.end() && own_walls->vertex == miter.vertex) keep_to_walls(own_walls->normals, planes);
+        else
+          for (Vec3d& plane : planes) plane = shape.along_border(miter.vertex, plane);
         const auto point = miter_point(planes);
         if (!point || point->excess > kMostExcess) return;
         const double length = point->position.length();

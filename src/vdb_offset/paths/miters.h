@@ -27,23 +27,31 @@ struct Miter {
   double excess;          ///< By how much more than its distance a plane is moved, as a share of the distance.
 };
 
+/// Planes through a vertex at the edge of what is offset that its miter has to lie in, whether or not the vertex is on
+/// a crease: those of the faces beside it that stay.
+struct MiterWalls {
+  std::uint32_t vertex;
+  std::vector<Vec3d> normals;  ///< One or two, of unit length.
+};
+
 /// The miter of a vertex among some that are sorted by vertex; nullptr if it has none.
 const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 
 /// Finds the miters of the vertices on creases, of a Surface and of a Polyline alike.
 ///
 /// Distinct planes around a vertex move along their normals by its distance; its miter is the smallest displacement to
-/// a point on all of them, or beyond (see miter_point()); at a border, of those that keep to it. A miter is proven by
-/// one exact distance: the surface is no nearer to its end than the distance, and what is nearest there is one of the
-/// faces around the vertex, goes on in the plane of one, or is a detail of the corner. Vertices whose miter is not
-/// proven have none, nor have those on edges of more than two faces.
+/// a point on all of them, or beyond (see miter_point()); at a border, of those that keep to it, or to walls. A miter
+/// is proven by one exact distance: the surface is no nearer to its end than the distance, and what is nearest there is
+/// one of the faces around the vertex, goes on in the plane of one, or is a detail of the corner. Vertices whose miter
+/// is not proven have none, nor have those on edges of more than two faces.
 template <class Query>
 class MiterFinder {
  public:
   /// Finds creases, and the miters for a distance of 1. Keeps references.
   /// \param longest a miter may be so many distances long, at least 1
   /// \param obstacles to keep off; nullptr without any
-  MiterFinder(const Query& query, double longest, const Obstacles* obstacles);
+  /// \param walls of some vertices, sorted by vertex
+  MiterFinder(const Query& query, double longest, const Obstacles* obstacles, std::span<const MiterWalls> walls = {});
 
   /// The miters that are proven for some distances of the surface's vertices, sorted by vertex. `facts` receives how
   /// many were tried and why others were not kept. The result does not depend on the number of threads.

@@ -114,7 +114,9 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
       propagate(*query_, directions, on_part, obstacles(), options_.progress, march_options(options_, ridges));
   VDB_OFFSET_ASSERT(of_part.size() == distances.size());
   std::optional<MiterFinder<ClosestQuery>> miters;
-  if (options_.corners == Corners::Miter) miters.emplace(*query_, options_.miter_limit, obstacles());
+  const std::vector<MiterWalls> walls =
+      options_.corners == Corners::Miter ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
+  if (options_.corners == Corners::Miter) miters.emplace(*query_, options_.miter_limit, obstacles(), walls);
   std::vector<Marched> marched;
   for (std::size_t i = 0; i < of_part.size(); ++i) {
     if (slides_) slide_borders(parts_, *slides_, *query_, on_part[i], of_part[i]);
@@ -125,7 +127,12 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
     end_traces(each.paths);
     if (miters) {
       std::vector<Miter> of_all = miters_of_all(parts_, (*miters)(on_part[i], each.miters));
-      std::erase_if(of_all, [&](const Miter& miter) { return !each.bound.empty() && each.bound[miter.vertex]; });
+      // What is bound to its path stays there, but for the edge of a part where that slides.
+      std::erase_if(of_all, [&](const Miter& miter) {
+        const std::uint32_t v = miter.vertex;
+        const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
+        return !each.bound.empty() && each.bound[v] && !slides;
+      });
       each.mitred = MitredPaths(of_all, each.paths);
     }
   }
