@@ -73,7 +73,7 @@ struct BorderFacts {
 
 /// How far faces are off their distance, at points evenly spread over their area in the offset: the difference to the
 /// distance asked for there, relative to that. The vertices alone are put at the distance: beside a sharp corner, or
-/// between the vertices of a coarse mesh, flat faces are nearer. Of curves: at the middles of segments.
+/// between the vertices of a coarse mesh, flat faces are nearer. Of curves: along segments, by length.
 struct FaceError {
   std::size_t samples = 0;  ///< Points that were measured: 40,000, or fewer on a mesh of few triangles.
   double mean = 0, quantile_99 = 0, worst = 0;
@@ -83,15 +83,15 @@ struct FaceError {
   double held_back = 0, corners = 0, coarse = 0;
 };
 
-/// What became of the vertices on creases that move, with Corners::Miter.
+/// What became of the vertices on creases that move, with Corners::Miter. Vertices that are welded count once.
 struct MiterFacts {
   std::size_t on_creases = 0;
   std::size_t mitred = 0, cut = 0;  ///< Vertices in these states.
   std::size_t unproven = 0;    ///< No point is on all planes or little beyond, or something else is nearer to it, or
                                ///< an obstacle is in the way.
   std::size_t taken_back = 0;  ///< Their faces would have been faulty.
-  double excess = 0;           ///< The most by which a plane goes farther than the distance, as a share of it:
-                               ///< where more planes meet than one point can be on.
+  double excess = 0;  ///< Of miters that were tried, the most by which a plane goes farther than the distance, as a
+                      ///< share of it: where more planes meet than one point can be on.
 };
 
 /// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/paths/miters.h"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -329,4 +330,59 @@ TEST_CASE("miter: the edge of a part meets the planes of the faces that stay", "
       CHECK(worst <= 1e-9);
       CHECK(result.statistics.limit.left.total() == 0);
     }
+}
+
+TEST_CASE("miter: three planes are met at any angle, and those of a slanted prism at every corner", "[miter]") {
+  Polygons slanted = prism(regular(40), 2);
+  for (Vec3d& p : slanted.positions)
+    if (p[2] > 1) p[2] += 1.2 * p[0];
+  for (const double distance : {0.05, -0.05}) {
+    const OffsetResult result = offset(slanted.view(), mitred(distance));
+    CHECK(worst_off_planes(slanted.view(), result) <= 1e-9 * std::abs(distance));
+    CHECK(result.statistics.miters.excess < 1e-9);
+  }
+}
+
+TEST_CASE("miter: a limit of 1 cuts all of them, and says so", "[miter]") {
+  const Polygons cube = prism(kSquare, 1);
+  OffsetOptions options = mitred(0.1);
+  options.miter_limit = 1;
+  const OffsetResult result = offset(cube.view(), options);
+  CHECK(in_state(result, VertexState::Cut) == 8);
+  CHECK(result.statistics.miters.cut == 8);
+  CHECK(result.statistics.faces.corners == Approx(1));
+}
+
+TEST_CASE("miter: what has no room costs no distance that round corners have", "[miter]") {
+  const Polygons gear = scene::gear(12, 0.8, 1, 0.3, 0.3, 4);
+  for (const double distance : {0.1, 0.2}) {
+    OffsetOptions options = mitred(distance);
+    const OffsetResult miter = offset(gear.view(), options);
+    require_valid(gear.view(), miter, options);
+    options.corners = Corners::Round;
+    const OffsetResult round = offset(gear.view(), options);
+    const auto count_short = [](const OffsetResult& result) {
+      return std::count_if(result.states.begin(), result.states.end(), [](auto state) { return falls_short(state); });
+    };
+    CHECK(count_short(miter) <= count_short(round));
+  }
+}
+
+TEST_CASE("miter: corners that face each other across a gap are alike", "[miter]") {
+  const Polygons one = prism(kSquare, 1);
+  Polygons two = one;
+  const auto count = static_cast<std::uint32_t>(one.positions.size());
+  for (const Vec3d& p : one.positions) two.positions.push_back(p + Vec3d(1.15, 0, 0));
+  for (std::size_t f = 0; f < one.face_count(); ++f) {
+    for (const auto v : one.view().face(f)) two.corners.push_back(v + count);
+    two.close_face();
+  }
+  const OffsetOptions options = mitred(0.1);
+  const OffsetResult result = offset(two.view(), options);
+  require_valid(two.view(), result, options);
+  // Each box's far corners are mitred; of those across the gap none is, as the other box is nearer than their own.
+  for (std::uint32_t v = 0; v < 2 * count; ++v) {
+    const bool faces_gap = v < count ? two.positions[v][0] == 1 : two.positions[v][0] < 1.5;
+    CHECK((result.states[v] == VertexState::Mitred) == !faces_gap);
+  }
 }

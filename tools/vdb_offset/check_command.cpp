@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -178,8 +179,12 @@ void require_same_points(const Request& made, const Curves& source, const Curves
 void print(std::FILE* out, const CheckResult& result, bool curves) {
   const AchievedSummary achieved = summarise(result.states, result.achieved, result.distances);
   const char* const vertices = curves ? "points" : "vertices";
-  fmt::print(out, "distance    {:.9g}: {:.3f} % of {} {} there, {} beyond, {} on the wrong side\n", result.distance,
-             100 * achieved.share_reached, achieved.vertices, vertices, result.beyond, result.wrong_side);
+  const auto in = [&](VertexState state) { return std::count(result.states.begin(), result.states.end(), state); };
+  const auto mitred = in(VertexState::Mitred), cut = in(VertexState::Cut);
+  fmt::print(out, "distance    {:.9g}: {:.3f} % of {} {} there{}{}, {} beyond, {} on the wrong side\n", result.distance,
+             100 * achieved.share_reached, achieved.vertices, vertices,
+             mitred > 0 ? fmt::format(", {} of them mitred", mitred) : "",
+             cut > 0 ? fmt::format(", {} with a miter that is cut", cut) : "", result.beyond, result.wrong_side);
   fmt::print(out, "achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
              achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,
              achieved.most);
@@ -187,7 +192,7 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
              "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 points, {:.3g} % at most; {:.3g} % of the {} within "
              "1 %\n",
              curves ? "along       " : "in faces    ", 100 * result.faces.mean, 100 * result.faces.quantile_99,
-             100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "segments" : "area");
+             100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "length" : "area");
   fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
              result.faults.collapsed,
              result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
@@ -278,7 +283,7 @@ int run_check(int argc, const char* const* argv) {
   if (request->json) fmt::print(out, "{}", json);
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
-  if (made.strict_faces && !are_within(result.faces, *made.strict_faces, "--strict-faces")) return kProcessing;
+  if (made.strict_faces && !are_within(result.faces, *made.strict_faces, made.output)) return kProcessing;
   return result.valid() && (all_there || !made.strict) ? kDone : kProcessing;
 }
 

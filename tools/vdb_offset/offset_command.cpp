@@ -87,10 +87,10 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
     for (std::string& expectation : scene::unmet(job.expect, *shell)) failed.push_back(std::move(expectation));
   for (const std::string& expectation : failed) tell(fmt::format("{}: {}", job.request.input, expectation));
   if (!failed.empty() || tell_faults(job, results)) return kProcessing;
-  const auto& bound = job.request.strict_faces;
-  const bool faces_there = std::all_of(results.begin(), results.end(), [&](const OffsetResult& result) {
-    return !bound || are_within(result.statistics.faces, *bound, "--strict-faces");
-  });
+  bool faces_there = true;
+  for (std::size_t i = 0; i < results.size() && job.request.strict_faces; ++i)
+    faces_there &= are_within(results[i].statistics.faces, *job.request.strict_faces,
+                              i < job.outputs.size() ? job.outputs[i].mesh : "--inner");
   if (!faces_there) return kProcessing;
   if (!job.request.strict) return kDone;
   const bool all = std::all_of(results.begin(), results.end(),

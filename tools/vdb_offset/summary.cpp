@@ -264,7 +264,7 @@ void print_face_causes(std::FILE* out, const Job& job, const FaceError& faces) {
   if (most == faces.coarse) return tell(most, job.curves() ? "because they are long" : "because they are coarse");
   if (job.options.corners == Corners::Round)
     return tell(most, fmt::format("beside sharp corners: --corners miter puts {} at the distance", what));
-  tell(most, "beside sharp corners whose miter is too long, or has no room");
+  tell(most, "beside sharp corners that are not mitred, as there is no room, or that are cut");
 }
 
 void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {
@@ -314,6 +314,17 @@ void print_iso_plan(std::FILE* out, const IsoStatistics& statistics, double dist
              static_cast<double>(plan.bytes) / 1048576.0);
 }
 
+/// In layers, what became of corners.
+void print_layers_corners(std::FILE* out, const Job& job, const MiterFacts& miters) {
+  if (job.options.corners == Corners::Round || miters.on_creases == 0) return;
+  const std::size_t round = miters.unproven + miters.taken_back;
+  fmt::print(out, "corners: {} mitred", miters.mitred);
+  if (miters.cut > 0) fmt::print(out, ", {} cut at the limit", miters.cut);
+  if (round > 0) fmt::print(out, ", {} left round", round);
+  fmt::print(out, "{}\n",
+             miters.cut + round > 0 ? ": beside those that are not mitred layers are thinner on the faces" : "");
+}
+
 }  // namespace
 
 void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Distances& farthest) {
@@ -349,10 +360,10 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
   print_doubts(out, job, result.statistics, result.distances);
 }
 
-bool are_within(const FaceError& faces, double bound, const char* option) {
+bool are_within(const FaceError& faces, double bound, const std::string& offset) {
   if (100 * faces.quantile_99 <= bound) return true;
-  tell(fmt::format("{}: 99 % of the area are within {} % of the distance, expected {:g} %", option,
-                   percent(faces.quantile_99), bound));
+  tell(fmt::format("--strict-faces: {}: 99 % of it is within {:.3g} % of the distance, expected {:g} %", offset,
+                   100 * faces.quantile_99, bound));
   return false;
 }
 
@@ -407,6 +418,7 @@ void print_layers_summary(const Job& job, const LayersResult& result, const Laye
   if (job.request.verbose) print_details(out, result.statistics, result.heights.back(), job.curves());
   fmt::print(out, "{}: {}", job.request.output, summary(report));
   fmt::print(out, "{:.2f} s\n", total_seconds);
+  print_layers_corners(out, job, result.statistics.miters);
   print_disagreeing(out, job, result.statistics);
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
   print_doubts(out, job, result.statistics, result.heights.back());

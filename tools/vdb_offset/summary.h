@@ -21,8 +21,8 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
 void print_summary(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
                    double total_seconds);
 
-/// Whether 99 % of the faces' area are within a bound, in percent of the distance. Says so if not.
-bool are_within(const FaceError& faces, double percent, const char* option);
+/// Whether 99 % of the faces of an offset, by area, are within a bound, in percent of the distance. Says so if not.
+bool are_within(const FaceError& faces, double percent, const std::string& offset);
 
 /// What --dry-run prints with --mode iso.
 void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance);

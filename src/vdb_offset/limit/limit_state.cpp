@@ -22,6 +22,7 @@ LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, c
       source(offset.source),
       distances(offset.distances),
       paths(offset.paths),
+      mitred(offset.mitred),
       faults(fault_finder),
       started_from(warm),
       whole(offset.paths.displacement),
@@ -64,7 +65,7 @@ Indices LimitState::with_rings(const Indices& vertices, int rings) {
 
 bool LimitState::may_slide(std::uint32_t v) const {
   const VertexState state = paths.state[v];
-  const bool at_end = state == VertexState::Reached || (state == VertexState::Collision && has_sides(v));
+  const bool at_end = !falls_short(state) || (state == VertexState::Collision && has_sides(v));
   return at_end && distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
 }
 

@@ -26,7 +26,8 @@ struct LimitState {
   const Surface& surface;
   std::span<const Vec3d> source;
   const Distances& distances;
-  Paths& paths;  ///< Keeps states and displacements of the beginning; the result is written by limit().
+  Paths& paths;         ///< Keeps states and displacements of the beginning; the result is written by limit().
+  MitredPaths* mitred;  ///< Null if no vertex is mitred.
   FaultFinder& faults;
   const WarmStart* started_from;  ///< Null without one.
 

@@ -53,7 +53,10 @@ bool pull_back(LimitState& state) {
   const Indices vertices = vertices_to_pull(state);
   if (vertices.empty()) return false;
   const Indices caught = state.faults.caught();
+  const Indices unmitred = state.mitred ? state.mitred->take_back(vertices, state.paths) : Indices();
+  for (const auto v : unmitred) state.whole[v] = state.paths.displacement[v];
   for (const auto v : vertices) {
+    if (std::binary_search(unmitred.begin(), unmitred.end(), v)) continue;
     state.share[v] *= kKept;
     if (state.share[v] < kLastShare) state.share[v] = 0;
     state.pulled.push_back(v);

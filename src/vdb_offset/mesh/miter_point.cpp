@@ -16,11 +16,12 @@ constexpr double kHullRounding = 1e-14;
 // Share by which planes that touch one cone may be off it. Reasoned: far above rounding, far below the 1e-9 that is
 // promised of faces.
 constexpr double kConcurrent = 1e-11;
-// Least share of the normals' squares along each axis with which all planes say where they meet: of two planes 15
-// degrees apart, and a third one across. Not measured.
-constexpr double kWellPlaced = 0.011;
+// Least share of the normals' squares along each axis with which all planes say where they meet: of two planes 4
+// degrees apart, and a third one across; below, what they say is mostly how finely a curved flank is divided. Not
+// measured.
+constexpr double kWellPlaced = 1e-3;
 // How many times as far as the smallest x the point may be in which all planes meet. Not measured.
-constexpr double kMuchFarther = 2;
+constexpr double kMuchFarther = 4;
 
 /// The point nearest to the origin of a convex hull in space, by Wolfe's method: up to three corners that it lies
 /// between, and another one in exchange for as long as one is nearer.

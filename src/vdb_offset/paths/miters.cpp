@@ -76,9 +76,13 @@ double distance_from_fan(const Shape& shape, std::uint32_t vertex, const Vec3d& 
   return std::sqrt(squared);
 }
 
-/// Whether a triangle goes on in the plane of one of those around a vertex.
+std::uint32_t corner_of(const Surface& surface, std::uint32_t triangle) { return surface.triangles[triangle][0]; }
+std::uint32_t corner_of(const Polyline& line, std::uint32_t segment) { return line.segments[segment][0]; }
+
+/// Whether a triangle of the vertex's component goes on in the plane of one of those around the vertex.
 template <class Shape>
 bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
+  if (shape.component[corner_of(shape, closest.triangle)] != shape.component[vertex]) return false;
   const Vec3d &normal = shape.triangle_normals[closest.triangle], away = closest.point - shape.vertices[vertex];
   const auto around = shape.triangles_around(vertex);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
@@ -154,7 +158,8 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances&
     const double distance = distances[some[i].vertex];
     miters[i].distance = closest[i].distance;
     miters[i].closest = closest[i].triangle;
-    if (std::abs(miters[i].distance - std::abs(distance)) <= kReachedTolerance * std::abs(distance))
+    if (miters[i].state != VertexState::Cut &&
+        std::abs(miters[i].distance - std::abs(distance)) <= kReachedTolerance * std::abs(distance))
       miters[i].state = VertexState::Reached;
     proven[i] = miters[i].displacement != Vec3d(0.0) && is_proven(miters[i], ends[i], closest[i], distance);
   }
@@ -178,7 +183,10 @@ std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::pro
 template <class Query>
 std::vector<Miter> MiterFinder<Query>::all(const Distances& distances) const {
   std::vector<Miter> miters = prove(distances).first;
-  std::erase_if(miters, [](const Miter& miter) { return miter.displacement == Vec3d(0.0); });
+  std::erase_if(miters, [&](const Miter& miter) {
+    return miter.displacement == Vec3d(0.0) ||
+           miter.distance < std::abs(distances[miter.vertex]) * (1 - kReachedTolerance);
+  });
   return miters;
 }
 

@@ -56,7 +56,8 @@ class MiterFinder {
   /// The miters that are proven for some distances of the surface's vertices, sorted by vertex. `facts` receives how
   /// many were tried and why others were not kept. The result does not depend on the number of threads.
   std::vector<Miter> operator()(const Distances& distances, MiterFacts& facts) const;
-  /// All miters, proven or not: to tell where somebody else has put vertices.
+  /// All miters that are no nearer to the surface than the distance, proven or not: to tell where somebody else has put
+  /// vertices.
   std::vector<Miter> all(const Distances& distances) const;
 
  private:

@@ -19,6 +19,8 @@ constexpr double kAlike = 4;
 // Miters that have been taken back are tried again in so many rounds, one in kTriedEvery of them at a time, each twice:
 // of those that got into each other's way some have room. Not measured.
 constexpr std::uint64_t kTrials = 6, kTriedEvery = 3;
+// If so few are left then, each is tried by itself. For speed; not measured.
+constexpr std::size_t kMostSingly = 100;
 
 /// Takes back what is faulty of miters, and tries again what may have been taken back for others.
 class MiterJudge {
@@ -38,6 +40,9 @@ class MiterJudge {
       });
       try_again(some);
     }
+    const Indices left = mitred_.taken_back();
+    if (left.size() <= kMostSingly)
+      for (const auto v : left) try_again({v});
   }
 
  private:

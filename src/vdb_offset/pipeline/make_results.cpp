@@ -104,7 +104,9 @@ class ResultMaker {
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Of each result the one that it begins with; its own number if there is none.
     const std::vector<std::size_t> started_from =
-        has_to_be_valid() ? find_warm_starts(std::span(distances_.moved).first(count)) : order;
+        has_to_be_valid() && options_.corners == Corners::Round
+            ? find_warm_starts(std::span(distances_.moved).first(count))
+            : order;  // another result's miters are no start for those of this one
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return started_from[i] == i; });
     JointProgress progress(options_.progress, count);
     const auto complete = [&](std::size_t i, const WarmStart* start) {
@@ -156,9 +158,9 @@ class ResultMaker {
   void make_valid(Draft& draft, const ProgressCallback& progress, const WarmStart* start, WarmStart* to_start) const {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
-    draft.statistics.limit =
-        limit(*draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths}, progress, start,
-              to_start);
+    draft.statistics.limit = limit(
+        *draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths, &draft.marched.mitred},
+        progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     draft.faults.reset();
   }

@@ -128,7 +128,7 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
     if (miters) {
       std::vector<Miter> of_all = miters_of_all(parts_, (*miters)(on_part[i], each.miters));
       // What is bound to its path stays there, but for the edge of a part where that slides.
-      std::erase_if(of_all, [&](const Miter& miter) {
+      each.miters.unproven += std::erase_if(of_all, [&](const Miter& miter) {
         const std::uint32_t v = miter.vertex;
         const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
         return !each.bound.empty() && each.bound[v] && !slides;

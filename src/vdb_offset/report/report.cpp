@@ -316,8 +316,8 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"borders", borders_json(statistics.borders)},
                  {"miters", miters_json(statistics.miters)},
                  {"room", room_json(statistics.room)},
-                 {"achieved", achieved_json(achieved)},
-                 {"faces", faces_json(statistics.faces)}};
+                 {"achieved", achieved_json(achieved)}};
+  if (statistics.faces.samples > 0) report["faces"] = faces_json(statistics.faces);
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
   if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
   if (run.shell) report["shell"] = shell_json(*run.shell);

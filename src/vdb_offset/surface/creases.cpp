@@ -18,6 +18,9 @@ namespace {
 constexpr double kSharpBend = 20 * std::numbers::pi / 180;
 // How many times as much a surface bends at each of a vertex's creases as at any other edge there.
 constexpr double kDistinctBend = 3;
+// Edges that are as sharp as this are creases, however few they are: the rim of a flat pyramid has three. 60 degrees,
+// not measured.
+constexpr double kUnmistakable = 60 * std::numbers::pi / 180;
 // Share by which one angle may differ as seen from both ends of its edge. Reasoned: single precision.
 constexpr double kSameBend = 1e-6;
 // A line of fewer edges than this that ends in the surface is no crease, nor is a net of fewer.
@@ -48,6 +51,7 @@ class CreaseFinder {
   /// An edge that may be a crease, as seen from one of its vertices.
   struct Edge {
     std::uint32_t from, to;
+    double angle = 0;
     bool holds = true;
 
     bool operator<(const Edge& other) const { return std::pair(from, to) < std::pair(other.from, other.to); }
@@ -87,10 +91,21 @@ class CreaseFinder {
     }
   }
 
+  /// Whether more than two faces meet at an edge of a vertex.
+  bool branches(std::uint32_t vertex) const {
+    for (const auto t : surface_.triangles_around(vertex))
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h)
+        if ((surface_.from(h) == vertex || surface_.to(h) == vertex) &&
+            surface_.next_around_edge[surface_.next_around_edge[h]] != h)
+          return true;
+    return false;
+  }
+
   /// The least angle of the edges at a vertex that may be creases; infinite if none may. There may be several jumps
   /// among the angles, as where a finely curved flank meets a flat face: the lowest one counts.
   float least_sharp_angle(std::uint32_t vertex) const {
     static const double kCosine = std::cos(kSharpBend);
+    if (branches(vertex)) return std::numeric_limits<float>::infinity();
     bool any = false;
     visit_bends(vertex, [&](std::uint32_t, double cosine) { any = any || cosine <= kCosine; });
     if (!any) return std::numeric_limits<float>::infinity();
@@ -115,8 +130,8 @@ class CreaseFinder {
       visit_bends(v, [&](std::uint32_t other, double cosine) {
         const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
         if (!(angle >= least_[v] && angle >= least_[other])) return;
-        edges_.push_back({v, other});
-        edges_.push_back({other, v});
+        edges_.push_back({v, other, angle});
+        edges_.push_back({other, v, angle});
       });
     }
     std::sort(edges_.begin(), edges_.end());
@@ -170,14 +185,16 @@ class CreaseFinder {
       std::vector<std::uint32_t> net{edge.from};
       std::size_t ends_of_edges = 0;
       bool goes_on = false;
+      double least = edge.angle;
       for (std::size_t i = 0; i < net.size(); ++i) {
         goes_on |= may_end_at(net[i]);
         visit_edges(net[i], [&](const Edge& other) {
           ++ends_of_edges;
+          least = std::min(least, other.angle);
           if (!std::exchange(seen[other.to], 1)) net.push_back(other.to);
         });
       }
-      if (goes_on || ends_of_edges >= 2 * kShortestCrease) continue;
+      if (goes_on || least >= kUnmistakable || ends_of_edges >= 2 * kShortestCrease) continue;
       for (const auto v : net) visit_edges(v, [&](Edge& other) { other.holds = false; });
     }
   }
