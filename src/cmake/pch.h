@@ -11,8 +11,8 @@
 
 // OpenVDB's library holds the virtual functions of these, but its headers do not say so: compiled again in every source
 // that makes a grid, they would take a third of the time that the project takes to build. What is not virtual may be
-// missing there, and is inlined where the compiler optimises for speed, as it does not for a debugger (-Og).
-#if defined __OPTIMIZE__ && !defined VDB_OFFSET_DEBUG
+// missing there, and is inlined where the compiler optimises.
+#ifdef __OPTIMIZE__
 extern template class openvdb::Grid<openvdb::FloatTree>;
 extern template class openvdb::Grid<openvdb::Int32Tree>;
 extern template class openvdb::Grid<openvdb::Vec3STree>;
