@@ -82,7 +82,8 @@ GrownLine grow_line(std::size_t vertices, double spacing, Limit&& limit) {
   RailStacks stacks(asked, grown.paths);
   LineWall wall(stacks, vertices);
   limit(wall);
-  Progress progress({}, Stage::Layers, 1);
+  const ProgressCallback nobody;
+  Progress progress(nobody, Stage::Layers, 1);
   grown.stack = grow_on(wall, grown.paths, progress);
   return grown;
 }
