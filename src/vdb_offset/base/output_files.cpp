@@ -98,9 +98,12 @@ void OutputFiles::add_folders(const std::filesystem::path& folder) {
   for (auto path = folder; !path.empty() && !std::filesystem::exists(path, failed); path = path.parent_path())
     missing.push_back(path);
   for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
-    if (!std::filesystem::create_directory(*path, failed) && failed)
-      throw WriteError(folder.string() + ": cannot be made: " + failed.message());
+    // It is known before it is there, so that a signal that comes right after finds it.
     folders_.emplace_back(path->string(), Temporary::Kind::Folder);
+    if (std::filesystem::create_directory(*path, failed)) continue;
+    folders_.back().keep();  // what has that name already was not made here, and must not be removed
+    folders_.pop_back();
+    if (failed) throw WriteError(folder.string() + ": cannot be made: " + failed.message());
   }
 }
 
