@@ -87,11 +87,12 @@ struct FaceError {
 struct MiterFacts {
   std::size_t on_creases = 0;
   std::size_t mitred = 0, cut = 0;  ///< Vertices in these states.
-  std::size_t unproven = 0;    ///< No point is on all planes or little beyond, or something else is nearer to it, or
-                               ///< an obstacle is in the way.
-  std::size_t taken_back = 0;  ///< Their faces would have been faulty.
-  double excess = 0;  ///< Of miters that were tried, the most by which a plane goes farther than the distance, as a
-                      ///< share of it: where more planes meet than one point can be on.
+  std::size_t unproven = 0;  ///< No point is on all planes or little beyond, or something else is nearer to it, or
+                             ///< an obstacle is in the way.
+  std::size_t taken_back =
+      0;              ///< Proven, and elsewhere in the end: their faces would have been faulty, or had no room.
+  double excess = 0;  ///< Of mitred vertices, the most by which a plane goes farther than the distance, as a share of
+                      ///< it: where more planes meet than one point can be on.
 };
 
 /// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which

@@ -33,12 +33,10 @@ constexpr int kBridges[] = {0, 2, 8};
 
 class CurveLimiter {
  public:
-  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback, Spacing spacing,
-               std::size_t& miters_taken_back)
+  CurveLimiter(const PlaneCurves& curves, Paths& paths, const ProgressCallback& callback, Spacing spacing)
       : curves_(curves),
         paths_(paths),
         spacing_(spacing),
-        miters_taken_back_(miters_taken_back),
         faults_(curves),
         displacement_(curves.source.size(), Vec2d(0.0)),
         share_(curves.source.size(), 1.0),
@@ -98,7 +96,6 @@ class CurveLimiter {
         displacement_[old.first] = old.second;
         return true;
       });
-      miters_taken_back_ += moved.size();
     }
   }
 
@@ -289,7 +286,6 @@ class CurveLimiter {
   const PlaneCurves& curves_;
   Paths& paths_;
   Spacing spacing_;
-  std::size_t& miters_taken_back_;
   CurveFaults faults_;
   Indices points_;
   std::vector<Vec2d> displacement_;  // of each point, from its source
@@ -300,11 +296,10 @@ class CurveLimiter {
 
 }  // namespace
 
-LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress, Spacing spacing,
-                             MiterFacts* miters) {
+LimitStatistics limit_curves(const PlaneCurves& curves, Paths& paths, const ProgressCallback& progress,
+                             Spacing spacing) {
   VDB_OFFSET_ASSERT(paths.displacement.size() == curves.source.size() && paths.state.size() == curves.source.size());
-  std::size_t taken_back = 0;
-  return CurveLimiter(curves, paths, progress, spacing, miters ? miters->taken_back : taken_back).run();
+  return CurveLimiter(curves, paths, progress, spacing).run();
 }
 
 }  // namespace vdb_offset

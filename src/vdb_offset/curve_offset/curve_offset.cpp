@@ -19,10 +19,11 @@
 namespace vdb_offset {
 namespace {
 
-/// Where the vertices of the polyline are at the ends of their paths, in the plane.
-std::vector<Vec2d> ends_of(const PreparedCurves& curves, const Paths& paths) {
-  std::vector<Vec2d> ends(curves.source().begin(), curves.source().end());
-  for (std::size_t v = 0; v < ends.size(); ++v) ends[v] += Vec2d(paths.displacement[v][0], paths.displacement[v][1]);
+/// Where the vertices of the polyline are at the ends of their paths, in the plane, as they will be written.
+std::vector<Vec2d> ends_as_written(const PlaneCurves& plane, const Paths& paths) {
+  std::vector<Vec2d> ends(plane.source.begin(), plane.source.end());
+  for (std::size_t v = 0; v < ends.size(); ++v)
+    for (int k = 0; k < 2; ++k) ends[v][k] = plane.precision(ends[v][k] + paths.displacement[v][k]);
   return ends;
 }
 
@@ -38,13 +39,13 @@ OffsetResult make_result(const PreparedCurves& curves, const Distances& distance
   const PlaneCurves plane{curves.query(), curves.source(), distances, options.precision, miters};
   if (options.collision == Collision::Limit) {
     const StageTimer timer(result.statistics.seconds, Stage::Limit);
-    result.statistics.limit = limit_curves(plane, paths, options.progress, Spacing::AsItIs, &facts);
+    result.statistics.limit = limit_curves(plane, paths, options.progress);
   } else {
     MitredPaths(miters, paths);
   }
-  count_mitred(paths.state, facts);
+  count_miters(miters, paths.state, facts);
   result.statistics.room = curves.room(paths, distances);
-  result.statistics.faces = measure_segments(plane, ends_of(curves, paths), paths.state);
+  result.statistics.faces = measure_segments(plane, ends_as_written(plane, paths), paths.state);
   move_vertices(curves.points(), paths, result);
   if (options.keep_paths) hand_out_paths(curves.points(), paths, result);
   result.distances = distances_of_input(curves.points(), distances);

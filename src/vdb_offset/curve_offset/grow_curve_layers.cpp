@@ -72,7 +72,7 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
   const PlaneCurves plane{curves.query(), curves.source(), outer, options.precision, miters};
   {
     const StageTimer timer(statistics.seconds, Stage::Limit);
-    statistics.limit = limit_curves(plane, paths, options.progress, Spacing::Even, &statistics.miters);
+    statistics.limit = limit_curves(plane, paths, options.progress, Spacing::Even);
   }
   LayerStack stack;
   {
@@ -83,7 +83,7 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
     statistics.limit.crossings_near_source = faults.crossings_near_source();
   }
   count_held_back(paths, outer, marched_distances, statistics.limit);
-  count_mitred(paths.state, statistics.miters);
+  count_miters(miters, paths.state, statistics.miters);
   statistics.room = curves.room(paths, outer);
   return hand_over(curves, std::move(statistics), asked, paths, stack);
 }

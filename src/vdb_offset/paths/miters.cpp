@@ -202,7 +202,6 @@ std::vector<Miter> MiterFinder<Query>::operator()(const Distances& distances, Mi
       continue;
     }
     kept.push_back(miters[i]);
-    facts.excess = std::max(facts.excess, miters[i].excess);
   }
   return kept;
 }
@@ -216,9 +215,14 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex) {
 template class MiterFinder<ClosestQuery>;
 template class MiterFinder<CurveQuery>;
 
-void count_mitred(std::span<const VertexState> states, MiterFacts& facts) {
-  facts.mitred = static_cast<std::size_t>(std::count(states.begin(), states.end(), VertexState::Mitred));
-  facts.cut = static_cast<std::size_t>(std::count(states.begin(), states.end(), VertexState::Cut));
+void count_miters(std::span<const Miter> miters, std::span<const VertexState> states, MiterFacts& facts) {
+  for (const Miter& miter : miters) {
+    const VertexState state = states[miter.vertex];
+    facts.mitred += state == VertexState::Mitred;
+    facts.cut += state == VertexState::Cut;
+    facts.taken_back += state != miter.state;
+    if (state == VertexState::Mitred) facts.excess = std::max(facts.excess, miter.excess);
+  }
 }
 
 MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {

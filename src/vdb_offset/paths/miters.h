@@ -82,8 +82,8 @@ class MiterFinder {
 extern template class MiterFinder<ClosestQuery>;
 extern template class MiterFinder<CurveQuery>;
 
-/// Counts the vertices that are mitred in the end.
-void count_mitred(std::span<const VertexState> states, MiterFacts& facts);
+/// Counts what became of proven miters in the end, by the states of the vertices.
+void count_miters(std::span<const Miter> miters, std::span<const VertexState> states, MiterFacts& facts);
 
 /// Vertices whose paths lead to the ends of their miters, and can be given back the paths that they had before.
 class MitredPaths {

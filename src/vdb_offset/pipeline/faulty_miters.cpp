@@ -103,9 +103,7 @@ class MiterJudge {
 }  // namespace
 
 void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched) {
-  if (marched.mitred.empty()) return;
-  MiterJudge(faults, surface, marched).take_back();
-  marched.miters.taken_back = marched.mitred.taken_back().size();
+  if (!marched.mitred.empty()) MiterJudge(faults, surface, marched).take_back();
 }
 
 }  // namespace vdb_offset

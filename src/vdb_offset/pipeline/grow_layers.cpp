@@ -159,8 +159,8 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   statistics.limit.left = faults->count();
   statistics.limit.crossings_near_source = faults->crossings_near_source();
   count_held_back(paths, outer, marched_distances, statistics.limit);
-  statistics.miters = marched.miters;
-  count_mitred(paths.state, statistics.miters);
+  statistics.miters = marched.miter_facts;
+  count_miters(marched.miters, paths.state, statistics.miters);
   statistics.borders = mesh.borders(paths);
   statistics.room = mesh.room(paths, outer);
   if (mesh.surroundings()) {

@@ -173,7 +173,7 @@ class ResultMaker {
     result.statistics = draft.statistics;
     result.has_turned_faces = mesh_.has_turned_faces();
     result.statistics.disagreeing_distances = distances_.disagreeing[number];
-    result.statistics.miters = draft.marched.miters;
+    result.statistics.miters = draft.marched.miter_facts;
     result.statistics.straight_vertices = draft.marched.paths.straight;
     move_vertices(vertices, draft.marched.paths, result);
     if (options_.keep_paths) hand_out_paths(vertices, draft.marched.paths, result);
@@ -182,7 +182,7 @@ class ResultMaker {
     if (file_) bring_to_file(result);
     result.distances = distances_of_input(mesh_.surface(), distances_.asked[number]);
     mark_junctions(result);
-    count_mitred(draft.marched.paths.state, result.statistics.miters);
+    count_miters(draft.marched.miters, draft.marched.paths.state, result.statistics.miters);
     const std::vector<Vec3d> positions = ends_as_written(draft.marched.paths);
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);

@@ -126,14 +126,14 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
     if (surroundings_) surroundings_->hold(each.paths, distances[i], each.bound);
     end_traces(each.paths);
     if (miters) {
-      std::vector<Miter> of_all = miters_of_all(parts_, (*miters)(on_part[i], each.miters));
+      each.miters = miters_of_all(parts_, (*miters)(on_part[i], each.miter_facts));
       // What is bound to its path stays there, but for the edge of a part where that slides.
-      each.miters.unproven += std::erase_if(of_all, [&](const Miter& miter) {
+      each.miter_facts.unproven += std::erase_if(each.miters, [&](const Miter& miter) {
         const std::uint32_t v = miter.vertex;
         const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
         return !each.bound.empty() && each.bound[v] && !slides;
       });
-      each.mitred = MitredPaths(of_all, each.paths);
+      each.mitred = MitredPaths(each.miters, each.paths);
     }
   }
   return marched;

@@ -70,8 +70,9 @@ class PreparedMesh {
   struct Marched {
     Paths paths;
     std::vector<std::uint8_t> bound;  ///< Of each vertex; empty if none must.
-    MitredPaths mitred;               ///< With Corners::Miter, the vertices whose paths are miters.
-    MiterFacts miters;
+    std::vector<Miter> miters;        ///< With Corners::Miter, those that are proven.
+    MitredPaths mitred;               ///< The vertices whose paths are miters.
+    MiterFacts miter_facts;           ///< What is known of them before the result is made valid.
   };
   /// Marches once for several sets of distances of all vertices. \pre some vertex moves
   std::vector<Marched> march(std::span<const Distances> distances, Ridges ridges);

@@ -118,7 +118,6 @@ void require_together(const CommandLine& line, bool is_iso) {
   require_without(line, is_iso, "--mode iso",
                   {"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--corners",
                    "--strict-faces", "--solver", "--states", "--paths", "--save-vdb"});
-  require_with(line, line.has("--corners"), "--corners miter", {"--miter-limit"});
   require_with(line, layers, "--layers", {"--first-height", "--total-thickness", "--growth", "--structured"});
   if (layers) {
     require(line.has("--heights") + line.has("--first-height") + line.has("--total-thickness") == 1,
@@ -147,6 +146,7 @@ void require_together(const CommandLine& line, bool is_iso) {
 }
 
 void require_sound(const Request& request) {
+  require(!request.miter_limit || request.corners == Corners::Miter, "--miter-limit needs --corners miter");
   require(!request.iso || request.write.normals == io::Normals::Recompute,
           "--normals keep and --mode iso exclude each other");
   require_endings(request);
