@@ -116,7 +116,7 @@ TEST_CASE("curves: layers around a circle are exact, whole and of the area in be
   }
 }
 
-TEST_CASE("curves: layers are the same on any plane, and of both ends of an open curve", "[curves][layers]") {
+TEST_CASE("curves: layers are the same on any plane, and of both ends of an open curve", "[curves][layers][vtk]") {
   std::vector<Vec3d> points, tilted;
   const Vec3d u = Vec3d(1, 2, -1).unit(), v = u.cross(Vec3d(0, 0, 1)).unit(), origin(3, -2, 5);
   for (int i = 0; i <= 40; ++i) {
@@ -209,7 +209,7 @@ TEST_CASE("curve files: layers on real curves", "[.curve_files]") {
   }
 }
 
-TEST_CASE("curves: cells are read back as VTK's own, and by the numbers of SU2", "[curves][layers]") {
+TEST_CASE("curves: cells are read back as VTK's own, and by the numbers of SU2", "[curves][layers][vtk]") {
   const Curves curves = comb(3, 0.2, 0.1);
   const GrownCurves grown = grow(curves, rising(0.15, 3));
   const VolumeMesh& mesh = grown.cells.mesh;
