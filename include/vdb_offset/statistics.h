@@ -95,6 +95,19 @@ struct MiterFacts {
                       ///< it: where more planes meet than one point can be on.
 };
 
+/// What is proven of the faces of an offset, at every point of them. Shares are of the area that the faces which move
+/// have in the offset.
+struct CertifiedFaces {
+  double share = 0, length = 0;  ///< The tolerance: of the distance, or in world units.
+  double certified = 0;          ///< Share of the area every point of which is proven to be within the tolerance.
+  double there = 0;              ///< Share of the area of faces whose vertices all get to their distance.
+  /// The largest error that was found on faces whose vertices all get there, relative to the distance; 0 if all are
+  /// certified.
+  double worst_left = 0;
+  std::size_t source_faces = 0, source_vertices = 0;  ///< Of the mesh before faces were split; 0 if none were to be.
+  bool out_of_faces = false;                          ///< More faces would have been needed than may be made.
+};
+
 /// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which
 /// side the faces point to, and is often wrong.
 struct VDB_OFFSET_API SideRoom {
@@ -144,6 +157,7 @@ struct OffsetStatistics {
   std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
   std::optional<FitFacts> fit;             ///< Of what fit() made.
   FaceError faces;
+  std::optional<CertifiedFaces> certified;  ///< If a tolerance was asked for.
 };
 
 }  // namespace vdb_offset

@@ -9,8 +9,8 @@
 namespace vdb_offset {
 
 const char* name(Stage stage) {
-  constexpr const char* kNames[kStageCount] = {"read",    "rasterise", "sweep",  "gradient", "propagate",
-                                               "capture", "limit",     "layers", "measure",  "write"};
+  constexpr const char* kNames[kStageCount] = {"read",  "rasterise", "sweep",  "gradient", "propagate", "capture",
+                                               "limit", "refine",    "layers", "measure",  "write"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

@@ -13,6 +13,7 @@
 #include "vdb_offset/parts/border_facts.h"
 #include "vdb_offset/parts/part_miters.h"
 #include "vdb_offset/pipeline/moved_input.h"
+#include "vdb_offset/pipeline/vertex_targets.h"
 
 namespace vdb_offset {
 namespace {
@@ -102,41 +103,110 @@ Distances PreparedMesh::distances_of_all(const Distances& of_input, std::size_t&
 }
 
 std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances> distances, Ridges ridges) {
-  VDB_OFFSET_ASSERT(query_.has_value());
-  const DirectionField directions = find_directions(field_, is_open(parts_.moving_part.facts), statistics_);
-  const StageTimer timer(statistics_.seconds, Stage::Propagate);
-  VDB_OFFSET_ASSERT(std::all_of(distances.begin(), distances.end(), [&](const Distances& each) {
-    return each.uniform() || each.count() == surface().vertices.size();
-  }));
   std::vector<Distances> on_part;
   for (const Distances& each : distances) on_part.push_back(distances_of_part(parts_, each));
-  std::vector<Paths> of_part =
-      propagate(*query_, directions, on_part, obstacles(), options_.progress, march_options(options_, ridges));
-  VDB_OFFSET_ASSERT(of_part.size() == distances.size());
+  std::vector<Paths> of_part = find_paths(on_part, ridges);
+  const StageTimer timer(statistics_.seconds, Stage::Propagate);
   std::optional<MiterFinder<ClosestQuery>> miters;
   const std::vector<MiterWalls> walls =
       options_.corners == Corners::Miter ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
   if (options_.corners == Corners::Miter) miters.emplace(*query_, options_.miter_limit, obstacles(), walls);
   std::vector<Marched> marched;
   for (std::size_t i = 0; i < of_part.size(); ++i) {
-    if (slides_) slide_borders(parts_, *slides_, *query_, on_part[i], of_part[i]);
-    Marched& each = marched.emplace_back();
-    each.paths = paths_of_all(parts_, std::move(of_part[i]));
-    each.bound = std::exchange(parts_.bound, {});  // what is bound at one distance may be free at another
-    if (surroundings_) surroundings_->hold(each.paths, distances[i], each.bound);
-    end_traces(each.paths);
-    if (miters) {
-      each.miters = miters_of_all(parts_, (*miters)(on_part[i], each.miter_facts));
-      // What is bound to its path stays there, but for the edge of a part where that slides.
-      each.miter_facts.unproven += std::erase_if(each.miters, [&](const Miter& miter) {
-        const std::uint32_t v = miter.vertex;
-        const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
-        return !each.bound.empty() && each.bound[v] && !slides;
-      });
-      each.mitred = MitredPaths(each.miters, each.paths);
-    }
+    Marched& each = marched.emplace_back(of_all(on_part[i], std::move(of_part[i])));
+    hold(distances[i], each);
+    if (!miters) continue;
+    each.miters = miters_of_all(parts_, (*miters)(on_part[i], each.miter_facts));
+    // What is bound to its path stays there, but for the edge of a part where that slides.
+    each.miter_facts.unproven += std::erase_if(each.miters, [&](const Miter& miter) {
+      const std::uint32_t v = miter.vertex;
+      const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
+      return !each.bound.empty() && each.bound[v] && !slides;
+    });
+    each.mitred = MitredPaths(each.miters, each.paths);
   }
   return marched;
+}
+
+PreparedMesh::Marched PreparedMesh::march_to(const Distances& distances, Ridges ridges, const VertexTargets& targets) {
+  const std::vector<Miter> ends = proven_ends(distances, targets);
+  // Vertices that have a target stay, for the march.
+  std::vector<double> others(surface().vertices.size());
+  for (std::size_t w = 0; w < others.size(); ++w) others[w] = distances[w];
+  for (const Miter& end : ends) others[end.vertex] = 0;
+  const std::vector<Distances> on_part{distances_of_part(parts_, Distances(std::move(others)))};
+  std::vector<Paths> of_part = find_paths(on_part, ridges);
+  const StageTimer timer(statistics_.seconds, Stage::Propagate);
+  Marched marched = of_all(on_part.front(), std::move(of_part.front()));
+  for (const Miter& end : ends) {
+    if (end.state != VertexState::Reached) {
+      marched.miters.push_back(end);
+      continue;
+    }
+    marched.paths.displacement[end.vertex] = end.displacement;
+    marched.paths.achieved[end.vertex] = end.distance;
+    marched.paths.state[end.vertex] = end.state;
+    marched.paths.closest[end.vertex] = end.closest;
+  }
+  hold(distances, marched);
+  marched.miter_facts.on_creases = marched.miters.size();
+  marched.mitred = MitredPaths(marched.miters, marched.paths);
+  return marched;
+}
+
+/// The paths of the moving part's vertices for some sets of their distances.
+std::vector<Paths> PreparedMesh::find_paths(std::span<const Distances> on_part, Ridges ridges) {
+  VDB_OFFSET_ASSERT(query_.has_value());
+  VDB_OFFSET_ASSERT(std::all_of(on_part.begin(), on_part.end(), [&](const Distances& each) {
+    return each.uniform() || each.count() == parts_.moving_part.vertices.size();
+  }));
+  const DirectionField directions = find_directions(field_, is_open(parts_.moving_part.facts), statistics_);
+  const StageTimer timer(statistics_.seconds, Stage::Propagate);
+  std::vector<Paths> paths =
+      propagate(*query_, directions, on_part, obstacles(), options_.progress, march_options(options_, ridges));
+  VDB_OFFSET_ASSERT(paths.size() == on_part.size());
+  return paths;
+}
+
+/// The paths of all vertices, and which of these are bound.
+PreparedMesh::Marched PreparedMesh::of_all(const Distances& on_part, Paths of_part) {
+  if (slides_) slide_borders(parts_, *slides_, *query_, on_part, of_part);
+  Marched marched;
+  marched.paths = paths_of_all(parts_, std::move(of_part));
+  marched.bound = std::exchange(parts_.bound, {});  // what is bound at one distance may be free at another
+  return marched;
+}
+
+/// Has obstacles hold what touches them, once all paths are known.
+void PreparedMesh::hold(const Distances& distances, Marched& marched) const {
+  if (surroundings_) surroundings_->hold(marched.paths, distances, marched.bound);
+  end_traces(marched.paths);
+}
+
+/// The targets of all vertices that are at their distance there, or mitred; sorted by vertex.
+std::vector<Miter> PreparedMesh::proven_ends(const Distances& distances, const VertexTargets& targets) const {
+  std::vector<Miter> ends;
+  for (std::uint32_t w = 0; w < surface().vertices.size(); ++w) {
+    const std::uint32_t v = surface().representative[w];
+    const bool on_part = parts_.part_vertex.empty() || parts_.part_vertex[w] != kNone;
+    if (v != kNone && on_part && distances[w] != 0 && targets.has(v))
+      ends.push_back(
+          {w, round_displacement(targets.displacement[v], std::abs(distances[w])), 0, 0, targets.state[v], 0});
+  }
+  std::vector<Vec3d> points(ends.size());
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    points[i] = (surface().vertices[ends[i].vertex] + surface().origin) + ends[i].displacement - surface().origin;
+  const std::vector<Closest> closest = closest_points(*query_, points);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    ends[i].distance = closest[i].distance;
+    ends[i].closest = closest[i].triangle;
+  }
+  std::erase_if(ends, [&](const Miter& end) {
+    const double asked = std::abs(distances[end.vertex]);
+    return end.distance < asked * (1 - kReachedTolerance) ||
+           (end.state == VertexState::Reached && end.distance > asked * (1 + kReachedTolerance));
+  });
+  return ends;
 }
 
 ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_source, std::size_t resting_faces) const {

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/refine/interpolated_targets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "vdb_offset/paths/straight_path.h"
+#include "vdb_offset/query/cut_at_distance.h"
+
+namespace vdb_offset {
+namespace {
+
+// Least cosine between a direction and the normals of the faces that a vertex lies on. Not measured: at a blade's edge
+// of one degree the cosine is 0.009.
+constexpr double kLeastSlope = 0.005;
+// Steps to the distance along a ray. Not measured: each is exact for the feature that is closest, and few are.
+constexpr int kMostSteps = 40;
+// How much longer a ray may be than the faces at its origin ask for, as a share. Not measured.
+constexpr double kMostDetour = 0.5;
+// How far a point between vertices of the offset may be pushed out, in distances. Not measured.
+constexpr double kFarthestPush = 2;
+
+/// The last few planes that a point is to be beyond.
+class NearPlanes {
+ public:
+  /// The point x is to have normal.dot(x) >= height. A plane that is much like another one replaces it.
+  void add(const Vec3d& normal, double height) {
+    constexpr double kAlike = 0.999;  // cosine; not measured
+    const auto alike =
+        std::find_if(planes_.begin(), planes_.end(), [&](const auto& one) { return one.first.dot(normal) > kAlike; });
+    if (alike != planes_.end()) planes_.erase(alike);
+    else if (planes_.size() == 3) planes_.erase(planes_.begin());
+    planes_.emplace_back(normal, height);
+  }
+
+  /// The point nearest to 0 that is on all planes, if there is one.
+  std::optional<Vec3d> nearest_on_all() const { return nearest_on((1U << planes_.size()) - 1); }
+  /// The point nearest to 0 that is beyond all planes, if there is one.
+  std::optional<Vec3d> nearest_beyond() const {
+    std::optional<Vec3d> best;
+    for (unsigned some = 1; some < 1U << planes_.size(); ++some) {
+      const std::optional<Vec3d> x = nearest_on(some);
+      if (!x || (best && best->lengthSqr() <= x->lengthSqr())) continue;
+      if (std::all_of(planes_.begin(), planes_.end(), [&](const auto& plane) {
+            return plane.first.dot(*x) >= plane.second - 1e-12 * std::abs(plane.second);
+          }))
+        best = x;
+    }
+    return best;
+  }
+
+ private:
+  /// The point nearest to 0 on some of the planes, which bits tell.
+  std::optional<Vec3d> nearest_on(unsigned some) const {
+    // Built up plane by plane, each made orthogonal to those before.
+    Vec3d x(0.0);
+    std::vector<Vec3d> across;
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      if (!(some >> i & 1U)) continue;
+      Vec3d normal = planes_[i].first;
+      for (const Vec3d& other : across) normal -= other * other.dot(normal);
+      const double length = normal.length();
+      if (!(length > 1e-6)) return std::nullopt;
+      normal /= length;
+      x += normal * ((planes_[i].second - planes_[i].first.dot(x)) / length);
+      across.push_back(normal);
+    }
+    return x;
+  }
+
+  std::vector<std::pair<Vec3d, double>> planes_;  // unit normals and heights
+};
+
+}  // namespace
+
+/// The line along which a vertex goes.
+struct InterpolatedTargets::Ray {
+  Vec3d origin;     // in the frame of the surface
+  Vec3d direction;  // of unit length
+  double slope;     // its least cosine with the normals of the faces at its origin
+  double asked;     // above 0
+  std::uint32_t hint;
+
+  Vec3d operator()(double t) const { return origin + direction * t; }
+};
+
+InterpolatedTargets::InterpolatedTargets(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
+                                         Corners corners, std::vector<Vec3d> displacement)
+    : parts_(parts), query_(query), obstacles_(obstacles), corners_(corners), displacement_(std::move(displacement)) {}
+
+/// The triangles of the moving part that a place lies on.
+std::vector<std::uint32_t> InterpolatedTargets::triangles_at(const SurfacePlace& place) const {
+  if (!place.on_edge()) return {place.triangle};
+  const Surface& surface = parts_.surface();
+  std::vector<std::uint32_t> triangles;
+  for (const auto t : surface.triangles_around(place.vertex[0])) {
+    const auto& corners = surface.triangles[t];
+    if (std::find(corners.begin(), corners.end(), place.vertex[1]) == corners.end()) continue;
+    if (parts_.off_part.empty() || !parts_.off_part[t]) triangles.push_back(t);
+  }
+  return triangles;
+}
+
+VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& position, double asked) const {
+  const Surface& surface = parts_.surface();
+  Vec3d displacement(0.0);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (place.vertex[k] != kNone) displacement += displacement_[place.vertex[k]] * place.share[k];
+  const double length = displacement.length();
+  const std::vector<std::uint32_t> triangles = triangles_at(place);
+  if (!(length > 0) || triangles.empty()) return {};
+  Ray ray{position - surface.origin, displacement / length, 1, std::abs(asked), hint_at(place)};
+  double steepest = -1;
+  for (const auto t : triangles) {
+    const Vec3d& normal = surface.triangle_normals[t];
+    if (normal.lengthSqr() == 0) continue;
+    const double slope = normal.dot(ray.direction) * (asked < 0 ? -1 : 1);
+    ray.slope = std::min(ray.slope, slope);
+    steepest = std::max(steepest, slope);
+  }
+  const bool is_flat = steepest - ray.slope <= kReachedTolerance * ray.slope;
+  if (!(ray.slope >= kLeastSlope)) return {};
+  if (corners_ == Corners::Miter && is_flat)
+    if (const VertexTarget target = in_plane(ray); target.is_there) return target;
+  return at_distance(ray);
+}
+
+std::uint32_t InterpolatedTargets::hint_at(const SurfacePlace& place) const {
+  const std::uint32_t v = parts_.part_vertex.empty() ? place.vertex[0] : parts_.part_vertex[place.vertex[0]];
+  return query_.surface().triangles_around(v).front();
+}
+
+VertexTarget InterpolatedTargets::beside(const SurfacePlace& place, const Vec3d& position, double asked,
+                                         const Vec3d& between, bool is_by_miter) const {
+  const Vec3d origin = position - parts_.surface().origin;
+  const double wanted = std::abs(asked);
+  Vec3d x = between - parts_.surface().origin;
+  const std::optional<Vec3d> in_all_planes = is_by_miter ? in_planes(place, origin, asked, x) : std::nullopt;
+  if (in_all_planes) x = *in_all_planes;
+  const Closest closest = query_(x, hint_at(place));
+  if (!(closest.distance > 0)) return {};
+  if (in_all_planes && closest.distance >= wanted * (1 - kStopTolerance))
+    return {x - origin, (x - closest.point) / closest.distance, true,
+            closest.distance > wanted * (1 + kReachedTolerance)};
+  return pushed_out(x, origin, wanted, closest);
+}
+
+/// Goes out from a point that is too near to where it is at its distance: away from what is closest, and in a valley
+/// from all that is closest in turn, to the nearest point that is on the far side of the planes that these have there.
+VertexTarget InterpolatedTargets::pushed_out(const Vec3d& from, const Vec3d& origin, double asked,
+                                             Closest closest) const {
+  NearPlanes planes;
+  Vec3d x = from;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double off = closest.distance - asked;
+    const Vec3d away = (x - closest.point) / closest.distance;
+    if (std::abs(off) <= kStopTolerance * asked) {
+      const bool is_off_obstacles = !obstacles_ || obstacles_->query(x, 0).distance >= obstacles_->clearance;
+      return {x - origin, away, is_off_obstacles, false};
+    }
+    if (off > 0) x = closest.point + away * asked;
+    else {
+      planes.add(away, away.dot(closest.point - from) + asked);
+      const std::optional<Vec3d> step = planes.nearest_beyond();
+      if (!step || step->length() > kFarthestPush * asked) return {};
+      x = from + *step;
+    }
+    closest = query_(x, closest.triangle);
+    if (!(closest.distance > 0)) return {};
+  }
+  return {};
+}
+
+/// The point nearest to `between` that is as far from the planes of all faces at a place as is asked for, if there is
+/// one. In the frame of the surface.
+std::optional<Vec3d> InterpolatedTargets::in_planes(const SurfacePlace& place, const Vec3d& origin, double asked,
+                                                    const Vec3d& between) const {
+  NearPlanes planes;
+  for (const auto t : triangles_at(place)) {
+    const Vec3d& normal = parts_.surface().triangle_normals[t];
+    if (normal.lengthSqr() > 0) planes.add(normal, asked - normal.dot(between - origin));
+  }
+  const std::optional<Vec3d> step = planes.nearest_on_all();
+  if (!step) return std::nullopt;
+  return between + *step;
+}
+
+/// Where the planes of the faces are at the distance, all of which are equally far there.
+VertexTarget InterpolatedTargets::in_plane(const Ray& ray) const {
+  const double length = ray.asked / ray.slope;
+  const Closest closest = query_(ray(length), ray.hint);
+  if (closest.distance < ray.asked * (1 - kStopTolerance) || !is_free(ray, length, closest.distance)) return {};
+  return end_of(ray, length, closest, closest.distance > ray.asked * (1 + kReachedTolerance));
+}
+
+/// The first point at the distance. Each step goes to where the feature that is closest now, as if it went on, is at
+/// the distance; where that is too far, as beyond the edge of a face, the point is in between.
+VertexTarget InterpolatedTargets::at_distance(const Ray& ray) const {
+  const Surface& surface = query_.surface();
+  const double longest = ray.asked / ray.slope * (1 + kMostDetour);
+  std::uint32_t hint = ray.hint;
+  Closest closest{};
+  const auto measure = [&](const Vec3d& x) {
+    closest = query_(x, hint);
+    hint = closest.triangle;
+    return sample_at(x, closest);
+  };
+  const auto is_settled = [&](const Sample& at) { return std::abs(at.phi - ray.asked) <= kStopTolerance * ray.asked; };
+  double t = ray.asked;
+  Sample before{ray.origin, 0, Vec3d(0.0), hint, Feature::Face};
+  for (int i = 0; i < kMostSteps && t <= longest; ++i) {
+    Sample at = measure(ray(t));
+    if (at.phi > ray.asked && !is_settled(at)) {
+      at = cut_at_distance(surface, before, at, ray.asked, measure, is_settled);
+      t = (at.x - ray.origin).dot(ray.direction);
+    }
+    if (is_settled(at)) return is_free(ray, t, at.phi) ? end_of(ray, t, closest, false) : VertexTarget{};
+    if (at.phi <= before.phi) return {};
+    const double step = ray.asked - at.phi;
+    t += std::max(step, share_to_distance(surface, at, ray.direction, ray.asked).value_or(step));
+    before = at;
+  }
+  return {};
+}
+
+/// Whether nothing lies on a ray up to its end, which is so far from the surface: covers it, back to its origin, with
+/// balls that hold no surface (see StraightPaths).
+bool InterpolatedTargets::is_free(const Ray& ray, double length, double distance) const {
+  std::uint32_t hint = ray.hint;
+  for (double t = length - distance; t > kStopTolerance * ray.asked;) {
+    const Closest closest = query_(ray(t), hint);
+    hint = closest.triangle;
+    if (closest.distance < kFreeShare * ray.slope * t) return false;
+    t -= closest.distance * (1 - 1e-12);
+  }
+  if (!obstacles_) return true;
+  return obstacles_->query(ray(length), 0).distance >= obstacles_->clearance;
+}
+
+VertexTarget InterpolatedTargets::end_of(const Ray& ray, double length, const Closest& closest, bool is_mitred) const {
+  Vec3d away = ray(length) - closest.point;
+  away.normalize();
+  return {ray.direction * length, away, true, is_mitred};
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_offset/distances.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/query/obstacles.h"
+#include "vdb_offset/refine/refined_triangles.h"
+#include "vdb_offset/statistics.h"
+
+namespace vdb_offset {
+
+/// Where a vertex goes.
+struct VertexTarget {
+  Vec3d displacement{0.0};  ///< World units.
+  Vec3d away{0.0};          ///< Of unit length: from the closest point of the surface to the end.
+  bool is_there = false;    ///< It gets to its distance, or to that from its own plane with Corners::Miter.
+  bool is_mitred = false;   ///< The latter, and is farther from the surface.
+};
+
+/// Finds where vertices go that were added on a surface: in the direction that the displacements of the surface's own
+/// vertices have there, interpolated, to where the distance from the surface is the one that was asked for. So the
+/// parameterization is transported from the source to the offset (Wang, Guibault, Camarero, Tchon, AIAA 2005), on round
+/// corners and in valleys alike: what is between two vertices in the source is between them in the offset.
+///
+/// Where the surface's vertices are mitred, what lies in the plane of one face goes to that plane, moved by the
+/// distance, if nothing else is nearer there.
+class InterpolatedTargets {
+ public:
+  /// Keeps references. \param displacement of the vertices of parts.surface(), or the direction to begin with where a
+  /// vertex falls short, as long as its distance
+  InterpolatedTargets(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles, Corners corners,
+                      std::vector<Vec3d> displacement);
+
+  /// In the direction of the displacements there. \param position world coordinates; \param asked not 0
+  VertexTarget along(const SurfacePlace& place, const Vec3d& position, double asked) const;
+  /// From between two vertices of the offset, world coordinates, to the point nearest to that which is at the distance;
+  /// beside one that is mitred, to the planes of the faces at the place, moved by the distance, if nothing else is
+  /// nearer there.
+  VertexTarget beside(const SurfacePlace& place, const Vec3d& position, double asked, const Vec3d& between,
+                      bool is_by_miter) const;
+
+ private:
+  struct Ray;
+  std::vector<std::uint32_t> triangles_at(const SurfacePlace& place) const;
+  VertexTarget in_plane(const Ray& ray) const;
+  VertexTarget pushed_out(const Vec3d& from, const Vec3d& origin, double asked, Closest closest) const;
+  std::optional<Vec3d> in_planes(const SurfacePlace& place, const Vec3d& position, double asked,
+                                 const Vec3d& between) const;
+  std::uint32_t hint_at(const SurfacePlace& place) const;
+  VertexTarget at_distance(const Ray& ray) const;
+  bool is_free(const Ray& ray, double length, double distance) const;
+  VertexTarget end_of(const Ray& ray, double length, const Closest& closest, bool is_mitred) const;
+
+  const MeshParts& parts_;
+  const ClosestQuery& query_;
+  const Obstacles* obstacles_;
+  Corners corners_;
+  std::vector<Vec3d> displacement_;
+};
+
+}  // namespace vdb_offset

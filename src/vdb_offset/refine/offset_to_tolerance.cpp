@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/tolerance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/base/progress_count.h"
+#include "vdb_offset/base/rounding.h"
+#include "vdb_offset/base/stage_timer.h"
+#include "vdb_offset/data/count_states.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/pipeline/field_stage.h"
+#include "vdb_offset/pipeline/make_results.h"
+#include "vdb_offset/pipeline/prepared_mesh.h"
+#include "vdb_offset/pipeline/vertex_targets.h"
+#include "vdb_offset/proof/certified_faces.h"
+#include "vdb_offset/refine/interpolated_targets.h"
+#include "vdb_offset/refine/refined_triangles.h"
+#include "vdb_offset/refine/refiner.h"
+
+namespace vdb_offset {
+namespace {
+
+// The least tolerance, as a share of the distance. Reasoned: ten times as much as vertices may be off.
+constexpr double kLeastTolerance = 1e-5;
+// Faces that may be made for each face of the mesh, and in any case. Told in Tolerance.
+constexpr std::size_t kFacesForEach = 20, kFacesInAnyCase = 1000000;
+
+void require_usable(const OffsetOptions& options, const Tolerance& tolerance) {
+  const bool by_share = tolerance.share != 0, by_length = tolerance.length != 0;
+  if (by_share == by_length) throw InvalidInput("tolerance: expected a share or a length, got both or none of them");
+  if (by_share && !(tolerance.share >= kLeastTolerance && tolerance.share < 1))
+    throw InvalidInput(
+        fmt::format("tolerance: expected a share from {} to 1, got {}", kLeastTolerance, tolerance.share));
+  const double least = kLeastTolerance * options.distance.scale();
+  if (by_length && !(tolerance.length >= least && std::isfinite(tolerance.length)))
+    throw InvalidInput(fmt::format("tolerance: expected a length of {} of the distance ({:g}) or more, got {:g}",
+                                   kLeastTolerance, least, tolerance.length));
+  if (!options.metric.even() || options.off_source || options.inner_skin_last || options.keep_field ||
+      options.keep_paths)
+    throw InvalidInput(
+        "tolerance: expected an offset whose distance is the same along all axes, no shell, and neither a field nor "
+        "paths to be kept");
+}
+
+/// One call of offset_to_tolerance().
+class RefinedRun {
+ public:
+  RefinedRun(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance, int threads)
+      : mesh_(mesh),
+        options_(options),
+        tolerance_(tolerance),
+        threads_(threads),
+        space_(mesh, options.metric),
+        prepared_(space_, options, threads, farthest_of({&options.distance, 1}), {}) {}
+
+  RefinedOffset run() {
+    const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
+    if (!goes_anywhere(farthest_of({&options_.distance, 1}))) return unmoved();
+    const OffsetResult coarse =
+        std::move(make_results(prepared_, asked, prepared_.march(asked.moved, ridges_of(options_))).front());
+    prepared_.field() = {};
+    refine(asked.asked.front(), coarse);
+    offset_refined(coarse);
+    certify_faces();
+    return std::move(refined_);
+  }
+
+ private:
+  const Surface& surface() const { return prepared_.surface(); }
+  std::size_t mesh_triangles() const {
+    return surface().triangles.size() -
+           (prepared_.obstacles() ? prepared_.obstacles()->query.surface().triangles.size() : 0);
+  }
+
+  RefinedOffset unmoved() {
+    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) refined_.refinement.parent.push_back(f);
+    refined_.refinement.polygons = {{mesh_.positions.begin(), mesh_.positions.end()},
+                                    {mesh_.corners.begin(), mesh_.corners.end()},
+                                    {mesh_.face_begin.begin(), mesh_.face_begin.end()}};
+    refined_.result = offset(mesh_, options_);
+    return std::move(refined_);
+  }
+
+  /// The displacement of a vertex of the surface; where it falls short, the direction that it would have gone in, as
+  /// long as its distance.
+  Vec3d displacement_of(std::uint32_t w, double asked, const OffsetResult& coarse) const {
+    const std::uint32_t v = surface().representative[w];
+    if (v == kNone || asked == 0) return Vec3d(0.0);
+    const Vec3d displacement = coarse.positions[v] - mesh_.positions[v];
+    if (!falls_short(coarse.states[v])) return displacement;
+    // Not measured: what has gone a good part of its way tells a direction.
+    constexpr double kTellsDirection = 0.1;
+    const double gone = displacement.length();
+    if (gone > kTellsDirection * std::abs(asked)) return displacement * (std::abs(asked) / gone);
+    const std::uint32_t on_part = prepared_.parts().part_vertex.empty() ? w : prepared_.parts().part_vertex[w];
+    return on_part == kNone ? Vec3d(0.0) : start_direction(prepared_.parts().moving_part, on_part) * asked;
+  }
+
+  std::vector<RefinedVertex> vertices_of_surface(const Distances& asked, const OffsetResult& coarse,
+                                                 const std::vector<Vec3d>& displacement) const {
+    std::vector<RefinedVertex> vertices(surface().vertices.size());
+    for (std::uint32_t w = 0; w < vertices.size(); ++w) {
+      const std::uint32_t v = surface().representative[w];
+      if (v == kNone) continue;
+      vertices[w] = {asked[w], tolerance_.at(asked[w]), {}};
+      vertices[w].target.displacement = displacement[w];
+      vertices[w].target.is_there = asked[w] != 0 && is_there(coarse.states[v]);
+      vertices[w].target.is_mitred = coarse.states[v] == VertexState::Mitred;
+    }
+    return vertices;
+  }
+
+  std::size_t most_faces() const {
+    return tolerance_.most_faces > 0 ? tolerance_.most_faces
+                                     : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
+  }
+
+  /// Splits the faces.
+  void refine(const Distances& asked, const OffsetResult& coarse) {
+    const StageTimer timer(seconds_, Stage::Refine);
+    Progress progress(options_.progress, Stage::Refine, kProgress);
+    std::vector<Vec3d> displacement(surface().vertices.size());
+    for (std::uint32_t w = 0; w < displacement.size(); ++w) displacement[w] = displacement_of(w, asked[w], coarse);
+    std::vector<RefinedVertex> vertices = vertices_of_surface(asked, coarse, displacement);
+    const InterpolatedTargets targets(prepared_.parts(), prepared_.query(), prepared_.obstacles(), options_.corners,
+                                      std::move(displacement));
+    triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
+    Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
+                    {options_.corners, most_faces(), tolerance_.precision});
+    std::size_t told = 0;
+    refiner.run([&](double share) {
+      const auto now = static_cast<std::size_t>(share * kProgress);
+      if (now > told) progress.advance(now - std::exchange(told, now));
+    });
+    vertices_ = refiner.vertices();
+    is_cut_short_ = refiner.is_cut_short();
+    refined_.refinement = triangles_->of_mesh(mesh_, numbers_);
+  }
+
+  /// Offsets the refined mesh: the vertices of the source to where they have gone, others to their targets.
+  void offset_refined(const OffsetResult& coarse) {
+    const std::size_t source = mesh_.positions.size(), count = refined_.refinement.polygons.positions.size();
+    VertexTargets targets{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<VertexState>(count, VertexState::Limited)};
+    std::vector<double> each(options_.distance.uniform() ? 0 : count);
+    for (std::size_t v = 0; v < source; ++v) {
+      if (!each.empty()) each[v] = options_.distance[v];
+      targets.state[v] = coarse.states[v];
+      if (surface().welded[v] != kNone)
+        targets.displacement[v] = coarse.positions[v] - mesh_.positions[surface().representative[surface().welded[v]]];
+    }
+    // Where the input has several vertices at one position, the first of them is the one that counts.
+    for (std::size_t i = surface().vertices.size(); i < vertices_.size(); ++i) {
+      if (numbers_[i] == kNone) continue;
+      const RefinedVertex& vertex = vertices_[i];
+      targets.displacement[numbers_[i]] = vertex.target.displacement;
+      if (vertex.target.is_there)
+        targets.state[numbers_[i]] = vertex.target.is_mitred ? VertexState::Mitred : VertexState::Reached;
+      if (!each.empty()) each[numbers_[i]] = vertex.asked;
+    }
+    OffsetOptions options = options_;
+    if (!each.empty()) options.distance = Distances(std::move(each));
+    if (!options.only.empty()) {
+      options.only.clear();
+      for (const std::uint32_t f : refined_.refinement.parent) options.only.push_back(options_.only[f]);
+    }
+    const PolygonView mesh = refined_.refinement.polygons.view();
+    const InMetric space(mesh, options.metric);
+    PreparedMesh prepared(space, options, threads_, farthest_of({&options.distance, 1}), {});
+    const AskedDistances asked = ask(prepared, {&options.distance, 1});
+    std::vector<PreparedMesh::Marched> marched;
+    marched.push_back(prepared.march_to(asked.moved.front(), ridges_of(options), targets));
+    refined_.result = std::move(make_results(prepared, asked, std::move(marched)).front());
+    for (std::size_t s = 0; s < kStageCount; ++s)
+      refined_.result.statistics.seconds[s] += coarse.statistics.seconds[s] + seconds_[s];
+  }
+
+  /// Proves what can be proven of the result, against the mesh before its faces were split.
+  void certify_faces() {
+    OffsetResult& result = refined_.result;
+    const StageTimer timer(result.statistics.seconds, Stage::Measure);
+    const Rounding precision(options_.precision);
+    const std::size_t count = vertices_.size();
+    std::vector<Vec3d> positions(triangles_->positions());
+    std::vector<double> asked(count), tolerance(count);
+    std::vector<VertexState> states(count, VertexState::Unused);
+    for (std::size_t i = 0; i < count; ++i) {
+      asked[i] = vertices_[i].asked;
+      tolerance[i] = vertices_[i].tolerance;
+      if (numbers_[i] == kNone) continue;
+      positions[i] = precision(positions[i], result.positions[numbers_[i]]);
+      states[i] = result.states[numbers_[i]];
+    }
+    std::vector<OffsetFace> faces;
+    for (const auto& [vertex, source] : triangles_->triangles())
+      if (prepared_.parts().off_part.empty() || !prepared_.parts().off_part[source]) faces.push_back({vertex, source});
+    CertifiedFaces certified = certify({prepared_.query(), surface(), faces, triangles_->positions(), positions, asked,
+                                        tolerance, states, options_.corners});
+    certified.share = tolerance_.share;
+    certified.length = tolerance_.length;
+    certified.source_faces = mesh_.face_count();
+    certified.source_vertices = mesh_.positions.size();
+    certified.out_of_faces = is_cut_short_;
+    result.statistics.certified = certified;
+    count_states(result.states, result.statistics);
+  }
+
+  static constexpr std::size_t kProgress = 1000;  // units of the stage's progress
+
+  PolygonView mesh_;
+  const OffsetOptions& options_;
+  const Tolerance& tolerance_;
+  int threads_;
+  InMetric space_;
+  PreparedMesh prepared_;
+  std::array<double, kStageCount> seconds_{};
+  std::optional<RefinedTriangles> triangles_;
+  std::vector<RefinedVertex> vertices_;  // of triangles_
+  std::vector<std::uint32_t> numbers_;   // of each of them: its vertex in the refinement
+  bool is_cut_short_ = false;
+  RefinedOffset refined_;
+};
+
+}  // namespace
+
+double Tolerance::at(double distance) const { return share > 0 ? share * std::abs(distance) : length; }
+
+RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance) {
+  vdb_offset::require_usable(mesh, {&options.distance, 1}, options);
+  require_usable(options, tolerance);
+  return in_arena(options.threads, [&](int threads) { return RefinedRun(mesh, options, tolerance, threads).run(); });
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/refine/refined_triangles.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+/// Adds what an end of an edge is made of to a place, at half of its share.
+void add_half(SurfacePlace& place, std::uint32_t vertex, double share) {
+  if (vertex == kNone || share == 0) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (place.vertex[k] != vertex && place.vertex[k] != kNone) continue;
+    place.vertex[k] = vertex;
+    place.share[k] += share / 2;
+    return;
+  }
+  VDB_OFFSET_ASSERT(false);
+}
+
+std::uint32_t other_corner(std::span<const std::uint32_t> face, const std::array<std::uint32_t, 3>& ends) {
+  const auto other = std::find_if(face.begin(), face.end(), [&](auto v) { return v != ends[0] && v != ends[1]; });
+  return other == face.end() ? ends[0] : *other;
+}
+
+/// A corner of a piece at a vertex that was added: which vertices of the input it is made of there. Several have one
+/// position where the input's vertices are welded.
+struct AddedCorner {
+  std::uint32_t added;
+  std::array<std::uint32_t, 3> vertex;  // of the input
+  std::uint32_t face;
+  std::size_t corner;
+
+  auto key() const { return std::tie(added, vertex); }
+  bool operator<(const AddedCorner& other) const {
+    return std::tie(added, vertex, corner) < std::tie(other.added, other.vertex, other.corner);
+  }
+};
+
+}  // namespace
+
+RefinedTriangles::RefinedTriangles(const Surface& surface, std::span<const Vec3d> positions, std::size_t count)
+    : surface_(surface), positions_(positions.begin(), positions.end()) {
+  triangles_.reserve(count);
+  for (std::uint32_t t = 0; t < count; ++t) triangles_.push_back({surface.triangles[t], t});
+}
+
+SurfacePlace RefinedTriangles::middle(const Edge& edge, std::uint32_t source) const {
+  SurfacePlace place{source, {kNone, kNone, kNone}, {0, 0, 0}};
+  for (const auto end : {edge.first, edge.second}) {
+    if (end < source_vertices()) {
+      add_half(place, end, 1);
+      continue;
+    }
+    const SurfacePlace& of_end = added_[end - source_vertices()];
+    for (std::size_t k = 0; k < 3; ++k) add_half(place, of_end.vertex[k], of_end.share[k]);
+  }
+  return place;
+}
+
+std::vector<std::uint32_t> RefinedTriangles::split(std::span<const Edge> edges, std::span<const SurfacePlace> places,
+                                                   std::span<const Vec3d> positions) {
+  VDB_OFFSET_ASSERT(std::is_sorted(edges.begin(), edges.end()));
+  const auto first = static_cast<std::uint32_t>(positions_.size());
+  positions_.insert(positions_.end(), positions.begin(), positions.end());
+  added_.insert(added_.end(), places.begin(), places.end());
+  const std::size_t count = triangles_.size();
+  std::vector<std::array<std::uint32_t, 3>> middles(count);  // of the edges behind each corner
+  for_each_index(count, [&](std::size_t t) {
+    const auto& v = triangles_[t].vertex;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Edge edge = edge_between(v[k], v[(k + 1) % 3]);
+      const auto at = std::lower_bound(edges.begin(), edges.end(), edge);
+      middles[t][k] = at != edges.end() && *at == edge ? first + static_cast<std::uint32_t>(at - edges.begin()) : kNone;
+    }
+  });
+  std::vector<std::uint32_t> pieces;
+  const auto put = [&](std::size_t t, std::initializer_list<std::array<std::uint32_t, 3>> some) {
+    const std::uint32_t source = triangles_[t].source;
+    auto one = some.begin();
+    triangles_[t].vertex = *one;
+    pieces.push_back(static_cast<std::uint32_t>(t));
+    for (++one; one != some.end(); ++one) triangles_.push_back({*one, source});
+  };
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto marked = 3 - std::count(middles[t].begin(), middles[t].end(), kNone);
+    if (marked == 0) continue;
+    // Turned so that the edge behind the first corner has a middle, and of two the one behind the last corner has none.
+    std::size_t k = 0;
+    while (middles[t][k] == kNone || (marked == 2 && middles[t][(k + 2) % 3] != kNone)) ++k;
+    const std::uint32_t a = triangles_[t].vertex[k], b = triangles_[t].vertex[(k + 1) % 3],
+                        c = triangles_[t].vertex[(k + 2) % 3], ab = middles[t][k], bc = middles[t][(k + 1) % 3],
+                        ca = middles[t][(k + 2) % 3];
+    const auto squared = [&](std::uint32_t v, std::uint32_t w) { return (positions_[v] - positions_[w]).lengthSqr(); };
+    if (marked == 3) put(t, {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    else if (marked == 1) put(t, {{a, ab, c}, {ab, b, c}});
+    else if (squared(a, bc) < squared(ab, c)) put(t, {{ab, b, bc}, {a, ab, bc}, {a, bc, c}});
+    else put(t, {{ab, b, bc}, {a, ab, c}, {ab, bc, c}});
+  }
+  for (std::size_t t = count; t < triangles_.size(); ++t) pieces.push_back(static_cast<std::uint32_t>(t));
+  return pieces;
+}
+
+/// The first corner of a face of the input that is a vertex of the surface.
+std::uint32_t RefinedTriangles::corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const {
+  for (const auto v : mesh.face(face))
+    if (surface_.welded[v] == vertex) return v;
+  VDB_OFFSET_ASSERT(false);
+  return kNone;
+}
+
+Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers) const {
+  // The pieces of each face, in the order in which they were made.
+  std::vector<std::uint32_t> begin(mesh.face_count() + 1, 0), before(mesh.face_count(), 0), order(triangles_.size());
+  const auto face_of = [&](const Triangle& triangle) { return surface_.face[triangle.source]; };
+  for (const Triangle& triangle : triangles_) ++begin[face_of(triangle) + 1];
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) begin[f + 1] += begin[f];
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    order[next[face_of(triangles_[t])]++] = t;
+    before[face_of(triangles_[t])] += triangles_[t].source == t;  // the first piece stands where the triangle stood
+  }
+  Refinement refinement;
+  Polygons& polygons = refinement.polygons;
+  polygons.positions.assign(mesh.positions.begin(), mesh.positions.end());
+  std::vector<AddedCorner> added;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (begin[f + 1] - begin[f] == before[f]) {  // not split
+      const auto face = mesh.face(f);
+      polygons.corners.insert(polygons.corners.end(), face.begin(), face.end());
+      polygons.close_face();
+      refinement.parent.push_back(f);
+      continue;
+    }
+    for (std::uint32_t i = begin[f]; i < begin[f + 1]; ++i) {
+      Triangle piece = triangles_[order[i]];
+      if (surface_.is_turned(piece.source)) std::swap(piece.vertex[1], piece.vertex[2]);
+      for (const auto v : piece.vertex) {
+        if (v < source_vertices()) {
+          polygons.corners.push_back(corner_of(mesh, f, v));
+          continue;
+        }
+        const std::uint32_t number = v - static_cast<std::uint32_t>(source_vertices());
+        AddedCorner corner{number, {kNone, kNone, kNone}, f, polygons.corners.size()};
+        for (std::size_t k = 0; k < 3; ++k)
+          if (added_[number].vertex[k] != kNone) corner.vertex[k] = corner_of(mesh, f, added_[number].vertex[k]);
+        added.push_back(corner);
+        polygons.corners.push_back(kNone);
+      }
+      polygons.close_face();
+      refinement.parent.push_back(f);
+    }
+  }
+  tbb::parallel_sort(added.begin(), added.end());
+  numbers.assign(positions_.size(), kNone);
+  for (std::size_t w = 0; w < source_vertices(); ++w)
+    if (w < surface_.representative.size()) numbers[w] = surface_.representative[w];
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (i == 0 || added[i - 1].key() != added[i].key()) {
+      const SurfacePlace& place = added_[added[i].added];
+      VertexOrigin origin{added[i].face, added[i].vertex, place.share};
+      // On an edge the third corner counts for nothing; any of the face's will do.
+      if (place.on_edge()) origin.vertex[2] = other_corner(mesh.face(origin.face), origin.vertex);
+      refinement.added.push_back(origin);
+      polygons.positions.push_back(positions_[source_vertices() + added[i].added]);
+    }
+    numbers[source_vertices() + added[i].added] = static_cast<std::uint32_t>(polygons.positions.size() - 1);
+    polygons.corners[added[i].corner] = static_cast<std::uint32_t>(polygons.positions.size() - 1);
+  }
+  return refinement;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/refinement.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// An edge by its ends, the lower number first.
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+inline Edge edge_between(std::uint32_t a, std::uint32_t b) { return a < b ? Edge(a, b) : Edge(b, a); }
+
+/// Where an added vertex lies in the surface: on an edge of a triangle, or inside of it.
+struct SurfacePlace {
+  std::uint32_t triangle;               ///< Of the surface; on an edge, one of those there.
+  std::array<std::uint32_t, 3> vertex;  ///< Corners of that triangle; on an edge its ends first, then kNone.
+  std::array<double, 3> share;          ///< As in VertexOrigin.
+
+  bool on_edge() const { return vertex[2] == kNone; }
+};
+
+/// The triangles of a surface, split at the middles of edges, so that they still meet edge to edge. Its vertices come
+/// first, then the ones that were added.
+class RefinedTriangles {
+ public:
+  struct Triangle {
+    std::array<std::uint32_t, 3> vertex;
+    std::uint32_t source;  ///< The triangle of the surface that it is a piece of.
+  };
+
+  /// Keeps a reference. `positions` are those of the surface's vertices in the input, `count` its first triangles.
+  RefinedTriangles(const Surface& surface, std::span<const Vec3d> positions, std::size_t count);
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<Vec3d>& positions() const { return positions_; }
+  const std::vector<SurfacePlace>& added() const { return added_; }
+  std::size_t source_vertices() const { return positions_.size() - added_.size(); }
+
+  /// The middle of an edge: its place, in a triangle of the surface that the edge is on.
+  SurfacePlace middle(const Edge& edge, std::uint32_t source) const;
+
+  /// Adds vertices on edges, and splits the triangles there in two, three or four; the first piece takes the place of
+  /// the triangle, others come last.
+  /// \param edges sorted, no two the same; \param places, positions of the vertices that are added on them
+  /// \returns the numbers of all new pieces, in ascending order
+  std::vector<std::uint32_t> split(std::span<const Edge> edges, std::span<const SurfacePlace> places,
+                                   std::span<const Vec3d> positions);
+
+  /// The refinement of the mesh that the surface was built from. `numbers` receives for each vertex here one of those
+  /// that it is in the refinement.
+  Refinement of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers) const;
+
+ private:
+  std::uint32_t corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const;
+
+  const Surface& surface_;
+  std::vector<Vec3d> positions_;
+  std::vector<SurfacePlace> added_;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace vdb_offset

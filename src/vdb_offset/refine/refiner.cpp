@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/refine/refiner.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+// Bulge between the ends of an edge, in tolerances, from which it is split. Reasoned: where all edges of a triangle of
+// a sphere bulge by three quarters, its middle bulges by one.
+constexpr double kMostBulge = 0.75;
+// Lengths in units of that of an edge on a circle of radius d that bulges by the tolerance: of an edge with one end
+// that does not get there, at which it is no longer split; and of a triangle's longest edge, at which it is given up.
+constexpr double kLeastMixed = 0.5, kLeastOff = 0.1;
+// The bulge from which an edge is split if none bulges by kMostBulge, and the length from which one is, in those units,
+// if none bulges. Not measured.
+constexpr double kLeastBulge = 0.1, kLongFlat = 1;
+// More rounds than any edge can be halved in.
+constexpr int kMostRounds = 60;
+
+/// The length of a chord of a circle that bulges by the tolerance.
+double chord(double asked, double tolerance) { return std::sqrt(8 * std::abs(asked) * tolerance); }
+
+}  // namespace
+
+Refiner::Refiner(const MeshParts& parts, const ClosestQuery& query, const InterpolatedTargets& targets,
+                 RefinedTriangles& triangles, std::vector<RefinedVertex> vertices, const RefinerOptions& options)
+    : parts_(parts),
+      prover_(query),
+      targets_(targets),
+      triangles_(triangles),
+      vertices_(std::move(vertices)),
+      options_(options),
+      state_(triangles.triangles().size(), State::New) {}
+
+void Refiner::run(const std::function<void(double)>& tell) {
+  std::vector<std::uint32_t> fresh(state_.size());
+  for (std::uint32_t t = 0; t < fresh.size(); ++t) fresh[t] = t;
+  for (int round = 0; round < kMostRounds && !fresh.empty() && !is_cut_short_; ++round) {
+    tell(1 - static_cast<double>(fresh.size()) / static_cast<double>(state_.size()));
+    for_each_index(
+        fresh.size(), [&](std::size_t i) { state_[fresh[i]] = judge(triangles_.triangles()[fresh[i]]); }, 16);
+    std::erase_if(fresh, [&](std::uint32_t t) { return state_[t] == State::Settled; });
+    propose(fresh);
+    std::vector<std::uint8_t> marked(candidates_.size(), 0);
+    for (const std::uint32_t t : fresh) mark(t, marked);
+    keep_to_limit(marked);
+    fresh = split(marked);
+  }
+}
+
+bool Refiner::moves(const RefinedTriangles::Triangle& triangle) const {
+  if (!parts_.off_part.empty() && parts_.off_part[triangle.source]) return false;
+  // Where the sign changes, or something stays, no point is at a distance above 0 from all corners' side.
+  const double first = vertices_[triangle.vertex[0]].asked;
+  return std::all_of(triangle.vertex.begin(), triangle.vertex.end(),
+                     [&](std::uint32_t v) { return vertices_[v].asked * first > 0; });
+}
+
+Refiner::State Refiner::judge(const RefinedTriangles::Triangle& triangle) const {
+  if (!moves(triangle)) return State::Settled;
+  OffsetTriangle offset;
+  const Surface& surface = parts_.surface();
+  const Vec3d &normal = surface.triangle_normals[triangle.source], &first = triangles_.positions()[triangle.vertex[0]];
+  offset.may_keep_to_plane = options_.corners == Corners::Miter && normal.lengthSqr() > 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const RefinedVertex& vertex = vertices_[triangle.vertex[k]];
+    if (!vertex.target.is_there) return State::Mixed;
+    const Vec3d position = triangles_.positions()[triangle.vertex[k]] + vertex.target.displacement;
+    offset.corners[k] = position - surface.origin;
+    offset.asked[k] = std::abs(vertex.asked);
+    offset.tolerance[k] = vertex.tolerance;
+    offset.over_plane[k] = normal.dot(position - first) * (vertex.asked < 0 ? -1 : 1);
+  }
+  return prover_(offset).certainty == Certainty::Proven ? State::Settled : State::Off;
+}
+
+/// The length of an edge in the source, in units of the chord that bulges by the tolerance.
+double Refiner::length_of(const Edge& edge) const {
+  const RefinedVertex &a = vertices_[edge.first], &b = vertices_[edge.second];
+  return (triangles_.positions()[edge.second] - triangles_.positions()[edge.first]).length() /
+         chord((std::abs(a.asked) + std::abs(b.asked)) / 2, (a.tolerance + b.tolerance) / 2);
+}
+
+/// Makes candidates of the edges of some triangles, where there are none.
+void Refiner::propose(const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::pair<Edge, std::uint32_t>> wanted;  // with the triangle of the surface that it is in
+  for (const std::uint32_t t : triangles) {
+    const auto& [v, source] = triangles_.triangles()[t];
+    for (std::size_t k = 0; k < 3; ++k) wanted.emplace_back(edge_between(v[k], v[(k + 1) % 3]), source);
+  }
+  tbb::parallel_sort(wanted.begin(), wanted.end());
+  const auto same_edge = [](const auto& a, const auto& b) { return a.first == b.first; };
+  wanted.erase(std::unique(wanted.begin(), wanted.end(), same_edge), wanted.end());
+  std::erase_if(wanted, [&](const auto& one) {
+    const auto at = std::lower_bound(candidates_.begin(), candidates_.end(), one.first,
+                                     [](const Candidate& c, const Edge& edge) { return c.edge < edge; });
+    return at != candidates_.end() && at->edge == one.first;
+  });
+  const std::size_t known = candidates_.size();
+  candidates_.resize(known + wanted.size());
+  for_each_index(
+      wanted.size(), [&](std::size_t i) { candidates_[known + i] = candidate(wanted[i].first, wanted[i].second); }, 8);
+  std::inplace_merge(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(known), candidates_.end());
+}
+
+Refiner::Candidate Refiner::candidate(const Edge& edge, std::uint32_t source) const {
+  const RefinedVertex &a = vertices_[edge.first], &b = vertices_[edge.second];
+  Candidate one{edge, triangles_.middle(edge, source), {}, {}, 0};
+  const Vec3d middle = (triangles_.positions()[edge.first] + triangles_.positions()[edge.second]) / 2.0;
+  one.position = options_.precision(middle);
+  one.vertex.asked = (a.asked + b.asked) / 2;
+  one.vertex.tolerance = (a.tolerance + b.tolerance) / 2;
+  if (one.vertex.asked == 0) return one;
+  if (!a.target.is_there || !b.target.is_there) {
+    one.vertex.target = targets_.along(one.place, one.position, one.vertex.asked);
+    return one;
+  }
+  const Vec3d chord_middle = middle + (a.target.displacement + b.target.displacement) / 2.0;
+  one.vertex.target = targets_.beside(one.place, one.position, one.vertex.asked, chord_middle,
+                                      a.target.is_mitred || b.target.is_mitred);
+  if (!one.vertex.target.is_there) one.vertex.target = targets_.along(one.place, one.position, one.vertex.asked);
+  if (!one.vertex.target.is_there) return one;
+  one.bulge = std::abs(one.vertex.target.away.dot(one.position + one.vertex.target.displacement - chord_middle)) /
+              one.vertex.tolerance;
+  return one;
+}
+
+const Refiner::Candidate& Refiner::find(const Edge& edge) const {
+  const auto at = std::lower_bound(candidates_.begin(), candidates_.end(), edge,
+                                   [](const Candidate& c, const Edge& wanted) { return c.edge < wanted; });
+  VDB_OFFSET_ASSERT(at != candidates_.end() && at->edge == edge);
+  return *at;
+}
+
+/// Chooses edges of a triangle whose vertices all get there. Where no edge bulges and all are short, splits gain
+/// nothing: so it is where a mitred crease ends at a round corner.
+template <class Split>
+void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& split) const {
+  bool any = false;
+  const Candidate *most = nullptr, *longest = nullptr;
+  for (const Candidate* one : of_edge) {
+    const double length = length_of(one->edge);
+    if (length < kLeastOff) continue;
+    if (one->bulge > kMostBulge) {
+      split(one);
+      any = true;
+    }
+    if (!most || one->bulge > most->bulge) most = one;
+    if (!longest || length > length_of(longest->edge)) longest = one;
+  }
+  if (any || !most) return;
+  if (most->bulge > kLeastBulge) split(most);
+  else if (length_of(longest->edge) > kLongFlat) split(longest);
+}
+
+/// Marks the edges of a triangle that is not settled which are to be split.
+void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) const {
+  const Corners3& v = triangles_.triangles()[triangle].vertex;
+  std::array<const Candidate*, 3> of_edge;
+  for (std::size_t k = 0; k < 3; ++k) of_edge[k] = &find(edge_between(v[k], v[(k + 1) % 3]));
+  const auto split = [&](const Candidate* one) { marked[static_cast<std::size_t>(one - candidates_.data())] = 1; };
+  if (state_[triangle] == State::Off) return mark_off(of_edge, split);
+  for (const Candidate* one : of_edge) {
+    const int there = vertices_[one->edge.first].target.is_there + vertices_[one->edge.second].target.is_there;
+    if (there == 2 ? one->bulge > kMostBulge
+                   : length_of(one->edge) > kLeastMixed && (there == 1 || one->vertex.target.is_there))
+      split(one);
+  }
+}
+
+/// Unmarks the edges that bulge least if there would be too many triangles.
+void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < marked.size(); ++i)
+    if (marked[i]) some.push_back(i);
+  // An edge of two triangles gives two more. Where more meet there are few.
+  const std::size_t count = state_.size(), room = options_.most_triangles > count ? options_.most_triangles - count : 0;
+  if (2 * some.size() <= room) return;
+  is_cut_short_ = true;
+  std::stable_sort(some.begin(), some.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return candidates_[a].bulge > candidates_[b].bulge; });
+  for (std::size_t i = room / 2; i < some.size(); ++i) marked[some[i]] = 0;
+}
+
+std::vector<std::uint32_t> Refiner::split(const std::vector<std::uint8_t>& marked) {
+  std::vector<Edge> edges;
+  std::vector<SurfacePlace> places;
+  std::vector<Vec3d> positions;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (!marked[i]) continue;
+    edges.push_back(candidates_[i].edge);
+    places.push_back(candidates_[i].place);
+    positions.push_back(candidates_[i].position);
+    vertices_.push_back(candidates_[i].vertex);
+  }
+  std::size_t i = 0;
+  std::erase_if(candidates_, [&](const Candidate&) { return marked[i++] != 0; });
+  std::vector<std::uint32_t> pieces = triangles_.split(edges, places, positions);
+  state_.resize(triangles_.triangles().size());
+  for (const std::uint32_t t : pieces) state_[t] = State::New;
+  return pieces;
+}
+
+}  // namespace vdb_offset
