@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 #include "vdb_offset/base/rounding.h"
 
@@ -26,6 +27,12 @@ inline void append_number(std::string& text, double value, const Rounding& preci
 inline void append_integer(std::string& text, std::uint64_t value) {
   char digits[24];
   text.append(digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr);
+}
+
+/// Appends a line, with a line end if it has none.
+inline void append_line(std::string& text, std::string_view line) {
+  text += line;
+  if (!line.ends_with('\n')) text += '\n';
 }
 
 /// Appends the bytes of a number as this machine holds it: little-endian.

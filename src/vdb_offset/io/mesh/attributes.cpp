@@ -17,6 +17,7 @@
 #include "vdb_offset/io/mesh/face_labels.h"
 #include "vdb_offset/io/mesh/read/off_binary.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
+#include "vdb_offset/io/mesh/stl_layout.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -364,17 +365,17 @@ void read_stl(const MeshFile& source, Attributes& attributes) {
     if (!scanner.at_line_end()) attributes.lost.emplace_back("the name of the solid");
     return;
   }
-  constexpr std::size_t kHeader = 80, kFirst = 84, kFacet = 50;
   const auto is_filled = [](char c) { return c != '\0' && c != ' '; };
-  if (std::any_of(bytes.begin(), bytes.begin() + kHeader, is_filled)) attributes.lost.emplace_back("the header's text");
+  if (std::any_of(bytes.begin(), bytes.begin() + stl::kHeader, is_filled))
+    attributes.lost.emplace_back("the header's text");
   const std::size_t facets = source.polygons.face_count();
   for (std::size_t f = 1; f <= facets; ++f) {
-    const std::size_t behind = kFirst + f * kFacet;
+    const std::size_t behind = stl::kFirst + f * stl::kFacet;
     if (bytes[behind - 2] == '\0' && bytes[behind - 1] == '\0') continue;
     attributes.lost.emplace_back("attribute bytes");
     break;
   }
-  if (bytes.size() > kFirst + facets * kFacet) attributes.lost.emplace_back("bytes behind the last facet");
+  if (bytes.size() > stl::kFirst + facets * stl::kFacet) attributes.lost.emplace_back("bytes behind the last facet");
 }
 
 }  // namespace

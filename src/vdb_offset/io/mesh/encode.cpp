@@ -135,15 +135,6 @@ Pieces to_off(const SharedContent& content) {
        {mesh.face_count(), append_face}});
 }
 
-/// Whether a float is enough for a number: both have the same shortest decimal form.
-bool fits_float(double value) {
-  const auto narrow = static_cast<float>(value);
-  std::string digits;
-  append_number(digits, value, {Rounding::Kind::Single});
-  double back = 0;
-  return static_cast<double>(narrow) == value || (parse_double(digits, back) && back == value);
-}
-
 /// How PLY stores the texture coordinates of corners.
 struct TextureLists {
   bool exist, single, wide;
@@ -240,6 +231,14 @@ Pieces to_stl(PolygonView mesh) {
 }
 
 }  // namespace
+
+bool fits_float(double value) {
+  const auto narrow = static_cast<float>(value);
+  std::string digits;
+  append_number(digits, value, {Rounding::Kind::Single});
+  double back = 0;
+  return static_cast<double>(narrow) == value || (parse_double(digits, back) && back == value);
+}
 
 std::uint8_t colour_byte(double colour) { return static_cast<std::uint8_t>(std::lround(colour * 255)); }
 

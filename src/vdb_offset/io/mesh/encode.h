@@ -34,4 +34,7 @@ Pieces encode(Format format, const SharedContent& content);
 /// A colour from 0 to 1 as a byte, for formats that store bytes.
 std::uint8_t colour_byte(double colour);
 
+/// Whether a float is enough for a number: both have the same shortest decimal form.
+bool fits_float(double value);
+
 }  // namespace vdb_offset::io

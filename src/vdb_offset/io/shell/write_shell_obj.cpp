@@ -5,10 +5,10 @@
 #include <array>
 
 #include "vdb_offset/base/progress_count.h"
-#include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/obj_corners.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 
@@ -129,11 +129,6 @@ class ObjRunFinder {
   std::vector<Named> named_;
 };
 
-void append_line(std::string& text, std::string_view line) {
-  text += line;
-  if (!line.ends_with('\n')) text += '\n';
-}
-
 /// Appends a g line: the name of the part, then the names of the source's line.
 void append_group(std::string& text, const ObjLine& line, ShellPart part) {
   const auto names = static_cast<std::size_t>(line.keyword.end() - line.whole.begin());
@@ -141,17 +136,6 @@ void append_group(std::string& text, const ObjLine& line, ShellPart part) {
   text += ' ';
   text += name(part);
   append_line(text, line.whole.substr(names));
-}
-
-/// The number, from 1 on, of the texture coordinates that a corner v/vt.. names; 0 for none. `so_far` is the number of
-/// texture coordinates that have been read.
-std::uint64_t texture_number(std::string_view corner, std::size_t so_far) {
-  const std::size_t slash = corner.find('/');
-  if (slash == std::string_view::npos) return 0;
-  std::int64_t number = 0;
-  if (!parse_integer(corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1), number)) return 0;
-  if (number < 0) number += static_cast<std::int64_t>(so_far) + 1;
-  return number > 0 ? static_cast<std::uint64_t>(number) : 0;
 }
 
 class ObjShellWriter {
@@ -313,16 +297,6 @@ class ObjShellWriter {
       textures.push_back(texture_number(words.token(), at.textures));
     textures.resize(source_.polygons.view().face(at.faces).size(), 0);
     return textures;
-  }
-
-  static void append_corner(std::string& text, std::uint64_t vertex, std::uint64_t texture, std::uint64_t normal) {
-    text += ' ';
-    append_integer(text, vertex);
-    if (texture > 0 || normal > 0) text += '/';
-    if (texture > 0) append_integer(text, texture);
-    if (normal == 0) return;
-    text += '/';
-    append_integer(text, normal);
   }
 
   std::size_t mesh_faces() const { return source_.polygons.face_count(); }

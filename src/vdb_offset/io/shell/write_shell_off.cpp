@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstring>
 
 #include "vdb_offset/io/base/append_number.h"
-#include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/off_rows.h"
 #include "vdb_offset/io/mesh/read/off_binary.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 
@@ -11,15 +10,6 @@
 // vertices; the source's faces; all other faces.
 namespace vdb_offset::io {
 namespace {
-
-template <class T>
-void append_big(std::string& bytes, T value) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  std::reverse(raw, raw + sizeof value);
-  bytes.append(raw, sizeof value);
-}
-void append_count(std::string& bytes, std::size_t value) { append_big(bytes, static_cast<std::int32_t>(value)); }
 
 /// Writes a binary file: the source's records with some numbers replaced.
 class BinaryShellWriter {
@@ -33,9 +23,9 @@ class BinaryShellWriter {
 
   std::string start() const {
     std::string bytes(source_.text().substr(0, *off::binary_begin(source_)));
-    append_count(bytes, shell_.polygons.positions.size());
-    append_count(bytes, shell_.polygons.face_count());
-    append_count(bytes, 0);
+    off::append_count(bytes, shell_.polygons.positions.size());
+    off::append_count(bytes, shell_.polygons.face_count());
+    off::append_count(bytes, 0);
     return bytes;
   }
   void append_vertex(std::string& bytes, ShellPart part, std::size_t v) const {
@@ -45,7 +35,7 @@ class BinaryShellWriter {
     bytes += source_.text().substr(begin, 4 * layout_.width);
     const auto put = [&](std::size_t first, const Vec3d& numbers) {
       std::string raw;
-      for (int k = 0; k < 3; ++k) append_big(raw, static_cast<float>(numbers[k]));
+      for (int k = 0; k < 3; ++k) off::append_float(raw, numbers[k]);
       bytes.replace(start + 4 * first, raw.size(), raw);
     };
     if (const auto position = skin.new_position(v)) put(0, *position);
@@ -58,9 +48,7 @@ class BinaryShellWriter {
   }
   /// Appends a face, with the colour of the source's face.
   void append_face(std::string& bytes, std::size_t f) const {
-    const auto face = shell_.polygons.view().face(f);
-    append_count(bytes, face.size());
-    for (const auto v : face) append_count(bytes, v);
+    off::append_corners(bytes, shell_.polygons.view().face(f));
     const std::uint32_t of_mesh = shell_.source_face(f);
     const std::uint64_t colour = face_at_[of_mesh] + 4 * (1 + source_.polygons.view().face(of_mesh).size());
     bytes += source_.text().substr(colour, face_at_[of_mesh + 1] - colour);
@@ -88,85 +76,35 @@ Pieces shell_to_binary(const SharedShell& content) {
 class OffShellWriter {
  public:
   explicit OffShellWriter(const SharedShell& content)
-      : content_(content), source_(content->source), shell_(content->shell) {
-    find_counts();
-    find_faces();
-  }
+      : content_(content), source_(content->source), shell_(content->shell), rows_(source_) {}
 
   /// The text up to the faces, without the inner skin.
-  std::string start() const {
-    std::string text(source_.text().substr(0, counts_begin_));
-    append_integer(text, shell_.polygons.positions.size());
-    append_integer(text += ' ', shell_.polygons.face_count());
-    text += " 0";
-    text += source_.text().substr(counts_end_, first_of_vertex(0) - counts_end_);
-    return text;
-  }
+  std::string start() const { return rows_.start(shell_.polygons.positions.size(), shell_.polygons.face_count()); }
   /// Appends a vertex of the outer skin, with the rest of its line and the comments after it.
   void append_outer_vertex(std::string& text, std::size_t v) const {
     append_numbers(text, content_->outer, v);
-    const std::size_t end = v + 1 < shell_.source_vertices() ? first_of_vertex(v + 1) : face_row_.front();
-    append_whole(text, source_.text().substr(end_of_numbers(v), end - end_of_numbers(v)));
+    const std::size_t begin = rows_.end_of_numbers(v),
+                      end = v + 1 < shell_.source_vertices() ? rows_.first_of_vertex(v + 1) : rows_.faces().front();
+    append_line(text, source_.text().substr(begin, end - begin));
   }
   /// Appends a vertex of the inner skin or a split.
   void append_other_vertex(std::string& text, std::size_t i) const {
     const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
     append_numbers(text, skin, v);
-    append_words(text, Scanner(source_.path, source_.text(), end_of_numbers(skin.source_of(v)), false, '#'));
+    off::TextRows::append_words(text, rows_.words(rows_.end_of_numbers(skin.source_of(v))));
   }
   void append_outer_face(std::string& text, std::size_t f) const {
     const std::uint32_t row = shell_.source_face(f);
     if (!std::ranges::equal(shell_.polygons.view().face(f), source_.polygons.view().face(row)))
       append_new_face(text, f);
-    else append_whole(text, source_.text().substr(face_row_[row], face_row_[row + 1] - face_row_[row]));
+    else append_line(text, rows_.face(row));
   }
   /// Appends a face of the inner skin or the rim.
   void append_other_face(std::string& text, std::size_t i) const { append_new_face(text, shell_.skin_faces() + i); }
 
  private:
   void append_new_face(std::string& text, std::size_t f) const {
-    const std::size_t source_face = shell_.source_face(f);
-    const auto face = shell_.polygons.view().face(f);
-    append_integer(text, face.size());
-    for (const auto v : face) append_integer(text += ' ', v);
-    Scanner words(source_.path, source_.text(), face_row_[source_face], false, '#');
-    for (std::size_t k = 0; k <= source_.polygons.view().face(source_face).size(); ++k) words.token_anywhere("a face");
-    append_words(text, words);
-  }
-
-  std::size_t first_of_vertex(std::size_t v) const { return source_.position_at[v].at[0]; }
-  std::size_t end_of_numbers(std::size_t v) const {
-    const ByteOffsets& last = source_.normal_at.empty() ? source_.position_at : source_.normal_at;
-    Scanner scanner(source_.path, source_.text(), last[v].at[2], false, '#');
-    scanner.token();
-    return scanner.position();
-  }
-
-  /// Finds the counts behind the keyword: of vertices, of faces and, if it is there, of edges.
-  void find_counts() {
-    Scanner scanner(source_.path, source_.text(), byte_order_mark(source_.text()), false, '#');
-    scanner.token_anywhere("the keyword OFF");
-    scanner.token_anywhere("a number of vertices");
-    counts_begin_ = scanner.last_token();
-    const bool a_line_each = scanner.at_line_end();
-    scanner.token_anywhere("a number of faces");
-    counts_end_ = scanner.position();
-    if (!a_line_each && scanner.at_line_end()) return;
-    scanner.token_anywhere("a number of edges");
-    counts_end_ = scanner.position();
-  }
-
-  /// Finds where each face's line starts. What stands behind the last face belongs to it.
-  void find_faces() {
-    Scanner scanner(source_.path, source_.text(), end_of_numbers(shell_.source_vertices() - 1), false, '#');
-    const std::size_t faces = source_.polygons.face_count();
-    face_row_.reserve(faces + 1);
-    for (std::size_t f = 0; f < faces; ++f) {
-      scanner.next_line();
-      if (scanner.at_text_end()) scanner.fail("a face");
-      face_row_.push_back(scanner.position());
-    }
-    face_row_.push_back(source_.text().size());
+    rows_.append_face(text, shell_.polygons.view().face(f), shell_.source_face(f));
   }
 
   static void append_numbers(std::string& text, const Skin& skin, std::size_t v, bool has_normals) {
@@ -178,20 +116,11 @@ class OffShellWriter {
   void append_numbers(std::string& text, const Skin& skin, std::size_t v) const {
     append_numbers(text, skin, v, !source_.normal_at.empty());
   }
-  static void append_whole(std::string& text, std::string_view lines) {
-    text += lines;
-    if (!text.ends_with('\n')) text += '\n';
-  }
-  static void append_words(std::string& text, Scanner words) {
-    while (!words.at_line_end()) (text += ' ') += words.token();
-    text += '\n';
-  }
 
   SharedShell content_;
   const MeshFile& source_;
   const Shell& shell_;
-  std::size_t counts_begin_ = 0, counts_end_ = 0;
-  std::vector<std::uint64_t> face_row_;
+  off::TextRows rows_;
 };
 
 }  // namespace

@@ -4,13 +4,12 @@
 
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/stl_layout.h"
 #include "vdb_offset/io/shell/shell_writers.h"
 #include "vdb_offset/mesh/triangulate.h"
 
 namespace vdb_offset::io {
 namespace {
-
-constexpr std::size_t kStlHeader = 80, kStlFirst = 84, kStlFacet = 50, kStlAttribute = 48;
 
 /// A triangle of the rim, and the face of the source that it comes from.
 struct RimFacet {
@@ -99,7 +98,7 @@ class StlShellWriter {
     }
   }
   void append_attribute(std::string& bytes, std::size_t source_face) const {
-    bytes += source_.text().substr(kStlFirst + source_face * kStlFacet + kStlAttribute, 2);
+    bytes += source_.text().substr(stl::kFirst + source_face * stl::kFacet + stl::kAttribute, 2);
   }
 
   SharedShell content_;
@@ -148,12 +147,12 @@ Pieces solids(const SharedShell& content, const SharedStlWriter& writer, std::ve
 
 Pieces binary_stl(const SharedShell& content, const SharedStlWriter& writer) {
   const std::size_t faces = content->shell.skin_faces();
-  std::string header(content->source.text().substr(0, kStlHeader));
+  std::string header(content->source.text().substr(0, stl::kHeader));
   append_binary(header, static_cast<std::uint32_t>(2 * faces + writer->rim_facets()));
   const auto skin = [&](ShellPart part) {
     return Section{faces, [=](std::string& bytes, std::size_t f) { writer->append_binary_facet(bytes, part, f); }};
   };
-  const std::size_t end = kStlFirst + content->source.polygons.face_count() * kStlFacet;
+  const std::size_t end = stl::kFirst + content->source.polygons.face_count() * stl::kFacet;
   return in_sections(
       header, {skin(ShellPart::Outer),
                skin(ShellPart::Inner),

@@ -12,11 +12,12 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
+#include "vdb_offset/io/mesh/stl_layout.h"
 
 namespace vdb_offset::io {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
+using stl::kFacet, stl::kFirst;
 
 class AsciiStlParser {
  public:
@@ -55,16 +56,11 @@ class AsciiStlParser {
       if (!scanner_.at_line_end()) scanner_.fail("the end of the line after three coordinates");
     }
     expect("endloop");
-    skip_remark();
+    stl::skip_remark(scanner_);
     expect("endfacet");
-    skip_remark();
+    stl::skip_remark(scanner_);
     const auto v = static_cast<std::uint32_t>(file_.polygons.positions.size());
     file_.polygons.add_face({v - 3, v - 2, v - 1});
-  }
-  /// Skips words behind the end of a loop or a facet: some writers add remarks there.
-  void skip_remark() {
-    const std::string_view next = Scanner(scanner_).token();
-    if (!next.starts_with("end") && !next.starts_with("END") && !is_word(next, "facet")) scanner_.next_line();
   }
   /// Skips a normal without reading its numbers: words and infinities are common there.
   void normal() { scanner_.skip_triple("three numbers of a normal", normal_at_.emplace_back()); }
@@ -82,7 +78,7 @@ class AsciiStlParser {
 
 std::uint32_t promised_facets(const MeshFile& file) {
   std::uint32_t count = 0;
-  std::memcpy(&count, file.text().data() + kHeaderBytes - 4, 4);
+  std::memcpy(&count, file.text().data() + kFirst - 4, 4);
   return count;
 }
 
@@ -96,8 +92,8 @@ void parse_binary(MeshFile& file) {
   if (3 * facets > kMostVertices)
     throw InvalidInput(
         fmt::format("{}, byte 80: expected at most {} facets, got {}", file.path, kMostVertices / 3, facets));
-  file.normal_at = ByteOffsets(facets, kHeaderBytes, kFacetBytes, {0, 4, 8});
-  file.position_at = ByteOffsets(3 * facets, kHeaderBytes + 12, kFacetBytes, {0, 4, 8}, 3, 12);
+  file.normal_at = ByteOffsets(facets, kFirst, kFacet, {0, 4, 8});
+  file.position_at = ByteOffsets(3 * facets, kFirst + 12, kFacet, {0, 4, 8}, 3, 12);
   Polygons& polygons = file.polygons;
   require_memory(facets * (3 * sizeof(Vec3d) + 4 * sizeof(std::uint32_t)), file.path);
   polygons.positions.resize(3 * facets);
@@ -128,10 +124,10 @@ void parse_binary(MeshFile& file) {
 void parse_stl(MeshFile& file) {
   const std::string_view bytes = file.text();
   const bool says_solid = is_word(Scanner(file.path, bytes, byte_order_mark(bytes)).first_word(), "solid");
-  const bool holds_header = bytes.size() >= kHeaderBytes;
+  const bool holds_header = bytes.size() >= kFirst;
   // Binary files may also start with "solid": their size tells them from texts. Bytes behind the last facet are kept.
-  if (holds_header && (bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)} ||
-                       (!says_solid && bytes.size() > kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)})))
+  if (holds_header && (bytes.size() == kFirst + kFacet * std::size_t{promised_facets(file)} ||
+                       (!says_solid && bytes.size() > kFirst + kFacet * std::size_t{promised_facets(file)})))
     return parse_binary(file);
   if (says_solid) {
     use_line_feeds(file);
@@ -141,8 +137,8 @@ void parse_stl(MeshFile& file) {
     throw InvalidInput(fmt::format("{}, byte 0: expected 'solid' or a binary STL header of 84 bytes, got {} bytes",
                                    file.path, bytes.size()));
   throw InvalidInput(fmt::format("{}, byte 80: expected {} facets, which take {} bytes, got a file of {} bytes",
-                                 file.path, promised_facets(file),
-                                 kHeaderBytes + kFacetBytes * std::size_t{promised_facets(file)}, bytes.size()));
+                                 file.path, promised_facets(file), kFirst + kFacet * std::size_t{promised_facets(file)},
+                                 bytes.size()));
 }
 
 }  // namespace vdb_offset::io
