@@ -14,11 +14,13 @@
 #include <string>
 #include <vector>
 
+#include "support/splitter.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/refined_file.h"
 
 using namespace vdb_offset;
 
@@ -113,6 +115,24 @@ void check_properties(const io::MeshFile& file) {
   }
 }
 
+/// Splits the longest face, and faces on the other sides of its first two edges. The refined file holds the refinement,
+/// or this throws.
+void check_refined(const io::MeshFile& file) {
+  const PolygonView mesh = file.polygons.view();
+  std::uint32_t longest = 0;
+  for (std::uint32_t f = 1; f < mesh.face_count(); ++f)
+    if (mesh.face(f).size() > mesh.face(longest).size()) longest = f;
+  const auto face = mesh.face(longest);
+  const Refinement refinement = Splitter(file).edge(face[0], face[1]).edge(face[1], face[2]).inside(longest).run();
+  const io::RefinedFile refined = io::refine_file(file, refinement);
+  check_mesh(refined.file);
+  require(refined.file.encoding == file.encoding, "the encoding stays");
+  require(refined.file.has_carriage_returns ||
+              io::patched_bytes(refined.file, refined.file.polygons.positions) == refined.file.text(),
+          "a refined mesh that is not moved keeps every byte");
+  io::read_attributes(refined.file);
+}
+
 /// Takes a few lines away, copies or moves them: what single bytes seldom come to, such as a second element of a name.
 /// False if nothing was done.
 bool mutate_lines(std::string& text, std::minstd_rand& random) {
@@ -158,5 +178,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // Coordinates of all digits, and faces that turn; nothing becomes larger than it was, so that it can be stored.
   for (Vec3d& p : turned) p = Vec3d(-p[2] / 3, p[0] / 7, p[1]);
   check_moved(*file, turned);
+  check_refined(*file);
   return 0;
 }

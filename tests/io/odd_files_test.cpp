@@ -221,6 +221,19 @@ TEST_CASE("stl: a mark of byte order stands before a text, and stays", "[io]") {
   CHECK(moved(file, {0, 0, 0}) == text);
 }
 
+TEST_CASE("shells: new rows of a text end as its lines do", "[io][shell]") {
+  const Folder folder;
+  std::string lost;
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\n" + kXyz +
+                          "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + kPoints +
+                          "3 0 1 2\n";
+  for (const auto& [format, text] :
+       {std::pair{Format::Ply, ply}, {Format::Off, "OFF\n4 1 0\n" + kPoints + "3 0 1 2\n"}}) {
+    const io::MeshFile shell = shell_there_and_back(folder, parse(format, replaced(text, "\n", "\r\n")), lost);
+    CHECK(std::ranges::count(shell.text(), '\n') == std::ranges::count(shell.text(), '\r'));
+  }
+}
+
 TEST_CASE("io: texts whose lines end in carriage returns are read and kept", "[io]") {
   const Folder folder;
   const std::pair<Format, std::string> texts[] = {

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <map>
 #include <random>
 
 #include "support/bytes.h"
 #include "support/folder.h"
-#include "vdb_offset/base/rounding.h"
+#include "support/splitter.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 
@@ -21,75 +20,6 @@ using io::Format;
 // Names of its own, as tests are compiled several files at once.
 namespace refined_files {
 namespace {
-
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-/// Splits edges at their midpoints, and triangles at a point inside. A face around a split edge becomes triangles
-/// around the midpoint of its first one.
-class Splitter {
- public:
-  explicit Splitter(const io::MeshFile& file) : mesh_(file.polygons), precision_(file.precision) {
-    refined_.polygons.positions = mesh_.positions;
-  }
-
-  Splitter& edge(std::uint32_t a, std::uint32_t b) {
-    midpoint_[std::minmax(a, b)] = kNone;
-    return *this;
-  }
-  Splitter& inside(std::uint32_t face) {
-    inside_.push_back(face);
-    return *this;
-  }
-
-  Refinement run() {
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) add_pieces(f);
-    return std::move(refined_);
-  }
-
- private:
-  std::uint32_t add_vertex(const VertexOrigin& origin) {
-    Vec3d position(0.0);
-    for (std::size_t k = 0; k < 3; ++k) position += origin.share[k] * mesh_.positions[origin.vertex[k]];
-    refined_.polygons.positions.push_back(precision_(position));
-    refined_.added.push_back(origin);
-    return static_cast<std::uint32_t>(refined_.polygons.positions.size() - 1);
-  }
-  void add_pieces(std::uint32_t f) {
-    const auto face = mesh_.view().face(f);
-    std::vector<std::uint32_t> around;
-    std::size_t first = kNone;
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const std::uint32_t a = face[k], b = face[(k + 1) % face.size()], other = face[(k + 2) % face.size()];
-      around.push_back(a);
-      const auto split = midpoint_.find(std::minmax(a, b));
-      if (split == midpoint_.end()) continue;
-      if (split->second == kNone) split->second = add_vertex({f, {a, b, other}, {0.5, 0.5, 0}});
-      if (first == kNone) first = around.size();
-      around.push_back(split->second);
-    }
-    if (std::find(inside_.begin(), inside_.end(), f) != inside_.end()) {
-      const std::uint32_t centre = add_vertex({f, {face[0], face[1], face[2]}, {0.5, 0.25, 0.25}});
-      for (std::size_t k = 0; k < around.size(); ++k)
-        add_piece(f, {centre, around[k], around[(k + 1) % around.size()]});
-    } else if (first != kNone) {
-      std::rotate(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(first), around.end());
-      for (std::size_t k = 2; k < around.size(); ++k) add_piece(f, {around[0], around[k - 1], around[k]});
-    } else {
-      add_piece(f, around);
-    }
-  }
-  void add_piece(std::uint32_t f, const std::vector<std::uint32_t>& corners) {
-    refined_.polygons.corners.insert(refined_.polygons.corners.end(), corners.begin(), corners.end());
-    refined_.polygons.close_face();
-    refined_.parent.push_back(f);
-  }
-
-  const Polygons& mesh_;
-  Rounding precision_;
-  std::map<Edge, std::uint32_t> midpoint_;
-  std::vector<std::uint32_t> inside_;
-  Refinement refined_;
-};
 
 io::MeshFile parse(Format format, const std::string& bytes) {
   return io::parse_mesh(std::string("a.") + io::name(format), format, bytes);
@@ -102,7 +32,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 /// The text of a file of which edges are split.
-std::string split_text(Format format, const std::string& text, const std::vector<Edge>& edges) {
+std::string split_text(Format format, const std::string& text, const std::vector<Splitter::Edge>& edges) {
   const io::MeshFile source = parse(format, text);
   Splitter splitter(source);
   for (const auto& [a, b] : edges) splitter.edge(a, b);
@@ -150,10 +80,10 @@ TEST_CASE("refined OBJ: corners without texture coordinates or normals stay with
 TEST_CASE("refined OBJ: indices that count back mean the same as before", "[io]") {
   const std::string objects =
       "v 0 0 0\nv 2 0 0\nv 2 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nf -3/-3 -2/-2 -1/-1\n"
-      "v 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nf -4 -3 -2 -1 # all\nl -4 -2\np -1\nf 4/-3 5/-2 6/-1\n";
+      "v 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nf -4 -3 -2 -1 # all\nl -4 -2\np -1\ncurv -1 1 -4 -2\nf 4/-3 5/-2 6/-1\n";
   CHECK(split_text(Format::Obj, objects, {{0, 1}}) ==
         "v 0 0 0\nv 2 0 0\nv 2 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0\nf 8/4 2/2 3/3\nf 8/4 3/3 1/1\n"
-        "v 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nv 1 0 0\nf 4 5 6 7 # all\nl 4 6\np 7\nf 4/1 5/2 6/3\n");
+        "v 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nv 1 0 0\nf 4 5 6 7 # all\nl 4 6\np 7\ncurv -1 1 4 6\nf 4/1 5/2 6/3\n");
 }
 
 TEST_CASE("refined OBJ: line ends, continued lines and numbers behind coordinates", "[io]") {
@@ -310,6 +240,16 @@ TEST_CASE("refined PLY: corners get a wider type where their numbers need it", "
   }
 }
 
+TEST_CASE("refined PLY: rows wherever they stand, and lists of vertices", "[io]") {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement face 2\nproperty list uchar int vertex_indices\n"
+      "element vertex 4\nproperty list uchar int tags\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  CHECK(split_text(Format::Ply, header + "3 0 1 2 3\n0 2 3\n\n 2 8 9 0 0 0 0 2\n0 0 1 7 2 2 0\n0 0 2 0", {{0, 1}}) ==
+        replaced(replaced(header, "face 2", "face 3"), "vertex 4", "vertex 5") +
+            "3 4 1 2\n3 4 2 0 3\n0 2 3\n\n 2 8 9 0 0 0 0 2\n0 0 1 7 2 2 0\n0 0 2 0\n2 8 9 1 0 0");
+}
+
 TEST_CASE("refined PLY: strips become faces", "[io]") {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
@@ -341,6 +281,9 @@ TEST_CASE("refined OFF: text", "[io]") {
   // Colours from 0 to 1 are no bytes, and a face that is not split keeps its line.
   CHECK(split_text(Format::Off, "COFF 3 1\n0 0 0 1 0 0 1\n2 0 0 0 0 0 1\n0 2 0 1 0 0 1\n3  0 1 2", {{0, 1}}) ==
         "COFF 4 2 0\n0 0 0 1 0 0 1\n2 0 0 0 0 0 1\n0 2 0 1 0 0 1\n1 0 0 0.5 0 0 1\n3 3 1 2\n3 3 2 0");
+  const std::string few = "OFF\r\n3 1\r\n0 0 0\r\n2 0 0\r\n0 2 0\r\n3 0 1 2\r\n";
+  CHECK(split_text(Format::Off, few, {{0, 1}}) ==
+        "OFF\r\n4 2 0\r\n0 0 0\r\n2 0 0\r\n0 2 0\r\n1 0 0\r\n3 3 1 2\r\n3 3 2 0\r\n");
   CHECK_THAT(split_text(Format::Off, replaced(off, "3 0 2 3", "3  0  2 3 0.5"), {{0, 1}}),
              Catch::EndsWith("# red\n\n3  0  2 3 0.5\n"));
 }

@@ -18,6 +18,12 @@ namespace vdb_offset::io {
 /// Whether a character separates words within a line.
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
+/// How the lines of a text end, by the first one: with a line feed, or a carriage return and a line feed.
+inline std::string_view line_end_of(std::string_view text) {
+  const std::size_t newline = text.find('\n');
+  return newline != std::string_view::npos && newline > 0 && text[newline - 1] == '\r' ? "\r\n" : "\n";
+}
+
 /// Longest word, in bytes, that is read as a number. No program writes longer ones: the largest double, written out,
 /// has 309 digits.
 inline constexpr std::size_t kLongestNumber = 330;

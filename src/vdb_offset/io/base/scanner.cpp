@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/line_records.h"
@@ -43,6 +44,11 @@ bool parse_double(std::string_view token, double& value) {
   if (end != last || first == last) return false;
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(first, last).c_str(), nullptr);
   return error != std::errc::invalid_argument;
+}
+
+double number_or_nan(std::string_view token) {
+  double value = 0;
+  return parse_double(token, value) ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool parse_integer(std::string_view token, std::int64_t& value) {

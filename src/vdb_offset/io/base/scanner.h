@@ -85,6 +85,9 @@ bool is_word(std::string_view text, std::string_view word);
 /// Parses a whole token as a number, which may be an infinity or a NaN; false if it is none, or too long to be one.
 bool parse_double(std::string_view token, double& value);
 
+/// The number that a whole token stands for; NaN if it is no number.
+double number_or_nan(std::string_view token);
+
 /// Parses a whole token as an integer; false if it is none or does not fit.
 bool parse_integer(std::string_view token, std::int64_t& value);
 

@@ -28,12 +28,6 @@ Scanner scanner_at(const MeshFile& source, std::uint64_t byte) {
   return {source.path, source.text(), byte, source.format == Format::Obj, source.format == Format::Ply ? '\0' : '#'};
 }
 
-/// The number that a word stands for; NaN if it is no number.
-double number_or_nan(std::string_view word) {
-  double value = kNaN;
-  return parse_double(word, value) ? value : kNaN;
-}
-
 /// Removes an extra from the list of what would be lost. Returns whether it was listed.
 bool is_kept(Attributes& attributes, const std::string& extra) { return std::erase(attributes.lost, extra) > 0; }
 

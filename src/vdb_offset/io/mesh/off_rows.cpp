@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "vdb_offset/io/base/append_number.h"
+#include "vdb_offset/io/base/line_records.h"
 
 namespace vdb_offset::io::off {
 namespace {
@@ -27,7 +28,7 @@ void append_corners(std::string& bytes, std::span<const std::uint32_t> face) {
   for (const auto v : face) append_count(bytes, v);
 }
 
-TextRows::TextRows(const MeshFile& source) : source_(source) {
+TextRows::TextRows(const MeshFile& source) : source_(source), line_end_(line_end_of(source.text())) {
   find_counts();
   find_faces();
 }
@@ -85,9 +86,9 @@ void TextRows::append_face(std::string& text, std::span<const std::uint32_t> cor
   append_words(text, behind_corners(f));
 }
 
-void TextRows::append_words(std::string& text, Scanner words) {
+void TextRows::append_words(std::string& text, Scanner words) const {
   while (!words.at_line_end()) (text += ' ') += words.token();
-  text += '\n';
+  text += line_end_;
 }
 
 }  // namespace vdb_offset::io::off

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,13 +45,15 @@ class TextRows {
   void append_face(std::string& text, std::span<const std::uint32_t> corners, std::size_t f) const;
 
   /// Appends the words that have not been read, each behind a blank, and the end of the line.
-  static void append_words(std::string& text, Scanner words);
+  void append_words(std::string& text, Scanner words) const;
+  std::string_view line_end() const { return line_end_; }
 
  private:
   void find_counts();
   void find_faces();
 
   const MeshFile& source_;
+  std::string_view line_end_;
   std::size_t counts_begin_ = 0, counts_end_ = 0;
   std::vector<std::uint64_t> face_row_;
 };

@@ -8,6 +8,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
+#include "vdb_offset/io/base/line_records.h"
 
 namespace vdb_offset::io::ply {
 namespace {
@@ -51,9 +52,7 @@ Rows::Rows(const MeshFile& source)
       vertices_(&element("vertex", source.polygons.positions.size())),
       faces_(&element("face", source.polygons.face_count())),
       corner_list_(&*std::find_if(faces_->properties.begin(), faces_->properties.end(), is_corner_list)),
-      line_end_(source.text().substr(source.text().find_first_of("\r\n")).starts_with("\r\n")
-                    ? "\r\n"
-                    : std::string(1, header_.line_end)) {
+      line_end_(header_.line_end == '\r' ? "\r" : line_end_of(source.text())) {
   find_rows();
 }
 

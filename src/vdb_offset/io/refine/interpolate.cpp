@@ -11,13 +11,6 @@
 namespace vdb_offset::io {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-double number_or_nan(std::string_view word) {
-  double value = kNaN;
-  return parse_double(word, value) ? value : kNaN;
-}
-
 std::array<double, 3> numbers_of(const std::array<std::string_view, 3>& words) {
   return {number_or_nan(words[0]), number_or_nan(words[1]), number_or_nan(words[2])};
 }
@@ -48,7 +41,7 @@ double interpolated(const VertexOrigin& origin, const std::array<double, 3>& of)
   double sum = 0, least = of[nearest(origin)], most = least;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(origin.share[k] > 0)) continue;
-    if (!std::isfinite(of[k])) return kNaN;
+    if (!std::isfinite(of[k])) return std::numeric_limits<double>::quiet_NaN();
     sum += origin.share[k] * of[k];
     least = std::min(least, of[k]);
     most = std::max(most, of[k]);

@@ -16,17 +16,17 @@ namespace vdb_offset::io {
 namespace {
 
 /// The lines that corners of faces refer to.
-enum Kind : std::size_t { kVertex, kTexture, kNormal, kKinds };
-constexpr std::string_view kKeywords[kKinds] = {"v", "vt", "vn"};
+enum LineKind : std::size_t { kVLines, kVtLines, kVnLines, kLineKinds };
+constexpr std::string_view kKeywords[kLineKinds] = {"v", "vt", "vn"};
 
 /// How many lines of each kind, and how many faces, have been read.
 struct ObjCounts {
-  std::array<std::size_t, kKinds> lines{};
+  std::array<std::size_t, kLineKinds> lines{};
   std::size_t faces = 0;
 };
 
 std::size_t kind_of(const ObjLine& line) {
-  return line.is("v") ? kVertex : line.is("vt") ? kTexture : line.is("vn") ? kNormal : kKinds;
+  return line.is("v") ? kVLines : line.is("vt") ? kVtLines : line.is("vn") ? kVnLines : kLineKinds;
 }
 
 /// How many words stand in front of those that refer to vertices; none in lines that do not.
@@ -35,11 +35,6 @@ std::optional<std::size_t> words_before_indices(const ObjLine& line) {
   if (line.is("curv")) return 2;
   if (line.is("surf")) return 4;
   return std::nullopt;
-}
-
-std::string_view line_end_of(std::string_view text) {
-  const std::size_t newline = text.find('\n');
-  return newline != std::string_view::npos && newline > 0 && text[newline - 1] == '\r' ? "\r\n" : "\n";
 }
 
 /// What a refinement needs to know of the whole file.
@@ -51,10 +46,10 @@ struct ObjOverview {
       before.push_back(counts);
       const std::size_t begin = run == 0 ? byte_order_mark(source.text()) : cuts[run];
       for_each_obj_line(source.path, source.text(), begin, cuts[run + 1], [&](const ObjLine& line) {
-        if (const std::size_t kind = kind_of(line); kind != kKinds) {
+        if (const std::size_t kind = kind_of(line); kind != kLineKinds) {
           ++counts.lines[kind];
           last_end[kind] = line.begin() + line.whole.size();
-          if (kind == kTexture) texture_at.push_back(line.words().position());
+          if (kind == kVtLines) texture_at.push_back(line.words().position());
         } else if (line.is("f")) {
           ++counts.faces;
           for (Scanner words = line.words(); !words.at_line_end();) add_corner(words.token(), counts);
@@ -71,15 +66,15 @@ struct ObjOverview {
   }
 
   std::vector<std::size_t> cuts;
-  std::vector<ObjCounts> before;               // of each run between two cuts: what stands in front of it
-  std::array<std::size_t, kKinds> last_end{};  // of each kind: the byte behind the last line
-  std::vector<std::uint64_t> texture_at;       // of each vt line: the byte behind the keyword
-  std::vector<std::uint32_t> corner_texture;   // of each corner; empty if no corner has texture coordinates
-  bool names_unknown_texture = false;          // some corner names texture coordinates that are not there
+  std::vector<ObjCounts> before;                   // of each run between two cuts: what stands in front of it
+  std::array<std::size_t, kLineKinds> last_end{};  // of each kind: the byte behind the last line
+  std::vector<std::uint64_t> texture_at;           // of each vt line: the byte behind the keyword
+  std::vector<std::uint32_t> corner_texture;       // of each corner; empty if no corner has texture coordinates
+  bool names_unknown_texture = false;              // some corner names texture coordinates that are not there
 
  private:
   void add_corner(std::string_view corner, const ObjCounts& counts) {
-    const std::uint64_t number = texture_number(corner, counts.lines[kTexture]);
+    const std::uint64_t number = texture_number(corner, counts.lines[kVtLines]);
     corner_texture.push_back(number == 0 ? kNone
                                          : static_cast<std::uint32_t>(std::min<std::uint64_t>(number, kNone) - 1));
   }
@@ -114,7 +109,7 @@ class ObjRefiner {
       else append_with_same_indices(text, line, at);
       at.faces += line.is("f");
       const std::size_t kind = kind_of(line);
-      if (kind == kKinds) return;
+      if (kind == kLineKinds) return;
       ++at.lines[kind];
       if (line.begin() + line.whole.size() == overview_.last_end[kind]) append_added(text, kind);
     });
@@ -138,8 +133,8 @@ class ObjRefiner {
   }
 
   std::size_t added_count(std::size_t kind) const {
-    return kind == kVertex    ? content_->refinement.added.size()
-           : kind == kTexture ? texture_.added.size()
+    return kind == kVLines    ? content_->refinement.added.size()
+           : kind == kVtLines ? texture_.added.size()
                               : normals_.added.size();
   }
 
@@ -148,8 +143,8 @@ class ObjRefiner {
     if (added_count(kind) > 0 && !text.ends_with('\n')) text += line_end_;
     for (std::size_t i = 0; i < added_count(kind); ++i) {
       text += kKeywords[kind];
-      if (kind == kVertex) append_vertex(text, i);
-      else if (kind == kTexture) append_texture(text, texture_.added[i]);
+      if (kind == kVLines) append_vertex(text, i);
+      else if (kind == kVtLines) append_texture(text, texture_.added[i]);
       else append_normal(text, normals_.added[i]);
       text += line_end_;
     }
@@ -199,11 +194,11 @@ class ObjRefiner {
 
   /// Appends a line as it is, but for indices that count back over lines that are added: these become plain numbers.
   void append_with_same_indices(std::string& text, const ObjLine& line, const ObjCounts& at) const {
-    std::array<bool, kKinds> moves{};
-    for (std::size_t kind = 0; kind < kKinds; ++kind)
+    std::array<bool, kLineKinds> moves{};
+    for (std::size_t kind = 0; kind < kLineKinds; ++kind)
       moves[kind] = added_count(kind) > 0 && line.begin() >= overview_.last_end[kind];
     const auto before = words_before_indices(line);
-    if (!before || moves == std::array<bool, kKinds>{} || line.whole.find('-') == std::string_view::npos) {
+    if (!before || moves == std::array<bool, kLineKinds>{} || line.whole.find('-') == std::string_view::npos) {
       text += line.whole;
       return;
     }
@@ -218,9 +213,9 @@ class ObjRefiner {
     }
     text += text_.substr(copied, line.begin() + line.whole.size() - copied);
   }
-  static void append_index(std::string& text, std::string_view word, const std::array<bool, kKinds>& moves,
+  static void append_index(std::string& text, std::string_view word, const std::array<bool, kLineKinds>& moves,
                            const ObjCounts& at) {
-    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    for (std::size_t kind = 0; kind < kLineKinds; ++kind) {
       const std::size_t slash = std::min(word.find('/'), word.size());
       std::int64_t number = 0;
       const bool counts_back = moves[kind] && parse_integer(word.substr(0, slash), number) && number < 0;

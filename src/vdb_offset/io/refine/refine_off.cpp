@@ -104,7 +104,7 @@ class TextOffRefiner {
     if (!source_.normal_at.empty())
       append_interpolated_normal(text, origin, at_origin(origin, [&](auto v) { return normal(v); }));
     append_interpolated_words(text, origin, at_origin(origin, [&](auto v) { return tail(v); }), byte_colours_);
-    text += '\n';
+    text += rows_.line_end();
   }
   /// What stands between vertices and faces.
   void append_gap(std::string& text) const {
@@ -121,7 +121,7 @@ class TextOffRefiner {
     Scanner words = rows_.behind_corners(f);
     std::size_t behind = words.position();
     for (; !words.at_line_end(); behind = words.position()) words.token();
-    text.pop_back();  // the last line ends as that of the face
+    text.resize(text.size() - rows_.line_end().size());  // the last line ends as that of the face
     text += source_.text().substr(behind, rows_.faces()[f + 1] - behind);
   }
 

@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "vdb_offset/base/memory.h"
-#include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
@@ -22,7 +20,11 @@ namespace {
   throw InvalidInput(fmt::format("refine_file: expected {}, got {}", expected, found));
 }
 
-bool is_same(const Vec3d& a, const Vec3d& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+/// Whether two positions are the same to the bit.
+bool is_same_position(const Vec3d& a, const Vec3d& b) {
+  const auto bits = [](double number) { return std::bit_cast<std::uint64_t>(number); };
+  return bits(a[0]) == bits(b[0]) && bits(a[1]) == bits(b[1]) && bits(a[2]) == bits(b[2]);
+}
 
 /// Whether each of `count` faces has pieces, in their order.
 bool are_parents(std::span<const std::uint32_t> parent, std::size_t count) {
@@ -48,7 +50,7 @@ void require_fit(const Polygons& source, const Refinement& refinement) {
   const Polygons& refined = refinement.polygons;
   const std::size_t vertices = source.positions.size(), faces = source.face_count();
   if (refined.positions.size() != vertices + refinement.added.size() ||
-      !std::equal(source.positions.begin(), source.positions.end(), refined.positions.begin(), is_same))
+      !std::equal(source.positions.begin(), source.positions.end(), refined.positions.begin(), is_same_position))
     misfit(fmt::format("a refinement of {} vertices", vertices),
            fmt::format("one of {} vertices, or of others", refinement.source_vertices()));
   if (refinement.parent.size() != refined.face_count() || !are_parents(refinement.parent, faces))
@@ -84,6 +86,9 @@ Pieces in_own_format(const SharedRefined& content, std::vector<std::string>& los
 
 MeshFile parse_refined(const MeshFile& source, const Refinement& refinement, std::vector<std::string>& lost) {
   const auto content = std::make_shared<const RefinedContent>(RefinedContent{source, refinement});
+  // A face takes about as many bytes as before, and a text grows by doubling.
+  const std::size_t of_face = source.text().size() / source.polygons.face_count() + 1;
+  require_memory(2 * of_face * refinement.polygons.face_count(), source.path);
   std::string bytes = join(with_line_ends_of(source, in_own_format(content, lost)));
   source.bytes.require_unchanged(source.path);
   return parse_mesh(source.path, source.format, std::move(bytes));
@@ -98,7 +103,7 @@ void require_same(const RefinedFile& refined, const Refinement& refinement) {
     misfit("to read the faces that were written", "others");
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3d& position = wanted.positions[refined.vertex.empty() ? v : refined.vertex[v]];
-    if (!is_same(found.positions[v], position))
+    if (!is_same_position(found.positions[v], position))
       misfit(fmt::format("a position of vertex {} that the file can hold", v),
              fmt::format("{}, {}, {}", position[0], position[1], position[2]));
   }

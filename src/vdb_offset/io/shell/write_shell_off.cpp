@@ -91,7 +91,7 @@ class OffShellWriter {
   void append_other_vertex(std::string& text, std::size_t i) const {
     const auto [skin, v] = content_->vertex(static_cast<std::uint32_t>(shell_.source_vertices() + i));
     append_numbers(text, skin, v);
-    off::TextRows::append_words(text, rows_.words(rows_.end_of_numbers(skin.source_of(v))));
+    rows_.append_words(text, rows_.words(rows_.end_of_numbers(skin.source_of(v))));
   }
   void append_outer_face(std::string& text, std::size_t f) const {
     const std::uint32_t row = shell_.source_face(f);
