@@ -92,6 +92,10 @@ TEST_CASE("refined OBJ: line ends, continued lines and numbers behind coordinate
       "v 0 0 0 1 0 0\nv 2 0 0 0.5 1 0\nv 2 2 0 1 0 0\nv 1 0 0 0.75 0.5 0\nf 4 2 3\nf 4 3 1\nf 4 1 3\nf 4 3 2\n";
   CHECK(split_text(Format::Obj, coloured, {{0, 1}}) == expected);
   CHECK(split_text(Format::Obj, replaced(coloured, "\n", "\r\n"), {{0, 1}}) == replaced(expected, "\n", "\r\n"));
+  // A backslash in the last line joins no new ones to it.
+  for (const std::string end : {"", "\\\n", "\\\r\n"})
+    CHECK_THAT(split_text(Format::Obj, "f 1 2 3\nv 0 0 0\nv 2 0 0\nv 2 2 0 " + end, {{0, 1}}),
+               Catch::EndsWith("\nv 1 0 0\n"));
   const std::string bytes =
       replaced(replaced(replaced(coloured, " 1 0 0", " 255 0 0"), "0.5 1 0", "0 9 0"), "2 0 0 255", "2 0 0");
   CHECK_THAT(split_text(Format::Obj, bytes, {{0, 1}}), Catch::Contains("v 1 0 0 128 5 0\n"));

@@ -140,7 +140,9 @@ class ObjRefiner {
 
   /// Appends the lines of a kind that are added.
   void append_added(std::string& text, std::size_t kind) const {
-    if (added_count(kind) > 0 && !text.ends_with('\n')) text += line_end_;
+    // A backslash at the end of the text would join the next line.
+    const auto goes_on = [&] { return !text.ends_with('\n') || text.ends_with("\\\n") || text.ends_with("\\\r\n"); };
+    while (added_count(kind) > 0 && goes_on()) text += line_end_;
     for (std::size_t i = 0; i < added_count(kind); ++i) {
       text += kKeywords[kind];
       if (kind == kVLines) append_vertex(text, i);

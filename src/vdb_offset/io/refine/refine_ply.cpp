@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/mesh/ply_rows.h"
 #include "vdb_offset/io/refine/interpolate.h"
 #include "vdb_offset/io/refine/refine_writers.h"
@@ -93,16 +92,16 @@ class PlyRefiner {
   }
 
   /// Begins a row of a text, on a line of its own.
-  std::size_t begin_row(std::string& bytes) const {
+  void begin_row(std::string& bytes) const {
     if (rows_.is_text()) bytes += rows_.line_end();
-    return bytes.size();
   }
 
   void append_vertex(std::string& bytes, std::size_t added) const {
     const VertexOrigin& origin = content_->refinement.added[added];
     std::array<std::size_t, 3> at = at_origin(origin, [&](auto v) { return std::size_t{rows_.vertex_rows()[v]}; });
     const std::array<std::string, 3> normal = normal_of(origin);
-    const std::size_t start = begin_row(bytes);
+    begin_row(bytes);
+    const std::size_t start = bytes.size();
     for (std::size_t i = 0; i < rules_.size(); ++i) {
       const Property& property = rows_.vertices().properties[i];
       if (rules_[i].blend == Blend::Nearest) {
@@ -178,16 +177,15 @@ class PlyRefiner {
     }
     CornerFinder finder(content_->mesh());
     for (std::uint32_t piece = content_->first_piece[f]; piece < content_->first_piece[f + 1]; ++piece) {
-      std::size_t start = bytes.size();
       if (rows_.is_text() && piece == content_->first_piece[f])
-        start = (bytes += row.substr(0, row.find_first_not_of(" \t\r\n\v\f"))).size();
-      else start = begin_row(bytes);
-      append_piece(bytes, start, f, piece, finder);
+        bytes += row.substr(0, row.find_first_not_of(" \t\r\n\v\f"));
+      else begin_row(bytes);
+      append_piece(bytes, f, piece, finder);
     }
   }
 
-  void append_piece(std::string& bytes, std::size_t start, std::size_t f, std::uint32_t piece,
-                    CornerFinder& finder) const {
+  void append_piece(std::string& bytes, std::size_t f, std::uint32_t piece, CornerFinder& finder) const {
+    const std::size_t start = bytes.size();
     std::size_t at = rows_.face_rows()[f];
     for (const Property& property : rows_.faces().properties) {
       if (&property == &rows_.corner_list()) {
