@@ -341,6 +341,25 @@ TEST_CASE("refined STL: facets of a text keep their normals, solids and remarks"
   CHECK(io::wall_names(refined.file).of_face == std::vector<std::uint32_t>{0, 0, 1});
 }
 
+TEST_CASE("refined STL: facets that meet at an added vertex each have a vertex of their own there", "[io]") {
+  const Folder folder;
+  const io::MeshFile source = parse(Format::Stl, kStl);
+  Refinement welded;
+  welded.polygons.positions = source.polygons.positions;
+  welded.polygons.positions.emplace_back(1, 1, 0);
+  for (const std::array<std::uint32_t, 3> piece : {std::array{6u, 0u, 1u}, {6u, 1u, 2u}, {6u, 4u, 5u}, {6u, 5u, 3u}})
+    welded.polygons.add_face({piece[0], piece[1], piece[2]});
+  welded.parent = {0, 0, 1, 1};
+  welded.added = {{0, {2, 0, 1}, {0.5, 0.5, 0}}};
+  const io::RefinedFile refined = io::refine_file(source, welded);
+  CHECK(refined.vertex == welded.polygons.corners);
+  CHECK(io::positions_in_triangles(welded.polygons.view(), refined.file.polygons.view()) == welded.polygons.positions);
+  io::write_vertex_map(folder.file("map.txt"), welded, refined.vertex);
+  const std::string origin = " 0 2 0 1 0.5 0.5 0\n";
+  CHECK_THAT(slurp(folder.file("map.txt")),
+             Catch::EndsWith("\n0" + origin + "3" + origin + "6" + origin + "9" + origin));
+}
+
 TEST_CASE("refined STL: facets of a binary file keep their normals and attribute bytes", "[io]") {
   std::string bytes = std::string(80, 'h') + raw(std::uint32_t{2});
   const auto facet = [](std::array<float, 9> corners, float nz, std::uint16_t attribute) {
