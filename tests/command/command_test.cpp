@@ -297,6 +297,35 @@ TEST_CASE("command: 0 and an output when all is well", "[command]") {
   CHECK(shell("sphere.obj sphere.obj -d -1% -q").code == 0);  // in place
 }
 
+TEST_CASE("command: all causes of a quarter or more of the faces' error are told, the largest first", "[command]") {
+  const ShellCommand shell;
+  // A coarse ball beside a cube that is as large: the ball's faces are coarse, the cube's have corners.
+  const auto line_of = [&](double radius, const std::string& options) {
+    Polygons both = scene::icosphere(radius, 1);
+    const auto first = static_cast<std::uint32_t>(both.positions.size());
+    const Polygons cube = scene::box(Vec3d(1), 6, false);
+    for (const Vec3d& p : cube.positions) both.positions.push_back(p + Vec3d(5, 0, 0));
+    for (std::size_t f = 0; f < cube.face_count(); ++f) {
+      for (const auto v : cube.view().face(f)) both.corners.push_back(first + v);
+      both.close_face();
+    }
+    io::write_mesh(shell.file("both.obj"), both.view());
+    const Run run = shell("both.obj out.obj -d 0.2 " + options);
+    CHECK(run.code == 0);
+    const auto begin = run.out.find("faces are off");
+    return begin == std::string::npos ? "" : run.out.substr(begin, run.out.find('\n', begin) - begin);
+  };
+  const auto kCoarse = Catch::Contains("because they are coarse: a finer mesh helps ("),
+             kCorners = Catch::Contains("beside sharp corners: --corners miter puts faces at the distance (");
+  const std::string coarse_first = line_of(1, ""), corners_first = line_of(0.8, "");
+  CHECK_THAT(coarse_first, Catch::StartsWith("faces are off mostly because") && kCoarse && kCorners);
+  CHECK_THAT(coarse_first, Catch::Contains(" % of it), and beside"));
+  CHECK_THAT(corners_first, Catch::StartsWith("faces are off mostly beside") && kCoarse && kCorners);
+  CHECK_THAT(line_of(1, "--corners miter"), Catch::StartsWith("faces are off mostly because they are coarse: a finer "
+                                                              "mesh helps (100 % of it)"));
+  CHECK_THAT(line_of(0.3, ""), Catch::Contains("beside sharp corners") && !Catch::Contains("coarse"));
+}
+
 TEST_CASE("command: help and version", "[command]") {
   const ShellCommand shell;
   const Run help = shell("--help");

@@ -242,31 +242,6 @@ void print_states(std::FILE* out, const OffsetResult& result) {
   if (in(VertexState::OutsideField)) fmt::print(out, ", {} outside the field", in(VertexState::OutsideField));
 }
 
-/// A share as a percentage; next to nothing is rounding.
-std::string percent(double share) { return share < 1e-8 ? "0" : fmt::format("{:.3g}", 100 * share); }
-
-void print_faces(std::FILE* out, const FaceError& faces, bool curves) {
-  if (faces.samples == 0) return;
-  fmt::print(out, "; {} {} % off on average, {:.1f} % of the {} within 1 %", curves ? "segments" : "faces",
-             percent(faces.mean), 100 * faces.at_distance, curves ? "length" : "area");
-}
-
-/// Why faces are off their distance, and what helps.
-void print_face_causes(std::FILE* out, const Job& job, const FaceError& faces) {
-  const char* const what = job.curves() ? "segments" : "faces";
-  const auto tell = [&](double share, const std::string& text) {
-    fmt::print(out, "{} are off mostly {} ({:.0f} % of it)\n", what, text, 100 * share);
-  };
-  const double most = std::max({faces.held_back, faces.corners, faces.coarse});
-  if (most == 0) return;
-  if (most == faces.held_back)
-    return tell(most, fmt::format("beside {} that fall short", job.curves() ? "points" : "vertices"));
-  if (most == faces.coarse) return tell(most, job.curves() ? "because they are long" : "because they are coarse");
-  if (job.options.corners == Corners::Round)
-    return tell(most, fmt::format("beside sharp corners: --corners miter puts {} at the distance", what));
-  tell(most, "beside sharp corners that are not mitred, as there is no room, or that are cut");
-}
-
 void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {
   fmt::print(out, "{}: shell {}{}, {}, volume {:.6g}, rim of {} quads and {} triangles", path,
              shell.has_thickness ? "" : "without any thickness, ", shell.closed ? "closed" : "not closed",
@@ -358,13 +333,6 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
   print_face_causes(out, job, result.statistics.faces);
   print_doubts(out, job, result.statistics, result.distances);
-}
-
-bool are_within(const FaceError& faces, double bound, const std::string& offset) {
-  if (100 * faces.quantile_99 <= bound) return true;
-  tell(fmt::format("--strict-faces: {}: 99 % of it is within {:.3g} % of the distance, expected {:g} %", offset,
-                   100 * faces.quantile_99, bound));
-  return false;
 }
 
 void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance) {
