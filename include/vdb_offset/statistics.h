@@ -78,8 +78,9 @@ struct FaceError {
   std::size_t samples = 0;  ///< Points that were measured: 40,000, or fewer on a mesh of few triangles.
   double mean = 0, quantile_99 = 0, worst = 0;
   double at_distance = 0;  ///< Share of the area that is off by 1 % or less.
-  /// Shares of the mean that come of faces with a vertex that falls short; else of faces with one at a sharp corner;
-  /// and of all others. All 0 if the mean is 1 % or less, or not known.
+  /// Shares of the mean that come of faces with a vertex that falls short; else of faces with one at a sharp corner, or
+  /// on an edge of more than two faces, that is not on the face's own plane at the distance; and of all others. All 0
+  /// if the mean is 1 % or less, or not known.
   double held_back = 0, corners = 0, coarse = 0;
 };
 

@@ -236,6 +236,13 @@ TEST_CASE("miter: of five planes that have no common point all are as far or far
   CHECK(least == Approx(0.05).epsilon(1e-9));
   CHECK(most == Approx(0.05 * (1 + result.statistics.miters.excess)).epsilon(1e-9));
   require_valid(roof.view(), result, options);
+  // Beside the tip of a lean roof faces are off for the corner, and not for want of vertices.
+  roof.positions[5] = {1.5, 0, 0.6};
+  OffsetOptions lean = options;
+  lean.miter_limit = 30;
+  const FaceError off = offset(roof.view(), lean).statistics.faces;
+  REQUIRE(off.mean > 0.01);
+  CHECK(off.corners == Approx(1));
 }
 
 TEST_CASE("miter: two boxes that share an edge stay apart there", "[miter]") {
@@ -251,6 +258,9 @@ TEST_CASE("miter: two boxes that share an edge stay apart there", "[miter]") {
   const OffsetResult result = offset(two.view(), options);
   CHECK(in_state(result, VertexState::Mitred) >= 8);
   CHECK(result.statistics.limit.left.total() == 0);
+  // What is off is so for the edge of four faces, whose ends have no miters, and not for want of vertices.
+  REQUIRE(result.statistics.faces.mean > 0.01);
+  CHECK(result.statistics.faces.corners == Approx(1));
 }
 
 TEST_CASE("miter: faces at the corners of curves, and a kerf of the right width", "[miter][curves]") {

@@ -15,15 +15,30 @@ namespace {
 
 // Causes that make up less than this share of the error are not told: what helps against them would not be seen.
 constexpr double kLeastTold = 0.25;
+// Miters whose planes go too far by no more than this share do not count as a cause. The error up to which area counts
+// as being at the distance.
+constexpr double kWorthTelling = 0.01;
 
 /// A share as a percentage; next to nothing is rounding.
 std::string percent(double share) { return share < 1e-8 ? "0" : fmt::format("{:.3g}", 100 * share); }
 
-std::string corners_in_words(const Job& job) {
+/// Which corners faces are off beside, and what helps. Where more than two faces meet at an edge, nothing does.
+std::string corners_in_words(const Job& job, const OffsetStatistics& statistics) {
+  const char *const faces = job.curves() ? "segments" : "faces", *const branches =
+                                                                     job.curves() ? "where curves branch"
+                                                                                  : "at edges of more than two faces";
+  const bool any_branches = statistics.facts.non_manifold_edges > 0;
   if (job.options.corners == Corners::Round)
-    return fmt::format("beside sharp corners: --corners miter puts {} at the distance",
-                       job.curves() ? "segments" : "faces");
-  return "beside sharp corners that are not mitred, as there is no room, or that are cut";
+    return fmt::format("beside sharp corners: --corners miter puts {} at the distance{}{}", faces,
+                       any_branches ? ", but not " : "", any_branches ? branches : "");
+  const MiterFacts& miters = statistics.miters;
+  std::vector<std::string> which;
+  if (miters.unproven + miters.taken_back > 0) which.emplace_back("that have no room for a miter");
+  if (miters.cut > 0) which.emplace_back("that are cut (a larger --miter-limit helps)");
+  if (miters.excess > kWorthTelling) which.emplace_back("where more planes meet than one point can be on");
+  if (any_branches) which.emplace_back(branches);
+  return fmt::format("beside sharp corners {}",
+                     which.empty() ? "that are not mitred" : fmt::to_string(fmt::join(which, ", or ")));
 }
 
 }  // namespace
@@ -34,12 +49,13 @@ void print_faces(std::FILE* out, const FaceError& faces, bool curves) {
              percent(faces.mean), 100 * faces.at_distance, curves ? "length" : "area");
 }
 
-void print_face_causes(std::FILE* out, const Job& job, const FaceError& faces) {
+void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
+  const FaceError& faces = statistics.faces;
   const bool curves = job.curves();
   std::vector<std::pair<double, std::string>> causes{
       {faces.held_back,
        fmt::format("beside {} that fall short: a smaller distance has more room", curves ? "points" : "vertices")},
-      {faces.corners, corners_in_words(job)},
+      {faces.corners, corners_in_words(job, statistics)},
       {faces.coarse,
        curves ? "because they are long: more points help" : "because they are coarse: a finer mesh helps"}};
   std::erase_if(causes, [](const auto& cause) { return cause.first < kLeastTold; });

@@ -331,7 +331,7 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
   print_disagreeing(out, job, result.statistics);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
-  print_face_causes(out, job, result.statistics.faces);
+  print_face_causes(out, job, result.statistics);
   print_doubts(out, job, result.statistics, result.distances);
 }
 

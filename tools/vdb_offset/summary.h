@@ -25,7 +25,7 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
 void print_faces(std::FILE* out, const FaceError& faces, bool curves);
 
 /// Why faces are off their distance, and what helps: a line with all causes that make up a quarter of it or more.
-void print_face_causes(std::FILE* out, const Job& job, const FaceError& faces);
+void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics);
 
 /// Whether 99 % of the faces of an offset, by area, are within a bound, in percent of the distance. Says so if not.
 bool are_within(const FaceError& faces, double percent, const std::string& offset);

@@ -44,17 +44,26 @@ std::vector<SegmentSample> spread_over(const Polyline& line, std::span<const Vec
   return samples;
 }
 
+/// Whether an end of a segment is not where the segment's own line is at the distance.
+bool is_off_line(const PlaneCurves& curves, std::span<const Vec2d> positions, std::uint32_t segment, std::uint32_t v) {
+  const double asked = curves.distances[v];
+  const Vec3d moved = curves.in_frame(positions[v]) - curves.line().vertices[v];
+  return std::abs(curves.line().triangle_normals[segment].dot(moved) - asked) > kAtDistance * std::abs(asked);
+}
+
 /// Sums up which part of all errors comes of which cause. \param errors of the samples, below 0 if not measured
-void find_causes(const PlaneCurves& curves, std::span<const SegmentSample> samples, std::span<const double> errors,
-                 std::span<const VertexState> states, FaceError& result) {
-  const std::vector<std::uint8_t> at_corner = vertices_on_creases(curves.line());
+void find_causes(const PlaneCurves& curves, std::span<const Vec2d> positions, std::span<const SegmentSample> samples,
+                 std::span<const double> errors, std::span<const VertexState> states, FaceError& result) {
+  const Polyline& line = curves.line();
+  const std::vector<std::uint8_t> at_corner = vertices_on_creases(line);
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (errors[i] < 0) continue;
     bool is_short = false, is_round = false;
-    for (const auto v : curves.line().segments[samples[i].segment]) {
+    for (const auto v : line.segments[samples[i].segment]) {
       is_short |= !states.empty() && falls_short(states[v]);
-      is_round |= at_corner[v] && (states.empty() || states[v] != VertexState::Mitred);
+      is_round |= (at_corner[v] || line.triangles_around(v).size() > 2) &&
+                  is_off_line(curves, positions, samples[i].segment, v);
     }
     sum += errors[i];
     (is_short ? result.held_back : is_round ? result.corners : result.coarse) += errors[i];
@@ -86,7 +95,7 @@ FaceError measure_segments(const PlaneCurves& curves, std::span<const Vec2d> pos
   std::vector<double> measured = errors;
   std::erase(measured, -1);
   FaceError result = sum_up_errors(std::move(measured));
-  if (result.mean > kWorthTelling) find_causes(curves, samples, errors, states, result);
+  if (result.mean > kWorthTelling) find_causes(curves, positions, samples, errors, states, result);
   return result;
 }
 

@@ -23,8 +23,6 @@ constexpr std::size_t kPointsTogether = 16;
 // Share of the largest distance below which a point counts as asked to stay. Reasoned: errors are relative.
 constexpr double kLeastAsked = 1e-3;
 constexpr double kNotMeasured = -1;  // stands for the error of a point that is left out
-// The error up to which area counts as being at the distance. Told by name.
-constexpr double kAtDistance = 0.01;
 
 /// Where on a triangle the sample of a number is: by shares of its corners. The fractional parts of the multiples of
 /// two numbers cover a square evenly (Roberts, The unreasonable effectiveness of quasirandom sequences, 2018), and one
@@ -41,6 +39,14 @@ std::array<double, 3> shares_of(std::size_t sample) {
     v = 1 - v;
   }
   return {1 - u - v, u, v};
+}
+
+/// Marks the vertices at which a corner may be sharp: those on creases, and on edges of more than two faces.
+std::vector<std::uint8_t> vertices_at_corners(const Surface& surface) {
+  std::vector<std::uint8_t> sharp = vertices_on_creases(surface);
+  for (std::uint32_t h = 0; h < surface.next_around_edge.size(); ++h)
+    if (surface.next_around_edge[surface.next_around_edge[h]] != h) sharp[surface.from(h)] = sharp[surface.to(h)] = 1;
+  return sharp;
 }
 
 class FaceMeter {
@@ -122,20 +128,28 @@ class FaceMeter {
     return triangles_[static_cast<std::size_t>(at - area_up_to_.begin())];
   }
 
+  /// Whether a corner of a triangle is not where the triangle's own plane is at the distance: at a sharp corner that is
+  /// not mitred, or a miter with which the plane goes too far, as more planes meet there than one point can be on. By
+  /// less than area may be off that counts as at the distance, no corner makes a mean worth telling.
+  bool is_off_plane(std::uint32_t t, std::uint32_t v) const {
+    const double asked = faces_.distances[v],
+                 moved = surface_.triangle_normals[t].dot(faces_.positions[v] - faces_.source[v]);
+    return std::abs(moved - asked) > kAtDistance * std::abs(asked);
+  }
+
   void tell_causes(FaceError& result) const {
-    const std::vector<std::uint8_t> on_crease = vertices_on_creases(constrained_.moving_part.surface());
+    const std::vector<std::uint8_t> sharp = vertices_at_corners(constrained_.moving_part.surface());
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       if (error_[i] == kNotMeasured) continue;
-      bool is_short = false, at_crease = false;
+      bool is_short = false, at_corner = false;
       for (const auto v : surface_.triangles[of_[i]]) {
         is_short |= !faces_.states.empty() && falls_short(faces_.states[v]);
         const std::uint32_t on_part = constrained_.part_vertex_of(v);
-        at_crease |= on_part != kNone && on_crease[on_part] &&
-                     (faces_.states.empty() || faces_.states[v] != VertexState::Mitred);
+        at_corner |= on_part != kNone && sharp[on_part] && is_off_plane(of_[i], v);
       }
       sum += error_[i];
-      (is_short ? result.held_back : at_crease ? result.corners : result.coarse) += error_[i];
+      (is_short ? result.held_back : at_corner ? result.corners : result.coarse) += error_[i];
     }
     for (double* const cause : {&result.held_back, &result.corners, &result.coarse}) *cause /= sum;
   }

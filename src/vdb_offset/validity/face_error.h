@@ -13,6 +13,9 @@ namespace vdb_offset {
 /// The mean error beyond which its causes are told. Not measured.
 inline constexpr double kWorthTelling = 0.01;
 
+/// The error up to which area counts as being at the distance. Told by name.
+inline constexpr double kAtDistance = 0.01;
+
 /// What faces are measured against.
 struct MeasuredFaces {
   const ConstrainedSurface& constrained;
