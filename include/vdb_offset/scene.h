@@ -63,6 +63,7 @@ struct Expectations {
   std::optional<double> min_reached, max_reached;  ///< Share of the vertices in use.
   std::optional<double> max_position_error;        ///< World units; needs an answer.
   std::optional<Answer> answer;
+  std::optional<double> max_face_error;    ///< Of 99 % of the faces' area, as a share of the distance.
   std::optional<double> min_gap, max_gap;  ///< Of a fit, world units: the least one that is left.
   std::optional<double> volume;            ///< Of a shell, world units^3.
   std::optional<double> max_volume_error;  ///< As a share of the volume; needs a volume.
@@ -77,7 +78,9 @@ struct VDB_OFFSET_API Scene {
   GridOptions grid;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
-  std::vector<std::uint8_t> only;  ///< See OffsetOptions::only.
+  Corners corners = Corners::Round;
+  std::optional<double> miter_limit;  ///< See OffsetOptions::miter_limit, whose default holds without one.
+  std::vector<std::uint8_t> only;     ///< See OffsetOptions::only.
   Border border = Border::Slide;
   Polygons obstacle;
   Polygons to_fit;       ///< Instead of `distance`: a mesh that the shape makes room for (see fit()).

@@ -875,13 +875,24 @@ TEST_CASE("command: an iso-surface whose corners would be rounded by more than v
   CHECK(!run.has("out.json"));
 }
 
+TEST_CASE("command: the command line's corners count, and not the scene's", "[command][scene]") {
+  const ShellCommand run;
+  const std::string scene = "'" + std::string(SCENE_DIR) + "/miter_gear.json'";
+  CHECK_THAT(run(scene + " mitred.obj").out, Catch::Contains("of them mitred"));
+  const Run round = run(scene + " round.obj --corners round");
+  CHECK(round.code == 3);  // what the scene expects of faces
+  CHECK_THAT(round.out, !Catch::Contains("mitred"));
+  CHECK_THAT(run(scene + " cut.obj -d 1% --miter-limit 1").out, Catch::Contains("miters cut"));
+  CHECK(run("'" + std::string(SCENE_DIR) + "/gear.json' none.obj --miter-limit 2").code == 1);
+}
+
 TEST_CASE("command: a scene brings what its shape is to fit, unless a distance is given", "[command][scene]") {
   const ShellCommand run;
   const std::string scene = std::string(SCENE_DIR) + "/peg_in_socket.json";
   CHECK(run("'" + scene + "' peg.obj --strict --report peg.json").code == 0);
   CHECK_THAT(run.slurp(run.file("peg.json")), Catch::Contains("\"triangles_too_near\": 0"));
   CHECK(run("'" + scene + "' as_it_is.obj --distance 0").code == 0);
-  for (const std::string option : {"--shell", "--mode iso", "--dry-run", "--collision merge"}) {
+  for (const std::string option : {"--shell", "--mode iso", "--dry-run", "--collision merge", "--corners miter"}) {
     const Run refused = run("'" + scene + "' no.obj " + option);
     CHECK(refused.code == 1);
     CHECK_THAT(refused.err, Catch::Contains("without a fit"));

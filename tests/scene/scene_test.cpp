@@ -47,7 +47,29 @@ TEST_CASE("scenes: every one runs as it expects", "[scene]") {
     CHECK(scene.expect.min_reached);
     ++count;
   }
-  CHECK(count >= 27);
+  CHECK(count >= 28);
+}
+
+TEST_CASE("scenes: corners are mitred up to a limit, and faces expected at the distance", "[scene]") {
+  const std::string cube = R"({"shape": {"type": "cube", "side": 1, "divisions": 2}, "offset": {"distance": 0.1)",
+                    expected = R"(}, "expect": {"max_face_error": 0.01}})";
+  const auto run = [&](const std::string& more) {
+    const scene::Scene scene = read(cube + more + expected);
+    OffsetOptions options;
+    options.distance = scene.distance.value;
+    scene.set(options);
+    return scene::unmet(scene.expect, scene.shape.view(), offset(scene.shape.view(), options));
+  };
+  CHECK(run(R"(, "corners": "miter")").empty());
+  CHECK(run(R"(, "corners": "miter", "miter_limit": 1.8)").empty());
+  for (const char* const more : {R"(, "corners": "miter", "miter_limit": 1.6)", R"(, "corners": "round")", ""}) {
+    const std::vector<std::string> unmet = run(more);
+    REQUIRE(unmet.size() == 1);
+    CHECK_THAT(unmet[0], Catch::StartsWith("expected 99 % of the faces' area within a share of 0.01"));
+  }
+  CHECK_THROWS_WITH(run(R"(, "corners": "sharp")"), Catch::Contains("corners among round, miter"));
+  CHECK_THROWS_WITH(run(R"(, "miter_limit": 2)"), Catch::Contains("'corners' to be miter"));
+  CHECK_THROWS_WITH(run(R"(, "corners": "miter", "miter_limit": 0.5)"), Catch::Contains("of 1 or more"));
 }
 
 TEST_CASE("scenes: an expectation that does not hold is told", "[scene][oracle]") {

@@ -14,6 +14,7 @@
 #include "job.h"
 #include "messages.h"
 #include "request/command_line.h"
+#include "request/option_rules.h"
 #include "request/option_values.h"
 #include "run_files.h"
 #include "source.h"
@@ -113,7 +114,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
               [&made](const std::string& text) { made.strict_faces = parse_strict_faces(text); });
   if (!line.parse(argc, argv)) return std::nullopt;
-  require(!made.miter_limit || made.corners == Corners::Miter, "--miter-limit needs --corners miter");
+  require_miters(made);
   require(!line.has("--clearance") || line.has("--obstacle"), "--clearance needs --obstacle");
   require(!line.has("--distance") || !line.has("--distance-from"), "--distance-from and --distance exclude each other");
   request.axes = parse_axes(distance_xy, distance_z);

@@ -41,6 +41,7 @@ void settle_fit_of_scene(Job& job) {
                                     {"--shell", job.shell},
                                     {"--obstacle", job.source.obstacles.face_count() > 0},
                                     {"--collision", request.collision.has_value()},
+                                    {"--corners", request.corners.has_value()},
                                     {"--save-vdb", !request.vdb.empty()},
                                     {"--dry-run", request.dry_run}})
     if (given) throw InvalidOption(fmt::format("{}: expected a scene without a fit, or a --distance", name));
@@ -79,6 +80,7 @@ void settle_surroundings(Job& job) {
   if (source.to_fit) {
     if (source.obstacles.face_count() > 0 || options.obstacles.face_count() > 0 || job.shell)
       throw InvalidOption("--fit: expected a scene without an obstacle or a shell");
+    if (options.corners == Corners::Miter) throw InvalidOption("--fit: expected a scene without mitred corners");
     job.to_fit = source.to_fit->view();
     options.clearance = clearance_of(job);
   }
@@ -216,6 +218,8 @@ Job resolve_options(const Request& request, const Source& source) {
   if (request.collision) job.options.collision = *request.collision;
   if (request.corners) job.options.corners = *request.corners;
   if (request.miter_limit) job.options.miter_limit = *request.miter_limit;
+  if (request.miter_limit && job.options.corners != Corners::Miter)
+    throw InvalidOption("--miter-limit needs --corners miter, or a scene with mitred corners");
   settle_surroundings(job);
   if (!request.layers) job.distances = distances_of(job);
   else job.distances = request.layers->heights.empty() ? geometric_heights(job) : read_heights(job);

@@ -68,6 +68,10 @@ std::vector<std::string> unmet(const Expectations& expect, PolygonView source, c
   if (expect.max_position_error && worst > *expect.max_position_error)
     failed.push_back(
         fmt::format("expected positions within {} of the answer, got {:.3g}", *expect.max_position_error, worst));
+  const FaceError& faces = result.statistics.faces;
+  if (expect.max_face_error && !(faces.quantile_99 <= *expect.max_face_error))
+    failed.push_back(fmt::format("expected 99 % of the faces' area within a share of {} of the distance, got {:.3g}",
+                                 *expect.max_face_error, faces.quantile_99));
   if (const auto& fit = result.statistics.fit) {
     if (expect.min_gap && !(fit->gap >= *expect.min_gap))
       failed.push_back(fmt::format("expected a gap of at least {}, got {:.9g}", *expect.min_gap, fit->gap));

@@ -56,6 +56,7 @@ Expectations read_expectations(JsonObject reader, bool shell, bool fits) {
   expect.max_position_error = reader.optional_number("max_position_error");
   if (reader.find("answer")) expect.answer = read_answer(reader.object("answer"));
   if (expect.max_position_error && !expect.answer) reader.fail("an answer to measure 'max_position_error' against");
+  expect.max_face_error = reader.optional_number("max_face_error");
   expect.min_gap = reader.optional_number("min_gap");
   expect.max_gap = reader.optional_number("max_gap");
   if ((expect.min_gap || expect.max_gap) && !fits) reader.fail("'offset.fit' where there is a gap");
@@ -103,6 +104,22 @@ Polygons read_beside(JsonObject beside, double& clearance) {
   return mesh;
 }
 
+void read_collision_and_corners(JsonObject& offset, Scene& scene) {
+  if (offset.find("collision")) {
+    const std::string collision = offset.text("collision");
+    if (collision != "limit" && collision != "merge") offset.fail("a collision among limit, merge");
+    scene.collision = collision == "merge" ? Collision::Merge : Collision::Limit;
+  }
+  if (offset.find("corners")) {
+    const std::string corners = offset.text("corners");
+    if (corners != "round" && corners != "miter") offset.fail("corners among round, miter");
+    scene.corners = corners == "miter" ? Corners::Miter : Corners::Round;
+  }
+  scene.miter_limit = offset.optional_number("miter_limit");
+  if (scene.miter_limit && scene.corners != Corners::Miter) offset.fail("'corners' to be miter with a 'miter_limit'");
+  if (scene.miter_limit && !(*scene.miter_limit >= 1)) offset.fail("a 'miter_limit' of 1 or more");
+}
+
 void read_part_and_obstacle(JsonObject& offset, Scene& scene) {
   if (offset.find("only")) scene.only = faces_within(offset.object("only"), scene.shape.view());
   if (offset.find("border")) {
@@ -119,7 +136,7 @@ void read_distances(JsonObject& offset, Scene& scene) {
     scene.distance = read_distance(offset);
     return;
   }
-  for (const char* const other : {"distance", "obstacle", "shell", "collision"})
+  for (const char* const other : {"distance", "obstacle", "shell", "collision", "corners"})
     if (offset.find(other)) offset.fail(fmt::format("'fit' without '{}'", other));
   scene.to_fit = read_beside(offset.object("fit"), scene.clearance);
   if (!(scene.clearance > 0)) offset.fail("'fit' with a 'clearance' above 0");
@@ -157,6 +174,8 @@ void Scene::set(OffsetOptions& options) const {
   options.grid = grid;
   options.solver = solver;
   options.collision = collision;
+  options.corners = corners;
+  if (miter_limit) options.miter_limit = *miter_limit;
   options.only = only;
   options.border = border;
   options.obstacles = obstacle.view();
@@ -176,11 +195,7 @@ Scene read_scene(const std::string& path) {
   else scene.shape = make_shape(root.object("shape"));
   JsonObject offset = root.object("offset");
   read_distances(offset, scene);
-  if (offset.find("collision")) {
-    const std::string collision = offset.text("collision");
-    if (collision != "limit" && collision != "merge") offset.fail("a collision among limit, merge");
-    scene.collision = collision == "merge" ? Collision::Merge : Collision::Limit;
-  }
+  read_collision_and_corners(offset, scene);
   read_part_and_obstacle(offset, scene);
   scene.shell = offset.flag("shell", false);
   offset.finish();

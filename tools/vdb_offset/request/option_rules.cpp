@@ -145,8 +145,14 @@ void require_together(const CommandLine& line, bool is_iso) {
   require_one(line, "--quiet", "--verbose");
 }
 
+void require_miters(const Request& request) {
+  // A scene may bring mitred corners.
+  const bool may_be_mitred = request.corners ? request.corners == Corners::Miter : scene::is_scene(request.input);
+  require(!request.miter_limit || may_be_mitred, "--miter-limit needs --corners miter");
+}
+
 void require_sound(const Request& request) {
-  require(!request.miter_limit || request.corners == Corners::Miter, "--miter-limit needs --corners miter");
+  require_miters(request);
   require(!request.iso || request.write.normals == io::Normals::Recompute,
           "--normals keep and --mode iso exclude each other");
   require_endings(request);

@@ -13,5 +13,7 @@ void require_together(const CommandLine& line, bool is_iso);
 /// \throw UsageError if values do not go together, or a file's name has no ending that tells what it is to hold. What
 /// depends on whether INPUT holds curves is for require_for_input().
 void require_sound(const Request& request);
+/// Requires miters where there is a limit of them; check's rule as well. \throw UsageError
+void require_miters(const Request& request);
 
 }  // namespace vdb_offset::tool
