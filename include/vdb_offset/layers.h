@@ -83,6 +83,7 @@ struct LayerStatistics {
   std::size_t rounds = 0;            ///< Rounds in which layers were thinned or let out again.
   std::size_t thinned_vertices = 0;  ///< Vertices of the surface that keep less than all of their heights.
   std::size_t flat_vertices = 0;     ///< Vertices of the surface that keep no height, although they were asked to.
+  FaceError first_faces;  ///< Of the surface at the first height; OffsetStatistics::faces are the outermost one's.
 };
 
 /// What growing knows of the mesh's faces. What it does not know is looked for when cells are numbered.

@@ -157,6 +157,7 @@ struct OffsetStatistics {
   SideRoom room;
   std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
   std::optional<FitFacts> fit;             ///< Of what fit() made.
+  FaceError faces;                         ///< Of layers: of the outermost surface.
   FaceError faces;
   std::optional<CertifiedFaces> certified;  ///< If a tolerance was asked for.
 };

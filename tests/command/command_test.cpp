@@ -326,6 +326,32 @@ TEST_CASE("command: all causes of a quarter or more of the faces' error are told
   CHECK_THAT(line_of(0.3, ""), Catch::Contains("beside sharp corners") && !Catch::Contains("coarse"));
 }
 
+TEST_CASE("command: --strict-faces judges layers and iso-surfaces as well", "[command][layers][capture]") {
+  const ShellCommand shell;
+  io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 4, false).view());
+  std::ofstream(shell.file("square.txt")) << "0 0\n1 0\n1 1\n0 1\n0 0\n";
+  for (const std::string input : {"box.obj", "square.txt"}) {
+    const std::string layers = input + " out.vtu --layers 3 --first-height 0.02 ";
+    const Run off = shell(layers + "--strict-faces 1 --report off.json");
+    CHECK(off.code == 3);
+    CHECK_THAT(off.err, Catch::Contains("--strict-faces: out.vtu: 99 %") &&
+                            Catch::Contains("--strict-faces: out.vtu at the first height: 99 %"));
+    CHECK_THAT(off.out, Catch::Contains("at the first height ") && Catch::Contains("are off mostly beside sharp"));
+    const auto report = nlohmann::json::parse(shell.slurp(shell.file("off.json")));
+    CHECK(report["faces"]["error_quantile_99"].get<double>() > 0.01);
+    CHECK(report["faces_at_first_height"]["error_quantile_99"].get<double>() > 0.01);
+    CHECK(shell(layers + "--strict-faces 1 --corners miter").code == 0);
+  }
+  const std::string iso = "sphere.obj out.obj --mode iso -d 0.3 ";
+  const Run coarse = shell(iso + "--voxel-size 0.4 --strict-faces 1");
+  CHECK(coarse.code == 3);
+  CHECK_THAT(coarse.err, Catch::Contains("--strict-faces: out.obj: 99 %"));
+  CHECK_THAT(coarse.out, Catch::Contains("% of the area within 1 %") && Catch::Contains("a smaller --voxel-size"));
+  const Run fine = shell(iso + "--voxel-size 0.04 --strict-faces 1");
+  CHECK(fine.code == 0);
+  CHECK_THAT(fine.out, !Catch::Contains("a smaller --voxel-size"));
+}
+
 TEST_CASE("command: help and version", "[command]") {
   const ShellCommand shell;
   const Run help = shell("--help");

@@ -49,6 +49,20 @@ void print_faces(std::FILE* out, const FaceError& faces, bool curves) {
              percent(faces.mean), 100 * faces.at_distance, curves ? "length" : "area");
 }
 
+void print_layers_faces(std::FILE* out, const FaceError& outermost, const FaceError& first, bool curves) {
+  if (outermost.samples == 0) return;
+  const char* const of = curves ? "length" : "area";
+  fmt::print(out, "{} of the outermost {} are {} % off on average, {:.1f} % of the {} within 1 %",
+             curves ? "segments" : "faces", curves ? "curve" : "surface", percent(outermost.mean),
+             100 * outermost.at_distance, of);
+  fmt::print(out, "; at the first height {} %, {:.1f} % of the {}\n", percent(first.mean), 100 * first.at_distance, of);
+}
+
+void print_iso_cause(std::FILE* out, const FaceError& faces) {
+  if (faces.mean > kWorthTelling)
+    fmt::print(out, "faces are off as their edges are as long as voxels are large: a smaller --voxel-size helps\n");
+}
+
 void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
   const FaceError& faces = statistics.faces;
   const bool curves = job.curves();

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "run_files.h"
 #include "summary.h"
@@ -109,6 +111,17 @@ void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, I
   if (!to.report.empty()) write_iso_report(job, to, iso, start, &hollow.facts, inner);
 }
 
+/// Whether what --strict-faces asks for is met by all surfaces.
+bool are_faces_there(const Job& job, std::span<const IsoResult> results, const IsoResult* inner) {
+  const std::optional<double> bound = job.request.strict_faces;
+  if (!bound) return true;
+  bool all = true;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    all &= are_within(results[i].statistics.faces, *bound, job.outputs[i].mesh);
+  if (inner) all &= are_within(inner->statistics.faces, *bound, "--inner");
+  return all;
+}
+
 }  // namespace
 
 ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
@@ -147,7 +160,7 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
     if (hollow) print_hollow_summary(job, destinations[i].mesh, distance, *hollow, results[i], inner_skin, seconds);
     else print_iso_summary(job, destinations[i].mesh, distance, results[i], seconds);
   }
-  return kDone;
+  return are_faces_there(job, results, inner_skin) ? kDone : kProcessing;
 }
 
 }  // namespace vdb_offset::tool

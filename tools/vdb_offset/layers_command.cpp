@@ -114,6 +114,15 @@ bool is_as_asked(const Grown& grown) {
          std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) { return !falls_short(state); });
 }
 
+/// Whether what --strict-faces asks for is met, by the outermost surface and by that at the first height.
+bool are_faces_there(const Request& request, const LayersResult& layers) {
+  if (!request.strict_faces) return true;
+  const bool outermost = are_within(layers.statistics.faces, *request.strict_faces, request.output),
+             first = are_within(layers.layer_statistics.first_faces, *request.strict_faces,
+                                request.output + " at the first height");
+  return outermost && first;
+}
+
 void require_names(const Request& request, std::size_t layers) {
   for (const std::string& path : {request.report, request.states})
     if (!path.empty()) require_writable(path);
@@ -156,6 +165,7 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   outputs.commit(ignore_interrupts);
   bar.clear();
   if (!request.quiet) print_layers_summary(job, grown.layers, grown.report, seconds_since(timing.start));
+  if (!are_faces_there(request, grown.layers)) return kProcessing;
   return is_as_asked(grown) || !request.strict ? kDone : kProcessing;
 }
 

@@ -372,7 +372,10 @@ void print_iso_summary(const Job& job, const std::string& path, double distance,
              found.closed() ? "closed" : "not closed", found.manifold() ? "manifold" : "not manifold", left.crossings,
              left.crossings == 1 ? "" : "s");
   if (left.needles > 0) fmt::print(out, ", {} triangles without area", left.needles);
-  fmt::print(out, ", distance off by {:.2g} at most ({:.2f} s)\n", found.worst_error, total_seconds);
+  fmt::print(out, ", distance off by {:.2g} at most", found.worst_error);
+  print_faces(out, found.faces, false);
+  fmt::print(out, " ({:.2f} s)\n", total_seconds);
+  print_iso_cause(out, found.faces);
   if (found.dropped_specks > 0)
     fmt::print(out, "{} speck{} dropped that enclosed less than a voxel of {:.6g} (--keep-specks keeps them)\n",
                found.dropped_specks, found.dropped_specks == 1 ? "" : "s", found.plan.voxel_size);
@@ -386,6 +389,8 @@ void print_layers_summary(const Job& job, const LayersResult& result, const Laye
   if (job.request.verbose) print_details(out, result.statistics, result.heights.back(), job.curves());
   fmt::print(out, "{}: {}", job.request.output, summary(report));
   fmt::print(out, "{:.2f} s\n", total_seconds);
+  print_layers_faces(out, result.statistics.faces, result.layer_statistics.first_faces, job.curves());
+  print_face_causes(out, job, result.statistics);
   print_layers_corners(out, job, result.statistics.miters);
   print_disagreeing(out, job, result.statistics);
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);

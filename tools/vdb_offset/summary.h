@@ -24,6 +24,12 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
 /// How far faces are off their distance, as a part of a line.
 void print_faces(std::FILE* out, const FaceError& faces, bool curves);
 
+/// How far the faces of layers are off their heights: a line.
+void print_layers_faces(std::FILE* out, const FaceError& outermost, const FaceError& first, bool curves);
+
+/// What helps where the faces of an iso-surface are off: a line.
+void print_iso_cause(std::FILE* out, const FaceError& faces);
+
 /// Why faces are off their distance, and what helps: a line with all causes that make up a quarter of it or more.
 void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics);
 

@@ -8,6 +8,7 @@
 #include "vdb_offset/curve_offset/curve_layer_grower.h"
 #include "vdb_offset/curve_offset/curve_limit.h"
 #include "vdb_offset/curve_offset/prepared_curves.h"
+#include "vdb_offset/curve_offset/segment_error.h"
 #include "vdb_offset/data/count_states.h"
 #include "vdb_offset/mesh/layer_heights.h"
 #include "vdb_offset/pipeline/moved_input.h"
@@ -52,6 +53,18 @@ LayersResult hand_over(const PreparedCurves& curves, OffsetStatistics statistics
   return result;
 }
 
+/// The error along the segments of one layer's outer side. The stacks' positions are in the plane.
+FaceError measure_layer(const PreparedCurves& curves, const Distances& heights, std::span<const VertexState> states,
+                        const VertexStacks& stacks, std::size_t layer) {
+  std::vector<Vec2d> positions;
+  for (std::size_t v = 0; v < stacks.vertices(); ++v) {
+    const Vec3d& at = stacks.of(v)[layer];
+    positions.emplace_back(at[0], at[1]);
+  }
+  return measure_segments({curves.query(), curves.source(), heights, curves.options().precision, {}}, positions,
+                          states);
+}
+
 LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights) {
   const OffsetOptions& options = curves.options();
   std::vector<Distances> asked;
@@ -85,6 +98,11 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
   count_held_back(paths, outer, marched_distances, statistics.limit);
   count_miters(miters, paths.state, statistics.miters);
   statistics.room = curves.room(paths, outer);
+  {
+    const StageTimer timer(statistics.seconds, Stage::Measure);
+    statistics.faces = measure_layer(curves, outer, paths.state, stack.stacks, heights.size());
+    stack.statistics.first_faces = measure_layer(curves, asked.front(), paths.state, stack.stacks, 1);
+  }
   return hand_over(curves, std::move(statistics), asked, paths, stack);
 }
 

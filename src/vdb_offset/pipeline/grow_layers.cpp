@@ -15,6 +15,7 @@
 #include "vdb_offset/mesh/layer_heights.h"
 #include "vdb_offset/pipeline/faulty_miters.h"
 #include "vdb_offset/pipeline/prepared_mesh.h"
+#include "vdb_offset/validity/face_error.h"
 #include "vdb_offset/validity/fault_finder.h"
 
 namespace vdb_offset {
@@ -49,11 +50,26 @@ void round_to_file(const PreparedMesh& mesh, const ConstrainedSurface& constrain
       stack, paths);
 }
 
-std::vector<Vec3d> outermost(const VertexStacks& stacks) {
+std::vector<Vec3d> surface_of(const VertexStacks& stacks, std::size_t layer) {
   std::vector<Vec3d> positions;
   positions.reserve(stacks.vertices());
-  for (std::size_t w = 0; w < stacks.vertices(); ++w) positions.push_back(stacks.of(w).back());
+  for (std::size_t w = 0; w < stacks.vertices(); ++w) positions.push_back(stacks.of(w)[layer]);
   return positions;
+}
+
+/// Measures the faces of the outermost surface, and of that at the first height, and what is left to obstacles.
+void measure_surfaces(const PreparedMesh& mesh, const ConstrainedSurface& constrained,
+                      std::span<const Distances> heights, const Paths& paths, LayerStack& stack,
+                      OffsetStatistics& statistics) {
+  const StageTimer timer(statistics.seconds, Stage::Measure);
+  const std::vector<Vec3d> outermost = surface_of(stack.stacks, heights.size());
+  const auto measure = [&](std::span<const Vec3d> positions, const Distances& height) {
+    return measure_faces({constrained, positions, height, mesh.source(), paths.state});
+  };
+  statistics.faces = measure(outermost, heights.back());
+  stack.statistics.first_faces =
+      heights.size() == 1 ? statistics.faces : measure(surface_of(stack.stacks, 1), heights.front());
+  if (mesh.surroundings()) statistics.obstacles = mesh.surroundings()->facts(outermost);
 }
 
 /// The stacks of the input's vertices. They share those of the surface's vertices, but for vertices that stand
@@ -163,10 +179,8 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   count_miters(marched.miters, paths.state, statistics.miters);
   statistics.borders = mesh.borders(paths);
   statistics.room = mesh.room(paths, outer);
-  if (mesh.surroundings()) {
-    statistics.limit.source_crossings -= mesh.surroundings()->crossing();
-    statistics.obstacles = mesh.surroundings()->facts(outermost(stack.stacks));
-  }
+  if (mesh.surroundings()) statistics.limit.source_crossings -= mesh.surroundings()->crossing();
+  measure_surfaces(mesh, constrained, asked.of_all, paths, stack, statistics);
   return hand_over(mesh, std::move(statistics), *columns, paths, std::move(stack), asked.of_all);
 }
 

@@ -291,7 +291,7 @@ Json surface_json(const IsoStatistics& found) {
 
 /// The report of an offset. `achieved` sums up what became of the vertices; `distance` is the farthest one asked for.
 std::string report_of(const OffsetStatistics& statistics, double distance, const AchievedSummary& achieved,
-                      const RunFacts& run) {
+                      const RunFacts& run, const FaceError* first_faces = nullptr) {
   Json seconds = Json::object(), states = Json::object();
   for (std::size_t s = 0; s < kStageCount; ++s) seconds[name(static_cast<Stage>(s))] = statistics.seconds[s];
   seconds["total"] = run.total_seconds;
@@ -318,6 +318,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)}};
   if (statistics.faces.samples > 0) report["faces"] = faces_json(statistics.faces);
+  if (first_faces && first_faces->samples > 0) report["faces_at_first_height"] = faces_json(*first_faces);
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
   if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
   if (run.shell) report["shell"] = shell_json(*run.shell);
@@ -372,7 +373,8 @@ std::string report_json(const OffsetResult& result, const RunFacts& run) {
 std::string report_json(const LayersResult& result, const RunFacts& run) {
   if (result.heights.empty()) return report_of(result.statistics, 0, {}, run);
   const Distances& thickness = result.heights.back();
-  return report_of(result.statistics, thickness.farthest(), summarise(result.states, result.achieved, thickness), run);
+  return report_of(result.statistics, thickness.farthest(), summarise(result.states, result.achieved, thickness), run,
+                   &result.layer_statistics.first_faces);
 }
 
 std::string report_json(const IsoStatistics& statistics, const RunFacts& run) {

@@ -272,7 +272,9 @@ void declare_run(CommandLine& line, Draft& draft) {
             "Exit with 3 if a vertex in use falls short of its distance, a cell of layers is not valid, or an obstacle "
             "or the mesh to fit is nearer than asked",
             request.strict);
-  line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
+  line.option("--strict-faces", "P",
+              "Exit with 3 unless 99 % of the faces' area is within P percent of the distance; of layers, at the first "
+              "height and outermost",
               [&request](const std::string& text) { request.strict_faces = parse_strict_faces(text); });
   line.flag("--dry-run", "Read the input, print what would be done, write nothing", request.dry_run);
   line.flag("-q,--quiet", "Print nothing but errors", request.quiet);

@@ -117,16 +117,15 @@ void require_together(const CommandLine& line, bool is_iso) {
   if (is_iso) require(!layers, "--layers and --mode iso exclude each other");
   require_without(line, is_iso, "--mode iso",
                   {"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--corners",
-                   "--strict-faces", "--solver", "--states", "--paths", "--save-vdb"});
+                   "--solver", "--states", "--paths", "--save-vdb"});
   require_with(line, layers, "--layers", {"--first-height", "--total-thickness", "--growth", "--structured"});
   if (layers) {
     require(line.has("--heights") + line.has("--first-height") + line.has("--total-thickness") == 1,
             "--layers needs one of --first-height, --total-thickness and --heights");
     require(!line.has("--heights") || !line.has("--growth"), "--growth needs --first-height or --total-thickness");
   }
-  require_without(
-      line, layers, "--layers",
-      {"--distance", "--distance-from", "--shell", "--collision", "--strict-faces", "--paths", "--save-vdb"});
+  require_without(line, layers, "--layers",
+                  {"--distance", "--distance-from", "--shell", "--collision", "--paths", "--save-vdb"});
   const auto instead_of_distance = [&](bool is_given, const char* by) {
     require_without(line, is_given, by, {"--distance", "--distance-from"});
     require(!is_given || !layers, fmt::format("--layers and {} exclude each other", by));
