@@ -388,6 +388,28 @@ TEST_CASE("miter: what has no room costs no distance that round corners have", "
   }
 }
 
+TEST_CASE("miter: where fronts merge, no more faces fold or cross than with round corners", "[miter]") {
+  const Polygons gear = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
+  const double distance = 0.02 * diagonal(gear);
+  const auto count_faults = [&](Corners corners) {
+    OffsetOptions options;
+    options.distance = distance;
+    options.collision = Collision::Merge;
+    options.corners = corners;
+    const OffsetResult result = offset(gear.view(), options);
+    CHECK(in_state(result, VertexState::Limited) == 0);
+    CHECK((in_state(result, VertexState::Mitred) > 500) == (corners == Corners::Miter));
+    CheckOptions check;
+    check.distance = distance;
+    check.corners = corners;
+    return check_offset(gear.view(), result.positions, check).faults;
+  };
+  const FaultCounts round = count_faults(Corners::Round), miter = count_faults(Corners::Miter);
+  REQUIRE(round.total() > 0);  // merging leaves these
+  CHECK(miter.inverted <= round.inverted);
+  CHECK(miter.crossings <= round.crossings);
+}
+
 TEST_CASE("miter: corners that face each other across a gap are alike", "[miter]") {
   const Polygons one = prism(kSquare, 1);
   Polygons two = one;

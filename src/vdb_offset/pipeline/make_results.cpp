@@ -136,14 +136,15 @@ class ResultMaker {
     });
   }
 
-  /// Finds the faults of a draft, if it has to be valid.
+  /// Finds the faults of a draft, if it has to be valid, or if miters may have made some: no collision mode has those.
   void look_for_faults(Draft& draft, const ProgressCallback& callback) const {
-    if (!has_to_be_valid()) return;
+    if (!has_to_be_valid() && draft.marched.mitred.empty()) return;
     const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
     draft.faults->move_to_ends(draft.marched.paths);
     take_faulty_miters_back(*draft.faults, mesh_.surface(), draft.marched);
+    if (!has_to_be_valid()) draft.faults.reset();
   }
 
   static bool needs_mending(const Draft& draft) {

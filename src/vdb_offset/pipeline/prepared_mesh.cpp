@@ -61,7 +61,8 @@ GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthes
   std::size_t beside = layers_bytes(mesh, yield.layers) + results_bytes(mesh, yield.results);
   for (const auto* surface : {&parts.whole, &parts.rest, &parts.obstacles})
     if (*surface) beside += surface_bytes(**surface);
-  if (options.collision == Collision::Limit) beside += kLimitBytes * mesh.positions.size();
+  if (options.collision == Collision::Limit || options.corners == Corners::Miter)
+    beside += kLimitBytes * mesh.positions.size();
   if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
   return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads, {beside});
 }
