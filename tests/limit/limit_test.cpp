@@ -12,6 +12,8 @@
 #include "support/random_scenes.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/check.h"
+#include "vdb_offset/limit/limit_state.h"
+#include "vdb_offset/paths/miters.h"
 #include "vdb_offset/scene.h"
 #include "vdb_offset/validity/fault_finder.h"
 #include "vdb_offset/validity/triangle_crossings.h"
@@ -468,6 +470,67 @@ TEST_CASE("limit: random scenes are what they say in three formats", "[limit][pr
     for (Vec3d& p : scene.mesh.positions) p = Vec3d(openvdb::Vec3s(p));
     check_agreement(scene.mesh, scene.distance, {Precision::Kind::Single});
     check_agreement(test::torn(scene.mesh), scene.distance, {Precision::Kind::Single});
+  }
+}
+
+TEST_CASE("limit: a vertex that gives up its miter has a path to the distance, and no share of the miter",
+          "[limit][miter]") {
+  const Polygons cube = scene::box(Vec3d(1), 1, false);
+  Surface surface = build_surface(cube.view(), {});
+  to_local_frame(surface, 0.1);
+  const ClosestQuery query(surface);
+  const Distances distances(0.1);
+  std::vector<Vec3d> source;
+  Paths paths;
+  for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+    source.push_back(cube.positions[surface.representative[v]]);
+    paths.displacement.push_back(surface.vertex_normals[v].unit() * 0.1);
+    paths.achieved.push_back(0.1);
+    paths.state.push_back(VertexState::Reached);
+    paths.closest.push_back(surface.triangles_around(v).front());
+  }
+  MiterFacts facts;
+  const std::vector<Miter> miters = MiterFinder<ClosestQuery>(query, 4, nullptr)(distances, facts);
+  REQUIRE(miters.size() == 8);
+  MitredPaths mitred(miters, paths);
+  ConstrainedSurface constrained{query, surface, {}, {}, {}};
+  constrained.farther = mitred.farther();
+  FaultFinder faults(constrained, source, distances, Rounding(Precision{}));
+  faults.move_to_ends(paths);
+  const SurfaceOffset offset{constrained, source, distances, paths, &mitred};
+  LimitState state(faults, offset, nullptr);
+  const Indices corner{0};
+  // At a share of a miter nothing tells that it is beyond: only the end's distance is known.
+  state.share[0] = 0.6;
+  state.move(corner);
+  CHECK(faults.distance_of(0) > 0.103);
+  CHECK(faults.misplaced().empty());
+  CHECK(state.take_miters_back(corner) == corner);
+  state.move(corner);
+  CHECK(faults.distance_of(0) < 0.1);
+  state.share[0] = 1;
+  state.move(corner);
+  CHECK(faults.distance_of(0) == Approx(0.1).epsilon(1e-6));
+  CHECK(state.take_miters_back(corner).empty());
+}
+
+TEST_CASE("limit: vertices that gave up their miters are at their distance, or nearer",
+          "[limit][property][random][miter]") {
+  const test::Seeds seeds = test::random_seeds(30);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
+    INFO("seed " << seed);
+    const test::RandomScene scene = test::random_scene(seed);
+    OffsetOptions options;
+    options.distance = scene.distance;
+    options.corners = Corners::Miter;
+    const OffsetResult result = offset(scene.mesh.view(), options);
+    CHECK(result.statistics.limit.left.total() == 0);
+    std::size_t beyond = 0;
+    for (std::size_t v = 0; v < result.states.size(); ++v) {
+      const bool may_be = result.states[v] == VertexState::Mitred || result.states[v] == VertexState::Cut;
+      beyond += !may_be && result.achieved[v] > std::abs(scene.distance) * (1 + 1.01e-6);
+    }
+    CHECK(beyond == 0);
   }
 }
 

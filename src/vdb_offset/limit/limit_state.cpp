@@ -54,6 +54,13 @@ Vec3d LimitState::displacement_of(std::uint32_t v) const {
   return (all * (u * u) + start * (all.length() * u * (1 - u))) * kBent;
 }
 
+Indices LimitState::take_miters_back(const Indices& vertices) {
+  if (!mitred) return {};
+  Indices unmitred = mitred->take_back(vertices, paths);
+  for (const auto v : unmitred) whole[v] = paths.displacement[v];
+  return unmitred;
+}
+
 Indices LimitState::with_rings(const Indices& vertices, int rings) {
   for (const auto v : vertices) gathered.add(v);
   for (std::size_t i = 0; rings > 0; --rings)

@@ -59,6 +59,10 @@ struct LimitState {
   /// World coordinates.
   Vec3d position_of(std::uint32_t v) const { return source[v] + displacement_of(v); }
 
+  /// Gives those of some vertices that are mitred the whole displacements that they would have with round corners, and
+  /// returns them: a share of a miter may end farther off than the distance, where nothing but its end may be.
+  Indices take_miters_back(const Indices& vertices);
+
   /// Moves vertices to position_of() each, and finds the faults around them.
   void move(const Indices& vertices) {
     faults.move(vertices, [&](std::uint32_t v) { return position_of(v); });

@@ -53,8 +53,7 @@ bool pull_back(LimitState& state) {
   const Indices vertices = vertices_to_pull(state);
   if (vertices.empty()) return false;
   const Indices caught = state.faults.caught();
-  const Indices unmitred = state.mitred ? state.mitred->take_back(vertices, state.paths) : Indices();
-  for (const auto v : unmitred) state.whole[v] = state.paths.displacement[v];
+  const Indices unmitred = state.take_miters_back(vertices);
   for (const auto v : vertices) {
     if (std::binary_search(unmitred.begin(), unmitred.end(), v)) continue;
     state.share[v] *= kKept;

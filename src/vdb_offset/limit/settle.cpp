@@ -141,7 +141,7 @@ Settling::Moves Settling::with_near_vertices(const Move& move, double reach) con
 }
 
 Settling::Old Settling::old_of(std::uint32_t v) const {
-  return {v, state_.whole[v], state_.share[v], state_.is_short(v)};
+  return {v, state_.whole[v], state_.share[v], state_.is_short(v), state_.mitred && state_.mitred->is_mitred(v)};
 }
 
 /// The live area of the vertices that were at their distance, and are short now.
@@ -189,13 +189,17 @@ void Settling::put(const Moves& moves, OldOnes& old) {
     state_.share[v] = 1;
   }
   sort_unique(moved);
+  if (state_.mitred) state_.mitred->take_back(moved, state_.paths);
   state_.live_area.measure(moved);
   state_.move(moved);
 }
 
 void Settling::pull_in_trial(const Indices& vertices, OldOnes& old) {
-  for (const auto v : vertices) {
+  for (const auto v : vertices)
     if (!holds(old, v)) old.push_back(old_of(v));
+  const Indices unmitred = state_.take_miters_back(vertices);
+  for (const auto v : vertices) {
+    if (std::binary_search(unmitred.begin(), unmitred.end(), v)) continue;
     double& share = state_.share[v];
     share = share < kLastShareInTrial ? 0 : share * kKeptInTrial;
   }
@@ -220,13 +224,16 @@ bool Settling::slide_aside(std::uint32_t vertex, const SlideAside& aside, OldOne
 }
 
 void Settling::put_back(const OldOnes& old) {
-  Indices vertices;
+  Indices vertices, mitred;
   for (const Old& o : old) {
     state_.whole[o.vertex] = o.whole;
     state_.share[o.vertex] = o.share;
     vertices.push_back(o.vertex);
+    if (o.was_mitred) mitred.push_back(o.vertex);
   }
   sort_unique(vertices);
+  sort_unique(mitred);
+  if (state_.mitred) state_.mitred->miter_again(mitred, state_.paths);
   state_.move(vertices);
 }
 

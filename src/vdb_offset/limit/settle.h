@@ -37,7 +37,7 @@ class Settling {
     std::uint32_t vertex;
     Vec3d whole;
     double share;
-    bool was_short;
+    bool was_short, was_mitred;
   };
   using Moves = std::vector<Move>;
   using OldOnes = std::vector<Old>;
