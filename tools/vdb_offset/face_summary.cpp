@@ -76,6 +76,7 @@ void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& s
   if (causes.empty()) return;
   std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::string> words;
+  words.reserve(causes.size());
   for (const auto& [share, text] : causes) words.push_back(fmt::format("{} ({:.0f} % of it)", text, 100 * share));
   fmt::print(out, "{} are off mostly {}\n", curves ? "segments" : "faces", fmt::join(words, ", and "));
 }
