@@ -158,7 +158,6 @@ struct OffsetStatistics {
   std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
   std::optional<FitFacts> fit;             ///< Of what fit() made.
   FaceError faces;                         ///< Of layers: of the outermost surface.
-  FaceError faces;
   std::optional<CertifiedFaces> certified;  ///< If a tolerance was asked for.
 };
 
