@@ -97,7 +97,7 @@ struct MiterFacts {
 };
 
 /// What is proven of the faces of an offset, at every point of them. Shares are of the area that the faces which move
-/// have in the offset.
+/// have in the source.
 struct CertifiedFaces {
   double share = 0, length = 0;  ///< The tolerance: of the distance, or in world units.
   double certified = 0;          ///< Share of the area every point of which is proven to be within the tolerance.
@@ -155,9 +155,9 @@ struct OffsetStatistics {
   BorderFacts borders;
   MiterFacts miters;
   SideRoom room;
-  std::optional<ObstacleFacts> obstacles;  ///< If there are any. Of layers: of the outermost surface.
-  std::optional<FitFacts> fit;             ///< Of what fit() made.
-  FaceError faces;                         ///< Of layers: of the outermost surface.
+  std::optional<ObstacleFacts> obstacles;   ///< If there are any. Of layers: of the outermost surface.
+  std::optional<FitFacts> fit;              ///< Of what fit() made.
+  FaceError faces;                          ///< Of layers: of the outermost surface.
   std::optional<CertifiedFaces> certified;  ///< If a tolerance was asked for.
 };
 

@@ -21,6 +21,7 @@ namespace vdb_offset {
 /// What a run makes, for its plan: so many results, or so many layers of cells under one.
 struct Yield {
   std::size_t results = 1, layers = 0;
+  bool has_targets = false;  ///< Vertices have targets (see vertex_targets.h): no field is made.
 };
 
 /// The farthest that any vertex goes on each side, for any of the distances; world units, 0 on a side where none goes.

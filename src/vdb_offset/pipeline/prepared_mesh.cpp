@@ -85,7 +85,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     }
   }
   statistics_.plan = plan;
-  if (moves) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
+  if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
   if (moves) query_.emplace(parts_.moving_part);
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
@@ -129,26 +129,50 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   return marched;
 }
 
-PreparedMesh::Marched PreparedMesh::march_to(const Distances& distances, Ridges ridges, const VertexTargets& targets) {
-  const std::vector<Miter> ends = proven_ends(distances, targets);
-  // Vertices that have a target stay, for the march.
-  std::vector<double> others(surface().vertices.size());
-  for (std::size_t w = 0; w < others.size(); ++w) others[w] = distances[w];
-  for (const Miter& end : ends) others[end.vertex] = 0;
-  const std::vector<Distances> on_part{distances_of_part(parts_, Distances(std::move(others)))};
-  std::vector<Paths> of_part = find_paths(on_part, ridges);
+PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const VertexTargets& targets) {
   const StageTimer timer(statistics_.seconds, Stage::Propagate);
-  Marched marched = of_all(on_part.front(), std::move(of_part.front()));
-  for (const Miter& end : ends) {
-    if (end.state != VertexState::Reached) {
-      marched.miters.push_back(end);
-      continue;
-    }
-    marched.paths.displacement[end.vertex] = end.displacement;
-    marched.paths.achieved[end.vertex] = end.distance;
-    marched.paths.state[end.vertex] = end.state;
-    marched.paths.closest[end.vertex] = end.closest;
+  const std::size_t count = surface().vertices.size();
+  Marched marched;
+  marched.paths = {std::vector<Vec3d>(count, Vec3d(0.0)),
+                   std::vector<double>(count, 0.0),
+                   std::vector<VertexState>(count, VertexState::Reached),
+                   std::vector<std::uint32_t>(count, kNone),
+                   0,
+                   {}};
+  std::vector<std::uint32_t> moving;
+  std::vector<Vec3d> ends;
+  for (std::uint32_t w = 0; w < count; ++w) {
+    const std::uint32_t v = surface().representative[w];
+    const bool on_part = parts_.part_vertex.empty() || parts_.part_vertex[w] != kNone;
+    if (v == kNone || !on_part || distances[w] == 0) continue;
+    const Vec3d displacement = round_displacement(targets.displacement[v], std::abs(distances[w]));
+    marched.paths.displacement[w] = displacement;
+    moving.push_back(w);
+    ends.push_back((surface().vertices[w] + surface().origin) + displacement - surface().origin);
   }
+  const std::vector<Closest> closest = closest_points(*query_, ends);
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const std::uint32_t w = moving[i];
+    const double asked = std::abs(distances[w]), off = closest[i].distance - asked;
+    const VertexState state = targets.state[surface().representative[w]];
+    marched.paths.achieved[w] = closest[i].distance;
+    marched.paths.closest[w] = closest[i].triangle;
+    marched.paths.state[w] = std::abs(off) <= kReachedTolerance * asked ? VertexState::Reached
+                             : falls_short(state)                       ? state
+                                                                        : VertexState::Limited;
+    if (off > 0 && (state == VertexState::Mitred || state == VertexState::Cut))
+      marched.miters.push_back({w, marched.paths.displacement[w], closest[i].distance, closest[i].triangle, state, 0});
+  }
+  // What gives its miter up goes back towards what is closest, to its distance.
+  for (const Miter& miter : marched.miters) {
+    const Vec3d x = surface().vertices[miter.vertex] + miter.displacement;
+    const double asked = std::abs(distances[miter.vertex]);
+    const Vec3d back = (parts_.moving_part.closest_on(miter.closest, x).point - x) * (1 - asked / miter.distance);
+    marched.paths.displacement[miter.vertex] = round_displacement(miter.displacement + back, asked);
+    marched.paths.achieved[miter.vertex] = asked;
+    marched.paths.state[miter.vertex] = VertexState::Reached;
+  }
+  marched.bound = std::exchange(parts_.bound, {});
   hold(distances, marched);
   marched.miter_facts.on_creases = marched.miters.size();
   marched.mitred = MitredPaths(marched.miters, marched.paths);
@@ -182,32 +206,6 @@ PreparedMesh::Marched PreparedMesh::of_all(const Distances& on_part, Paths of_pa
 void PreparedMesh::hold(const Distances& distances, Marched& marched) const {
   if (surroundings_) surroundings_->hold(marched.paths, distances, marched.bound);
   end_traces(marched.paths);
-}
-
-/// The targets of all vertices that are at their distance there, or mitred; sorted by vertex.
-std::vector<Miter> PreparedMesh::proven_ends(const Distances& distances, const VertexTargets& targets) const {
-  std::vector<Miter> ends;
-  for (std::uint32_t w = 0; w < surface().vertices.size(); ++w) {
-    const std::uint32_t v = surface().representative[w];
-    const bool on_part = parts_.part_vertex.empty() || parts_.part_vertex[w] != kNone;
-    if (v != kNone && on_part && distances[w] != 0 && targets.has(v))
-      ends.push_back(
-          {w, round_displacement(targets.displacement[v], std::abs(distances[w])), 0, 0, targets.state[v], 0});
-  }
-  std::vector<Vec3d> points(ends.size());
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    points[i] = (surface().vertices[ends[i].vertex] + surface().origin) + ends[i].displacement - surface().origin;
-  const std::vector<Closest> closest = closest_points(*query_, points);
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    ends[i].distance = closest[i].distance;
-    ends[i].closest = closest[i].triangle;
-  }
-  std::erase_if(ends, [&](const Miter& end) {
-    const double asked = std::abs(distances[end.vertex]);
-    return end.distance < asked * (1 - kReachedTolerance) ||
-           (end.state == VertexState::Reached && end.distance > asked * (1 + kReachedTolerance));
-  });
-  return ends;
 }
 
 ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_source, std::size_t resting_faces) const {

@@ -78,9 +78,8 @@ class PreparedMesh {
   };
   /// Marches once for several sets of distances of all vertices. \pre some vertex moves
   std::vector<Marched> march(std::span<const Distances> distances, Ridges ridges);
-  /// Marches the vertices that have no target, or do not get there as exactly as it says, and finds no miters.
-  /// \pre some vertex moves
-  Marched march_to(const Distances& distances, Ridges ridges, const VertexTargets& targets);
+  /// Puts vertices to their targets, without a march or a search for miters. \pre some vertex moves
+  Marched marched_to(const Distances& distances, const VertexTargets& targets);
 
   /// What must stay valid where vertices have these paths. Refers to this and to `marched`.
   ConstrainedSurface constrained(const Marched& marched, bool off_source, std::size_t resting_faces = 0) const;
@@ -94,7 +93,6 @@ class PreparedMesh {
   std::vector<Paths> find_paths(std::span<const Distances> on_part, Ridges ridges);
   Marched of_all(const Distances& on_part, Paths of_part);
   void hold(const Distances& distances, Marched& marched) const;
-  std::vector<Miter> proven_ends(const Distances& distances, const VertexTargets& targets) const;
 
   const InMetric& space_;
   PolygonView mesh_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "vdb_offset/numbers.h"
@@ -9,15 +8,10 @@
 
 namespace vdb_offset {
 
-/// Where vertices of a mesh are to go, in place of the ends of the paths that would be found for them.
+/// Where the vertices of a mesh go, in place of the ends of paths that would be found for them.
 struct VertexTargets {
   std::vector<Vec3d> displacement;  ///< Of each vertex of the input, world units.
-  std::vector<VertexState> state;   ///< Reached, Mitred or Cut there; any other state where it has no target.
-
-  bool has(std::size_t vertex) const {
-    return state[vertex] == VertexState::Reached || state[vertex] == VertexState::Mitred ||
-           state[vertex] == VertexState::Cut;
-  }
+  std::vector<VertexState> state;   ///< What each is there: Mitred, Cut, or why it falls short, if it does.
 };
 
 }  // namespace vdb_offset

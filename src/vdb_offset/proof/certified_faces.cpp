@@ -12,7 +12,7 @@ namespace {
 
 /// What became of one face.
 struct Verdict {
-  double area = 0;  // in the offset; 0 of a face that stays as a whole
+  double area = 0;  // in the source; 0 of a face that stays as a whole
   bool is_there = false, is_proven = false;
   double error = 0;  // relative to the distance, of one that is there and not proven
 };
@@ -24,7 +24,7 @@ Verdict judge(const CertifiedMesh& mesh, const OffsetProver& prover, const Offse
   };
   if (of_corners([&](std::uint32_t v) { return mesh.asked[v] == 0; })) return {};
   Verdict verdict;
-  const auto& at = mesh.positions;
+  const auto& at = mesh.source;
   verdict.area = (at[b] - at[a]).cross(at[c] - at[a]).length() / 2;
   verdict.is_there = of_corners([&](std::uint32_t v) { return is_there(mesh.states[v]); });
   // Where the side changes no tolerance is told, as the distance is 0 somewhere.

@@ -141,10 +141,19 @@ VertexTarget InterpolatedTargets::beside(const SurfacePlace& place, const Vec3d&
   if (in_all_planes) x = *in_all_planes;
   const Closest closest = query_(x, hint_at(place));
   if (!(closest.distance > 0)) return {};
-  if (in_all_planes && closest.distance >= wanted * (1 - kStopTolerance))
+  if (in_all_planes && closest.distance >= wanted * (1 - kStopTolerance) && is_before_faces(place, x - origin, asked))
     return {x - origin, (x - closest.point) / closest.distance, true,
             closest.distance > wanted * (1 + kReachedTolerance)};
-  return pushed_out(x, origin, wanted, closest);
+  const VertexTarget target = pushed_out(x, origin, wanted, closest);
+  return is_before_faces(place, target.displacement, asked) ? target : VertexTarget{};
+}
+
+/// Whether a displacement leads to the side of all faces at a place that is asked for.
+bool InterpolatedTargets::is_before_faces(const SurfacePlace& place, const Vec3d& displacement, double asked) const {
+  const std::vector<std::uint32_t> triangles = triangles_at(place);
+  return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+    return parts_.surface().triangle_normals[t].dot(displacement) * asked >= 0;
+  });
 }
 
 /// Goes out from a point that is too near to where it is at its distance: away from what is closest, and in a valley

@@ -52,6 +52,7 @@ class InterpolatedTargets {
   VertexTarget pushed_out(const Vec3d& from, const Vec3d& origin, double asked, Closest closest) const;
   std::optional<Vec3d> in_planes(const SurfacePlace& place, const Vec3d& position, double asked,
                                  const Vec3d& between) const;
+  bool is_before_faces(const SurfacePlace& place, const Vec3d& displacement, double asked) const;
   std::uint32_t hint_at(const SurfacePlace& place) const;
   VertexTarget at_distance(const Ray& ray) const;
   bool is_free(const Ray& ray, double length, double distance) const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,9 +19,9 @@
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/pipeline/make_results.h"
 #include "vdb_offset/pipeline/prepared_mesh.h"
-#include "vdb_offset/pipeline/vertex_targets.h"
 #include "vdb_offset/proof/certified_faces.h"
 #include "vdb_offset/refine/interpolated_targets.h"
+#include "vdb_offset/refine/refined_mesh.h"
 #include "vdb_offset/refine/refined_triangles.h"
 #include "vdb_offset/refine/refiner.h"
 
@@ -66,8 +67,9 @@ class RefinedRun {
     const OffsetResult coarse =
         std::move(make_results(prepared_, asked, prepared_.march(asked.moved, ridges_of(options_))).front());
     prepared_.field() = {};
+    seconds_ = coarse.statistics.seconds;
+    crosses_nothing_ = options_.collision == Collision::Limit && coarse.statistics.limit.source_crossings == 0;
     refine(asked.asked.front(), coarse);
-    offset_refined(coarse);
     certify_faces();
     return std::move(refined_);
   }
@@ -103,15 +105,15 @@ class RefinedRun {
     return on_part == kNone ? Vec3d(0.0) : start_direction(prepared_.parts().moving_part, on_part) * asked;
   }
 
-  std::vector<RefinedVertex> vertices_of_surface(const Distances& asked, const OffsetResult& coarse,
-                                                 const std::vector<Vec3d>& displacement) const {
+  std::vector<RefinedVertex> vertices_of_surface(const Distances& asked, const OffsetResult& coarse) const {
     std::vector<RefinedVertex> vertices(surface().vertices.size());
     for (std::uint32_t w = 0; w < vertices.size(); ++w) {
       const std::uint32_t v = surface().representative[w];
       if (v == kNone) continue;
       vertices[w] = {asked[w], tolerance_.at(asked[w]), {}};
-      vertices[w].target.displacement = displacement[w];
+      vertices[w].target.displacement = coarse.positions[v] - mesh_.positions[v];
       vertices[w].target.is_there = asked[w] != 0 && is_there(coarse.states[v]);
+      vertices[w].otherwise = coarse.states[v];
       vertices[w].target.is_mitred = coarse.states[v] == VertexState::Mitred;
     }
     return vertices;
@@ -122,68 +124,63 @@ class RefinedRun {
                                      : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
   }
 
-  /// Splits the faces.
+  /// Splits the faces, in stages, and makes the offset of what comes of that.
   void refine(const Distances& asked, const OffsetResult& coarse) {
-    const StageTimer timer(seconds_, Stage::Refine);
-    Progress progress(options_.progress, Stage::Refine, kProgress);
+    std::optional<StageTimer> timer(std::in_place, seconds_, Stage::Refine);
     std::vector<Vec3d> displacement(surface().vertices.size());
     for (std::uint32_t w = 0; w < displacement.size(); ++w) displacement[w] = displacement_of(w, asked[w], coarse);
-    std::vector<RefinedVertex> vertices = vertices_of_surface(asked, coarse, displacement);
+    std::vector<RefinedVertex> vertices = vertices_of_surface(asked, coarse);
     const InterpolatedTargets targets(prepared_.parts(), prepared_.query(), prepared_.obstacles(), options_.corners,
                                       std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
                     {options_.corners, most_faces(), tolerance_.precision});
+    Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
-    refiner.run([&](double share) {
+    const auto tell = [&](double share) {
       const auto now = static_cast<std::size_t>(share * kProgress);
       if (now > told) progress.advance(now - std::exchange(told, now));
-    });
+    };
+    for (double loosened = refiner.loosest();; loosened = std::max(1.0, loosened / kTightened)) {
+      refiner.begin_stage(loosened);
+      while (refiner.begin_round(tell) && split(refiner)) {
+      }
+      if (loosened == 1) break;
+    }
     vertices_ = refiner.vertices();
     is_cut_short_ = refiner.is_cut_short();
-    refined_.refinement = triangles_->of_mesh(mesh_, numbers_);
+    timer.reset();
+    make_valid(refiner);
   }
 
-  /// Offsets the refined mesh: the vertices of the source to where they have gone, others to their targets.
-  void offset_refined(const OffsetResult& coarse) {
-    const std::size_t source = mesh_.positions.size(), count = refined_.refinement.polygons.positions.size();
-    VertexTargets targets{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<VertexState>(count, VertexState::Limited)};
-    std::vector<double> each(options_.distance.uniform() ? 0 : count);
-    for (std::size_t v = 0; v < source; ++v) {
-      if (!each.empty()) each[v] = options_.distance[v];
-      targets.state[v] = coarse.states[v];
-      if (surface().welded[v] != kNone)
-        targets.displacement[v] = coarse.positions[v] - mesh_.positions[surface().representative[surface().welded[v]]];
+  /// Splits what a round asks for, but for what would make faults. False if another round would hardly gain anything:
+  /// this one has added little, and part of what it tried was faulty.
+  bool split(Refiner& refiner) {
+    const std::size_t before = triangles_->triangles().size();
+    bool any_faulty = false;
+    if (!refiner.split()) return false;
+    for (int attempt = 0; attempt < kMostAttempts && options_.collision == Collision::Limit; ++attempt) {
+      RefinedMesh refined(*triangles_, mesh_, options_, threads_, crosses_nothing_);
+      const std::vector<std::uint32_t> faulty = refined.faulty_triangles(refiner.vertices());
+      any_faulty |= !faulty.empty();
+      if (faulty.empty() || !refiner.keep_whole(faulty) || !refiner.split()) break;
     }
-    // Where the input has several vertices at one position, the first of them is the one that counts.
-    for (std::size_t i = surface().vertices.size(); i < vertices_.size(); ++i) {
-      if (numbers_[i] == kNone) continue;
-      const RefinedVertex& vertex = vertices_[i];
-      targets.displacement[numbers_[i]] = vertex.target.displacement;
-      if (vertex.target.is_there)
-        targets.state[numbers_[i]] = vertex.target.is_mitred ? VertexState::Mitred : VertexState::Reached;
-      if (!each.empty()) each[numbers_[i]] = vertex.asked;
-    }
-    OffsetOptions options = options_;
-    if (!each.empty()) options.distance = Distances(std::move(each));
-    if (!options.only.empty()) {
-      options.only.clear();
-      for (const std::uint32_t f : refined_.refinement.parent) options.only.push_back(options_.only[f]);
-    }
-    const PolygonView mesh = refined_.refinement.polygons.view();
-    const InMetric space(mesh, options.metric);
-    PreparedMesh prepared(space, options, threads_, farthest_of({&options.distance, 1}), {});
-    const AskedDistances asked = ask(prepared, {&options.distance, 1});
-    std::vector<PreparedMesh::Marched> marched;
-    marched.push_back(prepared.march_to(asked.moved.front(), ridges_of(options), targets));
-    refined_.result = std::move(make_results(prepared, asked, std::move(marched)).front());
-    for (std::size_t s = 0; s < kStageCount; ++s)
-      refined_.result.statistics.seconds[s] += coarse.statistics.seconds[s] + seconds_[s];
+    const std::size_t added = triangles_->triangles().size() - before;
+    return !any_faulty || static_cast<double>(added) > kLeastGain * static_cast<double>(before);
+  }
+
+  void make_valid(const Refiner& refiner) {
+    RefinedMesh refined(*triangles_, mesh_, options_, threads_, crosses_nothing_);
+    refined_.result = refined.offset(refiner.vertices());
+    refined_.refinement = refined.take_refinement();
+    numbers_ = refined.numbers();
+    for (std::size_t s = 0; s < kStageCount; ++s) seconds_[s] += refined_.result.statistics.seconds[s];
   }
 
   /// Proves what can be proven of the result, against the mesh before its faces were split.
   void certify_faces() {
     OffsetResult& result = refined_.result;
+    result.statistics.seconds = seconds_;
     const StageTimer timer(result.statistics.seconds, Stage::Measure);
     const Rounding precision(options_.precision);
     const std::size_t count = vertices_.size();
@@ -212,6 +209,9 @@ class RefinedRun {
   }
 
   static constexpr std::size_t kProgress = 1000;  // units of the stage's progress
+  static constexpr double kTightened = 10;    // how many times a stage's tolerance is that of the next; not measured
+  static constexpr double kLeastGain = 0.03;  // of triangles, for another round; not measured
+  static constexpr int kMostAttempts = 12;    // at a round without faults; not measured
 
   PolygonView mesh_;
   const OffsetOptions& options_;
@@ -223,7 +223,7 @@ class RefinedRun {
   std::optional<RefinedTriangles> triangles_;
   std::vector<RefinedVertex> vertices_;  // of triangles_
   std::vector<std::uint32_t> numbers_;   // of each of them: its vertex in the refinement
-  bool is_cut_short_ = false;
+  bool is_cut_short_ = false, crosses_nothing_ = false;
   RefinedOffset refined_;
 };
 

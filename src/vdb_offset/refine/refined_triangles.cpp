@@ -46,7 +46,7 @@ struct AddedCorner {
 }  // namespace
 
 RefinedTriangles::RefinedTriangles(const Surface& surface, std::span<const Vec3d> positions, std::size_t count)
-    : surface_(surface), positions_(positions.begin(), positions.end()) {
+    : surface_(&surface), positions_(positions.begin(), positions.end()) {
   triangles_.reserve(count);
   for (std::uint32_t t = 0; t < count; ++t) triangles_.push_back({surface.triangles[t], t});
 }
@@ -65,7 +65,8 @@ SurfacePlace RefinedTriangles::middle(const Edge& edge, std::uint32_t source) co
 }
 
 std::vector<std::uint32_t> RefinedTriangles::split(std::span<const Edge> edges, std::span<const SurfacePlace> places,
-                                                   std::span<const Vec3d> positions) {
+                                                   std::span<const Vec3d> positions,
+                                                   std::vector<std::uint32_t>* split_from) {
   VDB_OFFSET_ASSERT(std::is_sorted(edges.begin(), edges.end()));
   const auto first = static_cast<std::uint32_t>(positions_.size());
   positions_.insert(positions_.end(), positions.begin(), positions.end());
@@ -86,7 +87,10 @@ std::vector<std::uint32_t> RefinedTriangles::split(std::span<const Edge> edges, 
     auto one = some.begin();
     triangles_[t].vertex = *one;
     pieces.push_back(static_cast<std::uint32_t>(t));
-    for (++one; one != some.end(); ++one) triangles_.push_back({*one, source});
+    for (++one; one != some.end(); ++one) {
+      triangles_.push_back({*one, source});
+      if (split_from) split_from->push_back(static_cast<std::uint32_t>(t));
+    }
   };
   for (std::size_t t = 0; t < count; ++t) {
     const auto marked = 3 - std::count(middles[t].begin(), middles[t].end(), kNone);
@@ -110,15 +114,16 @@ std::vector<std::uint32_t> RefinedTriangles::split(std::span<const Edge> edges, 
 /// The first corner of a face of the input that is a vertex of the surface.
 std::uint32_t RefinedTriangles::corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const {
   for (const auto v : mesh.face(face))
-    if (surface_.welded[v] == vertex) return v;
+    if (surface_->welded[v] == vertex) return v;
   VDB_OFFSET_ASSERT(false);
   return kNone;
 }
 
-Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers) const {
+Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
+                                     std::vector<std::uint32_t>* triangle_of_face) const {
   // The pieces of each face, in the order in which they were made.
   std::vector<std::uint32_t> begin(mesh.face_count() + 1, 0), before(mesh.face_count(), 0), order(triangles_.size());
-  const auto face_of = [&](const Triangle& triangle) { return surface_.face[triangle.source]; };
+  const auto face_of = [&](const Triangle& triangle) { return surface_->face[triangle.source]; };
   for (const Triangle& triangle : triangles_) ++begin[face_of(triangle) + 1];
   for (std::size_t f = 0; f < mesh.face_count(); ++f) begin[f + 1] += begin[f];
   std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
@@ -136,11 +141,12 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
       polygons.corners.insert(polygons.corners.end(), face.begin(), face.end());
       polygons.close_face();
       refinement.parent.push_back(f);
+      if (triangle_of_face) triangle_of_face->push_back(kNone);
       continue;
     }
     for (std::uint32_t i = begin[f]; i < begin[f + 1]; ++i) {
       Triangle piece = triangles_[order[i]];
-      if (surface_.is_turned(piece.source)) std::swap(piece.vertex[1], piece.vertex[2]);
+      if (surface_->is_turned(piece.source)) std::swap(piece.vertex[1], piece.vertex[2]);
       for (const auto v : piece.vertex) {
         if (v < source_vertices()) {
           polygons.corners.push_back(corner_of(mesh, f, v));
@@ -155,12 +161,13 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
       }
       polygons.close_face();
       refinement.parent.push_back(f);
+      if (triangle_of_face) triangle_of_face->push_back(order[i]);
     }
   }
   tbb::parallel_sort(added.begin(), added.end());
   numbers.assign(positions_.size(), kNone);
   for (std::size_t w = 0; w < source_vertices(); ++w)
-    if (w < surface_.representative.size()) numbers[w] = surface_.representative[w];
+    if (w < surface_->representative.size()) numbers[w] = surface_->representative[w];
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (i == 0 || added[i - 1].key() != added[i].key()) {
       const SurfacePlace& place = added_[added[i].added];

@@ -50,18 +50,21 @@ class RefinedTriangles {
   /// Adds vertices on edges, and splits the triangles there in two, three or four; the first piece takes the place of
   /// the triangle, others come last.
   /// \param edges sorted, no two the same; \param places, positions of the vertices that are added on them
-  /// \returns the numbers of all new pieces, in ascending order
+  /// \param split_from receives, if it is given, for each triangle beyond those there were the one that it was split
+  /// from \returns the numbers of all new pieces, in ascending order
   std::vector<std::uint32_t> split(std::span<const Edge> edges, std::span<const SurfacePlace> places,
-                                   std::span<const Vec3d> positions);
+                                   std::span<const Vec3d> positions, std::vector<std::uint32_t>* split_from = nullptr);
 
   /// The refinement of the mesh that the surface was built from. `numbers` receives for each vertex here one of those
-  /// that it is in the refinement.
-  Refinement of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers) const;
+  /// that it is in the refinement; `triangle_of_face`, if given, for each of its faces the triangle here, or kNone for
+  /// a face that is not split.
+  Refinement of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
+                     std::vector<std::uint32_t>* triangle_of_face = nullptr) const;
 
  private:
   std::uint32_t corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const;
 
-  const Surface& surface_;
+  const Surface* surface_;
   std::vector<Vec3d> positions_;
   std::vector<SurfacePlace> added_;
   std::vector<Triangle> triangles_;

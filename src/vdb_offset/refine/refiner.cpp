@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
@@ -17,13 +18,19 @@ namespace {
 // a sphere bulge by three quarters, its middle bulges by one.
 constexpr double kMostBulge = 0.75;
 // Lengths in units of that of an edge on a circle of radius d that bulges by the tolerance: of an edge with one end
-// that does not get there, at which it is no longer split; and of a triangle's longest edge, at which it is given up.
-constexpr double kLeastMixed = 0.5, kLeastOff = 0.1;
+// that does not get there, at which it is no longer split; and up to which an edge is short.
+constexpr double kLeastMixed = 0.5, kShort = 0.5;
+// Share of an edge's bulge from which its halves count as bulging as much, and how often that may be in a row where
+// edges are short. Not measured: a quarter on a smooth surface, a half across a valley.
+constexpr double kMostKept = 0.6;
+constexpr int kMostTimesKept = 3;
 // The bulge from which an edge is split if none bulges by kMostBulge, and the length from which one is, in those units,
 // if none bulges. Not measured.
 constexpr double kLeastBulge = 0.1, kLongFlat = 1;
-// More rounds than any edge can be halved in.
-constexpr int kMostRounds = 60;
+// The tolerance of the first stage, as a share of the distance. Not measured.
+constexpr double kFirstTolerance = 0.1;
+// Rounds of a stage. Reasoned: an edge that is a million times as long as it may be is halved twenty times.
+constexpr int kMostRounds = 20;
 
 /// The length of a chord of a circle that bulges by the tolerance.
 double chord(double asked, double tolerance) { return std::sqrt(8 * std::abs(asked) * tolerance); }
@@ -40,20 +47,66 @@ Refiner::Refiner(const MeshParts& parts, const ClosestQuery& query, const Interp
       options_(options),
       state_(triangles.triangles().size(), State::New) {}
 
-void Refiner::run(const std::function<void(double)>& tell) {
-  std::vector<std::uint32_t> fresh(state_.size());
-  for (std::uint32_t t = 0; t < fresh.size(); ++t) fresh[t] = t;
-  for (int round = 0; round < kMostRounds && !fresh.empty() && !is_cut_short_; ++round) {
-    tell(1 - static_cast<double>(fresh.size()) / static_cast<double>(state_.size()));
-    for_each_index(
-        fresh.size(), [&](std::size_t i) { state_[fresh[i]] = judge(triangles_.triangles()[fresh[i]]); }, 16);
-    std::erase_if(fresh, [&](std::uint32_t t) { return state_[t] == State::Settled; });
-    propose(fresh);
-    std::vector<std::uint8_t> marked(candidates_.size(), 0);
-    for (const std::uint32_t t : fresh) mark(t, marked);
-    keep_to_limit(marked);
-    fresh = split(marked);
+double Refiner::loosest() const {
+  double loosest = 1;
+  for (const RefinedVertex& vertex : vertices_)
+    if (vertex.asked != 0) loosest = std::max(loosest, kFirstTolerance * std::abs(vertex.asked) / vertex.tolerance);
+  return loosest;
+}
+
+void Refiner::begin_stage(double loosened) {
+  loosened_ = loosened;
+  round_ = 0;
+  fresh_.clear();
+  for (std::uint32_t t = 0; t < state_.size(); ++t) {
+    if (state_[t] == State::Off) state_[t] = State::Given;
+    if (state_[t] != State::Settled && state_[t] != State::Mixed && state_[t] != State::New) continue;
+    state_[t] = State::New;
+    fresh_.push_back(t);
   }
+}
+
+bool Refiner::begin_round(const std::function<void(double)>& tell) {
+  if (is_cut_short_ || round_++ == kMostRounds) return false;
+  tell(1 - static_cast<double>(fresh_.size()) / static_cast<double>(state_.size()));
+  for_each_index(
+      fresh_.size(), [&](std::size_t i) { state_[fresh_[i]] = judge(triangles_.triangles()[fresh_[i]]); }, 16);
+  std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] != State::Off && state_[t] != State::Mixed; });
+  propose(fresh_);
+  then_ = {vertices_.size(), state_, triangles_, fresh_};
+  piece_of_.resize(state_.size());
+  std::iota(piece_of_.begin(), piece_of_.end(), 0U);
+  return !fresh_.empty();
+}
+
+bool Refiner::split() {
+  std::vector<std::uint8_t> marked(candidates_.size(), 0);
+  find_whole_edges();
+  for (const std::uint32_t t : fresh_) mark(t, marked);
+  keep_to_limit(marked);
+  if (std::find(marked.begin(), marked.end(), 1) == marked.end()) return false;
+  split(marked);
+  return true;
+}
+
+bool Refiner::keep_whole(std::span<const std::uint32_t> triangles) {
+  std::vector<std::uint32_t> pieces(then_.state.size(), 0);
+  for (const std::uint32_t t : piece_of_) ++pieces[t];
+  bool any = false;
+  for (const std::uint32_t t : triangles) {
+    const std::uint32_t whole = piece_of_[t];
+    if (pieces[whole] < 2) continue;
+    then_.state[whole] = State::Whole;
+    any = true;
+  }
+  if (!any) return false;
+  vertices_.resize(then_.vertices);
+  triangles_ = *then_.triangles;
+  state_ = then_.state;
+  fresh_ = then_.fresh;
+  std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::Whole; });
+  piece_of_.resize(state_.size());
+  return true;
 }
 
 bool Refiner::moves(const RefinedTriangles::Triangle& triangle) const {
@@ -70,23 +123,33 @@ Refiner::State Refiner::judge(const RefinedTriangles::Triangle& triangle) const 
   const Surface& surface = parts_.surface();
   const Vec3d &normal = surface.triangle_normals[triangle.source], &first = triangles_.positions()[triangle.vertex[0]];
   offset.may_keep_to_plane = options_.corners == Corners::Miter && normal.lengthSqr() > 0;
+  bool is_beyond_plane = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const RefinedVertex& vertex = vertices_[triangle.vertex[k]];
     if (!vertex.target.is_there) return State::Mixed;
     const Vec3d position = triangles_.positions()[triangle.vertex[k]] + vertex.target.displacement;
     offset.corners[k] = position - surface.origin;
     offset.asked[k] = std::abs(vertex.asked);
-    offset.tolerance[k] = vertex.tolerance;
+    offset.tolerance[k] = vertex.tolerance * loosened_;
     offset.over_plane[k] = normal.dot(position - first) * (vertex.asked < 0 ? -1 : 1);
+    is_beyond_plane |= offset.over_plane[k] < 0;
   }
-  return prover_(offset).certainty == Certainty::Proven ? State::Settled : State::Off;
+  if (prover_(offset).certainty == Certainty::Proven) return State::Settled;
+  // A face that gets behind its own plane has no room; its pieces would have none, either.
+  return is_beyond_plane ? State::Given : State::Off;
 }
 
 /// The length of an edge in the source, in units of the chord that bulges by the tolerance.
 double Refiner::length_of(const Edge& edge) const {
   const RefinedVertex &a = vertices_[edge.first], &b = vertices_[edge.second];
   return (triangles_.positions()[edge.second] - triangles_.positions()[edge.first]).length() /
-         chord((std::abs(a.asked) + std::abs(b.asked)) / 2, (a.tolerance + b.tolerance) / 2);
+         chord((std::abs(a.asked) + std::abs(b.asked)) / 2, (a.tolerance + b.tolerance) / 2 * loosened_);
+}
+
+/// Whether halves of a short edge would bulge as much as it does, for all that is known: those of a smooth surface
+/// bulge by a quarter. So it is where what is next to each other in the source is not in the offset.
+bool Refiner::is_torn(const Candidate& one) const {
+  return one.vertex.kept >= kMostTimesKept && length_of(one.edge) < kShort;
 }
 
 /// Makes candidates of the edges of some triangles, where there are none.
@@ -113,7 +176,7 @@ void Refiner::propose(const std::vector<std::uint32_t>& triangles) {
 
 Refiner::Candidate Refiner::candidate(const Edge& edge, std::uint32_t source) const {
   const RefinedVertex &a = vertices_[edge.first], &b = vertices_[edge.second];
-  Candidate one{edge, triangles_.middle(edge, source), {}, {}, 0};
+  Candidate one{edge, triangles_.middle(edge, source), {}, {}};
   const Vec3d middle = (triangles_.positions()[edge.first] + triangles_.positions()[edge.second]) / 2.0;
   one.position = options_.precision(middle);
   one.vertex.asked = (a.asked + b.asked) / 2;
@@ -128,8 +191,11 @@ Refiner::Candidate Refiner::candidate(const Edge& edge, std::uint32_t source) co
                                       a.target.is_mitred || b.target.is_mitred);
   if (!one.vertex.target.is_there) one.vertex.target = targets_.along(one.place, one.position, one.vertex.asked);
   if (!one.vertex.target.is_there) return one;
-  one.bulge = std::abs(one.vertex.target.away.dot(one.position + one.vertex.target.displacement - chord_middle)) /
-              one.vertex.tolerance;
+  one.vertex.bulge =
+      std::abs(one.vertex.target.away.dot(one.position + one.vertex.target.displacement - chord_middle)) /
+      one.vertex.tolerance;
+  const RefinedVertex& newer = b;  // numbers grow
+  if (!(one.vertex.bulge < kMostKept * newer.bulge) && newer.bulge > 0) one.vertex.kept = newer.kept + 1;
   return one;
 }
 
@@ -144,20 +210,23 @@ const Refiner::Candidate& Refiner::find(const Edge& edge) const {
 /// nothing: so it is where a mitred crease ends at a round corner.
 template <class Split>
 void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& split) const {
+  // What an edge that stays bulges by, no split of another one mends.
+  for (const Candidate* one : of_edge)
+    if (one->stays_whole && one->vertex.bulge > kMostBulge * loosened_) return;
   bool any = false;
   const Candidate *most = nullptr, *longest = nullptr;
   for (const Candidate* one : of_edge) {
     const double length = length_of(one->edge);
-    if (length < kLeastOff) continue;
-    if (one->bulge > kMostBulge) {
+    if (is_torn(*one) || one->stays_whole) continue;
+    if (one->vertex.bulge > kMostBulge * loosened_) {
       split(one);
       any = true;
     }
-    if (!most || one->bulge > most->bulge) most = one;
+    if (!most || one->vertex.bulge > most->vertex.bulge) most = one;
     if (!longest || length > length_of(longest->edge)) longest = one;
   }
   if (any || !most) return;
-  if (most->bulge > kLeastBulge) split(most);
+  if (most->vertex.bulge > kLeastBulge * loosened_) split(most);
   else if (length_of(longest->edge) > kLongFlat) split(longest);
 }
 
@@ -169,10 +238,27 @@ void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) co
   const auto split = [&](const Candidate* one) { marked[static_cast<std::size_t>(one - candidates_.data())] = 1; };
   if (state_[triangle] == State::Off) return mark_off(of_edge, split);
   for (const Candidate* one : of_edge) {
+    if (one->stays_whole) continue;
     const int there = vertices_[one->edge.first].target.is_there + vertices_[one->edge.second].target.is_there;
-    if (there == 2 ? one->bulge > kMostBulge
-                   : length_of(one->edge) > kLeastMixed && (there == 1 || one->vertex.target.is_there))
+    if (there == 2 ? one->vertex.bulge > kMostBulge * loosened_ && !is_torn(*one)
+                   : length_of(one->edge) > kLeastMixed && one->vertex.target.is_there)
       split(one);
+  }
+}
+
+/// Notes which edges are those of triangles that have to stay whole.
+void Refiner::find_whole_edges() {
+  std::vector<Edge> edges;
+  for (std::uint32_t t = 0; t < state_.size(); ++t) {
+    if (state_[t] != State::Whole) continue;
+    const Corners3& v = triangles_.triangles()[t].vertex;
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back(edge_between(v[k], v[(k + 1) % 3]));
+  }
+  tbb::parallel_sort(edges.begin(), edges.end());
+  auto edge = edges.begin();
+  for (Candidate& one : candidates_) {
+    while (edge != edges.end() && *edge < one.edge) ++edge;
+    one.stays_whole = edge != edges.end() && *edge == one.edge;
   }
 }
 
@@ -185,12 +271,13 @@ void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
   const std::size_t count = state_.size(), room = options_.most_triangles > count ? options_.most_triangles - count : 0;
   if (2 * some.size() <= room) return;
   is_cut_short_ = true;
-  std::stable_sort(some.begin(), some.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return candidates_[a].bulge > candidates_[b].bulge; });
+  std::stable_sort(some.begin(), some.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return candidates_[a].vertex.bulge > candidates_[b].vertex.bulge;
+  });
   for (std::size_t i = room / 2; i < some.size(); ++i) marked[some[i]] = 0;
 }
 
-std::vector<std::uint32_t> Refiner::split(const std::vector<std::uint8_t>& marked) {
+void Refiner::split(const std::vector<std::uint8_t>& marked) {
   std::vector<Edge> edges;
   std::vector<SurfacePlace> places;
   std::vector<Vec3d> positions;
@@ -201,12 +288,14 @@ std::vector<std::uint32_t> Refiner::split(const std::vector<std::uint8_t>& marke
     positions.push_back(candidates_[i].position);
     vertices_.push_back(candidates_[i].vertex);
   }
-  std::size_t i = 0;
-  std::erase_if(candidates_, [&](const Candidate&) { return marked[i++] != 0; });
-  std::vector<std::uint32_t> pieces = triangles_.split(edges, places, positions);
-  state_.resize(triangles_.triangles().size());
-  for (const std::uint32_t t : pieces) state_[t] = State::New;
-  return pieces;
+  std::vector<std::uint32_t> split_from;
+  fresh_ = triangles_.split(edges, places, positions, &split_from);
+  for (const std::uint32_t t : split_from) {
+    state_.push_back(state_[t]);
+    piece_of_.push_back(piece_of_[t]);
+  }
+  std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::Given; });
+  for (const std::uint32_t t : fresh_) state_[t] = State::New;
 }
 
 }  // namespace vdb_offset

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace vdb_offset {
 struct RefinedVertex {
   double asked = 0, tolerance = 0;  ///< World units; the distance is negative inward, the tolerance above 0.
   VertexTarget target;
+  VertexState otherwise = VertexState::Limited;  ///< What it is if it does not get there.
+  double bulge = 0;                              ///< Of the edge that it was added on (see Refiner), in tolerances,
+  int kept = 0;  ///< and how many times in a row such edges have bulged nearly as much as before they were halved.
 };
 
 struct RefinerOptions {
@@ -28,19 +32,31 @@ struct RefinerOptions {
 
 /// Splits the faces of a mesh until its offset is proven to be at its distance between the vertices, too.
 ///
-/// In rounds: each triangle whose vertices all get to their distance is proven right, found to be off, or left open. Of
+/// In stages, the first with a tolerance of a tenth of the distance: what cannot be proven with that, as nothing there
+/// has room, is not split any more. In rounds, each of which can be done again without what has turned out to be
+/// faulty: each triangle whose vertices all get to their distance is proven right, found to be off, or left open. Of
 /// those that are not right the edges are split between whose ends the offset bulges by most of the tolerance, or the
-/// one where it bulges the most. Where a vertex that gets to its distance has a neighbour that does not, the edge
-/// between them is split as well, down to a length at which that is little area, and so are long edges none of whose
-/// ends gets there, if their middle does; where no vertex gets there, nothing is split.
+/// one where it bulges the most. Where an edge has an end that does not get to its distance, it is split if its middle
+/// gets there, down to a length at which that is little area; where no vertex gets there, nothing is split.
 class Refiner {
  public:
   /// Keeps references. \param vertices of the surface's vertices, as `triangles` has them
   Refiner(const MeshParts& parts, const ClosestQuery& query, const InterpolatedTargets& targets,
           RefinedTriangles& triangles, std::vector<RefinedVertex> vertices, const RefinerOptions& options);
 
-  /// Carries out all rounds. \param tell is called before each, with the share of triangles that are settled
-  void run(const std::function<void(double)>& tell);
+  /// The tolerance of the first stage, in units of the tolerance that is asked for; 1 if there is only one.
+  double loosest() const;
+  /// Begins a stage with a tolerance so many times as large, at least 1, and gives up what is not proven of the stage
+  /// before.
+  void begin_stage(double loosened);
+  /// Begins a round. False if there is nothing to be split any more. \param tell receives the share of triangles that
+  /// are settled
+  bool begin_round(const std::function<void(double)>& tell);
+  /// Splits what this round asks for. False if that is nothing.
+  bool split();
+  /// Undoes this round's splits, and has the triangles stay whole that some of the present ones are pieces of. Returns
+  /// false, and undoes nothing, if none of them is a piece of another one.
+  bool keep_whole(std::span<const std::uint32_t> triangles);
 
   /// Of all vertices, the added ones last.
   const std::vector<RefinedVertex>& vertices() const { return vertices_; }
@@ -50,7 +66,9 @@ class Refiner {
  private:
   enum class State : std::uint8_t {
     New,      // not looked at
-    Settled,  // proven, or nothing can be gained
+    Settled,  // proven, or does not move
+    Given,    // given up: nothing can be gained, but neighbours may split its edges
+    Whole,    // its pieces would be faulty: its edges are not split, either
     Off,      // all vertices get there, but not all points between them
     Mixed,    // some vertex does not get there
   };
@@ -60,7 +78,7 @@ class Refiner {
     SurfacePlace place;
     Vec3d position;
     RefinedVertex vertex;
-    double bulge;  // of the offset between the ends of the edge, in tolerances; 0 where an end does not get there
+    bool stays_whole = false;  // a triangle there has to
     bool operator<(const Candidate& other) const { return edge < other.edge; }
   };
   using Corners3 = std::array<std::uint32_t, 3>;
@@ -68,14 +86,16 @@ class Refiner {
   bool moves(const RefinedTriangles::Triangle& triangle) const;
   State judge(const RefinedTriangles::Triangle& triangle) const;
   double length_of(const Edge& edge) const;
+  bool is_torn(const Candidate& one) const;
   void propose(const std::vector<std::uint32_t>& triangles);
   Candidate candidate(const Edge& edge, std::uint32_t source) const;
   const Candidate& find(const Edge& edge) const;
   void mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) const;
   template <class Split>
   void mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& split) const;
+  void find_whole_edges();
   void keep_to_limit(std::vector<std::uint8_t>& marked);
-  std::vector<std::uint32_t> split(const std::vector<std::uint8_t>& marked);
+  void split(const std::vector<std::uint8_t>& marked);
 
   const MeshParts& parts_;
   const OffsetProver prover_;
@@ -85,6 +105,17 @@ class Refiner {
   RefinerOptions options_;
   std::vector<State> state_;           // of each triangle
   std::vector<Candidate> candidates_;  // of this round and those before, sorted by edge
+  int round_ = 0;                      // of the present stage
+  std::vector<std::uint32_t> fresh_;   // triangles that this round is to look at
+  /// At the start of the present round; and of each triangle now, the one then that it is a piece of.
+  struct {
+    std::size_t vertices = 0;
+    std::vector<State> state;
+    std::optional<RefinedTriangles> triangles;
+    std::vector<std::uint32_t> fresh;
+  } then_;
+  std::vector<std::uint32_t> piece_of_;
+  double loosened_ = 1;  // how many times the tolerance is that of the present stage
   bool is_cut_short_ = false;
 };
 

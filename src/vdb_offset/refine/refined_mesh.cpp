@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/refine/refined_mesh.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "vdb_offset/base/index_set.h"
+#include "vdb_offset/pipeline/field_stage.h"
+#include "vdb_offset/validity/fault_finder.h"
+
+namespace vdb_offset {
+
+RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options, int threads,
+                         bool crosses_nothing)
+    : triangles_(triangles), mesh_(mesh), options_(options), threads_(threads), crosses_nothing_(crosses_nothing) {
+  refinement_ = triangles.of_mesh(mesh, numbers_, &triangle_of_face_);
+  if (options.only.empty()) return;
+  options_.only.clear();
+  for (const std::uint32_t f : refinement_.parent) options_.only.push_back(options.only[f]);
+}
+
+/// Puts all vertices to their targets.
+void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
+  const std::size_t count = refinement_.polygons.positions.size();
+  VertexTargets targets{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<VertexState>(count, VertexState::Limited)};
+  std::vector<double> each(options_.distance.uniform() ? 0 : count);
+  for (std::size_t v = 0; v < mesh_.positions.size() && !each.empty(); ++v) each[v] = options_.distance[v];
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::uint32_t v = numbers_[i];
+    if (v == kNone) continue;
+    targets.displacement[v] = vertices[i].target.displacement;
+    targets.state[v] = !vertices[i].target.is_there   ? vertices[i].otherwise
+                       : vertices[i].target.is_mitred ? VertexState::Mitred
+                                                      : VertexState::Reached;
+    if (!each.empty() && i >= triangles_.source_vertices()) each[v] = vertices[i].asked;
+  }
+  if (!each.empty()) options_.distance = Distances(std::move(each));
+  space_.emplace(refinement_.polygons.view(), options_.metric);
+  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}), Yield{.has_targets = true});
+  asked_ = ask(*prepared_, {&options_.distance, 1});
+  marched_.push_back(prepared_->marched_to(asked_->moved.front(), targets));
+}
+
+std::vector<std::uint32_t> RefinedMesh::faulty_triangles(const std::vector<RefinedVertex>& vertices) {
+  prepare(vertices);
+  const Surface& surface = prepared_->surface();
+  const ConstrainedSurface constrained = prepared_->constrained(marched_.front(), false);
+  FaultFinder finder(constrained, prepared_->source(), asked_->moved.front(), options_.precision,
+                     prepared_->surroundings() || !crosses_nothing_ ? prepared_->known_crossings() : SelfCrossings{});
+  finder.move_to_ends(marched_.front().paths);
+  std::vector<std::uint8_t> is_faulty(refinement_.parent.size(), 0);
+  const auto take = [&](std::uint32_t t) {
+    if (surface.face[t] < is_faulty.size() && !constrained.is_obstacle(t)) is_faulty[surface.face[t]] = 1;
+  };
+  finder.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+    take(s);
+    take(t);
+  });
+  for (const std::uint32_t v : finder.misplaced())
+    for (const std::uint32_t t : surface.triangles_around(v)) take(t);
+  Indices triangles;
+  for (std::size_t f = 0; f < is_faulty.size(); ++f)
+    if (is_faulty[f] && triangle_of_face_[f] != kNone) triangles.push_back(triangle_of_face_[f]);
+  return triangles;
+}
+
+OffsetResult RefinedMesh::offset(const std::vector<RefinedVertex>& vertices) {
+  prepare(vertices);
+  return std::move(make_results(*prepared_, *asked_, std::move(marched_)).front());
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_offset/mesh/in_metric.h"
+#include "vdb_offset/options.h"
+#include "vdb_offset/pipeline/make_results.h"
+#include "vdb_offset/pipeline/prepared_mesh.h"
+#include "vdb_offset/pipeline/vertex_targets.h"
+#include "vdb_offset/refine/refined_triangles.h"
+#include "vdb_offset/refine/refiner.h"
+#include "vdb_offset/refinement.h"
+#include "vdb_offset/result.h"
+
+namespace vdb_offset {
+
+/// A mesh with its faces split, which is offset like any other, with its vertices at their targets.
+class RefinedMesh {
+ public:
+  /// Keeps references to the triangles and the mesh that they are of. `options` are those of the mesh.
+  /// \param crosses_nothing the mesh is known not to cross itself
+  RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options, int threads,
+              bool crosses_nothing);
+  RefinedMesh(const RefinedMesh&) = delete;
+  RefinedMesh& operator=(const RefinedMesh&) = delete;
+
+  /// The triangles that would be faulty, or have a misplaced vertex; each once.
+  std::vector<std::uint32_t> faulty_triangles(const std::vector<RefinedVertex>& vertices);
+  /// The offset, made valid. May be called once.
+  OffsetResult offset(const std::vector<RefinedVertex>& vertices);
+
+  /// For each vertex of the triangles one of those that it is in the refinement; kNone for an obstacle's.
+  const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+  Refinement take_refinement() { return std::move(refinement_); }
+
+ private:
+  void prepare(const std::vector<RefinedVertex>& vertices);
+
+  const RefinedTriangles& triangles_;
+  PolygonView mesh_;
+  OffsetOptions options_;
+  int threads_;
+  bool crosses_nothing_;
+  std::vector<std::uint32_t> numbers_, triangle_of_face_;
+  Refinement refinement_;
+  std::optional<InMetric> space_;
+  std::optional<PreparedMesh> prepared_;
+  std::optional<AskedDistances> asked_;
+  std::vector<PreparedMesh::Marched> marched_;
+};
+
+}  // namespace vdb_offset
