@@ -27,7 +27,10 @@ struct VDB_OFFSET_API CheckOptions {
   Metric metric;  ///< Of the space in which distances are measured.
   Orient orient = Orient::Keep;
   Precision precision;  ///< Of the coordinates of the offset as stored.
-  int threads = 0;      ///< 0: as many as the machine has.
+  /// How far faces may be off at any point of them, as a share of the distance or in world units; then it is proven of
+  /// as many as possible. One of them is above 0, or nothing is proven. Not with a metric.
+  double tolerance_share = 0, tolerance_length = 0;
+  int threads = 0;  ///< 0: as many as the machine has.
 };
 
 /// Measures of an offset, wherever it comes from.
@@ -46,7 +49,8 @@ struct CheckResult {
   std::size_t source_crossings = 0, crossings_near_source = 0;
   bool more_source_crossings = false;  ///< There are more source crossings than these; faces near them are not judged.
   FaceError faces;
-  std::optional<ObstacleFacts> obstacles;  ///< If there are obstacles.
+  std::optional<CertifiedFaces> certified;  ///< If there is a tolerance, and a distance other than 0.
+  std::optional<ObstacleFacts> obstacles;   ///< If there are obstacles.
 
   bool valid() const { return faults.total() + wrong_side + torn == 0; }
 };

@@ -315,14 +315,19 @@ TEST_CASE("command: all causes of a quarter or more of the faces' error are told
     const auto begin = run.out.find("faces are off");
     return begin == std::string::npos ? "" : run.out.substr(begin, run.out.find('\n', begin) - begin);
   };
-  const auto kCoarse = Catch::Contains("because they are coarse: a finer mesh helps ("),
-             kCorners = Catch::Contains("beside sharp corners: --corners miter puts faces at the distance (");
+  const auto kCoarse = Catch::Contains(
+                 "because they are coarse: --tolerance 1% splits them until they are at the "
+                 "distance ("),
+             kCorners = Catch::Contains(
+                 "beside sharp corners: --corners miter puts faces at the distance; --tolerance "
+                 "1% splits them until they are (");
   const std::string coarse_first = line_of(1, ""), corners_first = line_of(0.8, "");
   CHECK_THAT(coarse_first, Catch::StartsWith("faces are off mostly because") && kCoarse && kCorners);
   CHECK_THAT(coarse_first, Catch::Contains(" % of it), and beside"));
   CHECK_THAT(corners_first, Catch::StartsWith("faces are off mostly beside") && kCoarse && kCorners);
-  CHECK_THAT(line_of(1, "--corners miter"), Catch::StartsWith("faces are off mostly because they are coarse: a finer "
-                                                              "mesh helps (100 % of it)"));
+  CHECK_THAT(line_of(1, "--corners miter"), Catch::StartsWith("faces are off mostly because they are coarse: "
+                                                              "--tolerance 1% splits them until they are at the "
+                                                              "distance (100 % of it)"));
   CHECK_THAT(line_of(0.3, ""), Catch::Contains("beside sharp corners") && !Catch::Contains("coarse"));
 }
 

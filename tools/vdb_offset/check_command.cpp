@@ -75,6 +75,12 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
               [&made](const std::string& text) { made.clearance = parse_clearance(text); });
   line.option("--corners", "KIND", "What became of sharp corners: 'round' or 'miter' [round]",
               [&made](const std::string& text) { made.corners = parse_corners(text); });
+  line.option(
+      "--tolerance", "T",
+      "Prove that every point of the faces is within T of the distance: world units, or percent of the distance",
+      [&made](const std::string& text) {
+        made.tolerance = ToleranceRequest{parse_tolerance(text), text, {}, {}};
+      });
   line.option("--miter-limit", "L", "With --corners miter: how many distances vertices went at most [4]",
               [&made](const std::string& text) { made.miter_limit = parse_miter_limit(text); });
   line.option(
@@ -110,7 +116,10 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
               [&made](const std::string& text) { made.threads = parse_count("--threads", text, 0, kMostThreads); });
   line.option("--report", "FILE", "Write what is found as JSON", made.report);
   line.flag("--json", "Print JSON, not text", request.json);
-  line.flag("--strict", "Exit with 3 if a vertex in use is not at the distance", made.strict);
+  line.flag("--strict",
+            "Exit with 3 if a vertex in use is not at the distance, or not all of the area proven to be within "
+            "--tolerance",
+            made.strict);
   line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
               [&made](const std::string& text) { made.strict_faces = parse_strict_faces(text); });
   if (!line.parse(argc, argv)) return std::nullopt;
@@ -120,6 +129,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   request.axes = parse_axes(distance_xy, distance_z);
   require(!request.axes || !line.has("--distance"), "--distance and --distance-xy exclude each other");
   require(!request.axes || !line.has("--obstacle"), "--obstacle and --distance-xy exclude each other");
+  require(!request.axes || !line.has("--tolerance"), "--tolerance and --distance-xy exclude each other");
   return request;
 }
 
@@ -152,10 +162,13 @@ std::vector<Vec3d> positions_in_offset(const Request& made, const Polygons& sour
     return offset.positions;
   if (auto positions = io::positions_in_triangles(source.view(), offset.view())) return std::move(*positions);
   throw InvalidInput(
-      fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}", made.output, made.input,
+      fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
                   source.positions.size() == offset.positions.size() && source.face_count() == offset.face_count()
                       ? " with other corners"
+                      : "",
+                  source.face_count() < offset.face_count()
+                      ? " (if that was made with --tolerance, its source is the file of --refined-source)"
                       : ""));
 }
 
@@ -194,6 +207,7 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
              "1 %\n",
              curves ? "along       " : "in faces    ", 100 * result.faces.mean, 100 * result.faces.quantile_99,
              100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "length" : "area");
+  if (result.certified) fmt::print(out, "proven      {}\n", certified_in_words(*result.certified));
   fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
              result.faults.collapsed,
              result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
@@ -222,6 +236,7 @@ CheckResult measure_curves(const CheckRequest& request) {
                                     {"--orient", made.orient_text != "keep"},
                                     {"--only", !made.only.empty()},
                                     {"--obstacle", !made.obstacles.empty()},
+                                    {"--tolerance", made.tolerance.has_value()},
                                     {"--distance-from", !request.distance_from.empty()}})
     if (given) throw UsageError(fmt::format("{}: expected meshes, as this is not for curves", name));
   if (made.close) close_curves(source.file.polygons);
@@ -255,6 +270,10 @@ CheckResult measure_meshes(const CheckRequest& request) {
   options.precision = io::precision_of(made.output, offset, made.write);
   options.precision.rounds_all = source.file->format != offset.format;
   options.threads = made.threads;
+  if (made.tolerance) {
+    options.tolerance_share = made.tolerance->tolerance.share;
+    options.tolerance_length = made.tolerance->tolerance.length;
+  }
   if (!job.distances.empty()) options.distance = job.distances.front();
   if (request.axes) {
     const auto [metric, distance] = settle_axes(*request.axes, source.view());
@@ -285,6 +304,7 @@ int run_check(int argc, const char* const* argv) {
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
   if (made.strict_faces && !are_within(result.faces, *made.strict_faces, made.output)) return kProcessing;
+  if (result.certified && !is_certified(*result.certified, made.strict, made.output)) return kProcessing;
   return result.valid() && (all_there || !made.strict) ? kDone : kProcessing;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is told of the error of faces.
+// What is told of the error of faces, and of what is proven of it.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,15 @@ constexpr double kWorthTelling = 0.01;
 /// A share as a percentage; next to nothing is rounding.
 std::string percent(double share) { return share < 1e-8 ? "0" : fmt::format("{:.3g}", 100 * share); }
 
+/// A share of the area in percent, never more than it is: 100 is all of it.
+std::string area_percent(double share) { return fmt::format("{:.2f}", std::floor(1e4 * share) / 100); }
+
+/// Whether faces could be split in place of a mesh that is finer, for which the option is named then.
+bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
+  return !statistics.certified && !job.curves() && !job.request.layers && !job.request.axes && !job.to_fit &&
+         !job.shell && job.outputs.size() == 1;
+}
+
 /// Which corners faces are off beside, and what helps. Where more than two faces meet at an edge, nothing does.
 std::string corners_in_words(const Job& job, const OffsetStatistics& statistics) {
   const char *const faces = job.curves() ? "segments" : "faces", *const branches =
@@ -29,8 +39,9 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
                                                                                   : "at edges of more than two faces";
   const bool any_branches = statistics.facts.non_manifold_edges > 0;
   if (job.options.corners == Corners::Round)
-    return fmt::format("beside sharp corners: --corners miter puts {} at the distance{}{}", faces,
-                       any_branches ? ", but not " : "", any_branches ? branches : "");
+    return fmt::format("beside sharp corners: --corners miter puts {} at the distance{}{}{}", faces,
+                       any_branches ? ", but not " : "", any_branches ? branches : "",
+                       may_be_split(job, statistics) ? "; --tolerance 1% splits them until they are" : "");
   const MiterFacts& miters = statistics.miters;
   std::vector<std::string> which;
   if (miters.unproven + miters.taken_back > 0) which.emplace_back("that have no room for a miter");
@@ -47,6 +58,40 @@ void print_faces(std::FILE* out, const FaceError& faces, bool curves) {
   if (faces.samples == 0) return;
   fmt::print(out, "; {} {} % off on average, {:.1f} % of the {} within 1 %", curves ? "segments" : "faces",
              percent(faces.mean), 100 * faces.at_distance, curves ? "length" : "area");
+}
+
+std::size_t faces_in(const MeshFacts& facts) {
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
+  return faces;
+}
+
+std::string certified_in_words(const CertifiedFaces& certified) {
+  const std::string within =
+      certified.share > 0 ? fmt::format("{:.6g} %", 100 * certified.share) : fmt::format("{:.6g}", certified.length);
+  std::string words =
+      fmt::format("{} % of the area certified within {} at every point", area_percent(certified.certified), within);
+  if (certified.certified == certified.there) return words;
+  words += fmt::format(", of {} % whose vertices are there", area_percent(certified.there));
+  // An error of 0: it was not found, and not ruled out either.
+  return certified.worst_left > 0 ? words + fmt::format(" (up to {:.3g} % off)", 100 * certified.worst_left) : words;
+}
+
+void print_certified(std::FILE* out, const CertifiedFaces& certified, std::size_t faces) {
+  fmt::print(out, "; {}", certified_in_words(certified));
+  if (certified.source_faces > 0) fmt::print(out, " ({} -> {} faces)", certified.source_faces, faces);
+}
+
+bool is_certified(const CertifiedFaces& certified, bool strict, const std::string& offset) {
+  if (certified.out_of_faces)
+    tell(
+        fmt::format("--max-faces: {}: expected more faces, as those whose vertices are at the distance are up to "
+                    "{:.3g} % off",
+                    offset, 100 * certified.worst_left));
+  else if (strict && certified.certified < 1)
+    tell(fmt::format("--strict: {}: {}", offset, certified_in_words(certified)));
+  else return true;
+  return false;
 }
 
 void print_layers_faces(std::FILE* out, const FaceError& outermost, const FaceError& first, bool curves) {
@@ -70,8 +115,10 @@ void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& s
       {faces.held_back,
        fmt::format("beside {} that fall short: a smaller distance has more room", curves ? "points" : "vertices")},
       {faces.corners, corners_in_words(job, statistics)},
-      {faces.coarse,
-       curves ? "because they are long: more points help" : "because they are coarse: a finer mesh helps"}};
+      {faces.coarse, curves ? "because they are long: more points help"
+                     : may_be_split(job, statistics)
+                         ? "because they are coarse: --tolerance 1% splits them until they are at the distance"
+                         : "because they are coarse: a finer mesh helps"}};
   std::erase_if(causes, [](const auto& cause) { return cause.first < kLeastTold; });
   if (causes.empty()) return;
   std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -33,6 +33,9 @@ void require_writable_outputs(const Request& request) {
     for (const std::string& path : {to.mesh, to.report, to.states, to.paths})
       if (!path.empty()) require_writable(path);
   if (!request.vdb.empty()) require_writable(request.vdb);
+  if (!request.tolerance) return;
+  for (const std::string& path : {request.tolerance->refined_source, request.tolerance->map})
+    if (!path.empty()) require_writable(path);
 }
 
 ExitCode run(const Job& job, const Timing& timing, ProgressBar& bar) {

@@ -18,6 +18,7 @@
 #include "vdb_offset/offset.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/tolerance.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -91,11 +92,77 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   for (std::size_t i = 0; i < results.size() && job.request.strict_faces; ++i)
     faces_there &= are_within(results[i].statistics.faces, *job.request.strict_faces,
                               i < job.outputs.size() ? job.outputs[i].mesh : "--inner");
-  if (!faces_there) return kProcessing;
+  const OffsetStatistics& statistics = results.front().statistics;
+  const bool proven =
+      !statistics.certified || is_certified(*statistics.certified, job.request.strict, job.outputs.front().mesh);
+  if (!faces_there || !proven) return kProcessing;
   if (!job.request.strict) return kDone;
   const bool all = std::all_of(results.begin(), results.end(),
                                [&](const OffsetResult& result) { return is_as_asked(result, job.curves()); });
   return all ? kDone : kProcessing;
+}
+
+/// Writes what was made, tells of it and judges it. `refined`: the source of the job, if its faces have been split.
+ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const RefinedSource* refined, const Timing& timing,
+                ProgressBar& bar) {
+  const Request& request = job.request;
+  const OffsetResult* const inner = request.inner ? &results.back() : nullptr;
+  std::vector<std::optional<ShellFacts>> shells;
+  OutputFiles outputs(request.sync);
+  if (refined) write_refinement(request, *refined);
+  for (std::size_t i = 0; i < job.outputs.size(); ++i) {
+    results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
+    shells.push_back(write_outputs(job, {job.outputs[i], results[i], inner}, timing.start));
+  }
+  outputs.commit(ignore_interrupts);
+  bar.clear();
+  for (std::size_t i = 0; i < job.outputs.size() && !request.quiet; ++i)
+    print_summary(job, {job.outputs[i], results[i], inner}, shells[i], seconds_since(timing.start));
+  return judge(job, results, shells.back());
+}
+
+/// Gives each vertex of a file what the one has that it is a copy of: in STL facets have vertices of their own.
+OffsetResult of_copies(const OffsetResult& result, std::span<const std::uint32_t> original) {
+  OffsetResult copies;
+  copies.has_turned_faces = result.has_turned_faces;
+  copies.statistics = result.statistics;
+  OffsetStatistics& statistics = copies.statistics;
+  statistics.facts.vertices = original.size();
+  statistics.vertices_by_state = {};
+  std::vector<double> distances;
+  for (const std::uint32_t v : original) {
+    copies.positions.push_back(result.positions[v]);
+    copies.states.push_back(result.states[v]);
+    copies.achieved.push_back(result.achieved[v]);
+    distances.push_back(result.distances[v]);
+    ++statistics.vertices_by_state[static_cast<std::size_t>(result.states[v])];
+  }
+  copies.distances = result.distances.uniform() ? result.distances : Distances(std::move(distances));
+  return copies;
+}
+
+/// Carries out a job with --tolerance. From where the faces are split, the refined source stands for the one read.
+ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar) {
+  Tolerance tolerance = job.request.tolerance->tolerance;
+  if (job.source.file) tolerance.precision = job.source.file->precision;
+  OffsetOptions options = job.options;
+  options.distance = job.distances.front();
+  RefinedOffset made = offset_to_tolerance(job.source.view(), options, tolerance);
+  bar.show(Stage::Write, 0);
+  const RefinedSource refined = refined_source(job.source, std::move(made.refinement));
+  std::vector<OffsetResult> results;
+  results.push_back(refined.vertex.empty() ? std::move(made.result) : of_copies(made.result, refined.vertex));
+  scene::Expectations expect = job.expect;
+  // A scene says where its own vertices end, and how many of them arrive; there are others now.
+  expect.min_reached = expect.max_reached = expect.max_position_error = {};
+  const Job of_refined{.request = job.request,
+                       .source = refined.source,
+                       .options = job.options,
+                       .asked = job.asked,
+                       .distances = {results.front().distances},
+                       .expect = std::move(expect),
+                       .outputs = job.outputs};
+  return finish(of_refined, results, &refined, timing, bar);
 }
 
 }  // namespace
@@ -110,21 +177,11 @@ ExitCode run_offset(const Job& job, const Timing& timing, ProgressBar& bar) {
         job.distances.front());
     return kDone;
   }
+  if (request.tolerance) return run_to_tolerance(job, timing, bar);
   require_field(job);
   std::vector<OffsetResult> results = compute(job);
   bar.show(Stage::Write, 0);
-  const OffsetResult* const inner = request.inner ? &results.back() : nullptr;
-  std::vector<std::optional<ShellFacts>> shells;
-  OutputFiles outputs(request.sync);
-  for (std::size_t i = 0; i < job.outputs.size(); ++i) {
-    results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
-    shells.push_back(write_outputs(job, {job.outputs[i], results[i], inner}, timing.start));
-  }
-  outputs.commit(ignore_interrupts);
-  bar.clear();
-  for (std::size_t i = 0; i < job.outputs.size() && !request.quiet; ++i)
-    print_summary(job, {job.outputs[i], results[i], inner}, shells[i], seconds_since(timing.start));
-  return judge(job, results, shells.back());
+  return finish(job, results, nullptr, timing, bar);
 }
 
 }  // namespace vdb_offset::tool

@@ -9,6 +9,7 @@
 #include "messages.h"
 #include "vdb_offset/distance_field.h"
 #include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/refined_file.h"
 #include "vdb_offset/io/shell_file.h"
 #include "vdb_offset/io/states_file.h"
 #include "vdb_offset/output_files.h"
@@ -63,6 +64,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
   const auto text_of = [](const std::optional<DistanceRequest>& distance) { return distance ? distance->text : ""; };
   const LayersRequest layers = request.layers.value_or(LayersRequest{});
   const IsoRequest iso = request.iso.value_or(IsoRequest{});
+  const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
   return {{"distance", to.distance},
           {"metric", fmt::format("{}", fmt::join(std::vector{options.metric.scale[0], options.metric.scale[1],
                                                              options.metric.scale[2]},
@@ -70,6 +72,11 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"mode", request.iso ? "iso" : "topology"},
           {"adaptivity", iso.adaptivity ? fmt::format("{}", *iso.adaptivity) : "flat"},
           {"inside", iso.use_winding ? "winding" : "never"},
+          {"tolerance", tolerance.text},
+          {"max-faces",
+           tolerance.tolerance.most_faces > 0 ? fmt::format("{}", tolerance.tolerance.most_faces) : "automatic"},
+          {"refined-source", tolerance.refined_source},
+          {"map", tolerance.map},
           {"keep-specks", iso.keep_specks ? "true" : "false"},
           {"transport", iso.transport_text.empty() ? "all" : iso.transport_text},
           {"layers", fmt::format("{}", layers.count)},
@@ -171,6 +178,21 @@ void tell_losses(const Request& request, const std::string& path, const io::Writ
         fmt::format("{}: {} normals (vn) are shared by vertices that ask for different ones now; they got the mean "
                     "(--normals keep leaves all as they were)",
                     path, written.disagreeing_normals));
+}
+
+void write_refinement(const Request& request, const RefinedSource& refined) {
+  tell_losses(request, request.output, {fmt::format("{}", fmt::join(refined.lost, ", ")), 0});
+  const auto& [tolerance, text, path, map] = *request.tolerance;
+  if (!path.empty()) {
+    const PolygonView mesh = refined.source.view();
+    io::WriteOptions options;  // all digits: in the source's own format it is the source, with more vertices
+    options.format = format_of(path, request);
+    io::WriteResult written;
+    if (refined.source.file) written = io::write_mesh(path, *refined.source.file, mesh.positions, options);
+    else io::write_mesh(path, mesh, options);
+    tell_losses(request, path, written);
+  }
+  if (!map.empty()) io::write_vertex_map(map, refined.refinement, refined.vertex);
 }
 
 std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of) {

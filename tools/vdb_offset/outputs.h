@@ -41,6 +41,9 @@ std::string name_of_layer(const std::string& output, std::size_t number, std::si
 /// Tells on standard error what a mesh could not be given.
 void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written);
 
+/// Writes the source with the faces that the offset has, and where the added vertices are, as far as that is asked for.
+void write_refinement(const Request& request, const RefinedSource& refined);
+
 /// The report of a run with --layers, to where the command line says.
 void write_layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
                          Clock::time_point start);

@@ -228,6 +228,8 @@ Job resolve_options(const Request& request, const Source& source) {
 
 Job resolve(const Request& request, const Source& source) {
   Job job = resolve_options(request, source);
+  if (request.tolerance && (job.shell || job.to_fit))
+    throw InvalidOption("--tolerance: expected a scene without a shell or a fit");
   if (!request.iso) job.options.precision = precision_of(job);
   if (!request.layers) job.outputs = destinations(request, job.asked);
   return job;

@@ -106,6 +106,9 @@ std::vector<RunFile> written_by(const Request& request, std::vector<Destination>
     add(files, "--paths", to.paths);
   }
   add(files, "--save-vdb", request.vdb);
+  if (!request.tolerance) return files;
+  add(files, "--refined-source", request.tolerance->refined_source);
+  add(files, "--map", request.tolerance->map);
   return files;
 }
 

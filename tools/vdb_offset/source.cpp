@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "messages.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/refined_file.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
@@ -49,6 +52,21 @@ void write_curves(const std::string& path, const Source& source, std::span<const
   if (source.as_closed && io::curve_format_of(path) != source.curves->format)
     io::write_curves(path, CurvesView{positions, source.as_closed->corners, source.as_closed->face_begin}, options);
   else io::write_curves(path, *source.curves, positions, options);
+}
+
+RefinedSource refined_source(const Source& source, Refinement refinement) {
+  RefinedSource refined;
+  refined.source.scene = source.scene;
+  if (source.file) {
+    io::RefinedFile file = io::refine_file(*source.file, refinement);
+    refined.source.file = std::move(file.file);
+    refined.vertex = std::move(file.vertex);
+    refined.lost = std::move(file.lost);
+  } else {
+    refined.source.scene->shape = refinement.polygons;
+  }
+  refined.refinement = std::move(refinement);
+  return refined;
 }
 
 void tell_remarks(const io::MeshFile& file) {

@@ -10,6 +10,7 @@
 #include "vdb_offset/curves.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/refinement.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
@@ -32,6 +33,14 @@ struct Source {
   }
 };
 
+/// A source whose faces have been split, which stands in the place of the one that was read.
+struct RefinedSource {
+  Source source;                      ///< Its mesh alone.
+  Refinement refinement;              ///< Of the mesh that was read.
+  std::vector<std::uint32_t> vertex;  ///< Of each vertex of the source that of the refinement; empty: the same.
+  std::vector<std::string> lost;      ///< What of the source it does not hold, in words.
+};
+
 /// Whether a file holds curves; one that cannot be opened is for the reader to tell of.
 bool holds_curves(const std::string& path);
 
@@ -40,6 +49,9 @@ void tell_remarks(const io::MeshFile& file);
 
 /// Reads INPUT, as curves or as a mesh, and the meshes beside it. \throw ReadError, InvalidInput
 Source read_source(const Request& request, bool curves);
+
+/// Makes the source with the faces of a refinement, a file of the same kind if it is one. \throw as io::refine_file()
+RefinedSource refined_source(const Source& source, Refinement refinement);
 
 /// Writes curves with other positions. In the format of the source its bytes stay, which know nothing of a curve that
 /// has been closed: there its ends stand where the closed one has them.

@@ -33,10 +33,8 @@ void print_curve_facts(std::FILE* out, const MeshFacts& facts) {
 
 void print_facts(std::FILE* out, const MeshFacts& facts, bool curves = false) {
   if (curves) return print_curve_facts(out, facts);
-  std::size_t faces = 0;
-  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
   fmt::print(out, "mesh       {} vertices ({} positions, {} unused), {} faces, {} component{}, diagonal {:.6g}\n",
-             facts.vertices, facts.welded_vertices, facts.unused_vertices, faces, facts.components,
+             facts.vertices, facts.welded_vertices, facts.unused_vertices, faces_in(facts), facts.components,
              facts.components == 1 ? "" : "s", facts.diagonal);
   fmt::print(out,
              "           {} boundary edges, {} non-manifold edges, {} degenerate faces, {} orientation conflicts\n",
@@ -326,6 +324,8 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
              100 * achieved.share_reached);
   print_states(out, result);
   print_faces(out, result.statistics.faces, job.curves());
+  if (result.statistics.certified)
+    print_certified(out, *result.statistics.certified, faces_in(result.statistics.facts));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
   if (shell) print_shell(out, outcome.to.mesh, *shell);
   print_disagreeing(out, job, result.statistics);

@@ -24,6 +24,19 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
 /// How far faces are off their distance, as a part of a line.
 void print_faces(std::FILE* out, const FaceError& faces, bool curves);
 
+/// What is proven of the faces, and beside it how much could have been: where vertices are all there.
+std::string certified_in_words(const CertifiedFaces& certified);
+
+/// The same, and how many faces were made of how many: `faces` in the end. A part of a line.
+void print_certified(std::FILE* out, const CertifiedFaces& certified, std::size_t faces);
+
+/// Whether what is proven of an offset's faces is enough: they were not too many, and with `strict` all of the area is
+/// within the tolerance. Says why not.
+bool is_certified(const CertifiedFaces& certified, bool strict, const std::string& offset);
+
+/// How many faces a mesh has.
+std::size_t faces_in(const MeshFacts& facts);
+
 /// How far the faces of layers are off their heights: a line.
 void print_layers_faces(std::FILE* out, const FaceError& outermost, const FaceError& first, bool curves);
 

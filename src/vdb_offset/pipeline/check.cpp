@@ -12,6 +12,7 @@
 #include "vdb_offset/parts/mesh_parts.h"
 #include "vdb_offset/parts/part_miters.h"
 #include "vdb_offset/pipeline/field_stage.h"
+#include "vdb_offset/proof/certified_faces.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/validity/face_error.h"
 #include "vdb_offset/validity/fault_finder.h"
@@ -32,6 +33,11 @@ void require_usable(PolygonView source, std::span<const Vec3d> positions, const 
         throw InvalidInput("check: vertex " + std::to_string(v) + ": expected finite coordinates");
   if (!options.metric.even() && options.obstacles.face_count() > 0)
     throw InvalidInput("check: expected no obstacles where distances differ by axis");
+  if (options.tolerance_share < 0 || options.tolerance_length < 0 ||
+      (options.tolerance_share > 0 && options.tolerance_length > 0))
+    throw InvalidInput("check: expected one tolerance, 0 or more");
+  if (!options.metric.even() && options.tolerance_share + options.tolerance_length > 0)
+    throw InvalidInput("check: expected no tolerance where distances differ by axis");
   if (options.distance && !options.distance->uniform() && options.distance->count() != positions.size())
     throw InvalidInput("check: expected a distance for each of " + std::to_string(positions.size()) +
                        " vertices, got " + std::to_string(options.distance->count()));
@@ -120,6 +126,29 @@ void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const
   }
 }
 
+/// Proves what can be proven of the faces that move. `states` and distances are of the surface's vertices.
+std::optional<CertifiedFaces> prove_faces(const MeshParts& parts, const ClosestQuery& query,
+                                          std::span<const Vec3d> source, std::span<const Vec3d> in_offset,
+                                          const Distances& distances, std::span<const VertexState> states,
+                                          const CheckOptions& options) {
+  const auto& [share, length] = std::pair{options.tolerance_share, options.tolerance_length};
+  if (share + length == 0) return {};
+  const Surface& surface = parts.surface();
+  std::vector<OffsetFace> faces;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    if (parts.off_part.empty() || !parts.off_part[t]) faces.push_back({surface.triangles[t], t});
+  std::vector<double> asked(source.size()), tolerance(source.size());
+  for (std::size_t w = 0; w < asked.size(); ++w) {
+    asked[w] = distances[w];
+    tolerance[w] = share > 0 ? share * std::abs(asked[w]) : length;
+  }
+  CertifiedFaces certified =
+      certify({query, surface, faces, source, in_offset, asked, tolerance, states, options.corners});
+  certified.share = share;
+  certified.length = length;
+  return certified;
+}
+
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
   const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
@@ -166,6 +195,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   for (std::size_t w = 0; w < states.size(); ++w)
     if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];
   result.faces = measure_faces({constrained, in_offset, distances, source, states});
+  result.certified = prove_faces(parts, query, source, in_offset, distances, states, options);
 }
 
 }  // namespace

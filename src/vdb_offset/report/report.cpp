@@ -146,6 +146,24 @@ Json faces_json(const FaceError& error) {
       {"causes", {{"held_back", error.held_back}, {"sharp_corners", error.corners}, {"coarse_faces", error.coarse}}}};
 }
 
+/// `facts` are of the mesh whose faces were judged.
+Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
+  Json report =
+      certified.share > 0 ? Json{{"tolerance_share", certified.share}} : Json{{"tolerance_length", certified.length}};
+  report["certified"] = certified.certified;
+  report["there"] = certified.there;
+  report["worst_left"] = certified.worst_left;
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
+  if (certified.source_faces > 0) {
+    report["source_faces"] = certified.source_faces;
+    report["source_vertices"] = certified.source_vertices;
+    report["faces"] = faces;
+    report["out_of_faces"] = certified.out_of_faces;
+  }
+  return report;
+}
+
 Json miters_json(const MiterFacts& miters) {
   return {{"on_creases", miters.on_creases}, {"mitred", miters.mitred},         {"cut", miters.cut},
           {"unproven", miters.unproven},     {"taken_back", miters.taken_back}, {"worst_excess", miters.excess}};
@@ -318,6 +336,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)}};
   if (statistics.faces.samples > 0) report["faces"] = faces_json(statistics.faces);
+  if (statistics.certified) report["certified"] = certified_json(*statistics.certified, statistics.facts);
   if (first_faces && first_faces->samples > 0) report["faces_at_first_height"] = faces_json(*first_faces);
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
   if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
@@ -419,6 +438,7 @@ std::string check_json(const CheckResult& result, const std::string& source, con
                  {"vertices_torn", result.torn},
                  {"achieved", achieved_json(summarise(result.states, result.achieved, result.distances))},
                  {"faces", faces_json(result.faces)}};
+  if (result.certified) report["certified"] = certified_json(*result.certified, result.facts);
   if (result.obstacles) report["obstacles"] = obstacles_json(*result.obstacles);
   return as_text(report);
 }

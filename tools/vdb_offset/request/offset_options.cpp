@@ -41,12 +41,13 @@ Examples:
   vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
   vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
   vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
+  vdb_offset part.obj out.obj --distance 1% --tolerance 2%     faces at the distance, too, to 2 % of it
   vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
 
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
-met), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
+met, or more than --max-faces needed), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
 once they are put in place, all together, a signal changes nothing more.
 Report keys, library and guarantees: see the guides in docs/.)";
 
@@ -61,6 +62,7 @@ struct Draft {
   bool is_iso = false, no_sync = false;
   IsoRequest iso;
   LayersRequest layers;
+  ToleranceRequest tolerance;
   std::string distance_xy, distance_z;
 };
 
@@ -122,6 +124,29 @@ void declare_distances(CommandLine& line, Draft& draft) {
               draft.distance_xy);
   line.option("--distance-z", "B", "With --distance-xy, of its sign: how far along z; 0 is a thousandth of A",
               draft.distance_z);
+}
+
+/// Declares the options for a distance that holds at every point.
+void declare_tolerance(CommandLine& line, Draft& draft) {
+  ToleranceRequest& request = draft.tolerance;
+  line.option("--tolerance", "T",
+              "Split faces until every point of them is proven to be within T of the distance, wherever vertices get "
+              "there: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
+              "are in its place",
+              [&request](const std::string& text) {
+                request.text = text;
+                request.tolerance = parse_tolerance(text);
+              });
+  line.option("--max-faces", "N",
+              "With --tolerance: make no more faces than this [20 times as many as INPUT has, at least a million]",
+              [&request](const std::string& text) {
+                request.tolerance.most_faces =
+                    static_cast<std::size_t>(parse_count("--max-faces", text, 1, std::numeric_limits<int>::max()));
+              });
+  line.option("--refined-source", "FILE", "With --tolerance: write INPUT with the faces that OUTPUT has",
+              request.refined_source);
+  line.option("--map", "FILE", "With --tolerance: write where in INPUT each vertex lies that was added, as text",
+              request.map);
 }
 
 /// Declares the options that say which faces move, and what is around them.
@@ -269,8 +294,8 @@ void declare_run(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.flag("--no-sync", "Do not wait until outputs are on the disk before they get their names", draft.no_sync);
   line.flag("--strict",
-            "Exit with 3 if a vertex in use falls short of its distance, a cell of layers is not valid, or an obstacle "
-            "or the mesh to fit is nearer than asked",
+            "Exit with 3 if a vertex in use falls short of its distance, a cell of layers is not valid, an obstacle or "
+            "the mesh to fit is nearer than asked, or not all of the area is proven to be within --tolerance",
             request.strict);
   line.option("--strict-faces", "P",
               "Exit with 3 unless 99 % of the faces' area is within P percent of the distance; of layers, at the first "
@@ -285,6 +310,7 @@ void declare_run(CommandLine& line, Draft& draft) {
 void complete(const CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   if (draft.is_iso) request.iso = draft.iso;
+  if (line.has("--tolerance")) request.tolerance = draft.tolerance;
   if (line.has("--layers") || line.has("--heights")) request.layers = draft.layers;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;
   constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of the free memory, as --help says
@@ -305,6 +331,7 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
             draft.request.input);
   line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
   declare_distances(line, draft);
+  declare_tolerance(line, draft);
   declare_parts(line, draft);
   declare_products(line, draft);
   declare_method(line, draft);

@@ -64,6 +64,7 @@ void require_for_curves(const Request& request) {
                           {"--obstacle", !request.obstacles.empty()},
                           {"--shell", request.shell},
                           {"--mode iso", request.iso.has_value()},
+                          {"--tolerance", request.tolerance.has_value()},
                           {"--weld", request.weld_text != "auto" && request.weld_text != "exact"},
                           {"--orient", request.orient_text != "keep"},
                           {"--fit", !request.fit.empty()}});
@@ -96,6 +97,26 @@ void require_endings(const Request& request) {
             fmt::format("{}: expected an obstacle that ends in {}", path, kMeshEndings));
   require(request.fit.empty() || format_of(request.fit, request),
           fmt::format("{}: expected a mesh that ends in {}", request.fit, kMeshEndings));
+}
+
+/// Rules for --tolerance: one offset of a mesh, in which each vertex of the source is one of the result.
+void require_together_with_tolerance(const CommandLine& line, bool is_iso) {
+  const bool is_given = line.has("--tolerance");
+  require_with(line, is_given, "--tolerance", {"--max-faces", "--refined-source", "--map"});
+  require(!is_given || !is_iso, "--tolerance and --mode iso exclude each other");
+  require_without(line, is_given, "--tolerance",
+                  {"--distance-xy", "--distance-z", "--fit", "--shell", "--layers", "--heights", "--paths",
+                   "--save-vdb", "--dry-run"});
+}
+
+/// Requires one distance, and names for files that can hold what is to be written.
+void require_sound_tolerance(const Request& request) {
+  if (!request.tolerance) return;
+  require(request.distances.size() < 2,
+          fmt::format("--distance: expected one with --tolerance, got {}", request.distances.size()));
+  const std::string& refined = request.tolerance->refined_source;
+  require(refined.empty() || format_of(refined, request),
+          fmt::format("{}: expected a refined source that ends in {}", refined, kMeshEndings));
 }
 
 /// Rules for iso-surfaces: distances are the same for all vertices, and not 0.
@@ -139,6 +160,7 @@ void require_together(const CommandLine& line, bool is_iso) {
   require_with(line, line.has("--clearance"), "--clearance", {"--fit"});
   require_with(line, fit || line.has("--obstacle"), "--obstacle or --fit", {"--clearance"});
   require_with(line, line.has("--shell"), "--shell", {"--inner"});
+  require_together_with_tolerance(line, is_iso);
   require_one(line, "--distance-from", "--distance");
   require_one(line, "--voxel-size", "--voxels-per-distance");
   require_one(line, "--quiet", "--verbose");
@@ -160,6 +182,7 @@ void require_sound(const Request& request) {
   require(request.output != "-" || !request.layers, "OUTPUT: expected a file for layers, got '-'");
   require(request.output != "-" || request.distances.size() < 2, "OUTPUT: expected a file for each distance, got '-'");
   require_even(request);
+  require_sound_tolerance(request);
   require(request.only.empty() || !scene::is_scene(request.input),
           "--only: expected a mesh, as a scene names its own part");
   require(request.fit.empty() || request.clearance.value > 0,

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -145,6 +146,21 @@ double parse_miter_limit(const std::string& text) {
 double parse_strict_faces(const std::string& text) {
   return parse_number("--strict-faces", text, "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),
                       std::numeric_limits<double>::max());
+}
+
+Tolerance parse_tolerance(const std::string& text) {
+  constexpr double kLeast = 0.001, kBelow = 100;  // percent: what offset_to_tolerance() takes
+  const bool percent = text.ends_with('%');
+  const auto value = decimal<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
+  require(value && (percent ? *value >= kLeast && *value < kBelow
+                            : *value > 0 && *value <= std::numeric_limits<double>::max()),
+          fmt::format("--tolerance: expected a length above 0, or a percentage of the distance from {}% to below {}%, "
+                      "got '{}'",
+                      kLeast, kBelow, text));
+  Tolerance tolerance;
+  if (percent) tolerance.share = *value / 100;
+  else tolerance.length = *value;
+  return tolerance;
 }
 
 scene::Distance parse_clearance(const std::string& text) {

@@ -11,6 +11,7 @@
 #include "vdb_offset/distances.h"
 #include "vdb_offset/io/iso_file.h"
 #include "vdb_offset/polygons.h"
+#include "vdb_offset/tolerance.h"
 
 // What the texts of single options say. Each throws UsageError, with the option and what it takes, for another text.
 
@@ -63,6 +64,9 @@ double parse_miter_limit(const std::string& text);
 
 /// Percent, 0 or more.
 double parse_strict_faces(const std::string& text);
+
+/// A length in world units, or percent of the distance.
+Tolerance parse_tolerance(const std::string& text);
 
 /// World units or percent, 0 or more.
 scene::Distance parse_clearance(const std::string& text);

@@ -13,6 +13,7 @@
 #include "vdb_offset/options.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/scene.h"
+#include "vdb_offset/tolerance.h"
 
 namespace vdb_offset::tool {
 
@@ -51,6 +52,13 @@ struct IsoRequest {
   std::string transport_text;  ///< The words as given; empty: all that there is.
 };
 
+/// A distance that is asked for at every point of the faces, which are split for it.
+struct ToleranceRequest {
+  Tolerance tolerance;              ///< All but the precision.
+  std::string text;                 ///< The tolerance as given.
+  std::string refined_source, map;  ///< Files to write; empty: not asked for.
+};
+
 /// What a command line asks for: options that go together, each with a value that it can have. It depends on the words
 /// of the command line alone, as no file has been opened for it; resolve() makes a Job of it.
 struct Request {
@@ -63,6 +71,7 @@ struct Request {
   bool shell = false;
   std::optional<LayersRequest> layers;
   std::optional<IsoRequest> iso;
+  std::optional<ToleranceRequest> tolerance;
 
   std::vector<io::Selector> only;
   std::vector<std::string> obstacles;
