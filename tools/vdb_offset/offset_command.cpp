@@ -92,14 +92,13 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   for (std::size_t i = 0; i < results.size() && job.request.strict_faces; ++i)
     faces_there &= are_within(results[i].statistics.faces, *job.request.strict_faces,
                               i < job.outputs.size() ? job.outputs[i].mesh : "--inner");
-  const OffsetStatistics& statistics = results.front().statistics;
-  const bool proven =
-      !statistics.certified || is_certified(*statistics.certified, job.request.strict, job.outputs.front().mesh);
-  if (!faces_there || !proven) return kProcessing;
-  if (!job.request.strict) return kDone;
-  const bool all = std::all_of(results.begin(), results.end(),
-                               [&](const OffsetResult& result) { return is_as_asked(result, job.curves()); });
-  return all ? kDone : kProcessing;
+  if (!faces_there) return kProcessing;
+  bool as_asked = true;
+  for (std::size_t i = 0; i < results.size() && job.request.strict; ++i)
+    as_asked &= is_as_asked(results[i], job.curves());
+  if (const auto& certified = results.front().statistics.certified)
+    as_asked &= is_certified(*certified, job.request.strict, job.outputs.front().mesh);
+  return as_asked ? kDone : kProcessing;
 }
 
 /// Writes what was made, tells of it and judges it. `refined`: the source of the job, if its faces have been split.

@@ -8,7 +8,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -152,8 +151,7 @@ Tolerance parse_tolerance(const std::string& text) {
   constexpr double kLeast = 0.001, kBelow = 100;  // percent: what offset_to_tolerance() takes
   const bool percent = text.ends_with('%');
   const auto value = decimal<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
-  require(value && (percent ? *value >= kLeast && *value < kBelow
-                            : *value > 0 && *value <= std::numeric_limits<double>::max()),
+  require(value && (percent ? *value >= kLeast && *value < kBelow : *value > 0),
           fmt::format("--tolerance: expected a length above 0, or a percentage of the distance from {}% to below {}%, "
                       "got '{}'",
                       kLeast, kBelow, text));
