@@ -34,6 +34,9 @@ LONG_LINES = {
     'states': (1, ['box.obj', 'o.obj', *DISTANCE, '--states', LONG], 'aaa: expected a file of states'),
     'paths': (1, ['box.obj', 'o.obj', *DISTANCE, '--paths', LONG], 'expected a file of paths'),
     'heights': (2, ['box.obj', 'o.vtu', '--heights', LONG], 'cannot'),
+    'refined source': (4, ['box.obj', 'o.obj', *DISTANCE, '--tolerance', '9%', '--refined-source', LONG + '.obj'], 'cannot'),
+    'map': (4, ['box.obj', 'o.obj', *DISTANCE, '--tolerance', '9%', '--map', LONG], 'cannot'),
+    'tolerance': (1, ['box.obj', 'o.obj', *DISTANCE, '--tolerance', LONG], "--tolerance: expected .*, got 'aaa"),
     'obstacle': (2, ['box.obj', 'o.obj', *DISTANCE, '--obstacle', LONG + '.obj'], 'cannot'),
     'name': (1, [LONG, 'o.obj', *DISTANCE], 'aaa: expected an input that ends in'),
     'word': (1, ['box.obj', 'o.obj', *DISTANCE, '--solver', LONG], "--solver: expected 'closest' or 'eikonal', got 'aaa"),
@@ -102,7 +105,7 @@ def names_that_are_not_text(place):
 
 # Options that take a number, and what stands around them.
 NUMBERS = {'--voxel-size': (), '--voxels-per-distance': (), '--threads': (), '--precision': (), '--weld': (),
-           '--max-memory': (), '--adaptivity': ('--mode', 'iso'), '--clearance': ('--obstacle', 'wall.obj'),
+           '--max-memory': (), '--tolerance': (), '--max-faces': ('--tolerance', '1%'), '--adaptivity': ('--mode', 'iso'), '--clearance': ('--obstacle', 'wall.obj'),
            '--symmetry': ()}
 # No numbers: hexadecimal, octal as C has it, out of range, two signs, blanks, commas, lists.
 FEW_NO_NUMBERS = ('0x10', '1e-400', '+-1')

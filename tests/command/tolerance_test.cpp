@@ -219,6 +219,10 @@ TEST_CASE("tolerance: 3 where --max-faces stops it, or --strict asks for what is
   CHECK(certified["worst_left"].get<double>() > 0.01);
   CHECK(worst_error(made, kHalf, 0.2) >= certified["worst_left"].get<double>() * (1 - 1e-6));
   CHECK(json_of(shell, "r.json")["options"]["max-faces"] == "200");
+  // The summary makes way for a file on standard output.
+  const Run map = shell("box.obj out.obj -d 0.2 --tolerance 5% --map -");
+  CHECK_THAT(map.out, Catch::StartsWith("# vertex face") && !Catch::Contains("certified"));
+  CHECK_THAT(map.err, Catch::Contains("certified within 5 %"));
   // Two plates that are nearer to each other than twice the distance: where vertices cannot be, no faces are wasted.
   const std::string plates = "'" SCENE_DIR "/plates_closing.json' out.ply --tolerance 5%";
   CHECK(shell(plates).code == 0);

@@ -159,7 +159,7 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
                        .options = job.options,
                        .asked = job.asked,
                        .distances = {results.front().distances},
-                       .expect = std::move(expect),
+                       .expect = expect,
                        .outputs = job.outputs};
   return finish(of_refined, results, &refined, timing, bar);
 }

@@ -17,7 +17,9 @@ namespace {
 
 /// Whether standard output is one of the files that are written.
 bool output_is_taken(const Request& request) {
-  return is_standard_output(request.output) || is_standard_output(request.report);
+  const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
+  return is_standard_output(request.output) || is_standard_output(request.report) ||
+         is_standard_output(tolerance.refined_source) || is_standard_output(tolerance.map);
 }
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
