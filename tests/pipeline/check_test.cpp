@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/check.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "support/oracles.h"
 #include "vdb_offset/error.h"
@@ -77,6 +79,53 @@ TEST_CASE("check: flat faces over a round source are off between their vertices"
   CHECK(check_of(sphere, positions, 0.1).faces.mean == Approx(19).epsilon(1e-2));  // all at about distance 2
 }
 
+TEST_CASE("check: faces are proven to be within a tolerance, and no others are", "[check]") {
+  const Polygons box = scene::box(Vec3d(1), 6, true);
+  OffsetOptions options;
+  options.distance = 0.1;
+  const std::vector<Vec3d> positions = offset(box.view(), options).positions;
+  double area = 0;
+  for (std::size_t f = 0; f < box.face_count(); ++f) {
+    const auto face = box.view().face(f);
+    area += (positions[face[1]] - positions[face[0]]).cross(positions[face[2]] - positions[face[0]]).length() / 2;
+  }
+  CheckOptions check;
+  check.distance = 0.1;
+  CHECK_FALSE(check_offset(box.view(), positions, check).certified);
+  // Of the 6 by 6 quads on each side, 4 by 4 do not touch an edge of the box, where faces are nearer.
+  check.tolerance_share = 0.01;
+  const auto by_share = check_offset(box.view(), positions, check).certified;
+  REQUIRE(by_share);
+  CHECK(by_share->share == 0.01);
+  CHECK(by_share->certified * area == Approx(6 * 16 / 36.0).epsilon(1e-9));
+  CHECK(by_share->there == 1);
+  CHECK(by_share->worst_left > 0.1);
+  CHECK(by_share->worst_left < 1);
+  check = {.distance = Distances(0.1), .tolerance_length = 0.09};
+  const auto by_length = check_offset(box.view(), positions, check).certified;
+  REQUIRE(by_length);
+  CHECK(by_length->length == 0.09);
+  CHECK(by_length->certified == 1);
+  CHECK(by_length->worst_left == 0);
+  // A vertex inside a side that is farther: what is around it is not there, however large the tolerance is.
+  std::vector<Vec3d> moved = positions;
+  const auto inside = std::find_if(box.positions.begin(), box.positions.end(), [](const Vec3d& p) {
+    return p[2] == 0.5 && std::abs(p[0]) < 0.1 && std::abs(p[1]) < 0.1;
+  });
+  REQUIRE(inside != box.positions.end());
+  moved[static_cast<std::size_t>(inside - box.positions.begin())][2] += 0.01;
+  const auto with_moved = check_offset(box.view(), moved, check).certified;
+  CHECK(with_moved->there < 1);
+  CHECK(with_moved->certified == with_moved->there);
+  // A part alone: nothing is said of faces that stay, which are at no distance.
+  check.only.assign(box.face_count(), 0);
+  for (std::size_t f = 0; f < box.face_count() / 6; ++f) check.only[f] = 1;
+  options.only = check.only;
+  options.border = check.border = Border::Free;
+  const auto of_part = check_offset(box.view(), offset(box.view(), options).positions, check).certified;
+  CHECK(of_part->certified == 1);
+}
+
 TEST_CASE("check: what cannot be compared is refused", "[check]") {
   const Polygons box = scene::box(Vec3d(1), 2, true);
   CHECK_THROWS_AS(check_of(box, {}), InvalidInput);
@@ -84,6 +133,11 @@ TEST_CASE("check: what cannot be compared is refused", "[check]") {
   std::vector<Vec3d> positions = box.positions;
   positions[3][1] = std::nan("");
   CHECK_THROWS_AS(check_of(box, positions), InvalidInput);
+  CHECK_THROWS_AS(check_offset(box.view(), box.positions, {.tolerance_share = 0.1, .tolerance_length = 1}),
+                  InvalidInput);
+  CHECK_THROWS_AS(check_offset(box.view(), box.positions, {.tolerance_share = -0.1}), InvalidInput);
+  CHECK_THROWS_AS(check_offset(box.view(), box.positions, {.metric = {{1, 1, 2}}, .tolerance_share = 0.1}),
+                  InvalidInput);
   CHECK(check_of(box, box.positions).valid());
   CHECK(check_of(box, box.positions).distance == 0);
 }
