@@ -21,17 +21,19 @@ double quantile(std::vector<double>& values, double share) {
   return values[at];
 }
 
+std::size_t faces_in(const MeshFacts& facts) {
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
+  return faces;
+}
+
 Json facts_json(const MeshFacts& facts) {
   Json by_corners = Json::object();
-  std::size_t faces = 0;
-  for (const auto& [corners, count] : facts.faces_by_corners) {
-    by_corners[std::to_string(corners)] = count;
-    faces += count;
-  }
+  for (const auto& [corners, count] : facts.faces_by_corners) by_corners[std::to_string(corners)] = count;
   return {{"vertices", facts.vertices},
           {"vertices_unused", facts.unused_vertices},
           {"vertices_welded", facts.welded_vertices},
-          {"faces", faces},
+          {"faces", faces_in(facts)},
           {"faces_by_corners", by_corners},
           {"components", facts.components},
           {"closed_components", facts.closed_components},
@@ -153,12 +155,10 @@ Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
   report["certified"] = certified.certified;
   report["there"] = certified.there;
   report["worst_left"] = certified.worst_left;
-  std::size_t faces = 0;
-  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
   if (certified.source_faces > 0) {
     report["source_faces"] = certified.source_faces;
     report["source_vertices"] = certified.source_vertices;
-    report["faces"] = faces;
+    report["faces"] = faces_in(facts);
     report["out_of_faces"] = certified.out_of_faces;
   }
   return report;
