@@ -124,6 +124,12 @@ class RefinedRun {
                                      : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
   }
 
+  std::size_t most_corners() const {
+    std::size_t most = 3;
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) most = std::max(most, mesh_.face(f).size());
+    return most;
+  }
+
   /// Splits the faces, in stages, and makes the offset of what comes of that.
   void refine(const Distances& asked, const OffsetResult& coarse) {
     std::optional<StageTimer> timer(std::in_place, seconds_, Stage::Refine);
@@ -134,7 +140,7 @@ class RefinedRun {
                                       std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
-                    {options_.corners, most_faces(), tolerance_.precision});
+                    {options_.corners, most_faces(), mesh_.face_count(), most_corners(), tolerance_.precision});
     Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
     const auto tell = [&](double share) {

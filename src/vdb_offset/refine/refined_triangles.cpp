@@ -119,6 +119,18 @@ std::uint32_t RefinedTriangles::corner_of(PolygonView mesh, std::size_t face, st
   return kNone;
 }
 
+std::size_t RefinedTriangles::face_count(std::size_t mesh_faces) const {
+  std::vector<std::uint32_t> pieces(mesh_faces, 0), before(mesh_faces, 0);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const std::uint32_t face = surface_->face[triangles_[t].source];
+    ++pieces[face];
+    before[face] += triangles_[t].source == t;
+  }
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < mesh_faces; ++f) count += pieces[f] == before[f] ? 1 : pieces[f];
+  return count;
+}
+
 Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
                                      std::vector<std::uint32_t>* triangle_of_face) const {
   // The pieces of each face, in the order in which they were made.
@@ -177,7 +189,8 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
       refinement.added.push_back(origin);
       polygons.positions.push_back(positions_[source_vertices() + added[i].added]);
     }
-    numbers[source_vertices() + added[i].added] = static_cast<std::uint32_t>(polygons.positions.size() - 1);
+    std::uint32_t& first = numbers[source_vertices() + added[i].added];
+    if (first == kNone) first = static_cast<std::uint32_t>(polygons.positions.size() - 1);
     polygons.corners[added[i].corner] = static_cast<std::uint32_t>(polygons.positions.size() - 1);
   }
   return refinement;

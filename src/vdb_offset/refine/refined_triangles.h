@@ -55,6 +55,8 @@ class RefinedTriangles {
   std::vector<std::uint32_t> split(std::span<const Edge> edges, std::span<const SurfacePlace> places,
                                    std::span<const Vec3d> positions, std::vector<std::uint32_t>* split_from = nullptr);
 
+  /// The number of faces of a refinement, of a mesh with so many.
+  std::size_t face_count(std::size_t mesh_faces) const;
   /// The refinement of the mesh that the surface was built from. `numbers` receives for each vertex here one of those
   /// that it is in the refinement; `triangle_of_face`, if given, for each of its faces the triangle here, or kNone for
   /// a face that is not split.

@@ -20,6 +20,9 @@ constexpr double kMostBulge = 0.75;
 // Lengths in units of that of an edge on a circle of radius d that bulges by the tolerance: of an edge with one end
 // that does not get there, at which it is no longer split; and up to which an edge is short.
 constexpr double kLeastMixed = 0.5, kShort = 0.5;
+// The length, in those units, of the shortest edge that is split: where one of the source would have to be so short,
+// what is next to each other in it is not in the offset.
+constexpr double kShortest = 1e-3;
 // Share of an edge's bulge from which its halves count as bulging as much, and how often that may be in a row where
 // edges are short. Not measured: a quarter on a smooth surface, a half across a valley.
 constexpr double kMostKept = 0.6;
@@ -217,7 +220,7 @@ void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& s
   const Candidate *most = nullptr, *longest = nullptr;
   for (const Candidate* one : of_edge) {
     const double length = length_of(one->edge);
-    if (is_torn(*one) || one->stays_whole) continue;
+    if (is_torn(*one) || one->stays_whole || length < kShortest) continue;
     if (one->vertex.bulge > kMostBulge * loosened_) {
       split(one);
       any = true;
@@ -238,7 +241,7 @@ void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) co
   const auto split = [&](const Candidate* one) { marked[static_cast<std::size_t>(one - candidates_.data())] = 1; };
   if (state_[triangle] == State::Off) return mark_off(of_edge, split);
   for (const Candidate* one : of_edge) {
-    if (one->stays_whole) continue;
+    if (one->stays_whole || length_of(one->edge) < kShortest) continue;
     const int there = vertices_[one->edge.first].target.is_there + vertices_[one->edge.second].target.is_there;
     if (there == 2 ? one->vertex.bulge > kMostBulge * loosened_ && !is_torn(*one)
                    : length_of(one->edge) > kLeastMixed && one->vertex.target.is_there)
@@ -267,14 +270,16 @@ void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
   std::vector<std::uint32_t> some;
   for (std::uint32_t i = 0; i < marked.size(); ++i)
     if (marked[i]) some.push_back(i);
-  // An edge of two triangles gives two more. Where more meet there are few.
-  const std::size_t count = state_.size(), room = options_.most_triangles > count ? options_.most_triangles - count : 0;
-  if (2 * some.size() <= room) return;
+  // An edge of two triangles gives two more, and beside it there may be two faces that are whole polygons yet. Where
+  // more faces meet there are few.
+  const std::size_t count = triangles_.face_count(options_.mesh_faces), each = 2 * (options_.most_corners - 2),
+                    room = (options_.most_faces > count ? options_.most_faces - count : 0) / each;
+  if (some.size() <= room) return;
   is_cut_short_ = true;
   std::stable_sort(some.begin(), some.end(), [&](std::uint32_t a, std::uint32_t b) {
     return candidates_[a].vertex.bulge > candidates_[b].vertex.bulge;
   });
-  for (std::size_t i = room / 2; i < some.size(); ++i) marked[some[i]] = 0;
+  for (std::size_t i = room; i < some.size(); ++i) marked[some[i]] = 0;
 }
 
 void Refiner::split(const std::vector<std::uint8_t>& marked) {

@@ -26,8 +26,10 @@ struct RefinedVertex {
 
 struct RefinerOptions {
   Corners corners = Corners::Round;
-  std::size_t most_triangles;  ///< No more are made.
-  Rounding precision;          ///< Of the source's coordinates, which those of added vertices are rounded to.
+  std::size_t most_faces;  ///< No more are made.
+  std::size_t mesh_faces;  ///< Of the mesh, and the most corners that one of them has.
+  std::size_t most_corners;
+  Rounding precision;  ///< Of the source's coordinates, which those of added vertices are rounded to.
 };
 
 /// Splits the faces of a mesh until its offset is proven to be at its distance between the vertices, too.
