@@ -86,15 +86,19 @@ class OffsetProver::Recursion {
     Near near{std::sqrt(nearest.squared_distance), true, false};
     double highest = -std::numeric_limits<double>::infinity();
     for (const auto v : surface_.triangles[t]) highest = std::max(highest, normal_.dot(surface_.vertices[v]));
-    bool by_plane = true, by_ball = near.distance > 0;
+    bool by_plane = true, by_ball = near.distance > 0, near_by_plane = false, near_by_ball = false;
     const Vec3d away = near.distance > 0 ? (middle - nearest.point) / near.distance : Vec3d(0.0);
     for (int i = 0; i < 3; ++i) {
       const double over_plane = normal_.dot(piece.x[i]) - highest, over_ball = away.dot(piece.x[i] - nearest.point);
       by_plane &= over_plane >= piece.least(i);
       by_ball &= over_ball >= piece.least(i);
-      near.may_be_near_enough |= std::max(over_plane, over_ball) <= piece.most(i);
+      near_by_plane |= over_plane <= piece.most(i);
+      near_by_ball |= over_ball <= piece.most(i);
     }
     near.is_far_enough = by_plane || by_ball;
+    // By one bound or the other too far from all corners is too far from all points. Too far from one corner by one,
+    // and from others by the other, is not.
+    near.may_be_near_enough = near_by_plane && near_by_ball;
     return near;
   }
 
@@ -146,11 +150,15 @@ class OffsetProver::Recursion {
     };
     const double asked = mean(piece.asked), allowed = mean(piece.tolerance) + kRounding * asked;
     if (!std::isfinite(nearest)) nearest = query_(middle, 0).distance;
-    double off = nearest - asked;
-    if (off > 0 && none_too_far) return {Certainty::Proven, 0};
-    if (off > 0 && may_keep_to_plane_) off = std::min(off, std::abs(mean(piece.over_plane) - asked));
-    if (std::abs(off) <= allowed) return {Certainty::Proven, 0};
-    return {Certainty::Off, std::abs(off)};
+    const auto error_at = [&](double distance) {
+      const double off = distance - asked;
+      return off > 0 && may_keep_to_plane_ ? std::min(off, std::abs(mean(piece.over_plane) - asked)) : std::abs(off);
+    };
+    if (nearest > asked && none_too_far) return {Certainty::Proven, 0};
+    const double error = error_at(nearest);
+    if (error <= allowed) return {Certainty::Proven, 0};
+    // Of triangles that are all too far, some may be out of the list and nearer than those in it.
+    return {Certainty::Off, nearest > asked ? error_at(query_(middle, 0).distance) : error};
   }
 
   /// Looks at both halves, on either side of the middle of the longest edge.
