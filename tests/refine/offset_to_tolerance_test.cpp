@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/tolerance.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "support/oracles.h"
+#include "vdb_offset/check.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/scene.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+Polygons triangles_of(const Polygons& mesh) {
+  Polygons result;
+  result.positions = mesh.positions;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    for (std::size_t k = 2; k < face.size(); ++k) result.add_face({face[0], face[k - 1], face[k]});
+  }
+  return result;
+}
+
+double diagonal_of(const Polygons& mesh) { return build_surface(mesh.view(), {}).facts.diagonal; }
+
+OffsetOptions options_for(Distances distance, Corners corners = Corners::Round) {
+  OffsetOptions options;
+  options.distance = std::move(distance);
+  options.corners = corners;
+  return options;
+}
+
+Tolerance tolerance_of(double share, std::size_t most_faces = 0) {
+  Tolerance tolerance;
+  tolerance.share = share;
+  tolerance.most_faces = most_faces;
+  return tolerance;
+}
+
+const CertifiedFaces& certified_of(const RefinedOffset& refined) { return refined.result.statistics.certified.value(); }
+
+/// The source's vertices come first and are where they were, the pieces of its faces stand in their place.
+void require_source_kept(const Polygons& mesh, const RefinedOffset& refined) {
+  const auto& [polygons, parent, added] = refined.refinement;
+  REQUIRE(refined.result.positions.size() == polygons.positions.size());
+  REQUIRE(refined.refinement.source_vertices() == mesh.positions.size());
+  CHECK(std::equal(mesh.positions.begin(), mesh.positions.end(), polygons.positions.begin()));
+  CHECK(std::is_sorted(parent.begin(), parent.end()));
+  REQUIRE(parent.size() == polygons.face_count());
+  CHECK((parent.front() == 0 && parent.back() + 1 == mesh.face_count()));
+  CHECK(certified_of(refined).source_faces == mesh.face_count());
+  CHECK(certified_of(refined).source_vertices == mesh.positions.size());
+}
+
+void require_result_valid(const RefinedOffset& refined, const OffsetOptions& options) {
+  CheckOptions check;
+  check.distance = refined.result.distances;
+  check.corners = options.corners;
+  for (const auto f : refined.refinement.parent)
+    if (!options.only.empty()) check.only.push_back(options.only[f]);
+  CHECK(check_offset(refined.refinement.polygons.view(), refined.result.positions, check).valid());
+}
+
+/// Points spread evenly over the area of the triangles whose vertices all get there.
+struct SpreadPoints {
+  std::vector<Vec3d> at;
+  std::vector<double> asked;
+};
+SpreadPoints spread_points(const RefinedOffset& refined, int count, const std::vector<std::uint8_t>& only = {}) {
+  const PolygonView mesh = refined.refinement.polygons.view();
+  const auto& [positions, states, achieved, distances, turned, statistics, field, paths] = refined.result;
+  const auto gets_there = [&, &all = states](std::uint32_t v) {
+    return all[v] == VertexState::Reached || all[v] == VertexState::Mitred;
+  };
+  std::vector<double> area_up_to;
+  std::vector<std::size_t> faces;
+  double area = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    REQUIRE(face.size() == 3);
+    if (!std::all_of(face.begin(), face.end(), gets_there)) continue;
+    if (!only.empty() && !only[refined.refinement.parent[f]]) continue;
+    const Vec3d &a = refined.result.positions[face[0]], &b = refined.result.positions[face[1]];
+    area += (b - a).cross(refined.result.positions[face[2]] - a).length();
+    area_up_to.push_back(area);
+    faces.push_back(f);
+  }
+  REQUIRE(area > 0);
+  std::mt19937 random(1);
+  const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  SpreadPoints points;
+  for (int i = 0; i < count; ++i) {
+    const auto one = std::upper_bound(area_up_to.begin(), area_up_to.end(), unit() * area) - area_up_to.begin();
+    const auto face = mesh.face(faces[std::min(static_cast<std::size_t>(one), faces.size() - 1)]);
+    double u = unit(), v = unit();
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    const std::array<double, 3> shares = {1 - u - v, u, v};
+    Vec3d x(0.0);
+    double asked = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      x += refined.result.positions[face[k]] * shares[k];
+      asked += std::abs(refined.result.distances[face[k]]) * shares[k];
+    }
+    points.at.push_back(x);
+    points.asked.push_back(asked);
+  }
+  return points;
+}
+
+/// The errors of some points, as shares of what is asked there, from exact distances to a mesh.
+std::vector<double> errors_of(const Polygons& source, const SpreadPoints& points) {
+  Surface surface = build_surface(source.view(), {});
+  to_local_frame(surface, surface.facts.diagonal / 50);
+  const ClosestQuery query(surface);
+  std::vector<Vec3d> local = points.at;
+  for (Vec3d& x : local) x -= surface.origin;
+  const std::vector<Closest> closest = closest_points(query, local);
+  std::vector<double> errors(closest.size());
+  for (std::size_t i = 0; i < closest.size(); ++i)
+    errors[i] = std::abs(closest[i].distance - points.asked[i]) / points.asked[i];
+  return errors;
+}
+double worst_share(const Polygons& source, const SpreadPoints& points) {
+  const std::vector<double> errors = errors_of(source, points);
+  return *std::max_element(errors.begin(), errors.end());
+}
+
+double worst_share_by_brute_force(const Polygons& source, const SpreadPoints& points) {
+  double worst = 0;
+  for (std::size_t i = 0; i < points.at.size(); ++i)
+    worst = std::max(
+        worst, std::abs(test::brute_force_distance(source.view(), points.at[i]) - points.asked[i]) / points.asked[i]);
+  return worst;
+}
+
+/// The most pieces that a face has which stays, and has no corner in the part.
+std::size_t largest_split_off(const Polygons& mesh, const Polygons& part, const std::vector<std::uint8_t>& only,
+                              const Refinement& refinement) {
+  std::vector<std::uint8_t> on_part(mesh.positions.size(), 0);
+  for (const auto v : part.corners) on_part[v] = 1;
+  std::vector<std::size_t> pieces(mesh.face_count(), 0);
+  for (const auto f : refinement.parent) ++pieces[f];
+  std::size_t most = 0;
+  for (std::size_t f = 0; f < pieces.size(); ++f) {
+    const auto face = mesh.view().face(f);
+    if (!only[f] && std::none_of(face.begin(), face.end(), [&](auto v) { return on_part[v] != 0; }))
+      most = std::max(most, pieces[f]);
+  }
+  return most;
+}
+
+constexpr int kManyPoints = 100000;
+// Of the tolerance: rounding, and what the prover allows for it.
+constexpr double kRounded = 1 + 1e-9;
+
+/// Offsets a mesh of triangles, all of which has room.
+RefinedOffset offset_all(const Polygons& mesh, const OffsetOptions& options, double share) {
+  RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(share));
+  require_source_kept(mesh, refined);
+  require_result_valid(refined, options);
+  const CertifiedFaces& certified = certified_of(refined);
+  CHECK(certified.share == share);
+  CHECK(certified.there == 1);
+  CHECK(certified.certified == Approx(1).epsilon(1e-12));
+  CHECK(certified.worst_left == 0);
+  CHECK(!certified.out_of_faces);
+  CHECK(worst_share(mesh, spread_points(refined, kManyPoints)) <= share * kRounded);
+  return refined;
+}
+
+}  // namespace
+
+TEST_CASE("tolerance: a cube with round corners, against brute force", "[tolerance]") {
+  const Polygons mesh = scene::box(Vec3d(1), 1, true);
+  for (const double share : {0.05, 0.01, -0.05, -0.01}) {
+    CAPTURE(share);
+    const OffsetOptions options = options_for(share * std::sqrt(3));
+    const RefinedOffset refined = offset_all(mesh, options, 0.01);
+    CHECK(worst_share_by_brute_force(mesh, spread_points(refined, kManyPoints)) <= 0.01 * kRounded);
+    // Vertices of the cube go where they go without.
+    const OffsetResult coarse = offset(mesh.view(), options);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) CHECK(refined.result.positions[v] == coarse.positions[v]);
+    // Without, an eighth of a ball is one point, unless it is on the inside.
+    const double off = share > 0 ? 1 - std::sqrt(1 / 3.0) : 0;
+    CHECK(coarse.statistics.faces.worst == Approx(off).margin(0.02));
+    if (share < 0) CHECK(refined.refinement.added.empty());
+  }
+}
+
+TEST_CASE("tolerance: balls, rings and bumps at 1 % of the distance", "[tolerance]") {
+  const std::vector<std::pair<const char*, Polygons>> kMeshes = {{"ball", scene::icosphere(1, 2)},
+                                                                 {"ring", triangles_of(scene::torus(1, 0.4, 32, 16))},
+                                                                 {"bumps", scene::bumpy_sphere(1, 0.1, 1, 3, 3)}};
+  for (const auto& [name, mesh] : kMeshes)
+    for (const double share : {0.01, 0.05, -0.01, -0.05}) {
+      CAPTURE(name, share);
+      offset_all(mesh, options_for(share * diagonal_of(mesh)), 0.01);
+    }
+}
+
+TEST_CASE("tolerance: the same at 0.1 %", "[tolerance][long]") {
+  const Polygons cube = scene::box(Vec3d(1), 1, true);
+  const RefinedOffset round = offset_all(cube, options_for(0.05 * std::sqrt(3)), 0.001);
+  CHECK(worst_share_by_brute_force(cube, spread_points(round, kManyPoints)) <= 0.001 * kRounded);
+  const Polygons ball = scene::icosphere(1, 2), ring = triangles_of(scene::torus(1, 0.4, 16, 8)),
+                 bumps = scene::bumpy_sphere(1, 0.1, 1, 3, 2);
+  offset_all(ball, options_for(-0.05 * diagonal_of(ball)), 0.001);
+  offset_all(ball, options_for(-0.01 * diagonal_of(ball)), 0.001);
+  offset_all(ring, options_for(-0.05 * diagonal_of(ring)), 0.001);
+  offset_all(bumps, options_for(0.05 * diagonal_of(bumps)), 0.001);
+}
+
+TEST_CASE("tolerance: a tenth of it takes no more than ten times the faces", "[tolerance][long]") {
+  // A chord of length h sags by h^2 / 8 d, so that pieces are smaller by the root of ten: in two directions where the
+  // offset is a part of a ball, in one where it is round an edge, and not at all where it is flat. As edges are halved,
+  // pieces are up to two times smaller than they need be, more of them for one tolerance than for the other: 1.3 is for
+  // that. Meshes that hardly need a split at the larger tolerance tell nothing.
+  const std::vector<std::pair<const char*, Polygons>> kMeshes = {{"ball", scene::icosphere(1, 1)},
+                                                                 {"ring", triangles_of(scene::torus(1, 0.4, 16, 8))}};
+  for (const auto& [name, mesh] : kMeshes) {
+    CAPTURE(name);
+    const OffsetOptions options = options_for(0.05 * diagonal_of(mesh));
+    const auto many = static_cast<double>(offset_all(mesh, options, 0.01).refinement.polygons.face_count());
+    const auto more = static_cast<double>(offset_all(mesh, options, 0.001).refinement.polygons.face_count());
+    CHECK(many > 10.0 * static_cast<double>(mesh.face_count()));
+    CHECK(more > 2 * many);
+    CHECK(more < 10 * 1.3 * many);
+  }
+}
+
+TEST_CASE("tolerance: miters need no split, inward or outward", "[tolerance][miter]") {
+  for (const int divisions : {1, 3})
+    for (const double share : {0.01, 0.05, -0.01, -0.05}) {
+      CAPTURE(divisions, share);
+      const Polygons mesh = scene::box(Vec3d(1), divisions, true);
+      const OffsetOptions options = options_for(share * std::sqrt(3), Corners::Miter);
+      const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.001));
+      CHECK(refined.refinement.added.empty());
+      CHECK(refined.refinement.polygons.corners == mesh.corners);
+      CHECK(refined.result.positions == offset(mesh.view(), options).positions);
+      CHECK(certified_of(refined).certified == 1);
+      CHECK(certified_of(refined).there == 1);
+    }
+}
+
+TEST_CASE("tolerance: distances that differ from vertex to vertex", "[tolerance]") {
+  const Polygons mesh = scene::icosphere(1, 2);
+  std::vector<double> each;
+  for (const Vec3d& p : mesh.positions) each.push_back(0.1 + 0.04 * p[2]);
+  const OffsetOptions options = options_for(Distances(each));
+  const RefinedOffset refined = offset_all(mesh, options, 0.01);
+  CHECK(refined.refinement.added.size() > mesh.positions.size());
+  // What is asked of an added vertex is interpolated.
+  double worst = 0;
+  for (std::size_t i = 0; i < refined.refinement.added.size(); ++i) {
+    const VertexOrigin& origin = refined.refinement.added[i];
+    double asked = 0;
+    for (std::size_t k = 0; k < 3; ++k) asked += each[origin.vertex[k]] * origin.share[k];
+    worst = std::max(worst, std::abs(refined.result.distances[mesh.positions.size() + i] - asked));
+  }
+  CHECK(worst < 1e-15);
+}
+
+TEST_CASE("tolerance: a part of a mesh is split, and little of what stays", "[tolerance]") {
+  const Polygons mesh = scene::icosphere(1, 2);
+  OffsetOptions options = options_for(0.1);
+  Polygons part;
+  part.positions = mesh.positions;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    options.only.push_back(mesh.positions[face[0]][2] + mesh.positions[face[1]][2] + mesh.positions[face[2]][2] > 0);
+    if (options.only.back()) part.add_face({face[0], face[1], face[2]});
+  }
+  for (const Border border : {Border::Free, Border::Slide, Border::Fixed}) {
+    CAPTURE(static_cast<int>(border));
+    options.border = border;
+    const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01));
+    require_source_kept(mesh, refined);
+    require_result_valid(refined, options);
+    const CertifiedFaces& certified = certified_of(refined);
+    CHECK((certified.certified > 0.65 && certified.certified <= certified.there));
+    if (border == Border::Free) CHECK((certified.there == 1 && certified.certified == Approx(1).epsilon(1e-12)));
+    // Of the area that is there, no more is off than is not certified.
+    const std::vector<double> errors = errors_of(part, spread_points(refined, kManyPoints, options.only));
+    const double off = static_cast<double>(std::count_if(errors.begin(), errors.end(),
+                                                         [](double error) { return error > 0.01 * kRounded; })) /
+                       kManyPoints;
+    const double open = 1 - certified.certified / certified.there;
+    CHECK(off <= open + 5 * std::sqrt(open / kManyPoints));
+    CHECK(largest_split_off(mesh, part, options.only, refined.refinement) == 1);
+  }
+}
+
+TEST_CASE("tolerance: no more faces are made than may be", "[tolerance]") {
+  const Polygons mesh = scene::icosphere(1, 1);
+  const OffsetOptions options = options_for(0.1);
+  const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01, 1000));
+  require_source_kept(mesh, refined);
+  require_result_valid(refined, options);
+  CHECK(refined.refinement.polygons.face_count() <= 1000);
+  CHECK(refined.refinement.polygons.face_count() > 500);
+  const CertifiedFaces& certified = certified_of(refined);
+  CHECK(certified.out_of_faces);
+  CHECK(certified.there == 1);
+  CHECK(certified.certified < 1);
+  CHECK(certified.worst_left > 0.01);
+}
+
+TEST_CASE("tolerance: the same bits for any number of threads", "[tolerance]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.2, 1, 3, 2);
+  OffsetOptions options = options_for(0.15);
+  options.threads = 1;
+  const RefinedOffset one = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01));
+  CHECK(one.refinement.added.size() > 1000);
+  for (const int threads : {2, 5}) {
+    CAPTURE(threads);
+    options.threads = threads;
+    const RefinedOffset other = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01));
+    CHECK(other.refinement.polygons.positions == one.refinement.polygons.positions);
+    CHECK(other.refinement.polygons.corners == one.refinement.polygons.corners);
+    CHECK(other.refinement.parent == one.refinement.parent);
+    CHECK(other.result.positions == one.result.positions);
+    CHECK(other.result.states == one.result.states);
+    CHECK(certified_of(other).certified == certified_of(one).certified);
+    CHECK(certified_of(other).there == certified_of(one).there);
+    CHECK(certified_of(other).worst_left == certified_of(one).worst_left);
+  }
+}
+
+TEST_CASE("tolerance: a share of the distance and the length that it is are the same", "[tolerance]") {
+  const Polygons mesh = scene::icosphere(1, 1);
+  Tolerance length;
+  length.length = 0.01 * 0.1;
+  const RefinedOffset by_share = offset_to_tolerance(mesh.view(), options_for(-0.1), tolerance_of(0.01)),
+                      by_length = offset_to_tolerance(mesh.view(), options_for(-0.1), length);
+  CHECK(!by_share.refinement.added.empty());
+  CHECK(by_length.refinement.polygons.corners == by_share.refinement.polygons.corners);
+  CHECK(by_length.result.positions == by_share.result.positions);
+  CHECK(certified_of(by_length).length == length.length);
+  CHECK(certified_of(by_length).share == 0);
+  CHECK(length.at(0.1) == tolerance_of(0.01).at(-0.1));
+}
+
+TEST_CASE("tolerance: at no distance a mesh stays as it is", "[tolerance]") {
+  const Polygons mesh = scene::box(Vec3d(1), 2, false);
+  const RefinedOffset refined = offset_to_tolerance(mesh.view(), options_for(0), tolerance_of(0.01));
+  CHECK(refined.refinement.polygons.corners == mesh.corners);
+  CHECK(refined.refinement.added.empty());
+  CHECK(refined.result.positions == mesh.positions);
+}
+
+TEST_CASE("tolerance: options that cannot be used are refused", "[tolerance]") {
+  const Polygons mesh = scene::box(Vec3d(1), 1, true);
+  const auto refuses = [&](const std::function<void(OffsetOptions&, Tolerance&)>& change) {
+    OffsetOptions options = options_for(0.1);
+    Tolerance tolerance = tolerance_of(0.01);
+    change(options, tolerance);
+    CHECK_THROWS_AS(offset_to_tolerance(mesh.view(), options, tolerance), InvalidInput);
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
+  refuses([](auto&, Tolerance& tolerance) { tolerance.share = 0; });
+  refuses([](auto&, Tolerance& tolerance) { tolerance.length = 0.01; });
+  for (const double share : {-0.01, 0.9e-5, 1.0, kNan, kInfinite})
+    refuses([&](auto&, Tolerance& tolerance) { tolerance.share = share; });
+  for (const double length : {-0.01, 0.9e-6, kNan, kInfinite})
+    refuses([&](auto&, Tolerance& tolerance) {
+      tolerance.share = 0;
+      tolerance.length = length;
+    });
+  refuses([](OffsetOptions& options, auto&) { options.metric.scale = Vec3d(1, 1, 2); });
+  refuses([](OffsetOptions& options, auto&) { options.off_source = true; });
+  refuses([](OffsetOptions& options, auto&) { options.inner_skin_last = true; });
+  refuses([](OffsetOptions& options, auto&) { options.keep_field = true; });
+  refuses([](OffsetOptions& options, auto&) { options.keep_paths = true; });
+  refuses([](OffsetOptions& options, auto&) { options.distance = Distances(std::vector<double>(7, 0.1)); });
+  OffsetOptions usable = options_for(0.1);
+  CHECK_NOTHROW(offset_to_tolerance(mesh.view(), usable, tolerance_of(0.5)));
+}
