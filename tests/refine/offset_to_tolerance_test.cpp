@@ -387,3 +387,46 @@ TEST_CASE("tolerance: options that cannot be used are refused", "[tolerance]") {
   OffsetOptions usable = options_for(0.1);
   CHECK_NOTHROW(offset_to_tolerance(mesh.view(), usable, tolerance_of(0.5)));
 }
+
+// Not met yet: not run, but for [tolerance_open].
+TEST_CASE("tolerance: no faces are wasted on what cannot be there", "[.][tolerance_open]") {
+  // The gap is half of what both would need.
+  const Polygons near = triangles_of(scene::plates(1, 0.2, 0.06, 4)), far = triangles_of(scene::plates(1, 0.2, 6, 4));
+  const OffsetOptions options = options_for(0.06);
+  const RefinedOffset refined = offset_to_tolerance(near.view(), options, tolerance_of(0.01));
+  require_source_kept(near, refined);
+  require_result_valid(refined, options);
+  const CertifiedFaces& certified = certified_of(refined);
+  CHECK((certified.there < 0.9 && certified.there > 0.5));
+  CHECK(certified.certified == Approx(certified.there).epsilon(1e-3));
+  CHECK(worst_share(near, spread_points(refined, kManyPoints)) <= 0.01 * kRounded);
+  const RefinedOffset apart = offset_all(far, options, 0.01);
+  CHECK(refined.refinement.polygons.face_count() < apart.refinement.polygons.face_count());
+}
+
+TEST_CASE("tolerance: what has gone to its distance on the inside stays there", "[.][tolerance_open]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.1, 1, 3, 2);
+  for (const double share : {-0.05, -0.01}) {
+    CAPTURE(share);
+    const OffsetOptions options = options_for(share * diagonal_of(mesh));
+    const OffsetResult coarse = offset(mesh.view(), options);
+    const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.001));
+    std::size_t lost = 0;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      lost += falls_short(refined.result.states[v]) && !falls_short(coarse.states[v]);
+    CHECK(lost == 0);
+  }
+}
+
+TEST_CASE("tolerance: all is certified near creases on the inside", "[.][tolerance_open]") {
+  const Polygons ball = scene::icosphere(1, 1), ring = triangles_of(scene::torus(1, 0.4, 16, 8));
+  offset_all(ball, options_for(-0.01 * diagonal_of(ball)), 0.001);
+  offset_all(ring, options_for(-0.01 * diagonal_of(ring)), 0.001);
+}
+
+TEST_CASE("tolerance: a flat face on the inside needs no split", "[.][tolerance_open]") {
+  const Polygons mesh = scene::box(Vec3d(1), 3, false);
+  const RefinedOffset refined =
+      offset_to_tolerance(mesh.view(), options_for(-0.01 * std::sqrt(3)), tolerance_of(0.001));
+  CHECK(refined.refinement.added.empty());
+}
