@@ -10,7 +10,10 @@ namespace vdb_offset {
 namespace {
 
 // Pieces of one triangle that are looked at before it is left open. Not measured: smooth surfaces need fewer than ten.
-constexpr int kMostPieces = 1000;
+constexpr int kMostPieces = 8000;
+// How often a piece may be halved. Reasoned: its edges are a thousandth then; what is that near to the tolerance is
+// left open.
+constexpr int kDeepest = 20;
 // Share of a distance that rounding may cost in what is compared here. Reasoned: far above that of doubles, and far
 // below the tolerance to which vertices are put at their distance.
 constexpr double kRounding = 1e-11;
@@ -117,7 +120,7 @@ class OffsetProver::Recursion {
 
   /// Looks at a piece, whose triangles of the surface are list_[begin .. end).
   Proof look_at(const Piece& piece, std::size_t begin, std::size_t end, bool none_too_far) {
-    if (++pieces_ > kMostPieces) return {Certainty::Open, 0};
+    if (++pieces_ > kMostPieces || depth_ > kDeepest) return {Certainty::Open, 0};
     none_too_far = none_too_far || (may_keep_to_plane_ && keeps_to_plane(piece));
     const Vec3d middle = piece.middle();
     double nearest = std::numeric_limits<double>::infinity();
@@ -179,7 +182,9 @@ class OffsetProver::Recursion {
       half.x[moved] = (piece.x[a] + piece.x[b]) / 2.0;
       for (auto* const numbers : {&half.asked, &half.tolerance, &half.over_plane})
         (*numbers)[moved] = ((*numbers)[moved] + (*numbers)[kept]) / 2;
+      ++depth_;
       const Proof proof = look_at(half, first, end, none_too_far);
+      --depth_;
       if (proof.certainty != Certainty::Proven) return proof;
     }
     return {Certainty::Proven, 0};
@@ -190,7 +195,7 @@ class OffsetProver::Recursion {
   Vec3d normal_{0.0};
   std::vector<std::uint32_t> list_;
   bool may_keep_to_plane_ = false;
-  int pieces_ = 0;
+  int pieces_ = 0, depth_ = 0;
 };
 
 Proof OffsetProver::operator()(const OffsetTriangle& triangle) const {

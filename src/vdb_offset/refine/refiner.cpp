@@ -229,8 +229,7 @@ void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& s
     if (!longest || length > length_of(longest->edge)) longest = one;
   }
   if (any || !most) return;
-  if (most->vertex.bulge > kLeastBulge * loosened_) split(most);
-  else if (length_of(longest->edge) > kLongFlat) split(longest);
+  if (most->vertex.bulge > kLeastBulge * loosened_ || length_of(longest->edge) > kLongFlat) split(longest);
 }
 
 /// Marks the edges of a triangle that is not settled which are to be split.
