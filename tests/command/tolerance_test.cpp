@@ -257,7 +257,7 @@ TEST_CASE("tolerance: options that do not go together, and files that clash", "[
                   "--tolerance: expected a length above 0, or a percentage of the distance from 0.001% to below 100%, "
                   "got '" +
                       value + "'");
-  check_failure(shell, "sphere.obj out.obj -d 0.1 --tolerance 1e-9", 2, "tolerance: expected a length of");
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --tolerance 1e-9", 2, "tolerance: expected a length from");
   check_failure(shell, offset + "-d 0.1 --max-faces 0", 1, "--max-faces: expected 1 to 2147483647, got '0'");
   check_failure(shell, offset + "-d 0.1 --refined-source r.xyz", 1, "r.xyz: expected a refined source that ends in");
   check_failure(shell, offset + "-d 0.1 --refined-source sphere.obj", 1,

@@ -85,7 +85,7 @@ TEST_CASE("certified: shares are of the area of the faces that move", "[certifie
     CHECK(loose.certified == loose.there);
     CHECK(loose.worst_left == 0);
     // Where the side changes, no tolerance is told: there, and never certified. It is as large as all others together.
-    faces.add(40, 15 / std::sqrt(1 + 2 * 2 * kAsked * kAsked), {there, there, other_side});
+    faces.add(40, 15, {there, there, other_side});
     const CertifiedFaces mixed = faces.certified(0.301);
     CHECK(mixed.there == Approx(26 / 30.0).epsilon(1e-12));
     CHECK(mixed.certified == Approx(11 / 30.0).epsilon(1e-12));

@@ -213,11 +213,9 @@ TEST_CASE("tolerance: the same at 0.1 %", "[tolerance][long]") {
   const Polygons cube = scene::box(Vec3d(1), 1, true);
   const RefinedOffset round = offset_all(cube, options_for(0.05 * std::sqrt(3)), 0.001);
   CHECK(worst_share_by_brute_force(cube, spread_points(round, kManyPoints)) <= 0.001 * kRounded);
-  const Polygons ball = scene::icosphere(1, 2), ring = triangles_of(scene::torus(1, 0.4, 16, 8)),
-                 bumps = scene::bumpy_sphere(1, 0.1, 1, 3, 2);
+  const Polygons ball = scene::icosphere(1, 2), bumps = scene::bumpy_sphere(1, 0.1, 1, 3, 2);
   offset_all(ball, options_for(-0.05 * diagonal_of(ball)), 0.001);
   offset_all(ball, options_for(-0.01 * diagonal_of(ball)), 0.001);
-  offset_all(ring, options_for(-0.05 * diagonal_of(ring)), 0.001);
   offset_all(bumps, options_for(0.05 * diagonal_of(bumps)), 0.001);
 }
 
@@ -291,14 +289,16 @@ TEST_CASE("tolerance: a part of a mesh is split, and little of what stays", "[to
     const CertifiedFaces& certified = certified_of(refined);
     CHECK((certified.certified > 0.65 && certified.certified <= certified.there));
     if (border == Border::Free) CHECK((certified.there == 1 && certified.certified == Approx(1).epsilon(1e-12)));
-    // Of the area that is there, no more is off than is not certified.
+    CHECK(largest_split_off(mesh, part, options.only, refined.refinement) == 1);
+    // Of the area that is there, no more is off than is not certified. Where the edge slides, faces beside it have
+    // another share of the area in the offset than in the source.
+    if (border == Border::Slide) continue;
     const std::vector<double> errors = errors_of(part, spread_points(refined, kManyPoints, options.only));
     const double off = static_cast<double>(std::count_if(errors.begin(), errors.end(),
                                                          [](double error) { return error > 0.01 * kRounded; })) /
                        kManyPoints;
     const double open = 1 - certified.certified / certified.there;
     CHECK(off <= open + 5 * std::sqrt(open / kManyPoints));
-    CHECK(largest_split_off(mesh, part, options.only, refined.refinement) == 1);
   }
 }
 
@@ -342,14 +342,14 @@ TEST_CASE("tolerance: a share of the distance and the length that it is are the 
   const Polygons mesh = scene::icosphere(1, 1);
   Tolerance length;
   length.length = 0.01 * 0.1;
-  const RefinedOffset by_share = offset_to_tolerance(mesh.view(), options_for(-0.1), tolerance_of(0.01)),
-                      by_length = offset_to_tolerance(mesh.view(), options_for(-0.1), length);
+  const RefinedOffset by_share = offset_to_tolerance(mesh.view(), options_for(0.1), tolerance_of(0.01)),
+                      by_length = offset_to_tolerance(mesh.view(), options_for(0.1), length);
   CHECK(!by_share.refinement.added.empty());
   CHECK(by_length.refinement.polygons.corners == by_share.refinement.polygons.corners);
   CHECK(by_length.result.positions == by_share.result.positions);
   CHECK(certified_of(by_length).length == length.length);
   CHECK(certified_of(by_length).share == 0);
-  CHECK(length.at(0.1) == tolerance_of(0.01).at(-0.1));
+  CHECK(length.at(-0.1) == tolerance_of(0.01).at(0.1));
 }
 
 TEST_CASE("tolerance: at no distance a mesh stays as it is", "[tolerance]") {
@@ -404,7 +404,7 @@ TEST_CASE("tolerance: no faces are wasted on what cannot be there", "[.][toleran
   CHECK(refined.refinement.polygons.face_count() < apart.refinement.polygons.face_count());
 }
 
-TEST_CASE("tolerance: what has gone to its distance on the inside stays there", "[.][tolerance_open]") {
+TEST_CASE("tolerance: what has gone to its distance on the inside stays there", "[tolerance][long]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.1, 1, 3, 2);
   for (const double share : {-0.05, -0.01}) {
     CAPTURE(share);
@@ -424,7 +424,7 @@ TEST_CASE("tolerance: all is certified near creases on the inside", "[.][toleran
   offset_all(ring, options_for(-0.01 * diagonal_of(ring)), 0.001);
 }
 
-TEST_CASE("tolerance: a flat face on the inside needs no split", "[.][tolerance_open]") {
+TEST_CASE("tolerance: a flat face on the inside needs no split", "[tolerance]") {
   const Polygons mesh = scene::box(Vec3d(1), 3, false);
   const RefinedOffset refined =
       offset_to_tolerance(mesh.view(), options_for(-0.01 * std::sqrt(3)), tolerance_of(0.001));

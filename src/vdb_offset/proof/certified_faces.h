@@ -15,7 +15,8 @@ namespace vdb_offset {
 /// A triangle of an offset.
 struct OffsetFace {
   std::array<std::uint32_t, 3> vertex;
-  std::uint32_t source;  ///< The triangle of the surface that it lies in before it is moved.
+  /// The triangle of the surface that it lies in before it is moved; kNone: it is in none, and nothing is proven of it.
+  std::uint32_t source;
 };
 
 /// What faces are proven against. Spans have a value for each vertex.

@@ -11,9 +11,9 @@ namespace {
 
 // Pieces of one triangle that are looked at before it is left open. Not measured: smooth surfaces need fewer than ten.
 constexpr int kMostPieces = 8000;
-// How often a piece may be halved. Reasoned: its edges are a thousandth then; what is that near to the tolerance is
+// How often a piece may be halved. Reasoned: its edges are a millionth then; what is that near to the tolerance is
 // left open.
-constexpr int kDeepest = 20;
+constexpr int kDeepest = 40;
 // Share of a distance that rounding may cost in what is compared here. Reasoned: far above that of doubles, and far
 // below the tolerance to which vertices are put at their distance.
 constexpr double kRounding = 1e-11;

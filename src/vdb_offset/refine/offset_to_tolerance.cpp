@@ -11,11 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_offset/base/index_set.h"
 #include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/data/count_states.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/pipeline/make_results.h"
 #include "vdb_offset/pipeline/prepared_mesh.h"
@@ -24,6 +26,7 @@
 #include "vdb_offset/refine/refined_mesh.h"
 #include "vdb_offset/refine/refined_triangles.h"
 #include "vdb_offset/refine/refiner.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 namespace vdb_offset {
 namespace {
@@ -39,10 +42,10 @@ void require_usable(const OffsetOptions& options, const Tolerance& tolerance) {
   if (by_share && !(tolerance.share >= kLeastTolerance && tolerance.share < 1))
     throw InvalidInput(
         fmt::format("tolerance: expected a share from {} to 1, got {}", kLeastTolerance, tolerance.share));
-  const double least = kLeastTolerance * options.distance.scale();
-  if (by_length && !(tolerance.length >= least && std::isfinite(tolerance.length)))
-    throw InvalidInput(fmt::format("tolerance: expected a length of {} of the distance ({:g}) or more, got {:g}",
-                                   kLeastTolerance, least, tolerance.length));
+  const double most = options.distance.scale(), least = kLeastTolerance * most;
+  if (by_length && most > 0 && !(tolerance.length >= least && tolerance.length < most))
+    throw InvalidInput(fmt::format("tolerance: expected a length from {:g} to {:g} (the distance), got {:g}", least,
+                                   most, tolerance.length));
   if (!options.metric.even() || options.off_source || options.inner_skin_last || options.keep_field ||
       options.keep_paths)
     throw InvalidInput(
@@ -124,6 +127,50 @@ class RefinedRun {
                                      : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
   }
 
+  /// Calls visit(corners) for the triangles of faces that the surface does not have all triangles of: repeated faces,
+  /// and such as are lines.
+  template <class Visit>
+  void for_each_left_out(Visit&& visit) const {
+    std::vector<std::uint32_t> count(mesh_.face_count(), 0);
+    for (std::size_t t = 0; t < mesh_triangles(); ++t) ++count[surface().face[t]];
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      if (count[f] + 2 >= mesh_.face(f).size()) continue;
+      std::vector<std::uint32_t> face;
+      std::vector<std::array<std::uint32_t, 3>> triangles;
+      for (const auto v : mesh_.face(f)) face.push_back(surface().welded[v]);
+      triangulate(surface().vertices, face, triangles);
+      for (const auto& corners : triangles) visit(static_cast<std::uint32_t>(f), corners);
+    }
+  }
+
+  std::vector<Edge> edges_left_out() const {
+    std::vector<Edge> edges;
+    for_each_left_out([&](std::uint32_t, const std::array<std::uint32_t, 3>& v) {
+      for (std::size_t k = 0; k < 3; ++k) edges.push_back(edge_between(v[k], v[(k + 1) % 3]));
+    });
+    return edges;
+  }
+
+  /// Small triangles that cross others in the source.
+  std::vector<std::uint32_t> crossing_triangles() const {
+    Indices crossing;
+    if (crosses_nothing_) return crossing;
+    const SelfCrossings found = CrossingFinder(surface(), prepared_.source()).listed();
+    for (const auto& [s, t] : found.pairs)
+      for (const auto one : {s, t})
+        if (one < mesh_triangles()) crossing.push_back(one);
+    for (std::uint32_t t = 0; t < found.crossed.size() && t < mesh_triangles(); ++t)
+      if (found.crossed[t]) crossing.push_back(t);
+    sort_unique(crossing);
+    // Large ones have much beside what crosses.
+    std::erase_if(crossing, [&](std::uint32_t t) {
+      const auto& [a, b, c] = surface().triangles[t];
+      const Vec3d &p = surface().vertices[a], &q = surface().vertices[b], &r = surface().vertices[c];
+      return std::max({(q - p).length(), (r - q).length(), (p - r).length()}) > options_.distance.scale();
+    });
+    return crossing;
+  }
+
   std::size_t most_corners() const {
     std::size_t most = 3;
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) most = std::max(most, mesh_.face(f).size());
@@ -140,7 +187,8 @@ class RefinedRun {
                                       std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
-                    {options_.corners, most_faces(), mesh_.face_count(), most_corners(), tolerance_.precision});
+                    {options_.corners, most_faces(), mesh_.face_count(), most_corners(), tolerance_.precision,
+                     edges_left_out(), crossing_triangles()});
     Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
     const auto tell = [&](double share) {
@@ -203,6 +251,10 @@ class RefinedRun {
     std::vector<OffsetFace> faces;
     for (const auto& [vertex, source] : triangles_->triangles())
       if (prepared_.parts().off_part.empty() || !prepared_.parts().off_part[source]) faces.push_back({vertex, source});
+    // What the surface leaves out is part of the result all the same, and nothing is proven of it.
+    for_each_left_out([&](std::uint32_t f, const std::array<std::uint32_t, 3>& vertex) {
+      if (options_.only.empty() || options_.only[f]) faces.push_back({vertex, kNone});
+    });
     CertifiedFaces certified = certify({prepared_.query(), surface(), faces, triangles_->positions(), positions, asked,
                                         tolerance, states, options_.corners});
     certified.share = tolerance_.share;
@@ -216,7 +268,7 @@ class RefinedRun {
 
   static constexpr std::size_t kProgress = 1000;  // units of the stage's progress
   static constexpr double kTightened = 10;    // how many times a stage's tolerance is that of the next; not measured
-  static constexpr double kLeastGain = 0.03;  // of triangles, for another round; not measured
+  static constexpr double kLeastGain = 0.02;  // of triangles, for another round; not measured
   static constexpr int kMostAttempts = 12;    // at a round without faults; not measured
 
   PolygonView mesh_;

@@ -56,8 +56,10 @@ std::vector<std::uint32_t> RefinedMesh::faulty_triangles(const std::vector<Refin
     take(s);
     take(t);
   });
-  for (const std::uint32_t v : finder.misplaced())
-    for (const std::uint32_t t : surface.triangles_around(v)) take(t);
+  // Beside a border the side that a vertex is on may be anyone's guess.
+  if (prepared_->parts().moving_part.facts.closed())
+    for (const std::uint32_t v : finder.misplaced())
+      for (const std::uint32_t t : surface.triangles_around(v)) take(t);
   Indices triangles;
   for (std::size_t f = 0; f < is_faulty.size(); ++f)
     if (is_faulty[f] && triangle_of_face_[f] != kNone) triangles.push_back(triangle_of_face_[f]);

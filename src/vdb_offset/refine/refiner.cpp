@@ -48,7 +48,9 @@ Refiner::Refiner(const MeshParts& parts, const ClosestQuery& query, const Interp
       triangles_(triangles),
       vertices_(std::move(vertices)),
       options_(options),
-      state_(triangles.triangles().size(), State::New) {}
+      state_(triangles.triangles().size(), State::New) {
+  for (const std::uint32_t t : options_.whole_triangles) state_[t] = State::Whole;
+}
 
 double Refiner::loosest() const {
   double loosest = 1;
@@ -256,6 +258,7 @@ void Refiner::find_whole_edges() {
     const Corners3& v = triangles_.triangles()[t].vertex;
     for (std::size_t k = 0; k < 3; ++k) edges.push_back(edge_between(v[k], v[(k + 1) % 3]));
   }
+  edges.insert(edges.end(), options_.whole_edges.begin(), options_.whole_edges.end());
   tbb::parallel_sort(edges.begin(), edges.end());
   auto edge = edges.begin();
   for (Candidate& one : candidates_) {
