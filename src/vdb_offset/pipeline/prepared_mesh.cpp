@@ -163,7 +163,17 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
     if (off > 0 && (state == VertexState::Mitred || state == VertexState::Cut))
       marched.miters.push_back({w, marched.paths.displacement[w], closest[i].distance, closest[i].triangle, state, 0});
   }
-  // What gives its miter up goes back towards what is closest, to its distance.
+  bring_to_distance(distances, marched);
+  marched.bound = std::exchange(parts_.bound, {});
+  hold(distances, marched);
+  marched.miter_facts.on_creases = marched.miters.size();
+  marched.mitred = MitredPaths(marched.miters, marched.paths);
+  return marched;
+}
+
+/// Gives mitred vertices the paths that they have where they give their miters up: back towards what is closest, to
+/// their distance.
+void PreparedMesh::bring_to_distance(const Distances& distances, Marched& marched) const {
   for (const Miter& miter : marched.miters) {
     const Vec3d x = surface().vertices[miter.vertex] + miter.displacement;
     const double asked = std::abs(distances[miter.vertex]);
@@ -172,11 +182,6 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
     marched.paths.achieved[miter.vertex] = asked;
     marched.paths.state[miter.vertex] = VertexState::Reached;
   }
-  marched.bound = std::exchange(parts_.bound, {});
-  hold(distances, marched);
-  marched.miter_facts.on_creases = marched.miters.size();
-  marched.mitred = MitredPaths(marched.miters, marched.paths);
-  return marched;
 }
 
 /// The paths of the moving part's vertices for some sets of their distances.

@@ -93,6 +93,7 @@ class PreparedMesh {
   std::vector<Paths> find_paths(std::span<const Distances> on_part, Ridges ridges);
   Marched of_all(const Distances& on_part, Paths of_part);
   void hold(const Distances& distances, Marched& marched) const;
+  void bring_to_distance(const Distances& distances, Marched& marched) const;
 
   const InMetric& space_;
   PolygonView mesh_;

@@ -42,17 +42,16 @@ double largest_error(const CertifiedMesh& mesh, const OffsetTriangle& triangle) 
 }
 
 Verdict judge(const CertifiedMesh& mesh, const OffsetProver& prover, const OffsetFace& face) {
-  const auto& [a, b, c] = face.vertex;
   const auto of_corners = [&](auto&& predicate) {
     return std::all_of(face.vertex.begin(), face.vertex.end(), predicate);
   };
   if (of_corners([&](std::uint32_t v) { return mesh.asked[v] == 0; })) return {};
   Verdict verdict;
-  const auto& at = mesh.source;
-  verdict.area = (at[b] - at[a]).cross(at[c] - at[a]).length() / 2;
+  const Vec3d& first = mesh.source[face.vertex[0]];
+  verdict.area = (mesh.source[face.vertex[1]] - first).cross(mesh.source[face.vertex[2]] - first).length() / 2;
   verdict.is_there = of_corners([&](std::uint32_t v) { return is_there(mesh.states[v]); });
   // Where the side changes no tolerance is told, as the distance is 0 somewhere.
-  if (!verdict.is_there || !of_corners([&](std::uint32_t v) { return mesh.asked[v] * mesh.asked[a] > 0; }))
+  if (!verdict.is_there || !of_corners([&](std::uint32_t v) { return mesh.asked[v] * mesh.asked[face.vertex[0]] > 0; }))
     return verdict;
   if (face.source == kNone) return verdict;
   const OffsetTriangle triangle = offset_triangle(mesh, face);

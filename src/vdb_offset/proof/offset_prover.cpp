@@ -13,10 +13,10 @@ namespace {
 constexpr int kMostPieces = 8000;
 // How often a piece may be halved. Reasoned: its edges are a millionth then; what is that near to the tolerance is
 // left open.
-constexpr int kDeepest = 40;
+constexpr int kMostHalvings = 40;
 // Share of a distance that rounding may cost in what is compared here. Reasoned: far above that of doubles, and far
 // below the tolerance to which vertices are put at their distance.
-constexpr double kRounding = 1e-11;
+constexpr double kProofRounding = 1e-11;
 // Triangles of the surface that are tried as the one that no point is too far from. Not measured.
 constexpr std::size_t kMostWitnesses = 4;
 
@@ -33,8 +33,8 @@ class OffsetProver::Recursion {
     std::array<double, 3> asked, tolerance, over_plane;
 
     Vec3d middle() const { return (x[0] + x[1] + x[2]) / 3.0; }
-    double least(int i) const { return asked[i] - tolerance[i] - kRounding * asked[i]; }
-    double most(int i) const { return asked[i] + tolerance[i] + kRounding * asked[i]; }
+    double least(int i) const { return asked[i] - tolerance[i] - kProofRounding * asked[i]; }
+    double most(int i) const { return asked[i] + tolerance[i] + kProofRounding * asked[i]; }
   };
 
   Proof prove(const OffsetTriangle& triangle, std::vector<std::uint32_t> near) {
@@ -120,7 +120,7 @@ class OffsetProver::Recursion {
 
   /// Looks at a piece, whose triangles of the surface are list_[begin .. end).
   Proof look_at(const Piece& piece, std::size_t begin, std::size_t end, bool none_too_far) {
-    if (++pieces_ > kMostPieces || depth_ > kDeepest) return {Certainty::Open, 0};
+    if (++pieces_ > kMostPieces || depth_ > kMostHalvings) return {Certainty::Open, 0};
     none_too_far = none_too_far || (may_keep_to_plane_ && keeps_to_plane(piece));
     const Vec3d middle = piece.middle();
     double nearest = std::numeric_limits<double>::infinity();
@@ -151,7 +151,7 @@ class OffsetProver::Recursion {
     const auto mean = [](const std::array<double, 3>& of_corners) {
       return (of_corners[0] + of_corners[1] + of_corners[2]) / 3;
     };
-    const double asked = mean(piece.asked), allowed = mean(piece.tolerance) + kRounding * asked;
+    const double asked = mean(piece.asked), allowed = mean(piece.tolerance) + kProofRounding * asked;
     if (!std::isfinite(nearest)) nearest = query_(middle, 0).distance;
     const auto error_at = [&](double distance) {
       const double off = distance - asked;
@@ -207,7 +207,7 @@ Proof OffsetProver::operator()(const OffsetTriangle& triangle) const {
     most = std::max(most, triangle.asked[i] + triangle.tolerance[i]);
   }
   // Triangles of the surface that are farther from the middle are too far from all points to count.
-  const ClosestQuery::Ball ball{middle, (most + radius) * (1 + kRounding)};
+  const ClosestQuery::Ball ball{middle, (most + radius) * (1 + kProofRounding)};
   std::vector<std::uint32_t> list;
   query_.collect_together({&ball, 1}, [&](std::size_t, const NearTriangles& near) {
     for (std::size_t i = 0; i < near.size(); ++i) list.push_back(near.triangle(i));

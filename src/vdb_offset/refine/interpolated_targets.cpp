@@ -14,9 +14,9 @@ namespace {
 
 // Least cosine between a direction and the normals of the faces that a vertex lies on. Not measured: at a blade's edge
 // of one degree the cosine is 0.009.
-constexpr double kLeastSlope = 0.005;
+constexpr double kLeastTargetSlope = 0.005;
 // Steps to the distance along a ray. Not measured: each is exact for the feature that is closest, and few are.
-constexpr int kMostSteps = 40;
+constexpr int kMostTargetSteps = 40;
 // How much longer a ray may be than the faces at its origin ask for, as a share. Not measured.
 constexpr double kMostDetour = 0.5;
 // How far a point between vertices of the offset may be pushed out, in distances. Not measured.
@@ -121,7 +121,7 @@ VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& 
     steepest = std::max(steepest, slope);
   }
   const bool is_flat = steepest - ray.slope <= kReachedTolerance * ray.slope;
-  if (!(ray.slope >= kLeastSlope)) return {};
+  if (!(ray.slope >= kLeastTargetSlope)) return {};
   if (corners_ == Corners::Miter && is_flat)
     if (const VertexTarget target = in_plane(ray); target.is_there) return target;
   return at_distance(ray);
@@ -162,7 +162,7 @@ VertexTarget InterpolatedTargets::pushed_out(const Vec3d& from, const Vec3d& ori
                                              Closest closest) const {
   NearPlanes planes;
   Vec3d x = from;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMostTargetSteps; ++i) {
     const double off = closest.distance - asked;
     const Vec3d away = (x - closest.point) / closest.distance;
     if (std::abs(off) <= kStopTolerance * asked) {
@@ -219,7 +219,7 @@ VertexTarget InterpolatedTargets::at_distance(const Ray& ray) const {
   const auto is_settled = [&](const Sample& at) { return std::abs(at.phi - ray.asked) <= kStopTolerance * ray.asked; };
   double t = ray.asked;
   Sample before{ray.origin, 0, Vec3d(0.0), hint, Feature::Face};
-  for (int i = 0; i < kMostSteps && t <= longest; ++i) {
+  for (int i = 0; i < kMostTargetSteps && t <= longest; ++i) {
     Sample at = measure(ray(t));
     if (at.phi > ray.asked && !is_settled(at)) {
       at = cut_at_distance(surface, before, at, ray.asked, measure, is_settled);

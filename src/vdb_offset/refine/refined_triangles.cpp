@@ -4,7 +4,9 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
@@ -28,20 +30,6 @@ std::uint32_t other_corner(std::span<const std::uint32_t> face, const std::array
   const auto other = std::find_if(face.begin(), face.end(), [&](auto v) { return v != ends[0] && v != ends[1]; });
   return other == face.end() ? ends[0] : *other;
 }
-
-/// A corner of a piece at a vertex that was added: which vertices of the input it is made of there. Several have one
-/// position where the input's vertices are welded.
-struct AddedCorner {
-  std::uint32_t added;
-  std::array<std::uint32_t, 3> vertex;  // of the input
-  std::uint32_t face;
-  std::size_t corner;
-
-  auto key() const { return std::tie(added, vertex); }
-  bool operator<(const AddedCorner& other) const {
-    return std::tie(added, vertex, corner) < std::tie(other.added, other.vertex, other.corner);
-  }
-};
 
 }  // namespace
 
@@ -119,63 +107,105 @@ std::uint32_t RefinedTriangles::corner_of(PolygonView mesh, std::size_t face, st
   return kNone;
 }
 
-std::size_t RefinedTriangles::face_count(std::size_t mesh_faces) const {
-  std::vector<std::uint32_t> pieces(mesh_faces, 0), before(mesh_faces, 0);
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    const std::uint32_t face = surface_->face[triangles_[t].source];
-    ++pieces[face];
-    before[face] += triangles_[t].source == t;
+/// A corner of a piece at a vertex that was added: which vertices of the input it is made of there. Several have one
+/// position where the input's vertices are welded.
+struct RefinedTriangles::AddedCorner {
+  std::uint32_t added;
+  std::array<std::uint32_t, 3> vertex;  // of the input
+  std::uint32_t face;
+  std::size_t corner;
+
+  auto key() const { return std::tie(added, vertex); }
+  bool operator<(const AddedCorner& other) const {
+    return std::tie(added, vertex, corner) < std::tie(other.added, other.vertex, other.corner);
   }
+};
+
+/// The triangles of each face of the mesh.
+struct RefinedTriangles::ByFace {
+  std::vector<std::uint32_t> begin;   // of each face: where its triangles begin in `order`
+  std::vector<std::uint32_t> order;   // the triangles, face by face, as they were made
+  std::vector<std::uint32_t> before;  // of each face: how many triangles it had before any was split
+
+  std::span<const std::uint32_t> of(std::size_t face) const {
+    return std::span(order).subspan(begin[face], begin[face + 1] - begin[face]);
+  }
+  bool is_split(std::size_t face) const { return of(face).size() != before[face]; }
+};
+
+RefinedTriangles::ByFace RefinedTriangles::by_face(std::size_t mesh_faces) const {
+  ByFace faces{std::vector<std::uint32_t>(mesh_faces + 1, 0), std::vector<std::uint32_t>(triangles_.size()),
+               std::vector<std::uint32_t>(mesh_faces, 0)};
+  const auto face_of = [&](const Triangle& triangle) { return surface_->face[triangle.source]; };
+  for (const Triangle& triangle : triangles_) ++faces.begin[face_of(triangle) + 1];
+  for (std::size_t f = 0; f < mesh_faces; ++f) faces.begin[f + 1] += faces.begin[f];
+  std::vector<std::uint32_t> next(faces.begin.begin(), faces.begin.end() - 1);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const std::uint32_t face = face_of(triangles_[t]);
+    faces.order[next[face]++] = t;
+    faces.before[face] += triangles_[t].source == t;  // the first piece stands where the triangle stood
+  }
+  return faces;
+}
+
+std::size_t RefinedTriangles::face_count(std::size_t mesh_faces) const {
+  const ByFace faces = by_face(mesh_faces);
   std::size_t count = 0;
-  for (std::size_t f = 0; f < mesh_faces; ++f) count += pieces[f] == before[f] ? 1 : pieces[f];
+  for (std::size_t f = 0; f < mesh_faces; ++f) count += faces.is_split(f) ? faces.of(f).size() : 1;
   return count;
 }
 
 Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
                                      std::vector<std::uint32_t>* triangle_of_face) const {
-  // The pieces of each face, in the order in which they were made.
-  std::vector<std::uint32_t> begin(mesh.face_count() + 1, 0), before(mesh.face_count(), 0), order(triangles_.size());
-  const auto face_of = [&](const Triangle& triangle) { return surface_->face[triangle.source]; };
-  for (const Triangle& triangle : triangles_) ++begin[face_of(triangle) + 1];
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) begin[f + 1] += begin[f];
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    order[next[face_of(triangles_[t])]++] = t;
-    before[face_of(triangles_[t])] += triangles_[t].source == t;  // the first piece stands where the triangle stood
-  }
+  const ByFace faces = by_face(mesh.face_count());
   Refinement refinement;
   Polygons& polygons = refinement.polygons;
   polygons.positions.assign(mesh.positions.begin(), mesh.positions.end());
   std::vector<AddedCorner> added;
+  const auto close_face = [&](std::uint32_t face, std::uint32_t triangle) {
+    polygons.close_face();
+    refinement.parent.push_back(face);
+    if (triangle_of_face) triangle_of_face->push_back(triangle);
+  };
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    if (begin[f + 1] - begin[f] == before[f]) {  // not split
+    if (!faces.is_split(f)) {
       const auto face = mesh.face(f);
       polygons.corners.insert(polygons.corners.end(), face.begin(), face.end());
-      polygons.close_face();
-      refinement.parent.push_back(f);
-      if (triangle_of_face) triangle_of_face->push_back(kNone);
+      close_face(f, kNone);
       continue;
     }
-    for (std::uint32_t i = begin[f]; i < begin[f + 1]; ++i) {
-      Triangle piece = triangles_[order[i]];
-      if (surface_->is_turned(piece.source)) std::swap(piece.vertex[1], piece.vertex[2]);
-      for (const auto v : piece.vertex) {
-        if (v < source_vertices()) {
-          polygons.corners.push_back(corner_of(mesh, f, v));
-          continue;
-        }
-        const std::uint32_t number = v - static_cast<std::uint32_t>(source_vertices());
-        AddedCorner corner{number, {kNone, kNone, kNone}, f, polygons.corners.size()};
-        for (std::size_t k = 0; k < 3; ++k)
-          if (added_[number].vertex[k] != kNone) corner.vertex[k] = corner_of(mesh, f, added_[number].vertex[k]);
-        added.push_back(corner);
-        polygons.corners.push_back(kNone);
-      }
-      polygons.close_face();
-      refinement.parent.push_back(f);
-      if (triangle_of_face) triangle_of_face->push_back(order[i]);
+    for (const std::uint32_t t : faces.of(f)) {
+      add_piece(mesh, f, triangles_[t], polygons, added);
+      close_face(f, t);
     }
   }
+  number_added(mesh, added, refinement, numbers);
+  return refinement;
+}
+
+/// Adds the corners of a piece of a face; those at vertices that were added have no number yet.
+void RefinedTriangles::add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
+                                 std::vector<AddedCorner>& added) const {
+  if (surface_->is_turned(piece.source)) std::swap(piece.vertex[1], piece.vertex[2]);
+  for (const auto v : piece.vertex) {
+    if (v < source_vertices()) {
+      polygons.corners.push_back(corner_of(mesh, face, v));
+      continue;
+    }
+    const std::uint32_t number = v - static_cast<std::uint32_t>(source_vertices());
+    AddedCorner corner{number, {kNone, kNone, kNone}, face, polygons.corners.size()};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (added_[number].vertex[k] != kNone) corner.vertex[k] = corner_of(mesh, face, added_[number].vertex[k]);
+    added.push_back(corner);
+    polygons.corners.push_back(kNone);
+  }
+}
+
+/// Makes vertices of the refinement of corners at vertices that were added: one for each set of the input's vertices
+/// that such a vertex lies between.
+void RefinedTriangles::number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
+                                    std::vector<std::uint32_t>& numbers) const {
+  Polygons& polygons = refinement.polygons;
   tbb::parallel_sort(added.begin(), added.end());
   numbers.assign(positions_.size(), kNone);
   for (std::size_t w = 0; w < source_vertices(); ++w)
@@ -189,11 +219,11 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
       refinement.added.push_back(origin);
       polygons.positions.push_back(positions_[source_vertices() + added[i].added]);
     }
+    const auto last = static_cast<std::uint32_t>(polygons.positions.size() - 1);
     std::uint32_t& first = numbers[source_vertices() + added[i].added];
-    if (first == kNone) first = static_cast<std::uint32_t>(polygons.positions.size() - 1);
-    polygons.corners[added[i].corner] = static_cast<std::uint32_t>(polygons.positions.size() - 1);
+    if (first == kNone) first = last;
+    polygons.corners[added[i].corner] = last;
   }
-  return refinement;
 }
 
 }  // namespace vdb_offset

@@ -64,6 +64,13 @@ class RefinedTriangles {
                      std::vector<std::uint32_t>* triangle_of_face = nullptr) const;
 
  private:
+  struct AddedCorner;
+  struct ByFace;
+  ByFace by_face(std::size_t mesh_faces) const;
+  void add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
+                 std::vector<AddedCorner>& added) const;
+  void number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
+                    std::vector<std::uint32_t>& numbers) const;
   std::uint32_t corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const;
 
   const Surface* surface_;

@@ -22,7 +22,7 @@ constexpr double kMostBulge = 0.75;
 constexpr double kLeastMixed = 0.5, kShort = 0.5;
 // The length, in those units, of the shortest edge that is split: where one of the source would have to be so short,
 // what is next to each other in it is not in the offset.
-constexpr double kShortest = 1e-3;
+constexpr double kShortestSplit = 1e-3;
 // Share of an edge's bulge from which its halves count as bulging as much, and how often that may be in a row where
 // edges are short. Not measured: a quarter on a smooth surface, a half across a valley.
 constexpr double kMostKept = 0.6;
@@ -33,7 +33,7 @@ constexpr double kLeastBulge = 0.1, kLongFlat = 1;
 // The tolerance of the first stage, as a share of the distance. Not measured.
 constexpr double kFirstTolerance = 0.1;
 // Rounds of a stage. Reasoned: an edge that is a million times as long as it may be is halved twenty times.
-constexpr int kMostRounds = 20;
+constexpr int kMostSplitRounds = 20;
 
 /// The length of a chord of a circle that bulges by the tolerance.
 double chord(double asked, double tolerance) { return std::sqrt(8 * std::abs(asked) * tolerance); }
@@ -72,7 +72,7 @@ void Refiner::begin_stage(double loosened) {
 }
 
 bool Refiner::begin_round(const std::function<void(double)>& tell) {
-  if (is_cut_short_ || round_++ == kMostRounds) return false;
+  if (is_cut_short_ || round_++ == kMostSplitRounds) return false;
   tell(1 - static_cast<double>(fresh_.size()) / static_cast<double>(state_.size()));
   for_each_index(
       fresh_.size(), [&](std::size_t i) { state_[fresh_[i]] = judge(triangles_.triangles()[fresh_[i]]); }, 16);
@@ -222,7 +222,7 @@ void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& s
   const Candidate *most = nullptr, *longest = nullptr;
   for (const Candidate* one : of_edge) {
     const double length = length_of(one->edge);
-    if (is_torn(*one) || one->stays_whole || length < kShortest) continue;
+    if (is_torn(*one) || one->stays_whole || length < kShortestSplit) continue;
     if (one->vertex.bulge > kMostBulge * loosened_) {
       split(one);
       any = true;
@@ -242,7 +242,7 @@ void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) co
   const auto split = [&](const Candidate* one) { marked[static_cast<std::size_t>(one - candidates_.data())] = 1; };
   if (state_[triangle] == State::Off) return mark_off(of_edge, split);
   for (const Candidate* one : of_edge) {
-    if (one->stays_whole || length_of(one->edge) < kShortest) continue;
+    if (one->stays_whole || length_of(one->edge) < kShortestSplit) continue;
     const int there = vertices_[one->edge.first].target.is_there + vertices_[one->edge.second].target.is_there;
     if (there == 2 ? one->vertex.bulge > kMostBulge * loosened_ && !is_torn(*one)
                    : length_of(one->edge) > kLeastMixed && one->vertex.target.is_there)
