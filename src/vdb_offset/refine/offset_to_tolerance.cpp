@@ -197,7 +197,7 @@ class RefinedRun {
     };
     for (double loosened = refiner.loosest();; loosened = std::max(1.0, loosened / kTightened)) {
       refiner.begin_stage(loosened);
-      while (refiner.begin_round(tell) && split(refiner)) {
+      while (refiner.begin_round(tell) && split(refiner, loosened > 1 ? kLeastGainBefore : kLeastGain)) {
       }
       if (loosened == 1) break;
     }
@@ -209,7 +209,8 @@ class RefinedRun {
 
   /// Splits what a round asks for, but for what would make faults. False if another round would hardly gain anything:
   /// this one has added little, and part of what it tried was faulty.
-  bool split(Refiner& refiner) {
+  /// \param least_gain of triangles, as a share
+  bool split(Refiner& refiner, double least_gain) {
     const std::size_t before = triangles_->triangles().size();
     bool any_faulty = false;
     if (!refiner.split()) return false;
@@ -220,7 +221,7 @@ class RefinedRun {
       if (faulty.empty() || !refiner.keep_whole(faulty) || !refiner.split()) break;
     }
     const std::size_t added = triangles_->triangles().size() - before;
-    return !any_faulty || static_cast<double>(added) > kLeastGain * static_cast<double>(before);
+    return !any_faulty || static_cast<double>(added) > least_gain * static_cast<double>(before);
   }
 
   void make_valid(const Refiner& refiner) {
@@ -267,9 +268,10 @@ class RefinedRun {
   }
 
   static constexpr std::size_t kProgress = 1000;  // units of the stage's progress
-  static constexpr double kTightened = 10;    // how many times a stage's tolerance is that of the next; not measured
-  static constexpr double kLeastGain = 0.02;  // of triangles, for another round; not measured
-  static constexpr int kMostAttempts = 12;    // at a round without faults; not measured
+  static constexpr double kTightened = 10;  // how many times a stage's tolerance is that of the next; not measured
+  // Of triangles, for another round of the last stage, and of one before. Not measured beside many.
+  static constexpr double kLeastGain = 0.04, kLeastGainBefore = 0.05;
+  static constexpr int kMostAttempts = 12;  // at a round without faults; not measured
 
   PolygonView mesh_;
   const OffsetOptions& options_;
