@@ -28,11 +28,11 @@ struct RefinedOffset {
 /// Offsets a mesh so that its faces are at the distance, too: they are split until it is proven that every point of the
 /// offset is within the tolerance, wherever its vertices get to their distance.
 ///
-/// Added vertices go in the direction that the vertices around them have, interpolated. The result is an offset() of
-/// the refined mesh, in which the given mesh's vertices go where they go without refinement, unless something has to be
-/// held back; the proof is made of its positions as written. Options are those of offset(), but for `metric`,
-/// `off_source`, `inner_skin_last`, `keep_field` and `keep_paths`. \throw as offset(), and InvalidInput for a tolerance
-/// that cannot be used, or one of these options
+/// Added vertices go to the point at their distance that is nearest to the middle between the ends of their neighbours.
+/// The result is an offset() of the refined mesh, in which the given mesh's vertices go where they go without
+/// refinement, unless something has to be held back; the proof is made of its positions as written. Options are those
+/// of offset(), but for `metric`, `off_source`, `inner_skin_last`, `keep_field` and `keep_paths`. \throw as offset(),
+/// and InvalidInput for a tolerance that cannot be used, or one of these options
 VDB_OFFSET_API RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options,
                                                  const Tolerance& tolerance);
 

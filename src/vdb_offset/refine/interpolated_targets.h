@@ -23,10 +23,11 @@ struct VertexTarget {
   bool is_mitred = false;   ///< The latter, and is farther from the surface.
 };
 
-/// Finds where vertices go that were added on a surface: in the direction that the displacements of the surface's own
-/// vertices have there, interpolated, to where the distance from the surface is the one that was asked for. So the
-/// parameterization is transported from the source to the offset (Wang, Guibault, Camarero, Tchon, AIAA 2005), on round
-/// corners and in valleys alike: what is between two vertices in the source is between them in the offset.
+/// Finds where vertices go that were added on a surface: between two vertices of the offset to the nearest point at the
+/// distance that was asked for; and where one of those two falls short, or that finds nothing, in the direction that
+/// the displacements of the surface's own vertices have there, interpolated. So the parameterization is transported
+/// from the source to the offset (Wang, Guibault, Camarero, Tchon, AIAA 2005), on round corners and in valleys alike:
+/// what is between two vertices in the source is between them in the offset.
 ///
 /// Where the surface's vertices are mitred, what lies in the plane of one face goes to that plane, moved by the
 /// distance, if nothing else is nearer there.

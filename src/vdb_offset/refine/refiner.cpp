@@ -64,7 +64,7 @@ void Refiner::begin_stage(double loosened) {
   round_ = 0;
   fresh_.clear();
   for (std::uint32_t t = 0; t < state_.size(); ++t) {
-    if (state_[t] == State::Off) state_[t] = State::Given;
+    if (state_[t] == State::Off) state_[t] = State::GivenUp;
     if (state_[t] != State::Settled && state_[t] != State::Mixed && state_[t] != State::New) continue;
     state_[t] = State::New;
     fresh_.push_back(t);
@@ -77,6 +77,9 @@ bool Refiner::begin_round(const std::function<void(double)>& tell) {
   for_each_index(
       fresh_.size(), [&](std::size_t i) { state_[fresh_[i]] = judge(triangles_.triangles()[fresh_[i]]); }, 16);
   std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] != State::Off && state_[t] != State::Mixed; });
+  std::size_t i = 0;
+  std::erase_if(candidates_, [&](const Candidate&) { return i < marked_.size() && marked_[i++] != 0; });
+  marked_.clear();  // edges that have been split are gone
   propose(fresh_);
   then_ = {vertices_.size(), state_, triangles_, fresh_};
   piece_of_.resize(state_.size());
@@ -85,12 +88,12 @@ bool Refiner::begin_round(const std::function<void(double)>& tell) {
 }
 
 bool Refiner::split() {
-  std::vector<std::uint8_t> marked(candidates_.size(), 0);
+  marked_.assign(candidates_.size(), 0);
   find_whole_edges();
-  for (const std::uint32_t t : fresh_) mark(t, marked);
-  keep_to_limit(marked);
-  if (std::find(marked.begin(), marked.end(), 1) == marked.end()) return false;
-  split(marked);
+  for (const std::uint32_t t : fresh_) mark(t, marked_);
+  keep_to_limit(marked_);
+  if (std::find(marked_.begin(), marked_.end(), 1) == marked_.end()) return false;
+  split(marked_);
   return true;
 }
 
@@ -141,7 +144,7 @@ Refiner::State Refiner::judge(const RefinedTriangles::Triangle& triangle) const 
   }
   if (prover_(offset).certainty == Certainty::Proven) return State::Settled;
   // A face that gets behind its own plane has no room; its pieces would have none, either.
-  return is_beyond_plane ? State::Given : State::Off;
+  return is_beyond_plane ? State::GivenUp : State::Off;
 }
 
 /// The length of an edge in the source, in units of the chord that bulges by the tolerance.
@@ -222,7 +225,7 @@ void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& s
   const Candidate *most = nullptr, *longest = nullptr;
   for (const Candidate* one : of_edge) {
     const double length = length_of(one->edge);
-    if (is_torn(*one) || one->stays_whole || length < kShortestSplit) continue;
+    if (is_torn(*one) || one->stays_whole || length < kShortestSplit || !one->vertex.target.is_there) continue;
     if (one->vertex.bulge > kMostBulge * loosened_) {
       split(one);
       any = true;
@@ -301,7 +304,7 @@ void Refiner::split(const std::vector<std::uint8_t>& marked) {
     state_.push_back(state_[t]);
     piece_of_.push_back(piece_of_[t]);
   }
-  std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::Given; });
+  std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::GivenUp; });
   for (const std::uint32_t t : fresh_) state_[t] = State::New;
 }
 

@@ -73,7 +73,7 @@ class Refiner {
   enum class State : std::uint8_t {
     New,      // not looked at
     Settled,  // proven, or does not move
-    Given,    // given up: nothing can be gained, but neighbours may split its edges
+    GivenUp,  // nothing can be gained, but neighbours may split its edges
     Whole,    // its pieces would be faulty: its edges are not split, either
     Off,      // all vertices get there, but not all points between them
     Mixed,    // some vertex does not get there
@@ -110,7 +110,8 @@ class Refiner {
   std::vector<RefinedVertex> vertices_;
   RefinerOptions options_;
   std::vector<State> state_;           // of each triangle
-  std::vector<Candidate> candidates_;  // of this round and those before, sorted by edge
+  std::vector<Candidate> candidates_;  // of edges that are not split, sorted by edge
+  std::vector<std::uint8_t> marked_;   // of each candidate: 1 if this round splits its edge
   int round_ = 0;                      // of the present stage
   std::vector<std::uint32_t> fresh_;   // triangles that this round is to look at
   /// At the start of the present round; and of each triangle now, the one then that it is a piece of.
