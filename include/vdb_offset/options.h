@@ -36,7 +36,8 @@ enum class Collision {
 /// What becomes of sharp corners on the side where the offset of a corner is round: the vertex cannot be at the
 /// distance, and have its faces at the distance, too.
 enum class Corners {
-  Round,  ///< Every vertex is at the distance (phi = d, as in the paper); faces beside it are nearer.
+  Round,  ///< Every vertex is at the distance (phi = d, as in the paper). Faces beside it are nearer, unless all of
+          ///< them can be at the distance as well, as inward at a convex edge.
   Miter,  ///< A vertex on a crease goes to where the planes around it meet that are moved by the distance.
 };
 

@@ -348,7 +348,7 @@ TEST_CASE("limit: corners of a wrong face that are not to blame for it go on", "
 
 TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limit][long]") {
   const std::tuple<Polygons, std::vector<double>, std::size_t> cases[] = {
-      {scene::gear(18, 0.8, 1, 0.3, 0.3, 6), {-0.125, -0.12, -0.115, -0.11, -0.105}, 5},
+      {scene::gear(18, 0.8, 1, 0.3, 0.3, 6), {-0.125, -0.12, -0.1175, -0.115, -0.11, -0.105}, 5},
       {scene::naca_wing("2412", 1, 1, 80, 40), {-0.042}, 100}};
   for (const auto& [mesh, distances, most_steep] : cases) {
     std::size_t edges = 0, steep = 0;
@@ -490,7 +490,7 @@ TEST_CASE("limit: a vertex that gives up its miter has a path to the distance, a
     paths.closest.push_back(surface.triangles_around(v).front());
   }
   MiterFacts facts;
-  const std::vector<Miter> miters = MiterFinder<ClosestQuery>(query, 4, nullptr)(distances, facts);
+  const std::vector<Miter> miters = MiterFinder<ClosestQuery>(query, Corners::Miter, 4, nullptr)(distances, facts);
   REQUIRE(miters.size() == 8);
   MitredPaths mitred(miters, paths);
   ConstrainedSurface constrained{query, surface, {}, {}, {}};

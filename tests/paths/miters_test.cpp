@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "support/oracles.h"
 #include "vdb_offset/check.h"
@@ -145,16 +146,65 @@ TEST_CASE("miter: all faces of polyhedra are at the distance, on both sides", "[
 }
 
 TEST_CASE("miter: inward at convex edges, and outward at concave ones, it is what round corners are", "[miter]") {
-  const Polygons cube = prism(kSquare, 1), room = scene::room_corner(1, 3);
-  for (const auto& [mesh, distance] : {std::pair(&cube, -0.1), {&room, 0.1}}) {
+  const Outline kKnife = {{0, 0}, {3, 0}, {3, 3 * std::tan(10 * std::numbers::pi / 180)}};
+  const std::vector<std::tuple<const char*, Polygons, double>> kShapes = {
+      {"cube", prism(kSquare, 1), -0.1},           {"room", scene::room_corner(1, 3), 0.1},
+      {"prism of 3", prism(regular(3), 1), -0.02}, {"prism of 3, far", prism(regular(3), 1), -0.12},
+      {"prism of 5", prism(regular(5), 1), -0.14}, {"prism of 40", prism(regular(40), 1), -0.15},
+      {"wedge", prism(kWedge, 1), -0.09},          {"edge far beyond the miter limit", prism(kKnife, 1), -0.16},
+      {"tetrahedron", tetrahedron(), -0.17}};
+  for (const auto& [name, mesh, distance] : kShapes) {
+    CAPTURE(name);
     OffsetOptions options = mitred(distance);
-    const OffsetResult miter = offset(mesh->view(), options);
+    const OffsetResult miter = offset(mesh.view(), options);
     options.corners = Corners::Round;
-    const OffsetResult round = offset(mesh->view(), options);
+    const OffsetResult round = offset(mesh.view(), options);
+    CHECK(in_state(round, VertexState::Reached) == mesh.positions.size());
+    CHECK(worst_off_planes(mesh.view(), round) <= 1e-9 * std::abs(distance));
+    CHECK(round.statistics.miters.on_creases == 0);
     CHECK(miter.states == round.states);
     for (std::size_t v = 0; v < round.positions.size(); ++v)
       CHECK((miter.positions[v] - round.positions[v]).length() <= 1e-9 * std::abs(distance));
+    require_valid(mesh.view(), round, options);
   }
+}
+
+TEST_CASE("miter: round corners have the faces at the distance where vertices can be there as well", "[miter]") {
+  // A bracket with a ring of vertices at half its height. Inward, those at its concave edge alone cannot have both; at
+  // the ends of that edge the top or the bottom is nearest.
+  Polygons bracket = prism(kBracket, 1);
+  for (std::uint32_t i = 0; i < 6; ++i) bracket.positions.emplace_back(kBracket[i].first, kBracket[i].second, 0.5);
+  Polygons ringed;
+  ringed.positions = bracket.positions;
+  ringed.add_face({5, 4, 3, 2, 1, 0});
+  ringed.add_face({6, 7, 8, 9, 10, 11});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t j = (i + 1) % 6;
+    ringed.add_face({i, j, 12 + j, 12 + i});
+    ringed.add_face({12 + i, 12 + j, 6 + j, 6 + i});
+  }
+  OffsetOptions options;
+  options.distance = -0.05;
+  const OffsetResult result = offset(ringed.view(), options);
+  for (std::size_t f = 0; f < ringed.face_count(); ++f) {
+    const Vec3d normal = newell_normal(ringed.view(), f).unit();
+    for (const auto v : ringed.view().face(f)) {
+      const double height = normal.dot(result.positions[v] - ringed.positions[v]);
+      if (v == 12 + 3) CHECK(height == Approx(-0.05 / std::sqrt(2)));
+      else CHECK(height == Approx(-0.05).epsilon(1e-9));
+    }
+  }
+  CHECK(in_state(result, VertexState::Reached) == 18);
+}
+
+TEST_CASE("miter: where fronts meet, round corners keep to their paths", "[miter]") {
+  // Too thick for its teeth: what cannot all be there is saved by what goes the same way.
+  const Polygons gear = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
+  OffsetOptions options;
+  options.distance = -0.12;
+  const OffsetResult result = offset(gear.view(), options);
+  CHECK(result.statistics.limit.before.total() > 0);
+  CHECK(in_state(result, VertexState::Reached) >= 0.998 * static_cast<double>(gear.positions.size()));
 }
 
 TEST_CASE("miter: what is smooth has the same bits as with round corners", "[miter]") {

@@ -52,7 +52,7 @@ class CurveChecker {
     const Distances distances(result_.distance);
     std::vector<Miter> miters;
     if (options_.corners == Corners::Miter)
-      miters = MiterFinder<CurveQuery>(query_, options_.miter_limit, nullptr).all(distances);
+      miters = MiterFinder<CurveQuery>(query_, Corners::Miter, options_.miter_limit, nullptr).all(distances);
     const PlaneCurves curves{query_, drawn_.source, distances, {}, miters};
     CurveFaults faults(curves);
     Indices all(positions_.size());

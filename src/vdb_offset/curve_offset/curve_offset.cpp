@@ -35,7 +35,7 @@ OffsetResult make_result(const PreparedCurves& curves, const Distances& distance
   MiterFacts& facts = result.statistics.miters;
   std::vector<Miter> miters;
   if (options.corners == Corners::Miter)
-    miters = MiterFinder<CurveQuery>(curves.query(), options.miter_limit, nullptr)(distances, facts);
+    miters = MiterFinder<CurveQuery>(curves.query(), Corners::Miter, options.miter_limit, nullptr)(distances, facts);
   const PlaneCurves plane{curves.query(), curves.source(), distances, options.precision, miters};
   if (options.collision == Collision::Limit) {
     const StageTimer timer(result.statistics.seconds, Stage::Limit);

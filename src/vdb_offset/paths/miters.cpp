@@ -76,6 +76,34 @@ double distance_from_fan(const Shape& shape, std::uint32_t vertex, const Vec3d& 
   return std::sqrt(squared);
 }
 
+/// Whether the foot of a point on the plane of a face, as seen from one of its corners, lies on the face if that went
+/// on beyond its other corners.
+bool holds_foot(const Surface& surface, std::uint32_t triangle, std::uint32_t vertex, const Vec3d& foot) {
+  const auto& corners = surface.triangles[triangle];
+  const int k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+  const Vec3d &start = surface.vertices[vertex], &normal = surface.triangle_normals[triangle];
+  const Vec3d a = surface.vertices[corners[(k + 1) % 3]] - start, b = surface.vertices[corners[(k + 2) % 3]] - start;
+  return normal.dot(a.cross(foot)) >= -kOnePlaneSine * a.length() &&
+         normal.dot(foot.cross(b)) >= -kOnePlaneSine * b.length();
+}
+bool holds_foot(const Polyline& line, std::uint32_t segment, std::uint32_t vertex, const Vec3d& foot) {
+  const auto& [a, b] = line.segments[segment];
+  const Vec3d side = line.vertices[a == vertex ? b : a] - line.vertices[vertex];
+  return side.dot(foot) >= -kOnePlaneSine * side.length();
+}
+
+/// Whether the end of a miter on one side is at a distance of 1 from the faces around the vertex, if these went on for
+/// ever: as it is on all of their planes that are moved by 1, or beyond, whether it is above a face that it is on.
+template <class Shape>
+bool is_above_face(const Shape& shape, std::uint32_t vertex, const Vec3d& end, int side) {
+  const auto around = shape.triangles_around(vertex);
+  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Vec3d& normal = shape.triangle_normals[t];
+    const double height = normal.dot(end);
+    return std::abs(height - 1) <= kReachedTolerance && holds_foot(shape, t, vertex, (end - normal * height) * side);
+  });
+}
+
 std::uint32_t corner_of(const Surface& surface, std::uint32_t triangle) { return surface.triangles[triangle][0]; }
 std::uint32_t corner_of(const Polyline& line, std::uint32_t segment) { return line.segments[segment][0]; }
 
@@ -95,15 +123,15 @@ bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
 }  // namespace
 
 template <class Query>
-MiterFinder<Query>::MiterFinder(const Query& query, double longest, const Obstacles* obstacles,
+MiterFinder<Query>::MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
                                 std::span<const MiterWalls> walls)
-    : query_(query), obstacles_(obstacles) {
+    : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles) {
   VDB_OFFSET_ASSERT(longest >= 1);
   const auto& shape = query.surface();
   std::vector<std::uint8_t> on_crease = vertices_on_creases(shape);
   for (const MiterWalls& each : walls) on_crease[each.vertex] = 1;
   for (std::uint32_t v = 0; v < on_crease.size(); ++v)
-    if (on_crease[v]) miters_.push_back({v, Vec3d(0.0), 0, false});
+    if (on_crease[v]) miters_.push_back({v, Vec3d(0.0), 0, {}});
   for_each_index(
       miters_.size(),
       [&](std::size_t i) {
@@ -117,12 +145,21 @@ MiterFinder<Query>::MiterFinder(const Query& query, double longest, const Obstac
           for (Vec3d& plane : planes) plane = shape.along_border(miter.vertex, plane);
         const auto point = miter_point(planes);
         if (!point || point->excess > kMostExcess) return;
-        const double length = point->position.length();
+        miter.end = point->position;
         miter.excess = point->excess;
-        miter.is_cut = length > longest;
-        miter.end = miter.is_cut ? point->position * (longest / length) : point->position;
+        for (const int side : {-1, 1})
+          miter.is_above_face[side > 0] = is_above_face(shape, miter.vertex, point->position, side);
       },
       kMitersTogether);
+}
+
+template <class Query>
+std::pair<Vec3d, bool> MiterFinder<Query>::end_of(const UnitMiter& miter, double distance) const {
+  if (miter.is_above_face[distance > 0]) return {miter.end, false};
+  if (corners_ == Corners::Round) return {Vec3d(0.0), false};
+  const double length = miter.end.length();
+  if (length > longest_) return {miter.end * (longest_ / length), true};
+  return {miter.end, false};
 }
 
 template <class Query>
@@ -145,10 +182,9 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances&
   std::vector<std::uint32_t> hints;
   for (std::size_t i = 0; i < some.size(); ++i) {
     const double distance = distances[some[i].vertex];
-    const Vec3d displacement =
-        distance == 0 ? Vec3d(0.0) : round_displacement(some[i].end * distance, std::abs(distance));
-    miters[i] = {some[i].vertex, displacement, 0, 0, some[i].is_cut ? VertexState::Cut : VertexState::Mitred,
-                 some[i].excess};
+    const auto [end, is_cut] = end_of(some[i], distance);
+    const Vec3d displacement = distance == 0 ? Vec3d(0.0) : round_displacement(end * distance, std::abs(distance));
+    miters[i] = {some[i].vertex, displacement, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitred, some[i].excess};
     ends.push_back((shape.vertices[some[i].vertex] + shape.origin) + displacement - shape.origin);
     hints.push_back(shape.triangles_around(some[i].vertex).front());
   }
@@ -161,7 +197,8 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances&
     if (miters[i].state != VertexState::Cut &&
         std::abs(miters[i].distance - std::abs(distance)) <= kReachedTolerance * std::abs(distance))
       miters[i].state = VertexState::Reached;
-    proven[i] = miters[i].displacement != Vec3d(0.0) && is_proven(miters[i], ends[i], closest[i], distance);
+    proven[i] = miters[i].displacement != Vec3d(0.0) && is_proven(miters[i], ends[i], closest[i], distance) &&
+                (corners_ == Corners::Miter || miters[i].state == VertexState::Reached);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,7 @@
 #include "vdb_offset/base/index_set.h"
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/options.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/query/obstacles.h"
@@ -43,15 +45,18 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 /// a point on all of them, or beyond (see miter_point()); at a border, of those that keep to it, or to walls. A miter
 /// is proven by one exact distance: the surface is no nearer to its end than the distance, and what is nearest there is
 /// one of the faces around the vertex, goes on in the plane of one, or is a detail of the corner. Vertices whose miter
-/// is not proven have none, nor have those on edges of more than two faces.
+/// is not proven have none, nor have those on edges of more than two faces. With Corners::Round, miters are those whose
+/// ends are at the distance themselves, as inward at convex edges: of all positions that are, the one with the faces
+/// at the distance, too.
 template <class Query>
 class MiterFinder {
  public:
   /// Finds creases, and the miters for a distance of 1. Keeps references.
-  /// \param longest a miter may be so many distances long, at least 1
+  /// \param longest a miter may be so many distances long, at least 1, if its end is farther than the distance
   /// \param obstacles to keep off; nullptr without any
   /// \param walls of some vertices, sorted by vertex
-  MiterFinder(const Query& query, double longest, const Obstacles* obstacles, std::span<const MiterWalls> walls = {});
+  MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
+              std::span<const MiterWalls> walls = {});
 
   /// The miters that are proven for some distances of the surface's vertices, sorted by vertex. `facts` receives how
   /// many were tried and why others were not kept. The result does not depend on the number of threads.
@@ -65,8 +70,11 @@ class MiterFinder {
     std::uint32_t vertex;
     Vec3d end;
     double excess;
-    bool is_cut;
+    std::array<bool, 2> is_above_face;  // inward, outward: the end is at the distance, as far as its own faces tell
   };
+
+  /// Where a miter ends for a distance of 1 to the side of `distance`, and whether it is cut there; zero if nowhere.
+  std::pair<Vec3d, bool> end_of(const UnitMiter& miter, double distance) const;
 
   /// Miters, and of each whether it is proven.
   std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(const Distances& distances) const;
@@ -75,6 +83,8 @@ class MiterFinder {
   bool is_proven(const Miter& miter, const Vec3d& end, const Closest& closest, double distance) const;
 
   const Query& query_;
+  const Corners corners_;
+  const double longest_;
   const Obstacles* obstacles_;
   std::vector<UnitMiter> miters_;  // of all vertices on creases, sorted; `end` is zero of one without a miter
 };

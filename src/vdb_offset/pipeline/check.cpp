@@ -97,10 +97,10 @@ struct WantedMiters {
 WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
                          const Distances& distances, const CheckOptions& options) {
   if (options.corners == Corners::Round) return {};
-  WantedMiters miters{
-      miters_of_all(parts, MiterFinder(query, options.miter_limit, obstacles, walls_at_edge(parts, options.border))
-                               .all(distances_of_part(parts, distances))),
-      std::vector<double>(parts.surface().vertices.size(), 0.0)};
+  WantedMiters miters{miters_of_all(parts, MiterFinder(query, Corners::Miter, options.miter_limit, obstacles,
+                                                       walls_at_edge(parts, options.border))
+                                               .all(distances_of_part(parts, distances))),
+                      std::vector<double>(parts.surface().vertices.size(), 0.0)};
   for (const Miter& miter : miters.of_vertex) miters.farther[miter.vertex] = miter.distance;
   return miters;
 }

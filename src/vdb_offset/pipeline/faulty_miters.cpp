@@ -2,8 +2,10 @@
 #include "vdb_offset/pipeline/faulty_miters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -22,16 +24,32 @@ constexpr std::uint64_t kTrials = 6, kTriedEvery = 3;
 // If so few are left then, each is tried by itself. For speed; not measured.
 constexpr std::size_t kMostSingly = 100;
 
+// How far around a fault, along edges and in distances, round corners have no miters. See docs/dev/tuning.md.
+constexpr double kAround = 2;
+
 /// Takes back what is faulty of miters, and tries again what may have been taken back for others.
 class MiterJudge {
  public:
   MiterJudge(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched)
       : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {}
 
-  void take_back() {
+  /// Takes all miters back within a length, along edges, of faults that do not come of miters. They are not tried
+  /// again.
+  void give_up_around_faults(double length) {
+    const Indices faulty = faults_.faulty_vertices();
+    if (faulty.empty()) return;
+    given_up_ = vertices_within(length, faulty);
+    faults_.move_to_ends(paths_, mitred_.take_back(given_up_, paths_));
+    take_faulty_back();
+  }
+
+  void take_faulty_back() {
     for (Indices back = faulty_miters(); !back.empty(); back = faulty_miters())
       faults_.move_to_ends(paths_, mitred_.take_back(back, paths_));
-    const Indices taken_back = mitred_.taken_back();
+  }
+
+  void try_all_again() {
+    const Indices taken_back = to_try_again();
     for (std::uint64_t trial = 0; trial < kTrials && !taken_back.empty(); ++trial) {
       Indices some = taken_back;
       std::erase_if(some, [&](std::uint32_t v) {
@@ -40,7 +58,7 @@ class MiterJudge {
       });
       try_again(some);
     }
-    const Indices left = mitred_.taken_back();
+    const Indices left = to_try_again();
     if (left.size() <= kMostSingly)
       for (const auto v : left) try_again({v});
   }
@@ -53,6 +71,30 @@ class MiterJudge {
       area += (surface_.vertices[b] - surface_.vertices[a]).cross(surface_.vertices[c] - surface_.vertices[a]).length();
     }
     return area;
+  }
+
+  /// The vertices no farther than a length from some, along edges.
+  Indices vertices_within(double length, const Indices& from) const {
+    std::vector<double> left(surface_.vertices.size(), -1.0);  // of the length, at each vertex that has been reached
+    std::priority_queue<std::pair<double, std::uint32_t>> queue;
+    const auto reach = [&](std::uint32_t v, double rest) {
+      if (!(rest > left[v])) return;
+      left[v] = rest;
+      queue.emplace(rest, v);
+    };
+    for (const auto v : from) reach(v, length);
+    while (!queue.empty()) {
+      const auto [rest, v] = queue.top();
+      queue.pop();
+      if (rest < left[v]) continue;
+      for (const auto t : surface_.triangles_around(v))
+        for (const auto w : surface_.triangles[t])
+          reach(w, rest - (surface_.vertices[w] - surface_.vertices[v]).length());
+    }
+    Indices within;
+    for (std::uint32_t v = 0; v < left.size(); ++v)
+      if (left[v] >= 0) within.push_back(v);
+    return within;
   }
 
   /// The mitred vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
@@ -80,6 +122,14 @@ class MiterJudge {
     return vertices;
   }
 
+  Indices to_try_again() const {
+    const Indices taken_back = mitred_.taken_back();
+    Indices some;
+    std::set_difference(taken_back.begin(), taken_back.end(), given_up_.begin(), given_up_.end(),
+                        std::back_inserter(some));
+    return some;
+  }
+
   /// Miters vertices again, and takes those back that come to be at faults.
   void try_again(const Indices& vertices) {
     const Indices tried = mitred_.miter_again(vertices, paths_);
@@ -98,12 +148,18 @@ class MiterJudge {
   const Surface& surface_;
   MitredPaths& mitred_;
   Paths& paths_;
+  Indices given_up_;  // vertices that are not to be mitred again; sorted
 };
 
 }  // namespace
 
-void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched) {
-  if (!marched.mitred.empty()) MiterJudge(faults, surface, marched).take_back();
+void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, Corners corners, double distance,
+                             PreparedMesh::Marched& marched) {
+  if (marched.mitred.empty()) return;
+  MiterJudge judge(faults, surface, marched);
+  judge.take_faulty_back();
+  if (corners == Corners::Round) judge.give_up_around_faults(kAround * distance);
+  judge.try_all_again();
 }
 
 }  // namespace vdb_offset

@@ -143,7 +143,7 @@ class ResultMaker {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
     draft.faults->move_to_ends(draft.marched.paths);
-    take_faulty_miters_back(*draft.faults, mesh_.surface(), draft.marched);
+    take_faulty_miters_back(*draft.faults, mesh_.surface(), options_.corners, draft.distances.scale(), draft.marched);
     if (!has_to_be_valid()) draft.faults.reset();
   }
 

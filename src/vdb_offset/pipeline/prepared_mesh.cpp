@@ -108,25 +108,35 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   for (const Distances& each : distances) on_part.push_back(distances_of_part(parts_, each));
   std::vector<Paths> of_part = find_paths(on_part, ridges);
   const StageTimer timer(statistics_.seconds, Stage::Propagate);
-  std::optional<MiterFinder<ClosestQuery>> miters;
-  const std::vector<MiterWalls> walls =
-      options_.corners == Corners::Miter ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
-  if (options_.corners == Corners::Miter) miters.emplace(*query_, options_.miter_limit, obstacles(), walls);
   std::vector<Marched> marched;
-  for (std::size_t i = 0; i < of_part.size(); ++i) {
-    Marched& each = marched.emplace_back(of_all(on_part[i], std::move(of_part[i])));
-    hold(distances[i], each);
-    if (!miters) continue;
-    each.miters = miters_of_all(parts_, (*miters)(on_part[i], each.miter_facts));
+  for (std::size_t i = 0; i < of_part.size(); ++i)
+    hold(distances[i], marched.emplace_back(of_all(on_part[i], std::move(of_part[i]))));
+  // Paths along sharp ridges are what is asked for: they end where those do.
+  if (options_.corners == Corners::Miter || ridges == Ridges::Smooth) miter(on_part, marched);
+  return marched;
+}
+
+/// Gives vertices on creases their miters, or with Corners::Round those whose ends are at the distance.
+void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> marched) const {
+  const bool may_go_farther = options_.corners == Corners::Miter;
+  const std::vector<MiterWalls> walls =
+      may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
+  const MiterFinder miters(*query_, options_.corners, options_.miter_limit, obstacles(), walls);
+  for (std::size_t i = 0; i < marched.size(); ++i) {
+    Marched& each = marched[i];
+    MiterFacts facts;
+    std::vector<Miter> found = miters_of_all(parts_, miters(on_part[i], facts));
     // What is bound to its path stays there, but for the edge of a part where that slides.
-    each.miter_facts.unproven += std::erase_if(each.miters, [&](const Miter& miter) {
+    facts.unproven += std::erase_if(found, [&](const Miter& miter) {
       const std::uint32_t v = miter.vertex;
       const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
       return !each.bound.empty() && each.bound[v] && !slides;
     });
-    each.mitred = MitredPaths(each.miters, each.paths);
+    each.mitred = MitredPaths(found, each.paths);
+    if (!may_go_farther) continue;
+    each.miters = std::move(found);
+    each.miter_facts = facts;
   }
-  return marched;
 }
 
 PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const VertexTargets& targets) {

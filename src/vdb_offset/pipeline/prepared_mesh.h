@@ -73,7 +73,7 @@ class PreparedMesh {
     Paths paths;
     std::vector<std::uint8_t> bound;  ///< Of each vertex; empty if none must.
     std::vector<Miter> miters;        ///< With Corners::Miter, those that are proven.
-    MitredPaths mitred;               ///< The vertices whose paths are miters.
+    MitredPaths mitred;               ///< The vertices whose paths are miters, with Corners::Round as well.
     MiterFacts miter_facts;           ///< What is known of them before the result is made valid.
   };
   /// Marches once for several sets of distances of all vertices. \pre some vertex moves
@@ -93,6 +93,7 @@ class PreparedMesh {
   std::vector<Paths> find_paths(std::span<const Distances> on_part, Ridges ridges);
   Marched of_all(const Distances& on_part, Paths of_part);
   void hold(const Distances& distances, Marched& marched) const;
+  void miter(std::span<const Distances> on_part, std::span<Marched> marched) const;
   void bring_to_distance(const Distances& distances, Marched& marched) const;
 
   const InMetric& space_;
