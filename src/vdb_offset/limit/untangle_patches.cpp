@@ -14,6 +14,13 @@
 #include "vdb_offset/limit/pull_back.h"
 
 namespace vdb_offset {
+namespace {
+
+// How far off their planes at the distance the faces around a vertex may get by a slide, on average and in distances,
+// and the share of their area that is live from which on that counts. See docs/dev/tuning.md.
+constexpr double kMostOff = 2, kLiveShare = 0.2;
+
+}  // namespace
 
 bool PatchUntangler::PatchFaults::is_less_than(const PatchFaults& other) const {
   return std::tie(misplaced, corners, collided) < std::tie(other.misplaced, other.corners, other.collided);
@@ -180,25 +187,65 @@ std::vector<PatchUntangler::PatchFaults> PatchUntangler::faults_by_patch() const
   return faults;
 }
 
+/// How far the planes of the faces around a vertex are off at the end of its whole displacement, in distances: the mean
+/// by area. Held back altogether, the vertex would have 1.
+double PatchUntangler::off_planes(std::uint32_t v) const {
+  const auto& x = state_.surface.vertices;
+  const double distance = state_.distances[v];
+  double off = 0, area = 0;
+  for (const auto t : state_.surface.triangles_around(v)) {
+    const auto& [a, b, c] = state_.surface.triangles[t];
+    const Vec3d normal = (x[b] - x[a]).cross(x[c] - x[a]);
+    const double length = normal.length();
+    off += std::abs(normal.dot(state_.whole[v]) - length * distance);
+    area += length;
+  }
+  return area > 0 ? off / (area * std::abs(distance)) : 0;
+}
+
+/// Marks the patches of which a vertex has strayed: though its faces have room, they are farther off their planes than
+/// before, and than if it had been held back.
+/// \param chosen the vertices, and how far off their planes were before
+std::vector<std::uint8_t> PatchUntangler::patches_astray(const std::vector<std::pair<std::uint32_t, double>>& chosen) {
+  Indices strayed, unknown;
+  for (const auto& [v, before] : chosen) {
+    const double off = off_planes(v);
+    if (off <= kMostOff || off <= before) continue;
+    strayed.push_back(v);
+    if (state_.live_area[v] < 0) unknown.push_back(v);
+  }
+  state_.live_area.measure(unknown);
+  std::vector<std::uint8_t> astray(patches_.count(), 0);
+  for (const auto v : strayed)
+    if (state_.live_area[v] > kLiveShare * state_.live_area.area(v)) astray[patches_.of(v)] = 1;
+  return astray;
+}
+
 /// Lets move(patch) change the displacements and shares of the patches' vertices, in parallel; then takes back the
-/// patches that have got worse, or no better where they had no fault; with Keep::Freed also those with a fault left.
-/// Returns how many vertices are not taken back.
+/// patches that have got worse, or no better where they had no fault, or have gone astray; with Keep::Freed also those
+/// with a fault left. Returns how many vertices are not taken back.
 template <class Move>
 std::size_t PatchUntangler::try_out(Move&& move, Keep keep) {
   const Indices& chosen = patches_.vertices();
   const std::vector<PatchFaults> before = faults_by_patch();
   std::vector<std::pair<Vec3d, double>> old;
   old.reserve(chosen.size());
-  for (const auto v : chosen) old.emplace_back(state_.whole[v], state_.share[v]);
+  std::vector<std::pair<std::uint32_t, double>> off_before;
+  off_before.reserve(chosen.size());
+  for (const auto v : chosen) {
+    old.emplace_back(state_.whole[v], state_.share[v]);
+    off_before.emplace_back(v, off_planes(v));
+  }
   tbb::parallel_for(std::size_t{0}, patches_.count(), [&](std::size_t i) { move(patches_[i]); });
+  const std::vector<std::uint8_t> astray = patches_astray(off_before);
   FaultFinder::Trial trial = state_.faults.try_out(chosen, [&](std::uint32_t v) { return state_.position_of(v); });
   const std::vector<PatchFaults> after = faults_by_patch();
   Indices undone;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::uint32_t v = chosen[i];
     const PatchFaults &was = before[patches_.of(v)], &is = after[patches_.of(v)];
-    const bool freed = keep == Keep::NoWorse || !is.any_fault();
-    if (freed && (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was))) continue;
+    const bool may_be_kept = !astray[patches_.of(v)] && (keep == Keep::NoWorse || !is.any_fault());
+    if (may_be_kept && (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was))) continue;
     std::tie(state_.whole[v], state_.share[v]) = old[i];
     undone.push_back(v);
   }
