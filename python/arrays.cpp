@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "vdb_offset/error.h"
+
+namespace vdb_offset::python {
+namespace {
+
+static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+
+std::string shape_of(const py::array& array) {
+  std::string text = "(";
+  for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
+  return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+/// An object as an array, with numpy's own message where it is none.
+py::array as_array(const py::handle& object, const char* what) {
+  const py::array array = py::array::ensure(py::reinterpret_borrow<py::object>(object));
+  if (!array) {
+    PyErr_Clear();
+    throw InvalidInput(std::string(what) + ": expected an array, got something else");
+  }
+  return array;
+}
+
+bool is_integral(const py::array& array) {
+  const char kind = array.dtype().kind();
+  return kind == 'i' || kind == 'u';
+}
+
+/// Integers as contiguous 32-bit ones: themselves, if they are.
+py::array_t<std::uint32_t> as_indices(const py::array& array, const char* what) {
+  if (!is_integral(array) && array.size() > 0)
+    throw InvalidInput(std::string(what) + ": expected integers, got an array of " +
+                       std::string(py::str(py::object(array.dtype()))));
+  const bool is_contiguous = (array.flags() & py::array::c_style) != 0;
+  if (is_contiguous && array.itemsize() == 4 && array.dtype().kind() == 'u')
+    return py::reinterpret_borrow<py::array_t<std::uint32_t>>(array);
+  // What is negative becomes a number above all vertices'.
+  const auto wide = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
+  py::array_t<std::uint32_t> indices(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
+  std::transform(wide.data(), wide.data() + wide.size(), indices.mutable_data(), [](std::int64_t i) {
+    return i < 0 || i >= std::int64_t{kNone} ? kNone : static_cast<std::uint32_t>(i);
+  });
+  return indices;
+}
+
+}  // namespace
+
+MeshArrays::MeshArrays(const py::object& vertices, const py::object& faces) {
+  const py::array given = as_array(vertices, "vertices");
+  const bool are_numbers = is_integral(given) || given.dtype().kind() == 'f';
+  if (!are_numbers || given.ndim() != 2 || given.shape(1) != 3)
+    throw InvalidInput("vertices: expected numbers of the shape (n, 3), got " + shape_of(given) + " of " +
+                       std::string(py::str(py::object(given.dtype()))));
+  const auto positions = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  kept_positions_ = positions;
+  positions_ = {reinterpret_cast<const Vec3d*>(positions.data()), static_cast<std::size_t>(positions.shape(0))};
+  if (py::isinstance<py::tuple>(faces) && py::len(faces) == 2) {
+    const py::tuple pair = py::reinterpret_borrow<py::tuple>(faces);
+    take_corners(pair[1]);
+    take_offsets(pair[0]);
+  } else {
+    take_rows(as_array(faces, "faces"));
+  }
+}
+
+void MeshArrays::take_corners(const py::handle& corners) {
+  const py::array_t<std::uint32_t> indices = as_indices(as_array(corners, "faces"), "faces");
+  kept_corners_ = indices;
+  corners_ = {indices.data(), static_cast<std::size_t>(indices.size())};
+  const auto outside =
+      std::find_if(corners_.begin(), corners_.end(), [&](std::uint32_t v) { return v >= positions_.size(); });
+  if (outside != corners_.end())
+    throw InvalidInput("faces: expected numbers of vertices, from 0 to " + std::to_string(positions_.size()) +
+                       " - 1, got another one as corner " + std::to_string(outside - corners_.begin()));
+}
+
+void MeshArrays::take_rows(const py::array& faces) {
+  if (faces.ndim() != 2)
+    throw InvalidInput("faces: expected integers of the shape (m, k), or a pair of offsets and corners, got " +
+                       shape_of(faces));
+  take_corners(faces);
+  const auto count = static_cast<std::size_t>(faces.shape(0)), size = static_cast<std::size_t>(faces.shape(1));
+  if (corners_.size() >= kNone) throw InvalidInput("faces: expected less than 2^32 - 1 corners");
+  face_begin_.resize(count + 1);
+  for (std::size_t f = 0; f <= count; ++f) face_begin_[f] = static_cast<std::uint32_t>(f * size);
+}
+
+void MeshArrays::take_offsets(const py::handle& offsets) {
+  const py::array_t<std::uint32_t> begin = as_indices(as_array(offsets, "faces"), "faces");
+  face_begin_.assign(begin.data(), begin.data() + begin.size());
+  if (face_begin_.empty() || face_begin_.front() != 0 || face_begin_.back() != corners_.size() ||
+      !std::is_sorted(face_begin_.begin(), face_begin_.end()))
+    throw InvalidInput("faces: expected offsets that rise from 0 to the number of corners, " +
+                       std::to_string(corners_.size()));
+}
+
+py::array owning_array(std::vector<Vec3d> positions) {
+  auto owned = std::make_unique<std::vector<Vec3d>>(std::move(positions));
+  const auto* data = reinterpret_cast<const double*>(owned->data());
+  const auto count = static_cast<py::ssize_t>(owned->size());
+  const py::capsule owner(owned.get(), [](void* p) { delete static_cast<std::vector<Vec3d>*>(p); });
+  owned.release();
+  return py::array_t<double>({count, py::ssize_t{3}}, data, owner);
+}
+
+py::object faces_of(const Polygons& polygons) {
+  const std::size_t count = polygons.face_count(), size = count > 0 ? polygons.face_begin[1] : 3;
+  bool is_even = true;
+  for (std::size_t f = 0; f <= count; ++f) is_even = is_even && polygons.face_begin[f] == f * size;
+  const auto corners = static_cast<py::ssize_t>(polygons.corners.size());
+  if (is_even) return owning_array(polygons.corners, {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(size)});
+  return py::make_tuple(owning_array(polygons.face_begin, {static_cast<py::ssize_t>(count) + 1}),
+                        owning_array(polygons.corners, {corners}));
+}
+
+std::vector<std::uint8_t> marks_of(const py::object& selection, std::size_t faces) {
+  const py::array array = as_array(selection, "only");
+  std::vector<std::uint8_t> marks(faces, 0);
+  if (array.dtype().kind() == 'b') {
+    if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != faces)
+      throw InvalidInput("only: expected a mark for each of " + std::to_string(faces) + " faces, got " +
+                         shape_of(array));
+    const auto flags = py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(array);
+    std::copy_n(flags.data(), faces, marks.begin());
+    return marks;
+  }
+  const py::array_t<std::uint32_t> numbers = as_indices(array, "only");
+  for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+    const std::uint32_t f = numbers.data()[i];
+    if (f >= faces)
+      throw InvalidInput("only: expected numbers of faces, from 0 to " + std::to_string(faces) + " - 1, got another");
+    marks[f] = 1;
+  }
+  return marks;
+}
+
+}  // namespace vdb_offset::python

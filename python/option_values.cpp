@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "option_values.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "vdb_offset/curves.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/scene.h"
+
+namespace vdb_offset::python {
+namespace {
+
+/// Reads keywords one by one, and leaves those alone that were not given.
+class Keywords {
+ public:
+  explicit Keywords(const py::dict& given) : given_(given) {}
+
+  py::object operator[](const char* name) const {
+    return given_.contains(name) ? py::reinterpret_borrow<py::object>(given_[name]) : py::none();
+  }
+
+  template <class Value>
+  void read(const char* name, Value& value) const {
+    const py::object given = (*this)[name];
+    if (given.is_none()) return;
+    try {
+      value = given.cast<Value>();
+    } catch (const py::cast_error&) {
+      throw InvalidOption(std::string(name) + ": expected " + what<Value>() + ", got " + text_of(given));
+    }
+  }
+  template <class Value>
+  void read(const char* name, std::optional<Value>& value) const {
+    Value given{};
+    if ((*this)[name].is_none()) return;
+    read(name, given);
+    value = given;
+  }
+  /// One of some words.
+  template <class Value, std::size_t count>
+  void read(const char* name, Value& value, const std::array<std::pair<const char*, Value>, count>& words) const {
+    const py::object given = (*this)[name];
+    if (given.is_none()) return;
+    std::string expected;
+    for (const auto& [word, meaning] : words) {
+      if (py::isinstance<py::str>(given) && given.cast<std::string>() == word) {
+        value = meaning;
+        return;
+      }
+      expected += (expected.empty() ? "'" : " or '") + std::string(word) + "'";
+    }
+    throw InvalidOption(std::string(name) + ": expected " + expected + ", got " + text_of(given));
+  }
+
+  static std::string text_of(const py::object& given) { return py::repr(given).cast<std::string>(); }
+
+ private:
+  template <class Value>
+  static const char* what() {
+    if constexpr (std::is_same_v<Value, bool>) return "True or False";
+    else if constexpr (std::is_integral_v<Value>) return "a whole number, 0 or more";
+    else return "a number";
+  }
+
+  const py::dict& given_;
+};
+
+WeldOptions weld_of(const py::object& given) {
+  if (given.is_none()) return WeldOptions::automatic();
+  WeldOptions weld;
+  if (py::isinstance<py::str>(given)) {
+    const auto word = given.cast<std::string>();
+    if (word == "auto") return WeldOptions::automatic();
+    if (word == "exact") return weld;
+    if (word == "none") {
+      weld.enabled = false;
+      return weld;
+    }
+  } else if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given)) {
+    weld.tolerance = given.cast<double>();
+    if (weld.tolerance >= 0) return weld;
+  }
+  throw InvalidOption("weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got " +
+                      Keywords::text_of(given));
+}
+
+Precision precision_of(const py::object& given) {
+  if (given.is_none()) return {};
+  if (py::isinstance<py::str>(given)) {
+    const auto word = given.cast<std::string>();
+    if (word == "double") return {};
+    if (word == "single") return {.kind = Precision::Kind::Single};
+  } else if (py::isinstance<py::int_>(given)) {
+    const auto digits = given.cast<long long>();
+    if (digits >= 1 && digits <= 17) return {.kind = Precision::Kind::Digits, .digits = static_cast<int>(digits)};
+  }
+  throw InvalidOption("precision: expected 'double', 'single' or 1 to 17 digits, got " + Keywords::text_of(given));
+}
+
+/// True, False, or a list of planes (A, B, C, D): all x with A x + B y + C z = D.
+SymmetryOptions symmetry_of(const py::object& given) {
+  SymmetryOptions symmetry;
+  if (given.is_none()) return symmetry;
+  if (py::isinstance<py::bool_>(given)) {
+    symmetry.find = given.cast<bool>();
+    return symmetry;
+  }
+  try {
+    for (const auto& plane : given.cast<std::vector<std::array<double, 4>>>()) {
+      const Vec3d normal(plane[0], plane[1], plane[2]);
+      const double length = normal.length();
+      if (!(length > 0)) throw InvalidOption("symmetry: expected planes with a normal that is not 0");
+      symmetry.planes.push_back({normal / length, plane[3] / length});
+    }
+  } catch (const py::cast_error&) {
+    throw InvalidOption("symmetry: expected True, False, or planes of four numbers each, got " +
+                        Keywords::text_of(given));
+  }
+  return symmetry;
+}
+
+constexpr std::array kOrients = {std::pair{"keep", Orient::Keep},
+                                 std::pair{"fix-direction-only", Orient::FixDirectionOnly}};
+
+/// What all surfaces and offsets have in common.
+template <class Options>
+void read_common(const Keywords& keywords, Options& options) {
+  keywords.read("voxel_size", options.grid.voxel_size);
+  keywords.read("voxels_per_distance", options.grid.voxels_per_distance);
+  keywords.read("orient", options.orient, kOrients);
+  keywords.read("max_memory", options.max_memory);
+  keywords.read("threads", options.threads);
+  if (options.threads < 0) throw InvalidOption("threads: expected a whole number, 0 or more");
+  options.weld = weld_of(keywords["weld"]);
+  options.precision = precision_of(keywords["precision"]);
+}
+
+}  // namespace
+
+AskedOptions asked_options(const py::dict& given, const MeshArrays& mesh) {
+  const Keywords keywords(given);
+  AskedOptions asked;
+  OffsetOptions& options = asked.options;
+  read_common(keywords, options);
+  keywords.read("collision", options.collision,
+                std::array{std::pair{"limit", Collision::Limit}, std::pair{"merge", Collision::Merge}});
+  keywords.read("corners", options.corners,
+                std::array{std::pair{"round", Corners::Round}, std::pair{"miter", Corners::Miter}});
+  keywords.read("solver", options.solver,
+                std::array{std::pair{"closest", Solver::Closest}, std::pair{"eikonal", Solver::Eikonal}});
+  keywords.read("border", options.border,
+                std::array{std::pair{"slide", Border::Slide}, std::pair{"fixed", Border::Fixed},
+                           std::pair{"free", Border::Free}});
+  keywords.read("miter_limit", options.miter_limit);
+  if (!(options.miter_limit >= 1)) throw InvalidOption("miter_limit: expected a number of 1 or more");
+  keywords.read("clearance", options.clearance);
+  keywords.read("paths", options.keep_paths);
+  options.symmetry = symmetry_of(keywords["symmetry"]);
+  if (const py::object only = keywords["only"]; !only.is_none())
+    options.only = marks_of(only, mesh.view().face_count());
+  if (const py::object obstacles = keywords["obstacles"]; !obstacles.is_none()) {
+    const py::tuple pair = py::isinstance<py::tuple>(obstacles) ? py::tuple(obstacles) : py::tuple();
+    if (pair.size() != 2) throw InvalidOption("obstacles: expected a pair of vertices and faces");
+    asked.obstacles.emplace(pair[0], pair[1]);
+    options.obstacles = asked.obstacles->view();
+  }
+  return asked;
+}
+
+CheckOptions check_options(const AskedOptions& asked, const py::dict& given) {
+  const OffsetOptions& options = asked.options;
+  CheckOptions check;
+  check.only = options.only;
+  check.border = options.border;
+  check.obstacles = options.obstacles;
+  check.clearance = options.clearance;
+  check.corners = options.corners;
+  check.miter_limit = options.miter_limit;
+  check.weld = options.weld;
+  check.orient = options.orient;
+  check.precision = options.precision;
+  check.threads = options.threads;
+  if (const py::object tolerance = Keywords(given)["tolerance"]; !tolerance.is_none()) {
+    const scene::Distance asked_for = scene::parse_distance(py::str(tolerance).cast<std::string>());
+    (asked_for.percent ? check.tolerance_share : check.tolerance_length) =
+        asked_for.percent ? asked_for.value / 100 : asked_for.value;
+  }
+  return check;
+}
+
+IsoOptions iso_options(const py::dict& given) {
+  const Keywords keywords(given);
+  IsoOptions options;
+  read_common(keywords, options);
+  keywords.read("use_winding", options.use_winding);
+  keywords.read("adaptivity", options.adaptivity);
+  keywords.read("keep_specks", options.keep_specks);
+  return options;
+}
+
+Distances distances_of(const py::object& distance, PolygonView mesh, bool curves, const OffsetOptions& options) {
+  if (py::isinstance<py::str>(distance)) {
+    const auto normals = [&] {
+      return curves ? curve_normals(mesh) : vertex_normals(mesh, options.weld, options.orient);
+    };
+    const auto texture = []() -> std::vector<Vec2d> {
+      throw InvalidInput("distance: expected an expression without u and v: arrays have no texture coordinates");
+    };
+    return scene::distances_of(scene::parse_distance_or_expression(distance.cast<std::string>()), mesh, normals,
+                               texture);
+  }
+  const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(distance);
+  if (!numbers) {
+    PyErr_Clear();
+    throw InvalidOption("distance: expected a number, an array or a text, got " + Keywords::text_of(distance));
+  }
+  if (numbers.ndim() == 0) {
+    if (!std::isfinite(*numbers.data()))
+      throw InvalidOption("distance: expected a finite number, got " + Keywords::text_of(distance));
+    return *numbers.data();
+  }
+  if (numbers.ndim() != 1 || static_cast<std::size_t>(numbers.size()) != mesh.positions.size())
+    throw InvalidInput("distance: expected one for each of " + std::to_string(mesh.positions.size()) +
+                       " vertices, got an array of " + std::to_string(numbers.size()));
+  return Distances(std::vector<double>(numbers.data(), numbers.data() + numbers.size()));
+}
+
+}  // namespace vdb_offset::python
