@@ -19,7 +19,7 @@ std::string shape_of(const py::array& array) {
 
 /// An object as an array, with numpy's own message where it is none.
 py::array as_array(const py::handle& object, const char* what) {
-  const py::array array = py::array::ensure(py::reinterpret_borrow<py::object>(object));
+  py::array array = py::array::ensure(py::reinterpret_borrow<py::object>(object));
   if (!array) {
     PyErr_Clear();
     throw InvalidInput(std::string(what) + ": expected an array, got something else");
@@ -105,7 +105,7 @@ py::array owning_array(std::vector<Vec3d> positions) {
   const auto* data = reinterpret_cast<const double*>(owned->data());
   const auto count = static_cast<py::ssize_t>(owned->size());
   const py::capsule owner(owned.get(), [](void* p) { delete static_cast<std::vector<Vec3d>*>(p); });
-  owned.release();
+  static_cast<void>(owned.release());
   return py::array_t<double>({count, py::ssize_t{3}}, data, owner);
 }
 

@@ -48,7 +48,7 @@ py::array owning_array(std::vector<Number> values, std::vector<py::ssize_t> shap
   auto owned = std::make_unique<std::vector<Number>>(std::move(values));
   const Number* data = owned->data();
   const py::capsule owner(owned.get(), [](void* p) { delete static_cast<std::vector<Number>*>(p); });
-  owned.release();
+  static_cast<void>(owned.release());
   return py::array_t<Number>(std::move(shape), data, owner);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "arrays.h"
@@ -13,6 +14,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/shell.h"
+#include "vdb_offset/tolerance.h"
 #include "vdb_offset/version.h"
 #include "volume_arrays.h"
 
@@ -40,7 +42,7 @@ py::array distances_array(const Distances& distances, std::size_t count) {
   return owning_array(std::move(each), {static_cast<py::ssize_t>(count)});
 }
 
-py::dict as_dict(OffsetResult result, RunFacts run) {
+py::dict as_dict(OffsetResult result, const RunFacts& run) {
   const std::size_t count = result.positions.size();
   py::dict all;
   all["statistics"] = from_json(report_json(result, run));
@@ -91,6 +93,56 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
   return all;
 }
 
+py::dict fit_arrays(const py::object& vertices, const py::object& faces, const py::tuple& other, double clearance,
+                    const py::dict& keywords, const py::object& progress) {
+  const auto start = Clock::now();
+  const MeshArrays mesh(vertices, faces), near(other[0], other[1]);
+  AskedOptions asked = asked_options(keywords, mesh);
+  Interruptible run(progress);
+  asked.options.progress = run.progress();
+  OffsetResult result = run([&] { return fit(mesh.view(), near.view(), clearance, asked.options); });
+  return as_dict(std::move(result), facts_of_run("fit", start));
+}
+
+/// Of each added vertex the face that it comes from, the three vertices there and their shares.
+py::dict origins_of(const std::vector<VertexOrigin>& added) {
+  const auto count = static_cast<py::ssize_t>(added.size());
+  std::vector<std::uint32_t> face, corners;
+  std::vector<double> shares;
+  for (const VertexOrigin& origin : added) {
+    face.push_back(origin.face);
+    corners.insert(corners.end(), origin.vertex.begin(), origin.vertex.end());
+    shares.insert(shares.end(), origin.share.begin(), origin.share.end());
+  }
+  py::dict all;
+  all["faces"] = owning_array(std::move(face), {count});
+  all["vertices"] = owning_array(std::move(corners), {count, 3});
+  all["shares"] = owning_array(std::move(shares), {count, 3});
+  return all;
+}
+
+py::dict refined_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
+                        const py::object& tolerance, std::size_t most_faces, const py::dict& keywords,
+                        const py::object& progress) {
+  const auto start = Clock::now();
+  const MeshArrays mesh(vertices, faces);
+  AskedOptions asked = asked_options(keywords, mesh);
+  asked.options.distance = distances_of(distance, mesh.view(), false, asked.options);
+  Tolerance within{.most_faces = most_faces, .precision = asked.options.precision};
+  std::tie(within.share, within.length) = tolerance_of(tolerance);
+  Interruptible run(progress);
+  asked.options.progress = run.progress();
+  RefinedOffset refined = run([&] { return offset_to_tolerance(mesh.view(), asked.options, within); });
+  Refinement& refinement = refined.refinement;
+  py::dict all = as_dict(std::move(refined.result), facts_of_run(text_of(distance), start));
+  const auto count = static_cast<py::ssize_t>(refinement.parent.size());
+  all["faces"] = faces_of(refinement.polygons);
+  all["source"] = owning_array(std::move(refinement.polygons.positions));
+  all["parents"] = owning_array(std::move(refinement.parent), {count});
+  all["added"] = origins_of(refinement.added);
+  return all;
+}
+
 py::dict shell_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
                       const py::dict& keywords, const py::object& progress) {
   const auto start = Clock::now();
@@ -115,7 +167,7 @@ py::dict shell_arrays(const py::object& vertices, const py::object& faces, const
     sources[f] = shell.source_face(f);
   }
   const auto count = static_cast<py::ssize_t>(parts.size());
-  py::dict all = as_dict(std::move(result), std::move(facts));
+  py::dict all = as_dict(std::move(result), facts);
   all["faces"] = faces_of(shell.polygons);
   all["parts"] = owning_array(std::move(parts), {count});
   all["source_faces"] = owning_array(std::move(sources), {count});
@@ -249,6 +301,7 @@ void add_exceptions(py::module_& module) {
   expression = of_expression.ptr();
   budget = of_budget.ptr();
   cancelled = of_cancelled.ptr();
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11's own signature
   py::register_exception_translator([](std::exception_ptr thrown) {
     const auto raise = [](const PyObject* type, const std::exception& e) {
       PyErr_SetString(const_cast<PyObject*>(type), e.what());
@@ -301,6 +354,8 @@ PYBIND11_MODULE(_core, module) {
                                 const py::dict& keywords, const py::object& progress) {
     return layer_arrays(Input::Curves, points, curves, heights, keywords, progress);
   });
+  module.def("fit", &fit_arrays);
+  module.def("offset_to_tolerance", &refined_arrays);
   module.def("shell", &shell_arrays);
   module.def("iso_surface", &iso_arrays);
   module.def("check", [](const py::object& vertices, const py::object& faces, const py::object& positions,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "vdb_offset/curves.h"
@@ -44,8 +45,8 @@ class Keywords {
     value = given;
   }
   /// One of some words.
-  template <class Value, std::size_t count>
-  void read(const char* name, Value& value, const std::array<std::pair<const char*, Value>, count>& words) const {
+  template <class Value, std::size_t kCount>
+  void read(const char* name, Value& value, const std::array<std::pair<const char*, Value>, kCount>& words) const {
     const py::object given = (*this)[name];
     if (given.is_none()) return;
     std::string expected;
@@ -174,6 +175,11 @@ AskedOptions asked_options(const py::dict& given, const MeshArrays& mesh) {
   return asked;
 }
 
+std::pair<double, double> tolerance_of(const py::object& tolerance) {
+  const scene::Distance asked = scene::parse_distance(py::str(tolerance).cast<std::string>());
+  return asked.percent ? std::pair(asked.value / 100, 0.0) : std::pair(0.0, asked.value);
+}
+
 CheckOptions check_options(const AskedOptions& asked, const py::dict& given) {
   const OffsetOptions& options = asked.options;
   CheckOptions check;
@@ -188,9 +194,7 @@ CheckOptions check_options(const AskedOptions& asked, const py::dict& given) {
   check.precision = options.precision;
   check.threads = options.threads;
   if (const py::object tolerance = Keywords(given)["tolerance"]; !tolerance.is_none()) {
-    const scene::Distance asked_for = scene::parse_distance(py::str(tolerance).cast<std::string>());
-    (asked_for.percent ? check.tolerance_share : check.tolerance_length) =
-        asked_for.percent ? asked_for.value / 100 : asked_for.value;
+    std::tie(check.tolerance_share, check.tolerance_length) = tolerance_of(tolerance);
   }
   return check;
 }

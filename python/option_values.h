@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
@@ -21,6 +22,10 @@ struct AskedOptions {
 /// \param keywords those that were given; see vdb_offset/__init__.py for what each may be
 /// \throw InvalidOption for a value that means nothing, InvalidInput for arrays that do not fit
 AskedOptions asked_options(const py::dict& keywords, const MeshArrays& mesh);
+
+/// A tolerance as a share of the distance and a length, one of which is 0: a number in world units, or a text with a
+/// percentage. \throw InvalidInput
+std::pair<double, double> tolerance_of(const py::object& tolerance);
 
 /// The options of a check: those of the offset, and a tolerance.
 CheckOptions check_options(const AskedOptions& asked, const py::dict& keywords);

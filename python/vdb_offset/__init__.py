@@ -27,15 +27,18 @@ from ._calls import (
     Iso,
     Layers,
     Offset,
+    Refined,
     Shell,
     check,
     check_curves,
     curve_layers,
+    fit,
     iso_surface,
     layers,
     offset,
     offset_curves,
     offset_several,
+    offset_to_tolerance,
     shell,
 )
 from ._core import (
@@ -52,6 +55,7 @@ from .meshes import arrays_of, offset_mesh, with_positions
 
 __all__ = [
     "Cancelled", "Check", "Error", "InvalidExpression", "InvalidInput", "InvalidOption", "Iso", "Layers", "Offset",
-    "OutOfBudget", "STATES", "Shell", "arrays_of", "check", "check_curves", "curve_layers", "iso_surface", "layers",
-    "offset", "offset_curves", "offset_mesh", "offset_several", "shell", "with_positions",
+    "OutOfBudget", "Refined", "STATES", "Shell", "arrays_of", "check", "check_curves", "curve_layers", "fit",
+    "iso_surface", "layers", "offset", "offset_curves", "offset_mesh", "offset_several", "offset_to_tolerance", "shell",
+    "with_positions",
 ]

@@ -50,6 +50,21 @@ class Offset(_Vertices):
 
 
 @dataclass(frozen=True)
+class Refined(Offset):
+    """An offset whose faces were split until they are proven to be at the distance. The vertices of the input come
+    first, in their order, then the ones that were added; all arrays have a value for each of both."""
+
+    #: (v, 3) positions in the source, which pair with `positions`.
+    source: np.ndarray
+    #: The faces, (m, k) or a pair of offsets and corners, and (m,) the input's faces that they are pieces of.
+    faces: Faces
+    parents: np.ndarray
+    #: Of each added vertex: `faces` (a,), a face of the input that it lies on, `vertices` (a, 3), corners of that, and
+    #: `shares` (a, 3), how much of each it is.
+    added: Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True)
 class Shell(_Vertices):
     """A solid between two skins, and rims along open borders."""
 
@@ -231,6 +246,39 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
     """
     keywords, progress = _options("offset_curves", options)
     return Offset(**_core.offset_curves(points, curves, [distance], keywords, progress)[0])
+
+
+def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *,
+                        max_faces: int = 0, **options: Any) -> Refined:
+    """Offsets a mesh, and splits its faces until they are proven to be at the distance, at every point of them.
+
+    :param tolerance: how far off they may be: world units, or a text with a percentage of the distance
+    :param max_faces: no more are made; 0: 20 times as many as the mesh has, at least a million
+    :param options: see `offset_several()`
+    :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
+
+    >>> import numpy as np
+    >>> tent = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0.5]], float)
+    >>> sides = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    >>> refined = offset_to_tolerance(tent, sides, 0.1, "1%")
+    >>> len(refined.positions) > 5, refined.statistics["certified"]["certified"] > 0.999
+    (True, True)
+    """
+    keywords, progress = _options("offset_to_tolerance", options, ["paths"])
+    return Refined(**_core.offset_to_tolerance(vertices, faces, distance, tolerance, max_faces, keywords, progress))
+
+
+def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], clearance: float, **options: Any) -> Offset:
+    """Makes room between a mesh and another one: what is nearer to that than the clearance goes inward until it is not.
+
+    :param other: vertices and faces
+    :param clearance: world units, above 0
+    :param options: see `offset_several()`
+    :return: `distances` are those that were needed, and `statistics["fit"]` tells the gap that is left
+    :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
+    """
+    keywords, progress = _options("fit", options, ["paths", "obstacles", "clearance"])
+    return Offset(**_core.fit(vertices, faces, tuple(other), clearance, keywords, progress))
 
 
 def shell(vertices: np.ndarray, faces: Faces, distance: Distance, **options: Any) -> Shell:
