@@ -81,6 +81,9 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
   for (const auto distance : distances)
     wanted.push_back(
         distances_of(py::reinterpret_borrow<py::object>(distance), mesh.view(), input == Input::Curves, asked.options));
+  if (keywords.contains("distance_z") && wanted.size() > 1)
+    throw InvalidOption("distance_z: expected one distance, got " + std::to_string(wanted.size()));
+  for (const Distances& each : wanted) measure_by_axis(keywords, each, mesh.view(), asked.options.metric);
   Interruptible run(progress);
   asked.options.progress = run.progress();
   std::vector<OffsetResult> results = run([&] {
@@ -253,6 +256,7 @@ py::dict check_arrays(Input input, const py::object& vertices, const py::object&
   CheckOptions options = check_options(asked, keywords);
   if (!distance.is_none())
     options.distance = distances_of(distance, mesh.view(), input == Input::Curves, asked.options);
+  if (options.distance) measure_by_axis(keywords, *options.distance, mesh.view(), options.metric);
   Interruptible run{py::none()};
   CheckResult result = run([&] {
     return input == Input::Curves ? check_curves(mesh.view(), moved.view().positions, options)

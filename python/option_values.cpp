@@ -236,4 +236,18 @@ Distances distances_of(const py::object& distance, PolygonView mesh, bool curves
   return Distances(std::vector<double>(numbers.data(), numbers.data() + numbers.size()));
 }
 
+void measure_by_axis(const py::dict& keywords, const Distances& distance, PolygonView mesh, Metric& metric) {
+  // Beyond this ratio the lesser distance drowns in the rounding of the larger one, as the command says.
+  constexpr double kMostRatio = 1000;
+  const py::object given = Keywords(keywords)["distance_z"];
+  if (given.is_none()) return;
+  const Distances z = distances_of(given, mesh, false, {});
+  const double ratio = distance[0] / z[0];
+  if (!distance.uniform() || !z.uniform() || !(std::max(ratio, 1 / ratio) <= kMostRatio && ratio > 0))
+    throw InvalidOption("distance_z: expected one number beside one distance, of its sign and within " +
+                        std::to_string(static_cast<int>(kMostRatio)) + " times it, either way, got " +
+                        Keywords::text_of(given));
+  metric = Metric::of_half_axes(distance[0], z[0]);
+}
+
 }  // namespace vdb_offset::python

@@ -27,6 +27,10 @@ AskedOptions asked_options(const py::dict& keywords, const MeshArrays& mesh);
 /// percentage. \throw InvalidInput
 std::pair<double, double> tolerance_of(const py::object& tolerance);
 
+/// Lets distances along z be `distance_z`, and those in the plane across it `distance`, if the keyword is given: both
+/// of one sign, as distances_of() has them. \throw InvalidOption
+void measure_by_axis(const py::dict& keywords, const Distances& distance, PolygonView mesh, Metric& metric);
+
 /// The options of a check: those of the offset, and a tolerance.
 CheckOptions check_options(const AskedOptions& asked, const py::dict& keywords);
 

@@ -150,6 +150,7 @@ def offset_several(
     faces: Faces,
     distances: Sequence[Distance],
     *,
+    distance_z: Optional[Union[float, str]] = None,
     corners: str = "round",
     miter_limit: float = 4,
     collision: str = "limit",
@@ -174,6 +175,7 @@ def offset_several(
     :param vertices: (n, 3) positions, world units
     :param faces: (m, k) numbers of vertices, or a pair of offsets and corners
     :param distances: see the module
+    :param distance_z: the distance along z, beside a single one in the plane across it
     :param corners: "round": vertices at the distance; "miter": faces at the distance, beside sharp edges as well
     :param miter_limit: the longest miter, in distances, 1 or more
     :param collision: "limit": the result stays valid; "merge": each vertex goes as far as the distance grows
@@ -244,7 +246,7 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
     >>> np.ptp(kerf.positions, axis=0).round(9).tolist()
     [90.0, 90.0, 0.0]
     """
-    keywords, progress = _options("offset_curves", options)
+    keywords, progress = _options("offset_curves", options, ["distance_z"])
     return Offset(**_core.offset_curves(points, curves, [distance], keywords, progress)[0])
 
 
@@ -264,7 +266,7 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
     >>> len(refined.positions) > 5, refined.statistics["certified"]["certified"] > 0.999
     (True, True)
     """
-    keywords, progress = _options("offset_to_tolerance", options, ["paths"])
+    keywords, progress = _options("offset_to_tolerance", options, ["paths", "distance_z"])
     return Refined(**_core.offset_to_tolerance(vertices, faces, distance, tolerance, max_faces, keywords, progress))
 
 
@@ -277,7 +279,7 @@ def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], cle
     :return: `distances` are those that were needed, and `statistics["fit"]` tells the gap that is left
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
-    keywords, progress = _options("fit", options, ["paths", "obstacles", "clearance"])
+    keywords, progress = _options("fit", options, ["paths", "obstacles", "clearance", "distance_z"])
     return Offset(**_core.fit(vertices, faces, tuple(other), clearance, keywords, progress))
 
 
@@ -293,7 +295,7 @@ def shell(vertices: np.ndarray, faces: Faces, distance: Distance, **options: Any
     >>> len(solid.vertices), len(solid.faces), round(solid.statistics["shell"]["volume"], 9)
     (8, 6, 0.25)
     """
-    keywords, progress = _options("shell", options, ["paths"])
+    keywords, progress = _options("shell", options, ["paths", "distance_z"])
     result = _core.shell(vertices, faces, distance, keywords, progress)
     return Shell(**{name: result[name] for name in Shell.__dataclass_fields__})
 
@@ -334,7 +336,7 @@ def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distan
     >>> grown.points[:, 2].reshape(4, 4)[:, 0].round(9).tolist(), grown.cell_types.tolist()
     ([0.0, 0.1, 0.3, 0.7], [12, 12, 12])
     """
-    keywords, progress = _options("layers", options, ["paths"])
+    keywords, progress = _options("layers", options, ["paths", "distance_z"])
     wanted = _heights(_core.evaluate, (vertices, faces), heights, count, first, total, growth, keywords)
     return Layers(**_core.layers(vertices, faces, wanted, keywords, progress))
 
@@ -343,7 +345,7 @@ def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[D
                  count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
                  growth: float = 1, **options: Any) -> Layers:
     """Grows layers of quadrilaterals on plane curves; see `layers()` and `offset_curves()`."""
-    keywords, progress = _options("curve_layers", options, ["paths"])
+    keywords, progress = _options("curve_layers", options, ["paths", "distance_z"])
     wanted = _heights(_core.evaluate_curves, (points, curves), heights, count, first, total, growth, keywords)
     return Layers(**_core.curve_layers(points, curves, wanted, keywords, progress))
 
@@ -382,8 +384,8 @@ def iso_surface(
     return Iso(**_core.iso_surface(vertices, faces, distance, keywords, progress))
 
 
-_CHECK_KEYWORDS = ("corners", "miter_limit", "only", "border", "obstacles", "clearance", "weld", "orient", "precision",
-                   "threads")
+_CHECK_KEYWORDS = ("distance_z", "corners", "miter_limit", "only", "border", "obstacles", "clearance", "weld", "orient",
+                   "precision", "threads")
 
 
 def _check_options(function: str, options: Dict[str, Any]) -> Dict[str, Any]:
