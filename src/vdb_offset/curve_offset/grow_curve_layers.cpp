@@ -81,7 +81,8 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
   statistics.disagreeing_distances = most_disagreeing;
   std::vector<Miter> miters;
   if (options.corners == Corners::Miter)
-    miters = MiterFinder<CurveQuery>(curves.query(), Corners::Miter, options.miter_limit, nullptr)(outer, statistics.miters);
+    miters =
+        MiterFinder<CurveQuery>(curves.query(), Corners::Miter, options.miter_limit, nullptr)(outer, statistics.miters);
   const PlaneCurves plane{curves.query(), curves.source(), outer, options.precision, miters};
   {
     const StageTimer timer(statistics.seconds, Stage::Limit);
