@@ -33,6 +33,11 @@ macro(vdb_offset_find_dependencies component)
       list(APPEND CMAKE_MODULE_PATH ${OPENVDB_MODULE_DIR})
     endif()
     find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
+    # Of an archive, OpenVDB's find module leaves out what its own files are compressed with.
+    if(OPENVDB_USE_STATIC_LIBS)
+      find_package(ZLIB REQUIRED)
+      target_link_libraries(OpenVDB::openvdb INTERFACE $<TARGET_NAME_IF_EXISTS:Blosc::blosc> ZLIB::ZLIB)
+    endif()
     if(NOT vdb_offset_shared)
       find_package(fmt REQUIRED)
       # CGAL is headers alone; its exact numbers need these two.

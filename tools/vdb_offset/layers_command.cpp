@@ -127,6 +127,7 @@ void require_names(const Request& request, std::size_t layers) {
   for (const std::string& path : {request.report, request.states})
     if (!path.empty()) require_writable(path);
   if (is_volume(request.output)) {
+    io::require_volume_writer(request.output);
     if (io::volume_format_of(request.output) != io::VolumeFormat::Foam) require_writable(request.output);
     return;
   }

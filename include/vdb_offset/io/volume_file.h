@@ -59,4 +59,8 @@ VDB_OFFSET_API std::optional<StructuredFormat> structured_format_of(std::string_
 /// \throw InvalidInput for an unknown ending, or arrays with lengths that do not fit the block's; WriteError.
 VDB_OFFSET_API void write_structured(const std::string& path, const StructuredBlock& block);
 
+/// Checks that the library which writes the path's format is there; it may be a module that is loaded when it is
+/// needed. \throw InvalidOption if this build is without it, WriteError if the module is missing
+VDB_OFFSET_API void require_volume_writer(const std::string& path);
+
 }  // namespace vdb_offset::io

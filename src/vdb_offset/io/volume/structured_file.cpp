@@ -7,6 +7,7 @@
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/volume/volume_writers.h"
 #include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -47,7 +48,8 @@ void write_structured(const std::string& path, const StructuredBlock& block) {
   const auto format = structured_format_of(path);
   if (!format) throw InvalidInput(path + ": expected a name that ends in .vts or .xyz");
   require_consistent(path, block);
-  if (*format == StructuredFormat::Vts) write_vts(path, block);
+  if (*format == StructuredFormat::Vts)
+    replace_file(path, [&](const std::string& temporary) { write_vts({temporary, path}, block); });
   else write_plot3d(path, block);
 }
 

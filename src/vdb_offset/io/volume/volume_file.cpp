@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <span>
-#include <unordered_set>
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/volume/volume_writers.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -77,15 +77,6 @@ void require_consistent(const std::string& path, const VolumeMesh& mesh) {
   require_fields(path, mesh.cell_fields, mesh.cell_count(), "cells");
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-
-std::string as_word(const std::string& name) {
-  std::string word = name;
-  for (char& c : word)
-    if (!is_letter(c) && !(c >= '0' && c <= '9') && c != '-' && c != '+' && c != '.') c = '_';
-  return word.empty() || !is_letter(word.front()) ? "_" + word : word;
-}
-
 }  // namespace
 
 std::optional<VolumeFormat> volume_format_of(std::string_view path) {
@@ -96,10 +87,6 @@ std::optional<VolumeFormat> volume_format_of(std::string_view path) {
   while (path.ends_with('/')) path.remove_suffix(1);
   if (path.substr(path.rfind('/') + 1) == "polyMesh") return VolumeFormat::Foam;
   return std::nullopt;
-}
-
-bool has_polyhedra(const VolumeMesh& mesh) {
-  return std::find(mesh.cell_types.begin(), mesh.cell_types.end(), CellType::Polyhedron) != mesh.cell_types.end();
 }
 
 void require_standard_cells(const std::string& path, const VolumeMesh& mesh, const char* ending) {
@@ -115,24 +102,10 @@ void require_standard_cells(const std::string& path, const VolumeMesh& mesh, con
                                        path, patch.name, patch.face(f).size()));
 }
 
-std::vector<std::string> distinct_words(std::span<const std::string> words, std::size_t longest) {
-  std::vector<std::string> distinct;
-  std::unordered_set<std::string> known;
-  for (const std::string& start : words) {
-    std::string word = start.substr(0, longest);
-    for (int n = 2; !known.insert(word).second; ++n) {
-      const std::string number = fmt::format("_{}", n);
-      word = start.substr(0, longest - number.size()) + number;
-    }
-    distinct.push_back(word);
-  }
-  return distinct;
-}
-
-std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest) {
-  std::vector<std::string> words;
-  for (const BoundaryPatch& patch : mesh.patches) words.push_back(as_word(patch.name));
-  return distinct_words(words, longest);
+void require_volume_writer(const std::string& path) {
+  const auto format = volume_format_of(path);
+  if (format == VolumeFormat::Cgns) require_cgns(path);
+  if (format == VolumeFormat::Vtu || structured_format_of(path) == StructuredFormat::Vts) require_vtk(path);
 }
 
 VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh) {
@@ -148,13 +121,13 @@ VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh) {
   VolumeWriteResult result;
   switch (*format) {
     case VolumeFormat::Vtu:
-      write_vtu(path, mesh);
+      replace_file(path, [&](const std::string& temporary) { write_vtu({temporary, path}, mesh); });
       break;
     case VolumeFormat::Msh:
       write_msh(path, mesh);
       break;
     case VolumeFormat::Cgns:
-      write_cgns(path, mesh);
+      replace_file(path, [&](const std::string& temporary) { write_cgns({temporary, path}, mesh); });
       break;
     case VolumeFormat::Su2:
       write_su2(path, mesh);

@@ -5,12 +5,12 @@
 // Stands in for the writers that use VTK where the library is built without it: writing is refused.
 namespace vdb_offset::io {
 
-void write_vtu(const std::string& path, VolumeMesh&) {
-  throw InvalidOption(path + ": expected another format than .vtu, as this build is without VTK (VDB_OFFSET_VTK)");
+void require_vtk(const std::string& path) {
+  throw InvalidOption(path + ": expected another format, as this build is without VTK (VDB_OFFSET_VTK)");
 }
 
-void write_vts(const std::string& path, const StructuredBlock&) {
-  throw InvalidOption(path + ": expected another format than .vts, as this build is without VTK (VDB_OFFSET_VTK)");
-}
+void write_vtu(const WrittenFile& file, VolumeMesh&) { require_vtk(file.path); }
+
+void write_vts(const WrittenFile& file, const StructuredBlock&) { require_vtk(file.path); }
 
 }  // namespace vdb_offset::io

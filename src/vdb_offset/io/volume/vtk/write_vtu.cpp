@@ -20,7 +20,7 @@
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/io/volume/volume_writers.h"
-#include "vdb_offset/io/volume/vtk_write.h"
+#include "vdb_offset/io/volume/vtk/vtk_write.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -119,7 +119,7 @@ void add_patches(vtkFieldData& data, const VolumeMesh& mesh) {
 
 }  // namespace
 
-void write_vtu(const std::string& path, VolumeMesh& mesh) {
+void write_vtu(const WrittenFile& file, VolumeMesh& mesh) {
   turn_prisms(mesh);
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->SetPoints(vtk_points(mesh.points));
@@ -133,7 +133,7 @@ void write_vtu(const std::string& path, VolumeMesh& mesh) {
   add_fields(*grid->GetCellData(), mesh.cell_fields);
   if (!mesh.patches.empty()) add_patches(*grid->GetFieldData(), mesh);
   const auto writer = vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New();
-  write_vtk(*writer, *grid, path);
+  write_vtk(*writer, *grid, file);
 }
 
 }  // namespace vdb_offset::io

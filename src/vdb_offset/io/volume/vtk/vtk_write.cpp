@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/volume/vtk_write.h"
+#include "vdb_offset/io/volume/vtk/vtk_write.h"
 
 #include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
@@ -10,7 +10,6 @@
 #include <vtkXMLWriter.h>
 
 #include "vdb_offset/error.h"
-#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -25,6 +24,8 @@ struct QuietVtk {
 };
 
 }  // namespace
+
+void require_vtk(const std::string&) {}
 
 vtkSmartPointer<vtkPoints> vtk_points(std::span<const Vec3d> points) {
   static_assert(sizeof(Vec3d) == 3 * sizeof(double));
@@ -45,7 +46,7 @@ void add_fields(vtkDataSetAttributes& attributes, const std::vector<VolumeField>
   }
 }
 
-void write_vtk(vtkXMLWriter& writer, vtkDataSet& data, const std::string& path) {
+void write_vtk(vtkXMLWriter& writer, vtkDataSet& data, const WrittenFile& file) {
   const QuietVtk quiet;
   writer.SetInputDataObject(&data);
   writer.SetDataModeToAppended();
@@ -54,11 +55,9 @@ void write_vtk(vtkXMLWriter& writer, vtkDataSet& data, const std::string& path) 
   writer.SetCompressorTypeToLZ4();
   // Larger blocks than VTK's 32 KiB, in which a compressor finds little. Not measured beside other sizes.
   writer.SetBlockSize(1 << 20);
-  replace_file(path, [&](const std::string& temporary) {
-    writer.SetFileName(temporary.c_str());
-    if (writer.Write() == 0 || writer.GetErrorCode() != vtkErrorCode::NoError)
-      throw WriteError(path + ": cannot be written: " + vtkErrorCode::GetStringFromErrorCode(writer.GetErrorCode()));
-  });
+  writer.SetFileName(file.temporary.c_str());
+  if (writer.Write() == 0 || writer.GetErrorCode() != vtkErrorCode::NoError)
+    throw WriteError(file.path + ": cannot be written: " + vtkErrorCode::GetStringFromErrorCode(writer.GetErrorCode()));
 }
 
 }  // namespace vdb_offset::io

@@ -11,7 +11,6 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/volume/volume_writers.h"
-#include "vdb_offset/output_files.h"
 #include "vdb_offset/volume/volume_faces.h"
 
 // https://cgns.github.io/standard/SIDS: elements are numbered from 1, through all sections.
@@ -23,8 +22,8 @@ constexpr std::size_t kLongestName = 32;
 
 class CgnsFile {
  public:
-  CgnsFile(const std::string& temporary, const std::string& path) : path_(path) {
-    require(cg_open(temporary.c_str(), CG_MODE_WRITE, &file_));
+  explicit CgnsFile(const WrittenFile& file) : path_(file.path) {
+    require(cg_open(file.temporary.c_str(), CG_MODE_WRITE, &file_));
     open_ = true;
   }
   CgnsFile(const CgnsFile&) = delete;
@@ -61,11 +60,11 @@ std::size_t most_bytes(const VolumeMesh& mesh) {
 }
 
 /// Checks that the disk has room. HDF5 cannot close a file that did not fit, and would crash when the program ends.
-void require_room(const std::string& temporary, const std::string& path, std::size_t bytes) {
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+void require_room(const WrittenFile& written, std::size_t bytes) {
+  const int file = ::open(written.temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int error = file < 0 ? errno : ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
   if (file >= 0) ::close(file);
-  if (error != 0) throw WriteError(path + ": cannot be written: " + std::strerror(error));
+  if (error != 0) throw WriteError(written.path + ": cannot be written: " + std::strerror(error));
 }
 
 constexpr CGNS_ENUMT(ElementType_t) kCgnsTypes[] = {CGNS_ENUMV(TETRA_4), CGNS_ENUMV(PYRA_5), CGNS_ENUMV(PENTA_6),
@@ -263,15 +262,15 @@ class CgnsZone {
 
 }  // namespace
 
-void write_cgns(const std::string& path, const VolumeMesh& mesh) {
-  replace_file(path, [&](const std::string& temporary) {
-    require_room(temporary, path, most_bytes(mesh));
-    CgnsFile file(temporary, path);
-    CgnsZone zone(file, mesh);
-    if (has_polyhedra(mesh)) zone.write_polyhedra();
-    else zone.write_by_types();
-    file.close();
-  });
+void require_cgns(const std::string&) {}
+
+void write_cgns(const WrittenFile& file, const VolumeMesh& mesh) {
+  require_room(file, most_bytes(mesh));
+  CgnsFile opened(file);
+  CgnsZone zone(opened, mesh);
+  if (has_polyhedra(mesh)) zone.write_polyhedra();
+  else zone.write_by_types();
+  opened.close();
 }
 
 }  // namespace vdb_offset::io

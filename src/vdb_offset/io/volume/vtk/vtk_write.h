@@ -4,9 +4,9 @@
 #include <vtkSmartPointer.h>
 
 #include <span>
-#include <string>
 #include <vector>
 
+#include "vdb_offset/io/volume/volume_writers.h"
 #include "vdb_offset/volume_mesh.h"
 
 class vtkDataSet;
@@ -32,7 +32,7 @@ vtkSmartPointer<vtkPoints> vtk_points(std::span<const Vec3d> points);
 /// Adds fields to a data set, as views.
 void add_fields(vtkDataSetAttributes& attributes, const std::vector<VolumeField>& fields);
 
-/// Writes `data` to `path` through replace_file(): raw appended, compressed. VTK prints nothing. \throw WriteError
-void write_vtk(vtkXMLWriter& writer, vtkDataSet& data, const std::string& path);
+/// Writes `data`: raw appended, compressed. VTK prints nothing. \throw WriteError
+void write_vtk(vtkXMLWriter& writer, vtkDataSet& data, const WrittenFile& file);
 
 }  // namespace vdb_offset::io
