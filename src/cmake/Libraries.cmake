@@ -130,6 +130,7 @@ write_basic_package_version_file(vdb_offset-config-version.cmake COMPATIBILITY S
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config-version.cmake src/cmake/Dependencies.cmake
         DESTINATION ${package_dir} COMPONENT development)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # For builds without CMake, if all packages lie where the system keeps them: pkg-config --cflags --libs vdb_offset.
 if(BUILD_SHARED_LIBS)

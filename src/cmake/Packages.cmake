@@ -8,10 +8,9 @@
 # What Debian asks for and a prefix has no use for (compressed pages, copyright, changelog) is added by
 # src/cmake/debian/stage.cmake.
 
-# The guides, which try things out with the scenes. The licence stays out of packages: Debian has its text already.
+# The guides, which try things out with the scenes.
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
 install(DIRECTORY docs scenes DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT license)
 
 # A shared library would belong into a package of its own, which nobody has asked for.
 if(BUILD_SHARED_LIBS OR NOT VDB_OFFSET_TOOLS OR NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")

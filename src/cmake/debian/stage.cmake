@@ -29,6 +29,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   configure_file(${here}/copyright.in ${documents}/copyright @ONLY)
   configure_file(${here}/changelog.in ${documents}/changelog.Debian @ONLY)
   compress(${documents}/changelog.Debian)
+  # Debian has the text of the licence already; copyright says where.
+  file(REMOVE ${documents}/LICENSE)
   if(EXISTS ${documents}/CHANGELOG.md)
     file(RENAME ${documents}/CHANGELOG.md ${documents}/changelog)
     compress(${documents}/changelog)
