@@ -13,6 +13,13 @@ endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${BUILD}/consumer/installed)
 file(RENAME ${BUILD}/consumer/installed ${prefix})
 
+foreach(file bin/vdb_offset bin/vdb_offset-batch share/man/man1/vdb_offset.1 share/bash-completion/completions/vdb_offset
+             share/zsh/site-functions/_vdb_offset share/fish/vendor_completions.d/vdb_offset.fish)
+  if(NOT EXISTS ${prefix}/${file})
+    message(FATAL_ERROR "expected ${file} to be installed")
+  endif()
+endforeach()
+
 # What is installed names no place of this machine.
 file(GLOB_RECURSE texts ${prefix}/*targets*.cmake ${prefix}/*config*.cmake)
 foreach(file IN LISTS texts)

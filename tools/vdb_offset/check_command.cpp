@@ -63,9 +63,10 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", distance_xy);
   line.option("--distance-z", "B", "The distance along z, with --distance-xy", distance_z);
   line.option("--distance-from", "FILE",
-              "Instead: a number for each vertex, as text or .npy, or ply:NAME, a vertex property of SOURCE",
+              "Instead: a number for each vertex, as text or .npy, or 'ply:NAME', a vertex property of SOURCE",
               request.distance_from);
-  line.repeated("--only", "PART", "The part that was offset: group=NAME, material=NAME or faces=FILE; repeatable",
+  line.repeated("--only", "PART",
+                "The part that was offset: 'group=NAME', 'material=NAME' or 'faces=FILE'; may be repeated",
                 [&made](const std::string& text) { made.only.push_back(parse_part(text)); });
   line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
               [&made](const std::string& text) { made.border = parse_border(text); });

@@ -42,6 +42,10 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   foreach(page IN LISTS pages)
     compress(${page})
   endforeach()
+  # Where Debian's zsh looks for what packages bring; site-functions is for what is installed by hand.
+  if(IS_DIRECTORY ${root}/share/zsh/site-functions)
+    file(RENAME ${root}/share/zsh/site-functions ${root}/share/zsh/vendor-completions)
+  endif()
   # Debian's Python packages lie in a folder that all versions of Python 3 share; a prefix such as /usr/local has one for
   # each version.
   file(GLOB modules ${root}/lib/python3.*/*-packages ${root}/lib/*/python3.*/*-packages)

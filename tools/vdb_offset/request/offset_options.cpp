@@ -162,14 +162,15 @@ void declare_parts(CommandLine& line, Draft& draft) {
   line.option("--border", "MODE",
               "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]",
               [&request](const std::string& text) { request.border = parse_border(text); });
-  line.repeated("--symmetry", "PLANE",
-                "A plane that what lies on it stays in: 'x=0', 'y=1.5', or 'A,B,C,D' for A x + B y + C z = D; may be "
-                "repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told",
-                [&request](const std::string& text) {
-                  request.symmetry_texts.push_back(text);
-                  if (text == "none") request.symmetry.find = false;
-                  else request.symmetry.planes.push_back(parse_plane(text));
-                });
+  line.repeated(
+      "--symmetry", "PLANE",
+      "A plane that what lies on it stays in: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
+      "be repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told",
+      [&request](const std::string& text) {
+        request.symmetry_texts.push_back(text);
+        if (text == "none") request.symmetry.find = false;
+        else request.symmetry.planes.push_back(parse_plane(text));
+      });
   line.repeated("--obstacle", "FILE",
                 "A mesh that the offset must not touch; distances are not measured from it; may be repeated",
                 [&request](const std::string& text) { request.obstacles.push_back(text); });
