@@ -2,7 +2,7 @@
 # The packages that the components need, for the library's own build and for those who link it.
 #
 # vdb_offset_find_dependencies(COMPONENT): by VDB_OFFSET_EXPRESSIONS, VDB_OFFSET_VTK and VDB_OFFSET_CGNS; a shared library
-# has its own with it.
+# has its own with it. core comes first; vdb_offset_wanted lists all the components that will be asked for.
 
 # A library without a package of its own as a target, so that no path of this machine goes into what is installed.
 function(vdb_offset_find_library target header library)
@@ -20,8 +20,8 @@ endfunction()
 
 macro(vdb_offset_find_dependencies component)
   if(${component} STREQUAL core)
-    # Before OpenVDB, whose module for TBB makes targets that VTK's own would trip over.
-    if(VDB_OFFSET_VTK AND NOT vdb_offset_shared)
+    # What volume needs: here, before OpenVDB, whose module for TBB makes targets that VTK's own would trip over.
+    if("volume" IN_LIST vdb_offset_wanted AND VDB_OFFSET_VTK AND NOT vdb_offset_shared)
       find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel CommonMisc IOXML ${vdb_offset_vtk_for_tests})
     endif()
     find_package(TBB 2021 REQUIRED)
