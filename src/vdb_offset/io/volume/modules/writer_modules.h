@@ -28,5 +28,7 @@ const void* open_module(const std::string& path, const std::string& name);
 
 }  // namespace vdb_offset::io
 
+// NOLINTBEGIN(readability-identifier-naming): each is found by its module's name
 extern "C" VDB_OFFSET_API const vdb_offset::io::VtkModule vdb_offset_vtk;
 extern "C" VDB_OFFSET_API const vdb_offset::io::CgnsModule vdb_offset_cgns;
+// NOLINTEND(readability-identifier-naming)
