@@ -11,20 +11,25 @@ namespace {
 
 static_assert(sizeof(Vec3d) == 3 * sizeof(double));
 
+}  // namespace
+
 std::string shape_of(const py::array& array) {
   std::string text = "(";
   for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
   return text + (array.ndim() == 1 ? ",)" : ")");
 }
 
-/// An object as an array, with numpy's own message where it is none.
+namespace {
+
+/// An object as an array. What cannot be one for its type or value is told in the library's way; other errors are
+/// NumPy's.
 py::array as_array(const py::handle& object, const char* what) {
-  py::array array = py::array::ensure(py::reinterpret_borrow<py::object>(object));
-  if (!array) {
-    PyErr_Clear();
+  try {
+    return py::array(py::reinterpret_borrow<py::object>(object));
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
     throw InvalidInput(std::string(what) + ": expected an array, got something else");
   }
-  return array;
 }
 
 bool is_integral(const py::array& array) {
@@ -34,14 +39,16 @@ bool is_integral(const py::array& array) {
 
 /// Integers as contiguous 32-bit ones: themselves, if they are.
 py::array_t<std::uint32_t> as_indices(const py::array& array, const char* what) {
-  if (!is_integral(array) && array.size() > 0)
+  // An empty list is an array of doubles.
+  const bool is_empty = array.size() == 0 && array.dtype().kind() == 'f';
+  if (!is_integral(array) && !is_empty)
     throw InvalidInput(std::string(what) + ": expected integers, got an array of " +
                        std::string(py::str(py::object(array.dtype()))));
   const bool is_contiguous = (array.flags() & py::array::c_style) != 0;
-  if (is_contiguous && array.itemsize() == 4 && array.dtype().kind() == 'u')
+  if (is_contiguous && py::isinstance<py::array_t<std::uint32_t>>(array))
     return py::reinterpret_borrow<py::array_t<std::uint32_t>>(array);
   // What is negative becomes a number above all vertices'.
-  const auto wide = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wide(array);
   py::array_t<std::uint32_t> indices(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
   std::transform(wide.data(), wide.data() + wide.size(), indices.mutable_data(), [](std::int64_t i) {
     return i < 0 || i >= std::int64_t{kNone} ? kNone : static_cast<std::uint32_t>(i);
@@ -51,13 +58,13 @@ py::array_t<std::uint32_t> as_indices(const py::array& array, const char* what) 
 
 }  // namespace
 
-MeshArrays::MeshArrays(const py::object& vertices, const py::object& faces) {
+MeshArrays::MeshArrays(const py::object& vertices, const py::object& faces, Corners corners) : keep_(corners) {
   const py::array given = as_array(vertices, "vertices");
   const bool are_numbers = is_integral(given) || given.dtype().kind() == 'f';
   if (!are_numbers || given.ndim() != 2 || given.shape(1) != 3)
     throw InvalidInput("vertices: expected numbers of the shape (n, 3), got " + shape_of(given) + " of " +
                        std::string(py::str(py::object(given.dtype()))));
-  const auto positions = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  const py::array_t<double, py::array::c_style | py::array::forcecast> positions(given);
   kept_positions_ = positions;
   positions_ = {reinterpret_cast<const Vec3d*>(positions.data()), static_cast<std::size_t>(positions.shape(0))};
   if (py::isinstance<py::tuple>(faces) && py::len(faces) == 2) {
@@ -73,6 +80,10 @@ void MeshArrays::take_corners(const py::handle& corners) {
   const py::array_t<std::uint32_t> indices = as_indices(as_array(corners, "faces"), "faces");
   kept_corners_ = indices;
   corners_ = {indices.data(), static_cast<std::size_t>(indices.size())};
+  if (keep_ == Corners::Copied) {
+    copied_corners_.assign(corners_.begin(), corners_.end());
+    corners_ = copied_corners_;
+  }
   const auto outside =
       std::find_if(corners_.begin(), corners_.end(), [&](std::uint32_t v) { return v >= positions_.size(); });
   if (outside != corners_.end())
@@ -92,7 +103,9 @@ void MeshArrays::take_rows(const py::array& faces) {
 }
 
 void MeshArrays::take_offsets(const py::handle& offsets) {
-  const py::array_t<std::uint32_t> begin = as_indices(as_array(offsets, "faces"), "faces");
+  const py::array given = as_array(offsets, "faces");
+  if (given.ndim() != 1) throw InvalidInput("faces: expected offsets of one dimension, got " + shape_of(given));
+  const py::array_t<std::uint32_t> begin = as_indices(given, "faces");
   face_begin_.assign(begin.data(), begin.data() + begin.size());
   if (face_begin_.empty() || face_begin_.front() != 0 || face_begin_.back() != corners_.size() ||
       !std::is_sorted(face_begin_.begin(), face_begin_.end()))
@@ -126,10 +139,11 @@ std::vector<std::uint8_t> marks_of(const py::object& selection, std::size_t face
     if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != faces)
       throw InvalidInput("only: expected a mark for each of " + std::to_string(faces) + " faces, got " +
                          shape_of(array));
-    const auto flags = py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(array);
+    const py::array_t<bool, py::array::c_style | py::array::forcecast> flags(array);
     std::copy_n(flags.data(), faces, marks.begin());
     return marks;
   }
+  if (array.ndim() != 1) throw InvalidInput("only: expected marks or numbers of one dimension, got " + shape_of(array));
   const py::array_t<std::uint32_t> numbers = as_indices(array, "only");
   for (py::ssize_t i = 0; i < numbers.size(); ++i) {
     const std::uint32_t f = numbers.data()[i];

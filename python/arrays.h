@@ -24,10 +24,14 @@ namespace py = pybind11;
 /// doubles, nor of corners that are contiguous 32-bit integers.
 class MeshArrays {
  public:
+  /// Whether corners are copied in any case: for work that trusts them to be the same to its end, as a callback or
+  /// another thread may change the array meanwhile.
+  enum class Corners : bool { Shared, Copied };
+
   /// \param vertices (n, 3) numbers
   /// \param faces (m, k) integers; or a pair of one-dimensional arrays: m + 1 offsets, and the corners that they divide
   /// \throw InvalidInput for arrays of other shapes, or numbers that no vertex has
-  MeshArrays(const py::object& vertices, const py::object& faces);
+  MeshArrays(const py::object& vertices, const py::object& faces, Corners corners = Corners::Shared);
 
   PolygonView view() const { return {positions_, corners_, face_begin_}; }
 
@@ -36,11 +40,16 @@ class MeshArrays {
   void take_rows(const py::array& faces);
   void take_offsets(const py::handle& offsets);
 
+  Corners keep_;
   py::object kept_positions_, kept_corners_;
+  std::vector<std::uint32_t> copied_corners_;
   std::span<const Vec3d> positions_;
   std::span<const std::uint32_t> corners_;
   std::vector<std::uint32_t> face_begin_;
 };
+
+/// A shape as Python writes it.
+std::string shape_of(const py::array& array);
 
 /// A vector as an array that owns it: nothing is copied.
 template <class Number>

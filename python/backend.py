@@ -31,7 +31,7 @@ def _metadata():
     with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as readme:
         text = readme.read()
     return (f"Metadata-Version: 2.1\nName: vdb-offset\nVersion: {_version()}\nSummary: Offsets meshes and keeps their "
-            "topology\nLicense: Apache-2.0\nRequires-Python: >=3.8\nRequires-Dist: numpy\n"
+            "topology\nLicense: Apache-2.0\nRequires-Python: >=3.8\nRequires-Dist: numpy<2\n"
             f"Description-Content-Type: text/markdown\n\n{text}")
 
 

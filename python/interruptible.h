@@ -7,6 +7,7 @@
 #include <chrono>
 #include <exception>
 #include <future>
+#include <thread>
 #include <utility>
 
 #include "vdb_offset/run.h"
@@ -15,12 +16,30 @@ namespace vdb_offset::python {
 
 namespace py = pybind11;
 
+/// The calls that are going on, which the interpreter waits for before it ends: a thread that asked for its lock later
+/// would be ended within the library.
+class Calls {
+ public:
+  /// Has all calls end as soon as they can, and waits for them. \pre the caller holds Python's lock
+  static void end() {
+    is_ending = true;
+    const py::gil_scoped_release released;
+    while (count > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+  static inline std::atomic<bool> is_ending = false;
+  static inline std::atomic<int> count = 0;
+};
+
 /// Runs the library's work while Python goes on: its lock is released, Ctrl-C ends the work, and so does a progress
-/// callback that returns False or raises an exception. \pre the caller holds Python's lock
+/// callback that returns what counts as false, but None, or raises an exception. \pre the caller holds Python's lock
 class Interruptible {
  public:
   /// \param callback called with the stage's name and the share of it that is done, or None
-  explicit Interruptible(py::object callback) : callback_(std::move(callback)) {}
+  explicit Interruptible(py::object callback) : callback_(std::move(callback)) { ++Calls::count; }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+  ~Interruptible() { --Calls::count; }
 
   /// What the library is to call.
   ProgressCallback progress() {
@@ -59,11 +78,15 @@ class Interruptible {
     is_cancelled_ = true;
   }
   bool tell(Stage stage, double share) {
-    if (is_cancelled_ || callback_.is_none()) return !is_cancelled_;
+    if (is_cancelled_ || Calls::is_ending) return false;
+    if (callback_.is_none()) return true;
     const py::gil_scoped_acquire held;
     try {
       const py::object answer = callback_(name(stage), share);
-      return !answer.is(py::bool_(false));
+      if (answer.is_none()) return true;
+      const int is_true = PyObject_IsTrue(answer.ptr());
+      if (is_true < 0) throw py::error_already_set();
+      return is_true == 1;
     } catch (py::error_already_set& error) {
       error.restore();
       keep_error();

@@ -99,6 +99,7 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
 py::dict fit_arrays(const py::object& vertices, const py::object& faces, const py::tuple& other, double clearance,
                     const py::dict& keywords, const py::object& progress) {
   const auto start = Clock::now();
+  if (other.size() != 2) throw InvalidOption("other: expected a pair of vertices and faces");
   const MeshArrays mesh(vertices, faces), near(other[0], other[1]);
   AskedOptions asked = asked_options(keywords, mesh);
   Interruptible run(progress);
@@ -191,7 +192,7 @@ py::object evaluate(Input input, const py::object& vertices, const py::object& f
 py::dict layer_arrays(Input input, const py::object& vertices, const py::object& faces, const py::list& heights,
                       const py::dict& keywords, const py::object& progress) {
   const auto start = Clock::now();
-  const MeshArrays mesh(vertices, faces);
+  const MeshArrays mesh(vertices, faces, MeshArrays::Corners::Copied);
   AskedOptions asked = asked_options(keywords, mesh);
   std::vector<Distances> wanted;
   for (const auto height : heights)
@@ -250,12 +251,13 @@ py::dict iso_arrays(const py::object& vertices, const py::object& faces, const p
 
 py::dict check_arrays(Input input, const py::object& vertices, const py::object& faces, const py::object& positions,
                       const py::object& distance, const py::dict& keywords) {
-  const MeshArrays mesh(vertices, faces);
+  const MeshArrays mesh(vertices, faces, MeshArrays::Corners::Copied);
   const MeshArrays moved(positions, faces);
   const AskedOptions asked = asked_options(keywords, mesh);
   CheckOptions options = check_options(asked, keywords);
   if (!distance.is_none())
     options.distance = distances_of(distance, mesh.view(), input == Input::Curves, asked.options);
+  else if (keywords.contains("distance_z")) throw InvalidOption("distance_z: expected a distance beside it, got none");
   if (options.distance) measure_by_axis(keywords, *options.distance, mesh.view(), options.metric);
   Interruptible run{py::none()};
   CheckResult result = run([&] {
@@ -312,6 +314,8 @@ void add_exceptions(py::module_& module) {
     };
     try {
       if (thrown) std::rethrow_exception(thrown);
+    } catch (const py::cast_error& e) {  // a number out of range, or a text that is none
+      raise(option, e);
     } catch (const InvalidExpression& e) {
       raise(expression, e);
     } catch (const InvalidOption& e) {
@@ -332,6 +336,7 @@ void add_exceptions(py::module_& module) {
 
 PYBIND11_MODULE(_core, module) {
   add_exceptions(module);
+  py::module_::import("atexit").attr("register")(py::cpp_function(&Calls::end));
   module.attr("version") = version();
   py::list states;
   for (std::size_t s = 0; s < kVertexStateCount; ++s) states.append(name(static_cast<VertexState>(s)));

@@ -13,6 +13,7 @@
 
 #include "vdb_offset/curves.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::python {
@@ -73,6 +74,11 @@ class Keywords {
   const py::dict& given_;
 };
 
+/// Whether it is True or False, Python's own or NumPy's, which are numbers to Python.
+bool is_truth(const py::object& given) {
+  return py::isinstance<py::bool_>(given) || py::type::of(given).attr("__name__").cast<std::string>() == "bool_";
+}
+
 WeldOptions weld_of(const py::object& given) {
   if (given.is_none()) return WeldOptions::automatic();
   WeldOptions weld;
@@ -84,7 +90,7 @@ WeldOptions weld_of(const py::object& given) {
       weld.enabled = false;
       return weld;
     }
-  } else if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given)) {
+  } else if (!is_truth(given) && PyNumber_Check(given.ptr()) == 1) {
     weld.tolerance = given.cast<double>();
     if (weld.tolerance >= 0) return weld;
   }
@@ -98,7 +104,7 @@ Precision precision_of(const py::object& given) {
     const auto word = given.cast<std::string>();
     if (word == "double") return {};
     if (word == "single") return {.kind = Precision::Kind::Single};
-  } else if (py::isinstance<py::int_>(given)) {
+  } else if (!is_truth(given) && PyIndex_Check(given.ptr()) == 1) {
     const auto digits = given.cast<long long>();
     if (digits >= 1 && digits <= 17) return {.kind = Precision::Kind::Digits, .digits = static_cast<int>(digits)};
   }
@@ -109,15 +115,16 @@ Precision precision_of(const py::object& given) {
 SymmetryOptions symmetry_of(const py::object& given) {
   SymmetryOptions symmetry;
   if (given.is_none()) return symmetry;
-  if (py::isinstance<py::bool_>(given)) {
-    symmetry.find = given.cast<bool>();
+  if (is_truth(given)) {
+    symmetry.find = PyObject_IsTrue(given.ptr()) == 1;
     return symmetry;
   }
   try {
     for (const auto& plane : given.cast<std::vector<std::array<double, 4>>>()) {
       const Vec3d normal(plane[0], plane[1], plane[2]);
       const double length = normal.length();
-      if (!(length > 0)) throw InvalidOption("symmetry: expected planes with a normal that is not 0");
+      if (!(length > 0) || !std::isfinite(length))
+        throw InvalidOption("symmetry: expected planes with a normal that is not 0");
       symmetry.planes.push_back({normal / length, plane[3] / length});
     }
   } catch (const py::cast_error&) {
@@ -136,6 +143,9 @@ void read_common(const Keywords& keywords, Options& options) {
   keywords.read("voxel_size", options.grid.voxel_size);
   keywords.read("voxels_per_distance", options.grid.voxels_per_distance);
   keywords.read("orient", options.orient, kOrients);
+  // What the command takes without being asked.
+  constexpr double kMemoryShare = 0.8;
+  options.max_memory = static_cast<std::size_t>(kMemoryShare * static_cast<double>(available_memory()));
   keywords.read("max_memory", options.max_memory);
   keywords.read("threads", options.threads);
   if (options.threads < 0) throw InvalidOption("threads: expected a whole number, 0 or more");
@@ -220,11 +230,14 @@ Distances distances_of(const py::object& distance, PolygonView mesh, bool curves
     return scene::distances_of(scene::parse_distance_or_expression(distance.cast<std::string>()), mesh, normals,
                                texture);
   }
-  const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(distance);
-  if (!numbers) {
-    PyErr_Clear();
-    throw InvalidOption("distance: expected a number, an array or a text, got " + Keywords::text_of(distance));
-  }
+  const auto numbers = [&]() -> py::array_t<double, py::array::c_style | py::array::forcecast> {
+    try {
+      return {distance};
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+      throw InvalidOption("distance: expected a number, an array or a text, got " + Keywords::text_of(distance));
+    }
+  }();
   if (numbers.ndim() == 0) {
     if (!std::isfinite(*numbers.data()))
       throw InvalidOption("distance: expected a finite number, got " + Keywords::text_of(distance));
@@ -232,7 +245,7 @@ Distances distances_of(const py::object& distance, PolygonView mesh, bool curves
   }
   if (numbers.ndim() != 1 || static_cast<std::size_t>(numbers.size()) != mesh.positions.size())
     throw InvalidInput("distance: expected one for each of " + std::to_string(mesh.positions.size()) +
-                       " vertices, got an array of " + std::to_string(numbers.size()));
+                       " vertices, got an array of the shape " + shape_of(numbers));
   return Distances(std::vector<double>(numbers.data(), numbers.data() + numbers.size()));
 }
 

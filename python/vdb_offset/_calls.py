@@ -13,7 +13,11 @@ Faces = Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]
 Progress = Optional[Callable[[str, float], Any]]
 
 
-@dataclass(frozen=True)
+# meshio's names of VTK's cell types.
+_MESHIO_NAMES = {5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
+
+
+@dataclass(frozen=True, eq=False)
 class _Vertices:
     """What became of the vertices. Each array has a value for each vertex of the input, in its order."""
 
@@ -31,13 +35,14 @@ class _Vertices:
 
     @property
     def reached(self) -> float:
-        """The share of the vertices in use that have reached their distance, or their miter; 1 if there are none."""
+        """The share of the vertices in use that have reached their distance, or the end of their miter, cut or not; 1 if
+        there are none. As the command counts them."""
         counts = np.bincount(self.states, minlength=len(_core.states))
         used = counts.sum() - counts[_core.states.index("unused")]
-        return 1.0 if used == 0 else float(counts[[_core.states.index(s) for s in ("reached", "mitred")]].sum() / used)
+        return 1.0 if used == 0 else float(counts[[_core.states.index(s) for s in ("reached", "mitred", "cut")]].sum() / used)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Offset(_Vertices):
     """An offset: where each vertex of the input is."""
 
@@ -49,7 +54,7 @@ class Offset(_Vertices):
     paths: Optional[List[np.ndarray]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Refined(Offset):
     """An offset whose faces were split until they are proven to be at the distance. The vertices of the input come
     first, in their order, then the ones that were added; all arrays have a value for each of both."""
@@ -64,7 +69,7 @@ class Refined(Offset):
     added: Mapping[str, np.ndarray]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shell(_Vertices):
     """A solid between two skins, and rims along open borders."""
 
@@ -79,7 +84,7 @@ class Shell(_Vertices):
     source_faces: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Layers(_Vertices):
     """Layers of cells, as VTK names their parts: pyvista.UnstructuredGrid(cells, cell_types, points)."""
 
@@ -97,12 +102,20 @@ class Layers(_Vertices):
     #: (n,) of each vertex of the input the share of its heights that it keeps.
     share: np.ndarray
 
+    def numbers_by_type(self) -> Dict[str, np.ndarray]:
+        """The numbers of the cells of each type, by meshio's names of the types: indices into `cell_data`."""
+        numbers = {name: np.flatnonzero(self.cell_types == number) for number, name in _MESHIO_NAMES.items()}
+        return {name: some for name, some in numbers.items() if len(some)}
+
     def by_type(self) -> Dict[str, np.ndarray]:
-        """Cells by meshio's names of their types, each (c, k) points. Polyhedra have no such array.
+        """Cells by meshio's names of their types, each (c, k) points in meshio's order.
 
         `meshio.Mesh(layers.points, list(layers.by_type().items()))` is a mesh of it.
+
+        :raises ValueError: if there are polyhedra, which have no such array
         """
-        names = {5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
+        if (self.cell_types == 42).any():
+            raise ValueError("by_type: expected cells of up to 8 corners, got polyhedra")
         # Where each cell begins: its length tells where the next one does.
         begins = np.empty(len(self.cell_types), np.int64)
         at = 0
@@ -110,15 +123,16 @@ class Layers(_Vertices):
             begins[i] = at
             at += self.cells[at] + 1
         cells = {}
-        for number, name in names.items():
-            some = begins[self.cell_types == number]
-            if len(some):
-                size = int(self.cells[some[0]])
-                cells[name] = self.cells[some[:, None] + np.arange(1, size + 1)]
+        for name, numbers in self.numbers_by_type().items():
+            first = begins[numbers]
+            size = int(self.cells[first[0]])
+            cells[name] = self.cells[first[:, None] + np.arange(1, size + 1)]
+        if "wedge" in cells:  # VTK has prisms the other way round
+            cells["wedge"] = cells["wedge"][:, [0, 2, 1, 3, 5, 4]]
         return cells
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Iso:
     """An iso-surface: a new mesh, closed and manifold."""
 
@@ -131,7 +145,7 @@ class Iso:
     statistics: Mapping[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Check(_Vertices):
     """What is found of an offset."""
 
@@ -167,7 +181,7 @@ def offset_several(
     voxels_per_distance: Optional[float] = None,
     paths: bool = False,
     threads: int = 0,
-    max_memory: int = 0,
+    max_memory: Optional[int] = None,
     progress: Progress = None,
 ) -> List[Offset]:
     """Offsets a mesh by each of several distances, for little more than one.
@@ -193,7 +207,7 @@ def offset_several(
     :param voxels_per_distance: how many voxels there are to a distance
     :param paths: whether the result has the vertices' ways
     :param threads: 0: as many as the machine has
-    :param max_memory: bytes for the run, 0: no limit
+    :param max_memory: bytes for the run, 0: no limit; None: 80 % of what is free
     :param progress: see the module
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
@@ -232,6 +246,10 @@ def _options(function: str, options: Dict[str, Any], without: Sequence[str] = ()
     return keywords, options.get("progress")
 
 
+# What plane curves have no use for.
+_NOT_OF_CURVES = ("only", "obstacles", "clearance", "symmetry", "border", "orient", "solver", "weld", "distance_z")
+
+
 def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **options: Any) -> Offset:
     """Offsets plane curves within their plane, to the right of their direction: outward of one that runs ccw.
 
@@ -246,7 +264,7 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
     >>> np.ptp(kerf.positions, axis=0).round(9).tolist()
     [90.0, 90.0, 0.0]
     """
-    keywords, progress = _options("offset_curves", options, ["distance_z"])
+    keywords, progress = _options("offset_curves", options, _NOT_OF_CURVES)
     return Offset(**_core.offset_curves(points, curves, [distance], keywords, progress)[0])
 
 
@@ -266,6 +284,8 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
     >>> len(refined.positions) > 5, refined.statistics["certified"]["certified"] > 0.999
     (True, True)
     """
+    if max_faces < 0:
+        raise _core.InvalidOption(f"max_faces: expected a whole number, 0 or more, got {max_faces!r}")
     keywords, progress = _options("offset_to_tolerance", options, ["paths", "distance_z"])
     return Refined(**_core.offset_to_tolerance(vertices, faces, distance, tolerance, max_faces, keywords, progress))
 
@@ -279,7 +299,7 @@ def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], cle
     :return: `distances` are those that were needed, and `statistics["fit"]` tells the gap that is left
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
-    keywords, progress = _options("fit", options, ["paths", "obstacles", "clearance", "distance_z"])
+    keywords, progress = _options("fit", options, ["paths", "obstacles", "clearance", "distance_z", "corners", "miter_limit", "collision"])
     return Offset(**_core.fit(vertices, faces, tuple(other), clearance, keywords, progress))
 
 
@@ -309,6 +329,8 @@ def _heights(evaluate: Callable[..., Any], given: Sequence[Any], heights: Any, c
         return list(heights)
     if count is None or (first is None) == (total is None):
         raise TypeError("expected heights, or a count with the first one or the total")
+    if not (growth > 0 and np.isfinite(growth)):
+        raise _core.InvalidOption(f"growth: expected a number above 0, got {growth!r}")
     base = evaluate(*given, first if first is not None else total, keywords)
     factors, step = [], 1.0
     for _ in range(count):
@@ -319,7 +341,7 @@ def _heights(evaluate: Callable[..., Any], given: Sequence[Any], heights: Any, c
 
 def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
            count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-           growth: float = 1, **options: Any) -> Layers:
+           growth: float = 1.2, **options: Any) -> Layers:
     """Grows layers of cells on a mesh, for a flow solver: prisms, hexahedra or polyhedra over its faces.
 
     :param heights: distances of the layers from the wall, rising, all to one side; or
@@ -336,16 +358,16 @@ def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distan
     >>> grown.points[:, 2].reshape(4, 4)[:, 0].round(9).tolist(), grown.cell_types.tolist()
     ([0.0, 0.1, 0.3, 0.7], [12, 12, 12])
     """
-    keywords, progress = _options("layers", options, ["paths", "distance_z"])
+    keywords, progress = _options("layers", options, ["paths", "collision", "distance_z"])
     wanted = _heights(_core.evaluate, (vertices, faces), heights, count, first, total, growth, keywords)
     return Layers(**_core.layers(vertices, faces, wanted, keywords, progress))
 
 
 def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *,
                  count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-                 growth: float = 1, **options: Any) -> Layers:
+                 growth: float = 1.2, **options: Any) -> Layers:
     """Grows layers of quadrilaterals on plane curves; see `layers()` and `offset_curves()`."""
-    keywords, progress = _options("curve_layers", options, ["paths", "distance_z"])
+    keywords, progress = _options("curve_layers", options, ["paths", "collision", *_NOT_OF_CURVES])
     wanted = _heights(_core.evaluate_curves, (points, curves), heights, count, first, total, growth, keywords)
     return Layers(**_core.curve_layers(points, curves, wanted, keywords, progress))
 
@@ -364,7 +386,7 @@ def iso_surface(
     voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None,
     threads: int = 0,
-    max_memory: int = 0,
+    max_memory: Optional[int] = None,
     progress: Progress = None,
 ) -> Iso:
     """Makes the surface at a distance from a mesh: a new mesh, closed and manifold, whatever the input is.
@@ -388,11 +410,11 @@ _CHECK_KEYWORDS = ("distance_z", "corners", "miter_limit", "only", "border", "ob
                    "precision", "threads")
 
 
-def _check_options(function: str, options: Dict[str, Any]) -> Dict[str, Any]:
-    without = [name for name in offset_several.__kwdefaults__ if name not in _CHECK_KEYWORDS]
+def _check_options(function: str, options: Dict[str, Any], without: Sequence[str] = ()) -> Dict[str, Any]:
+    """All options of an offset may be given; those that a check has no use for do not count."""
     tolerance = options.pop("tolerance", None)
     keywords, _ = _options(function, options, without)
-    return {**keywords, "tolerance": tolerance}
+    return _given({**{name: keywords[name] for name in _CHECK_KEYWORDS if name in keywords}, "tolerance": tolerance})
 
 
 def check(vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: Optional[Distance] = None,
@@ -411,4 +433,4 @@ def check(vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: O
 def check_curves(points: np.ndarray, curves: Faces, positions: np.ndarray, distance: Optional[Distance] = None,
                  **options: Any) -> Check:
     """Measures positions as an offset of plane curves; see `check()` and `offset_curves()`."""
-    return Check(**_core.check_curves(points, curves, positions, distance, _check_options("check_curves", options)))
+    return Check(**_core.check_curves(points, curves, positions, distance, _check_options("check_curves", options, _NOT_OF_CURVES)))

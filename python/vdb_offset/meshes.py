@@ -15,11 +15,15 @@ def _from_counts(cells: np.ndarray) -> Faces:
     if cells.size == 0:
         return np.zeros((0, 3), np.uint32)
     size = int(cells[0])
+    if size < 0:
+        raise ValueError(f"faces: expected numbers of corners, got {size}")
     if cells.size % (size + 1) == 0 and (cells.reshape(-1, size + 1)[:, 0] == size).all():
         return cells.reshape(-1, size + 1)[:, 1:]
     sizes, at = [], 0
     while at < cells.size:
         sizes.append(int(cells[at]))
+        if sizes[-1] < 0:
+            raise ValueError(f"faces: expected numbers of corners, got {sizes[-1]}")
         at += sizes[-1] + 1
     offsets = np.concatenate([[0], np.cumsum(sizes)])
     is_corner = np.ones(cells.size, bool)
@@ -35,7 +39,7 @@ def _from_blocks(blocks: Any) -> Faces:
     if len(data) == 1:
         return data[0]
     sizes = np.concatenate([np.full(len(block), block.shape[1]) for block in data])
-    return np.concatenate([[0], np.cumsum(sizes)]), np.concatenate([block.ravel() for block in data])
+    return np.concatenate([[0], np.cumsum(sizes)]), np.concatenate([block.ravel().astype(np.int64) for block in data])
 
 
 def arrays_of(mesh: Any) -> Tuple[np.ndarray, Faces]:
@@ -43,10 +47,10 @@ def arrays_of(mesh: Any) -> Tuple[np.ndarray, Faces]:
 
     :raises TypeError: for anything else
     """
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # trimesh, whose triangles are positions
+        return np.asarray(mesh.vertices), np.asarray(mesh.faces)
     if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):  # Open3D
         return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # trimesh
-        return np.asarray(mesh.vertices), np.asarray(mesh.faces)
     if hasattr(mesh, "points") and hasattr(mesh, "cells") and isinstance(mesh.cells, list):  # meshio
         return np.asarray(mesh.points), _from_blocks(mesh.cells)
     if hasattr(mesh, "points") and hasattr(mesh, "faces"):  # PyVista
@@ -55,6 +59,8 @@ def arrays_of(mesh: Any) -> Tuple[np.ndarray, Faces]:
         from vtkmodules.util.numpy_support import vtk_to_numpy
 
         polys = mesh.GetPolys()
+        if mesh.GetPoints() is None:
+            return np.zeros((0, 3)), np.zeros((0, 3), np.uint32)
         return vtk_to_numpy(mesh.GetPoints().GetData()), (vtk_to_numpy(polys.GetOffsetsArray()),
                                                           vtk_to_numpy(polys.GetConnectivityArray()))
     raise TypeError(f"expected a mesh of trimesh, PyVista, VTK, meshio or Open3D, got {type(mesh).__name__}")
@@ -77,10 +83,10 @@ def with_positions(mesh: Any, positions: np.ndarray) -> Any:
         moved.SetPoints(points)
         return moved
     moved = mesh.copy() if hasattr(mesh, "copy") else copy.deepcopy(mesh)
-    if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):  # Open3D
-        moved.vertices = type(mesh.vertices)(positions)
-    elif hasattr(mesh, "vertices"):
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # trimesh
         moved.vertices = positions
+    elif hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):  # Open3D
+        moved.vertices = type(mesh.vertices)(positions)
     elif hasattr(mesh, "points"):
         moved.points = positions
     else:

@@ -13,6 +13,10 @@ class Trimesh:
     def __init__(self, vertices, faces, process=True):
         self.vertices, self.faces, self.metadata = np.array(vertices, float), np.array(faces), {"name": "part"}
 
+    @property
+    def triangles(self):
+        return self.vertices[self.faces]
+
     def copy(self):
         return copy.deepcopy(self)
 
