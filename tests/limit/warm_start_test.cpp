@@ -129,7 +129,7 @@ TEST_CASE("warm start: states are honest where much is held back and eased", "[w
 }
 
 TEST_CASE("warm start: uneven offsets, parts in front of others, and skins off their source follow",
-          "[warm_start][several]") {
+          "[warm_start][several][long]") {
   std::vector<double> farther, nearer;
   const Polygons bumpy = scene::bumpy_sphere(1, 0.6, 2.5, 5, 4);
   for (const Vec3d& p : bumpy.positions) {

@@ -198,7 +198,7 @@ TEST_CASE("tolerance: a cube with round corners, against brute force", "[toleran
   }
 }
 
-TEST_CASE("tolerance: balls, rings and bumps at 1 % of the distance", "[tolerance]") {
+TEST_CASE("tolerance: balls, rings and bumps at 1 % of the distance", "[tolerance][long]") {
   const std::vector<std::pair<const char*, Polygons>> kMeshes = {{"ball", scene::icosphere(1, 2)},
                                                                  {"ring", triangles_of(scene::torus(1, 0.4, 32, 16))},
                                                                  {"bumps", scene::bumpy_sphere(1, 0.1, 1, 3, 3)}};
