@@ -81,7 +81,7 @@ Polygons opened(const Polygons& whole, std::size_t axis, bool at_both, bool turn
 }  // namespace
 
 TEST_CASE("command: layers that end on the wrong side of what is open are told of the option that turns them",
-          "[command][layers]") {
+          "[command][layers][long]") {
   const ShellCommand shell;
   const std::string told = "if faces point the wrong way, ";
   const auto coverage = [&] {

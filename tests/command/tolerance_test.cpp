@@ -199,7 +199,8 @@ TEST_CASE("tolerance: a length, distances of each vertex, parts, scenes, and a d
   CHECK(shell.slurp(shell.file("one.obj")) == shell.slurp(shell.file("two.obj")));
 }
 
-TEST_CASE("tolerance: 3 where --max-faces stops it, or --strict asks for what is not there", "[command][tolerance]") {
+TEST_CASE("tolerance: 3 where --max-faces stops it, or --strict asks for what is not there",
+          "[command][tolerance][long]") {
   const ShellCommand shell;
   io::write_mesh(shell.file("box.obj"), scene::box(2 * kHalf, 4, false).view());
   const Run run = shell(
