@@ -62,8 +62,10 @@ struct VDB_OFFSET_API OffsetOptions {
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
   Corners corners = Corners::Round;
-  double miter_limit = 4;  ///< The longest that a miter may be, in distances, >= 1; one that would be longer is cut.
-  Precision precision;     ///< What the file that the result is for keeps; validity is checked on that.
+  /// The longest that a miter may be, in distances, >= 1; one that would be longer is cut, unless its end is at the
+  /// distance itself.
+  double miter_limit = 4;
+  Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
   WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
   int threads = 0;  ///< 0: as many as the machine has.
