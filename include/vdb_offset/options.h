@@ -75,6 +75,7 @@ struct VDB_OFFSET_API OffsetOptions {
   bool keep_field = false;    ///< Hand the distance field out with the result.
   bool keep_paths = false;    ///< Hand the vertices' paths out with the result; not for layers.
   ProgressCallback progress;  ///< See run.h; may cancel.
+  ReserveCallback reserve;    ///< See run.h; may wait, and cancel.
 };
 
 }  // namespace vdb_offset

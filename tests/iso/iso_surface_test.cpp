@@ -406,6 +406,9 @@ TEST_CASE("capture: what cannot be is refused", "[capture]") {
   options.grid.voxel_size = 0.05;
   options.progress = [](Stage stage, double) { return stage != Stage::Capture; };
   CHECK_THROWS_AS(make_iso_surface(box.view(), options), Cancelled);
+  options.progress = {};
+  options.reserve = [&](std::size_t bytes) { return bytes != plan_iso_surface(box.view(), options).plan.bytes; };
+  CHECK_THROWS_AS(make_iso_surface(box.view(), options), Cancelled);
 }
 
 TEST_CASE("capture: a voxel coarser than the distance tells the two sides apart", "[capture]") {

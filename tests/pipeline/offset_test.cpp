@@ -397,6 +397,28 @@ TEST_CASE("offset: progress runs through the stages and can cancel each", "[offs
   }
 }
 
+TEST_CASE("offset: memory is asked for once, as the plan has it, before the field is made", "[offset]") {
+  const Polygons mesh = scene::bumpy_sphere(1, 0.3, 1.5, 2, 4);
+  OffsetOptions options = by(0.1);
+  std::vector<std::size_t> asked;
+  bool begun = false;
+  options.progress = [&](Stage, double) {
+    begun = true;
+    return true;
+  };
+  options.reserve = [&](std::size_t bytes) {
+    CHECK_FALSE(begun);
+    asked.push_back(bytes);
+    return true;
+  };
+  const std::size_t planned = plan_offset(mesh.view(), options).plan.bytes;
+  CHECK(asked.empty());
+  offset(mesh.view(), options);
+  CHECK(asked == std::vector<std::size_t>{planned});
+  options.reserve = [](std::size_t) { return false; };
+  CHECK_THROWS_AS(offset(mesh.view(), options), Cancelled);
+}
+
 TEST_CASE("offset: options that cannot be used are told", "[offset]") {
   const Polygons mesh = scene::icosphere(1, 1);
   CHECK_THROWS_AS(offset(mesh.view(), by(std::nan(""))), InvalidInput);

@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 
+#include "batch/batch_command.h"
+#include "batch/gate.h"
 #include "check_command.h"
 #include "iso_command.h"
 #include "job.h"
@@ -46,6 +48,7 @@ ExitCode run(const Job& job, const Timing& timing, ProgressBar& bar) {
 
 ExitCode run(const Request& request) {
   const auto start = Clock::now();
+  const bool of_batch = belongs_to_batch();
   tell_of_lost_input(request.input);
   std::optional<tbb::global_control> threads;  // limits reading and writing as well
   if (request.threads > 0)
@@ -63,6 +66,7 @@ ExitCode run(const Request& request) {
     bar.show(stage, share);
     return true;
   };
+  if (of_batch) job.options.reserve = wait_for_memory;
   return run(job, {start, seconds_since(start)}, bar);
 }
 
@@ -73,6 +77,7 @@ int fail(ExitCode code, const char* message) {
 
 int run(int argc, char** argv) {
   if (is_check(argc, argv)) return run_check(argc, argv);
+  if (is_batch(argc, argv)) return run_batch(argc, argv);
   const auto request = parse_command_line(argc, argv);
   return request ? run(*request) : kDone;
 }

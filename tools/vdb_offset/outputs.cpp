@@ -19,17 +19,6 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// Where the ending of a name begins. `.gz` and `.zst` belong to the ending before them.
-std::size_t ending_of(const std::string& name) {
-  const std::size_t folder = name.rfind('/') == std::string::npos ? 0 : name.rfind('/') + 1;
-  std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos || dot <= folder) return name.size();
-  const std::string last = name.substr(dot);
-  if (last != ".gz" && last != ".zst") return dot;
-  const std::size_t before = name.rfind('.', dot - 1);
-  return before == std::string::npos || before <= folder ? dot : before;
-}
-
 /// A distance as given, without characters that file names may not have.
 std::string as_name(std::string distance) {
   for (char& c : distance)
@@ -157,6 +146,16 @@ void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>&
 }  // namespace
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::size_t ending_of(const std::string& name) {
+  const std::size_t folder = name.rfind('/') == std::string::npos ? 0 : name.rfind('/') + 1;
+  std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot <= folder) return name.size();
+  const std::string last = name.substr(dot);
+  if (last != ".gz" && last != ".zst") return dot;
+  const std::size_t before = name.rfind('.', dot - 1);
+  return before == std::string::npos || before <= folder ? dot : before;
+}
 
 std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances) {
   std::vector<std::string> texts;

@@ -24,6 +24,9 @@ struct Timing {
   double read_seconds;
 };
 
+/// Where the ending of a name begins. `.gz` and `.zst` belong to the ending before them.
+std::size_t ending_of(const std::string& name);
+
 /// One for each distance: `{i}` in a name becomes its number, from 001 on, `{d}` the distance as given; without either
 /// the number is put behind the name, if there are several.
 std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances);

@@ -64,18 +64,6 @@ void add_source_of(std::vector<RunFile>& files, const std::string& option, const
   if (!request.from.starts_with("ply:")) add(files, option, request.from);
 }
 
-std::vector<RunFile> read_by(const Request& request) {
-  std::vector<RunFile> files = surroundings_of(request);
-  files.insert(files.begin(), {"INPUT", request.input});
-  add(files, "--fit", request.fit);
-  if (request.inner) add_source_of(files, "--inner", *request.inner);
-  if (!request.layers) return files;
-  add(files, "--heights", request.layers->heights);
-  if (request.layers->first) add_source_of(files, "--first-height", *request.layers->first);
-  if (request.layers->total) add_source_of(files, "--total-thickness", *request.layers->total);
-  return files;
-}
-
 /// The files that are written with --layers. `layers` is the number of surfaces, if the output is no volume mesh.
 std::vector<RunFile> written_with_layers(const Request& request, std::size_t layers) {
   std::vector<RunFile> files;
@@ -132,17 +120,33 @@ void require_apart(std::span<const RunFile> read, std::span<const RunFile> writt
 void require_apart(const Request& request, const std::string& mesh_of_scene) {
   if (!request.fit.empty() && identity_of(request.fit, STDIN_FILENO) == identity_of(request.input, STDIN_FILENO))
     throw UsageError("--fit: expected a file other than the input, got " + shown(request.fit));
-  std::vector<RunFile> read = read_by(request);
+  std::vector<RunFile> read = files_read(request);
   add(read, "the scene's file", mesh_of_scene);
-  require_apart(read, request.layers ? written_with_layers(request, request.layers->count)
-                                     : written_by(request, destinations(request, request.distances)));
+  require_apart(read, files_written(request));
 }
 
 void require_apart(const Job& job) {
-  std::vector<RunFile> read = read_by(job.request);
+  std::vector<RunFile> read = files_read(job.request);
   for (const std::string& path : job.files_of_heights) add(read, "--heights", path);
   require_apart(read, job.request.layers ? written_with_layers(job.request, job.distances.size())
                                          : written_by(job.request, job.outputs));
+}
+
+std::vector<RunFile> files_read(const Request& request) {
+  std::vector<RunFile> files = surroundings_of(request);
+  files.insert(files.begin(), {"INPUT", request.input});
+  add(files, "--fit", request.fit);
+  if (request.inner) add_source_of(files, "--inner", *request.inner);
+  if (!request.layers) return files;
+  add(files, "--heights", request.layers->heights);
+  if (request.layers->first) add_source_of(files, "--first-height", *request.layers->first);
+  if (request.layers->total) add_source_of(files, "--total-thickness", *request.layers->total);
+  return files;
+}
+
+std::vector<RunFile> files_written(const Request& request) {
+  return request.layers ? written_with_layers(request, request.layers->count)
+                        : written_by(request, destinations(request, request.distances));
 }
 
 bool is_standard_output(const std::string& path) {

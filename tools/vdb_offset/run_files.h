@@ -30,6 +30,11 @@ void require_apart(const Job& job);
 /// Whether a path is standard output, as `-` and /dev/stdout are.
 bool is_standard_output(const std::string& path);
 
+/// The files that a request names to be read, INPUT first, and to be written, as far as they are known without the
+/// input.
+std::vector<RunFile> files_read(const Request& request);
+std::vector<RunFile> files_written(const Request& request);
+
 /// The files that options name which `check` has as well.
 std::vector<RunFile> surroundings_of(const Request& request);
 

@@ -71,4 +71,8 @@ void require_memory(std::size_t bytes, const std::string& where) {
                                 where, mib(limit), mib(bytes), mib(held)));
 }
 
+void reserve_memory(const ReserveCallback& callback, std::size_t bytes) {
+  if (callback && !callback(bytes)) throw Cancelled();
+}
+
 }  // namespace vdb_offset

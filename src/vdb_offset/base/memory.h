@@ -18,6 +18,9 @@ bool fits_memory(std::size_t bytes);
 /// the message.
 void require_memory(std::size_t bytes, const std::string& where);
 
+/// Calls the callback, if there is one. \throw Cancelled if it says so
+void reserve_memory(const ReserveCallback& callback, std::size_t bytes);
+
 /// Appends to a list of unknown final length. \throw OutOfBudget before it passes the limit
 template <class T>
 void append_within_limit(std::vector<T>& list, const T& item, const char* where) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/memory.h"
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/direction_field.h"
@@ -65,6 +66,7 @@ PreparedCurves::PreparedCurves(CurvesView curves, const OffsetOptions& options, 
       ribbon_(std::move(plan.ribbon)) {
   const double voxel_size = plan.grid.voxel_size;
   VDB_OFFSET_ASSERT(voxel_size > 0);
+  reserve_memory(options.reserve, plan.grid.bytes);
   {
     const StageTimer timer(statistics_.seconds, Stage::Rasterise);
     to_local_frame(ribbon_, voxel_size);

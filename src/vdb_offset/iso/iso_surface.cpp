@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "vdb_offset/base/memory.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/base/stage_timer.h"
@@ -51,6 +52,7 @@ class IsoSurfaceMaker {
 
   IsoResult run() {
     prepare();
+    reserve_memory(options_.reserve, result_.statistics.plan.bytes);
     Surface written;
     bool valid = false;
     for (std::size_t attempt = 0; attempt < kLattices && !valid; ++attempt) {

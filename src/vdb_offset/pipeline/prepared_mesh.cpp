@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/memory.h"
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/grid_plan.h"
@@ -85,6 +86,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     }
   }
   statistics_.plan = plan;
+  if (moves) reserve_memory(options.reserve, plan.bytes);
   if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
   if (moves) query_.emplace(parts_.moving_part);

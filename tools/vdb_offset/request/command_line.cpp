@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "messages.h"
+#include "request/config_file.h"
 #include "request/option_values.h"
 #include "request/request.h"
 
@@ -50,6 +51,7 @@ void CommandLine::option(const char* names, const char* type, const char* about,
   Value& value = values_.emplace_back();
   value.take = std::move(take);
   value.option = app_->add_option(names, value.text, about)->type_name(type);
+  place(value.option);
 }
 
 void CommandLine::option(const char* names, const char* type, const char* about, std::string& text) {
@@ -61,13 +63,31 @@ void CommandLine::repeated(const char* names, const char* type, const char* abou
   value.take = std::move(take);
   value.option =
       app_->add_option(names, value.texts, about)->type_name(type)->expected(1)->allow_extra_args(false)->take_all();
+  place(value.option);
 }
 
-void CommandLine::flag(const char* names, const char* about, bool& is_set) { app_->add_flag(names, is_set, about); }
+void CommandLine::flag(const char* names, const char* about, bool& is_set) {
+  place(app_->add_flag(names, is_set, about));
+}
 
-bool CommandLine::parse(int argc, const char* const* argv) {
+void CommandLine::place(CLI::Option* option) {
+  if (!hidden_) return;
+  option->group("");
+  hidden_options_.push_back(option);
+}
+
+void CommandLine::add_config() {
+  app_->add_option("--config", config_,
+                   "Take options from FILE, too, in TOML by their long names, as in 'distance = \"1%\"' and 'strict = "
+                   "true'; what is given here counts instead")
+      ->type_name("FILE");
+}
+
+/// False if the line asked only for help or the version, which are then printed.
+bool CommandLine::understand(std::vector<std::string> reversed) {
   try {
-    app_->parse(reversed_arguments(argc, argv));
+    app_->parse(std::move(reversed));
+    return true;
   } catch (const CLI::Success& asked) {
     std::ostringstream text;
     app_->exit(asked, text, text);
@@ -75,6 +95,35 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     return false;
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} ({} lists the options)", error.what(), help_));
+  }
+}
+
+std::vector<std::string> CommandLine::words_of_config() const {
+  std::vector<std::string> words;
+  for (const ConfigEntry& entry : read_config(config_)) {
+    const CLI::Option* const option = app_->get_option_no_throw("--" + entry.name);
+    const bool is_known = option && option->get_positional() == false && entry.name != "config" &&
+                          entry.name != "help" && entry.name != "version";
+    require(is_known, fmt::format("{}: expected the long name of an option, got '{}'", entry.place, entry.name));
+    const bool is_flag = option->get_expected_max() == 0;
+    require(is_flag == entry.is_switch, fmt::format("{}: {}: expected {}", entry.place, entry.name,
+                                                    is_flag ? "true or false" : "a value, not true or false"));
+    if (option->count() > 0) continue;
+    if (entry.is_on) words.push_back("--" + entry.name);
+    for (const std::string& value : entry.values) words.push_back("--" + entry.name + "=" + value);
+  }
+  return words;
+}
+
+bool CommandLine::parse(int argc, const char* const* argv) {
+  std::vector<std::string> reversed = reversed_arguments(argc, argv);
+  if (!understand(reversed)) return false;
+  if (app_->get_option_no_throw("--config") && app_->count("--config") > 0) {
+    require_values();
+    const std::vector<std::string> more = words_of_config();
+    reversed.insert(reversed.begin(), more.rbegin(), more.rend());
+    for (Value& value : values_) value.texts.clear();
+    if (!understand(std::move(reversed))) return false;
   }
   require_values();
   for (const Value& value : values_) {
@@ -86,6 +135,19 @@ bool CommandLine::parse(int argc, const char* const* argv) {
 }
 
 bool CommandLine::has(const char* option) const { return app_->get_option(option)->count() > 0; }
+
+std::vector<GivenOption> CommandLine::given_hidden() const {
+  std::vector<GivenOption> given;
+  for (const CLI::Option* const option : hidden_options_) {
+    if (option->count() == 0) continue;
+    const std::string name = "--" + option->get_lnames().front();
+    const bool is_flag = option->get_expected_max() == 0;
+    if (is_flag) given.push_back({name, {}});
+    else
+      for (const std::string& value : option->results()) given.push_back({name, value});
+  }
+  return given;
+}
 
 /// \throw UsageError for an empty value: it comes from a script's empty variable, and is never intended.
 void CommandLine::require_values() const {

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,12 @@ class Option;
 }  // namespace CLI
 
 namespace vdb_offset::tool {
+
+/// An option of a command line that was given, by its long name; a flag has no value.
+struct GivenOption {
+  std::string name;
+  std::optional<std::string> value;
+};
 
 /// The files and options of a command, as CLI11 finds them. Values are taken once the whole line has been understood,
 /// so that --help is answered whatever else is in it: each by the function that was declared with its option, in the
@@ -29,6 +36,10 @@ class CommandLine {
 
   /// -V and --version, which print `version`.
   void add_version(const std::string& version);
+  /// --config, a file with values of options that the line does not have.
+  void add_config();
+  /// What is declared from here on is not listed in --help.
+  void hide_what_follows() { hidden_ = true; }
   /// A file that the command cannot do without, by its position.
   void file(const char* name, const char* about, std::string& path);
   /// An option with a value, given at most once. `type` stands for the value in --help.
@@ -44,6 +55,8 @@ class CommandLine {
 
   /// Whether an option was given, by its long name.
   bool has(const char* option) const;
+  /// The hidden options that were given, those with several values once for each.
+  std::vector<GivenOption> given_hidden() const;
 
  private:
   struct Value {
@@ -52,10 +65,18 @@ class CommandLine {
     std::vector<std::string> texts;  ///< Of one that may be given several times.
     Take take;
   };
+  bool understand(std::vector<std::string> reversed);
+  /// What the file of --config says of options that were not given, as words. \throw UsageError
+  std::vector<std::string> words_of_config() const;
   void require_values() const;
+  /// Declares whether --help lists an option.
+  void place(CLI::Option* option);
 
   std::unique_ptr<CLI::App> app_;
   const char* help_;
+  std::string config_;
+  bool hidden_ = false;
+  std::vector<const CLI::Option*> hidden_options_;
   std::deque<Value> values_;  // CLI11 keeps references to their texts
 };
 

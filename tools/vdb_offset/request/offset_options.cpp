@@ -5,6 +5,7 @@
 #include <string>
 
 #include "request/command_line.h"
+#include "request/offset_options.h"
 #include "request/option_rules.h"
 #include "request/option_values.h"
 #include "request/request.h"
@@ -45,6 +46,7 @@ Examples:
   vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
+  vdb_offset batch models bigger --distance 1%          a folder of models (vdb_offset batch --help)
 
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
 met, or more than --max-faces needed), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
@@ -55,16 +57,6 @@ constexpr int kMostLayers = 1000;  // --layers: so that a mistyped number does n
 constexpr double kAny = std::numeric_limits<double>::max();
 // Numbers above this are 0 or more.
 constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
-
-/// A request that is being made, and values that become part of it only if another option says so.
-struct Draft {
-  Request request;
-  bool is_iso = false, no_sync = false;
-  IsoRequest iso;
-  LayersRequest layers;
-  ToleranceRequest tolerance;
-  std::string distance_xy, distance_z;
-};
 
 /// Declares the options that say how far the offset goes, and what kind of offset it is.
 void declare_distances(CommandLine& line, Draft& draft) {
@@ -324,13 +316,7 @@ void complete(const CommandLine& line, Draft& draft) {
 
 }  // namespace
 
-std::optional<Request> parse_command_line(int argc, const char* const* argv) {
-  Draft draft;
-  CommandLine line("vdb_offset", kAbout, kMore, "--help");
-  line.add_version(std::string("vdb_offset ") + version());
-  line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
-            draft.request.input);
-  line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
+void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_distances(line, draft);
   declare_tolerance(line, draft);
   declare_parts(line, draft);
@@ -338,6 +324,17 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   declare_method(line, draft);
   declare_files(line, draft);
   declare_run(line, draft);
+}
+
+std::optional<Request> parse_command_line(int argc, const char* const* argv) {
+  Draft draft;
+  CommandLine line("vdb_offset", kAbout, kMore, "--help");
+  line.add_version(std::string("vdb_offset ") + version());
+  line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
+            draft.request.input);
+  line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
+  line.add_config();
+  declare_offset_options(line, draft);
   if (!line.parse(argc, argv)) return std::nullopt;
   require_together(line, draft.is_iso);
   complete(line, draft);

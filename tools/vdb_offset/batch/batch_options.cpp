@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of a batch, and which of those of an offset are passed on to each model.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "batch/batch_request.h"
+#include "request/offset_options.h"
+#include "request/option_values.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+constexpr const char* kBatchAbout =
+    "Offsets every model under DIR into OUT, whose folders mirror those of DIR. A model that is done is not done "
+    "again\n"
+    "while its content and the options stay as they are; a failure does not end the batch. OUT/batch.csv has a row "
+    "for\n"
+    "each model as soon as it ends.";
+
+constexpr const char* kBatchMore = R"(
+All options of vdb_offset hold for each model (vdb_offset --help). Those that name a file take a pattern, in which
+{model} is the model's path under DIR without its ending, and {ending} that ending: '{model}.states.ply'. What is
+written goes below OUT. Of what is read, {model} stands for the path with DIR: --distance-from '{model}.txt'.
+Some are for the batch as a whole: --max-memory holds for all models at once, by their estimates; --dry-run prints which
+models would be done; --verbose prints the row of each model as it ends; --quiet prints nothing but errors.
+
+Models are files that end in .obj, .ply, .stl, .off, .svg, .dat or .xy, compressed with .gz or .zst behind it; others
+(.txt, scenes in .json) are taken where --models names them.
+
+Examples:
+  vdb_offset batch models bigger --distance 1%
+  vdb_offset batch scans thin -d -0.2 --reports --jobs 4 --max-memory 16G
+  vdb_offset batch parts walls -d 1 -d 2 --output '{model}_{d}.stl' --states '{model}_{d}.csv'
+  vdb_offset batch wings cells --layers 10 --total-thickness 1% --output '{model}.vtu'
+  vdb_offset batch models bigger --distance 1% --sshlogin :,node1,node2
+  vdb_offset batch models bigger --distance 1% --slurm compute
+
+Exit codes: 0 all models are done, 1 usage, 2 input, 3 a model failed, 4 output. Ctrl-C and the like end the batch and
+the models at work; the table then holds all that ended, and the same call goes on from there.)";
+
+constexpr int kMostJobs = 4096;  // so that a mistyped number does not start that many processes; not measured
+
+// Options of an offset that are for the batch as a whole.
+constexpr const char* kOfTheBatch[] = {"--quiet", "--verbose", "--dry-run", "--max-memory"};
+
+void declare_batch(CommandLine& line, BatchRequest& request, bool& reports) {
+  line.option("--output", "PATTERN",
+              "Names of the outputs below OUT, as '{model}.ply' or '{model}/polyMesh' [{model}{ending}]",
+              request.output);
+  line.repeated("--models", "GLOB",
+                "Models are the files with such names, as '*.stl' or 'left/*' (a path under DIR); may be repeated [by "
+                "their endings]",
+                [&request](const std::string& text) { request.selection.push_back(text); });
+  line.option("--jobs", "N", "Models at once; with --sshlogin, on each machine [one for each processor]",
+              [&request](const std::string& text) { request.jobs = parse_count("--jobs", text, 1, kMostJobs); });
+  line.flag("--reports", "Keep the report of each model beside its output, as OUTPUT.json", reports);
+  line.flag("--retry-failed", "Do models again that failed, too", request.retry_failed);
+  line.option("--sshlogin", "LIST",
+              "Work on these machines, as GNU parallel takes them; DIR, OUT and vdb_offset have the same paths there",
+              request.sshlogin);
+  line.option("--slurm", "PARTITION", "Work as an array of jobs of Slurm, in this partition", request.partition);
+}
+
+}  // namespace
+
+std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
+  BatchRequest request;
+  Draft draft;
+  bool reports = false;
+  CommandLine line("vdb_offset batch", kBatchAbout, kBatchMore, "batch --help");
+  line.file("DIR", "Folder with models, in subfolders as well", request.folder);
+  line.file("OUT", "Folder to write to; it is made if it is not there", request.out);
+  declare_batch(line, request, reports);
+  line.add_config();
+  line.hide_what_follows();
+  declare_offset_options(line, draft);
+  if (!line.parse(argc, argv)) return std::nullopt;
+  for (GivenOption& option : line.given_hidden())
+    if (std::find(std::begin(kOfTheBatch), std::end(kOfTheBatch), option.name) == std::end(kOfTheBatch))
+      request.each.push_back(std::move(option));
+  if (reports) {
+    require(!line.has("--report"), "--reports: expected to be given without --report, which names the same files");
+    request.each.push_back({"--report", "{model}{ending}.json"});
+  }
+  require(request.sshlogin.empty() || request.partition.empty(),
+          "--slurm: expected to be given without --sshlogin, got both");
+  if (line.has("--max-memory")) request.max_memory = draft.request.max_memory;
+  request.threads_given = line.has("--threads");
+  request.dry_run = draft.request.dry_run;
+  request.quiet = draft.request.quiet;
+  request.verbose = draft.request.verbose;
+  return request;
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+// How the models of a batch share the memory: each is a process of its own, which tells its estimate and waits until
+// there is room for it. The two ends of a socket: one in the process of the batch, one in that of the model.
+
+namespace vdb_offset::tool {
+
+/// The descriptor of the model's end in its process, and the variable of the environment that holds the number of the
+/// batch's process.
+constexpr int kGate = 3;
+constexpr const char* kGateVariable = "VDB_OFFSET_BATCH";
+
+/// Whether this process is that of a model of a batch. If so, it ends with the batch, whatever ends that.
+bool belongs_to_batch();
+
+/// Tells the batch how many bytes this process will need, and waits until it may go on. False if the batch is gone.
+bool wait_for_memory(std::size_t bytes);
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/local_jobs.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+
+#include "batch/stop.h"
+#include "vdb_offset/run.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Milliseconds between two looks at the time, for the line of progress.
+constexpr int kLookEvery = 250;
+// Seconds that models at work have to end after a stop, before they are ended by force. They remove temporary files.
+constexpr double kSecondsToStop = 5;
+// Bytes that a model is taken to hold for each byte of its file until it has told its estimate. Measured: 2 to 7 for
+// meshes as text and binary; compressed files hold four times as much.
+constexpr std::size_t kBytesPerByte = 8;
+
+/// Processors that this process may use; of a job of Slurm, which may be bound to none, as many as that was given.
+std::size_t processors() {
+  std::size_t count = std::max(1U, std::thread::hardware_concurrency());
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (::sched_getaffinity(0, sizeof set, &set) == 0) count = static_cast<std::size_t>(std::max(1, CPU_COUNT(&set)));
+  if (const char* const given = std::getenv("SLURM_CPUS_ON_NODE"))
+    count = std::min(count, static_cast<std::size_t>(std::max(1, std::atoi(given))));
+  return count;
+}
+
+std::size_t first_guess(const std::string& path) {
+  std::error_code unknown;
+  const auto size = fs::file_size(path, unknown);
+  return unknown ? 0 : kBytesPerByte * static_cast<std::size_t>(size);
+}
+
+/// Makes the folders that the files of a run go to. What cannot be made is told by the run itself.
+void make_folders(const ModelRun& run) {
+  std::error_code failed;
+  for (const std::string& path : run.written) fs::create_directories(fs::path(path).parent_path(), failed);
+}
+
+bool ended_by_stop(const Ending& ending) {
+  return ending.exit_code == 128 + SIGINT || ending.exit_code == 128 + SIGTERM || ending.exit_code == 128 + SIGHUP;
+}
+
+}  // namespace
+
+Shares share_out(const BatchRequest& request) {
+  constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of what is free, as a run by itself
+  Shares shares;
+  const std::size_t all = processors();
+  shares.jobs = request.jobs ? static_cast<std::size_t>(*request.jobs) : all;
+  shares.threads = (all + shares.jobs - 1) / shares.jobs;
+  shares.memory = request.max_memory.value_or(std::max<std::size_t>(1, available_memory() / kParts * kPartsTaken));
+  return shares;
+}
+
+void LocalJobs::run(std::span<const std::size_t> which, const Ended& ended, const std::function<void()>& waited) {
+  std::size_t next = 0;
+  while (!stop_signal() && (next < which.size() || !jobs_.empty())) {
+    while (jobs_.size() < shares_.jobs && next < which.size() && !stop_signal()) {
+      const std::string path = request_.folder + "/" + models_[which[next]].path;
+      std::size_t held = first_guess(path);
+      for (const Job& job : jobs_) held += job.held;
+      if (held > shares_.memory && !jobs_.empty()) break;
+      begin(which[next++]);
+    }
+    hand_out_memory();
+    wait_for_news(ended);
+    waited();
+  }
+  if (stop_signal()) stop(ended);
+}
+
+void LocalJobs::begin(std::size_t model) {
+  ModelRun run = run_of(request_, models_[model]);
+  make_folders(run);
+  remove_record(request_.out, models_[model]);
+  std::string key = key_of(request_, models_[model], run);
+  std::vector<std::string> words = run.words;
+  if (!request_.threads_given) words.push_back(fmt::format("--threads={}", shares_.threads));
+  words.push_back(fmt::format("--max-memory={}", shares_.memory));
+  const std::size_t held = first_guess(run.read.front());
+  jobs_.push_back({.model = model,
+                   .run = std::move(run),
+                   .key = std::move(key),
+                   .begun = Clock::now(),
+                   .held = held,
+                   .child = Child(words)});
+}
+
+/// Lets models go on for which there is room, in the order in which they asked. One alone always goes on: whether it
+/// fits is for its own limit.
+void LocalJobs::hand_out_memory() {
+  std::size_t held = 0;
+  bool any_at_work = false;
+  for (const Job& job : jobs_) {
+    held += job.held;
+    any_at_work |= job.wanted == 0;
+  }
+  for (Job& job : jobs_) {
+    if (job.wanted == 0 || (any_at_work && held - job.held + job.wanted > shares_.memory)) continue;
+    held -= job.held;
+    job.held = std::exchange(job.wanted, 0);
+    held += job.held;
+    any_at_work = true;
+    job.waited += seconds_since(job.asked);
+    job.child.let_go();
+  }
+}
+
+void LocalJobs::wait_for_news(const Ended& ended) {
+  std::vector<pollfd> sources{{stop_descriptor(), POLLIN, 0}};
+  for (const Job& job : jobs_) {
+    sources.push_back({job.child.errors(), POLLIN, 0});
+    sources.push_back({job.child.gate(), POLLIN, 0});
+  }
+  if (::poll(sources.data(), sources.size(), kLookEvery) <= 0) return;
+  for (auto job = jobs_.begin(); job != jobs_.end();) {
+    const bool is_there = read_news(*job);
+    if (!is_there) end(*job, ended);
+    job = is_there ? std::next(job) : jobs_.erase(job);
+  }
+}
+
+/// Reads what a model tells and asks for. False once it has ended.
+bool LocalJobs::read_news(Job& job) {
+  job.child.read_errors();
+  bool is_there = false;
+  const std::size_t wanted = job.child.read_request(is_there);
+  if (wanted > 0) {
+    job.wanted = wanted;
+    job.asked = Clock::now();
+  }
+  return is_there;
+}
+
+void LocalJobs::end(Job& job, const Ended& ended) {
+  Ending ending = job.child.wait();
+  ending.seconds = seconds_since(job.begun) - job.waited;
+  // Ctrl-C goes to the models as well, and they may be faster.
+  pollfd stopped{stop_descriptor(), POLLIN, 0};
+  if (ended_by_stop(ending) && (stop_signal() || ::poll(&stopped, 1, kLookEvery) > 0)) return;
+  const Record record = record_of(job.run, job.key, std::move(ending));
+  // The record first: a row that is in the table once is never gone from it.
+  save_record(request_.out, models_[job.model], record);
+  ended(job.model, record);
+}
+
+/// Ends the models at work. One that is complete all the same counts.
+void LocalJobs::stop(const Ended& ended) {
+  for (const Job& job : jobs_) job.child.signal(SIGTERM);
+  const auto begun = Clock::now();
+  bool forced = false;
+  while (!jobs_.empty()) {
+    if (!forced && seconds_since(begun) > kSecondsToStop) {
+      for (const Job& job : jobs_) job.child.signal(SIGKILL);
+      forced = true;
+    }
+    std::vector<pollfd> sources;
+    for (const Job& job : jobs_) sources.push_back({job.child.gate(), POLLIN, 0});
+    ::poll(sources.data(), sources.size(), kLookEvery);
+    jobs_.remove_if([&](Job& job) {
+      const bool has_ended = !read_news(job);
+      if (has_ended) end(job, ended);
+      return has_ended;
+    });
+  }
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/model_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <span>
+
+#include "batch/fingerprint.h"
+#include "outputs.h"
+#include "request/request.h"
+#include "run_files.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kModel = "{model}", kEnding = "{ending}";
+
+// Options that name a file to write: their patterns are below the folder of outputs.
+constexpr std::string_view kWriting[] = {"--report", "--states", "--paths", "--save-vdb", "--refined-source", "--map"};
+
+/// A pattern with what stands for a model in its place. `stem`: for {model}.
+std::string filled(std::string_view pattern, const std::string& stem, const std::string& ending) {
+  std::string text;
+  for (std::size_t at = 0; at < pattern.size();) {
+    if (pattern.substr(at).starts_with(kModel)) {
+      text += stem;
+      at += kModel.size();
+    } else if (pattern.substr(at).starts_with(kEnding)) {
+      text += ending;
+      at += kEnding.size();
+    } else {
+      text += pattern[at++];
+    }
+  }
+  return text;
+}
+
+/// Requires a name below the folder of outputs that is another for each model. \throw UsageError
+void require_pattern(const std::string& option, const std::string& pattern) {
+  if (pattern.find(kModel) == std::string::npos)
+    throw UsageError(
+        fmt::format("{}: expected a name with {{model}} in it, one for each model, got '{}'", option, pattern));
+  const fs::path path = pattern;
+  if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
+    throw UsageError(fmt::format("{}: expected a path below OUT, got '{}'", option, pattern));
+}
+
+std::string path_of_report(const std::string& out, const Model& model) {
+  return fmt::format("{}/running/{}.json", state_folder(out), state_name(model));
+}
+
+/// Where the reports of a run go, one for each distance.
+std::vector<std::string> reports_of(const Request& request) {
+  if (request.layers || request.distances.empty()) return {request.report};
+  std::vector<std::string> reports;
+  for (const Destination& to : destinations(request, request.distances)) reports.push_back(to.report);
+  return reports;
+}
+
+/// {i} and {d} mean something else in the names of outputs.
+void require_plain(const std::string& path, const char* of_what) {
+  for (const char* const mark : {"{i}", "{d}"})
+    if (path.find(mark) != std::string::npos)
+      throw UsageError(
+          fmt::format("{}: expected {} without {{i}} and {{d}}, which stand for the number of a distance "
+                      "and for the distance",
+                      path, of_what));
+}
+
+}  // namespace
+
+std::string state_folder(const std::string& out) { return out + "/.batch"; }
+
+std::string state_name(const Model& model) { return fingerprint_of(model.path); }
+
+ModelRun run_of(const BatchRequest& request, const Model& model) {
+  require_plain(request.out, "a folder");
+  require_plain(model.path, "the name of a model");
+  const std::string stem = model.path.substr(0, model.ending), ending = model.path.substr(model.ending);
+  const auto output = [&](const std::string& option, const std::string& pattern) {
+    require_pattern(option, pattern);
+    return request.out + "/" + filled(pattern, stem, ending);
+  };
+  ModelRun run;
+  run.words = {request.folder + "/" + model.path, output("--output", request.output)};
+  for (const GivenOption& option : request.each) {
+    const bool is_written = std::find(std::begin(kWriting), std::end(kWriting), option.name) != std::end(kWriting);
+    run.keeps_reports |= option.name == "--report";
+    if (!option.value) run.words.push_back(option.name);
+    else if (is_written) run.words.push_back(option.name + "=" + output(option.name, *option.value));
+    else run.words.push_back(option.name + "=" + filled(*option.value, request.folder + "/" + stem, ending));
+  }
+  if (!run.keeps_reports) run.words.push_back("--report=" + path_of_report(request.out, model));
+  run.words.push_back("--quiet");
+
+  std::vector<const char*> line{"vdb_offset"};
+  for (const std::string& word : run.words) line.push_back(word.c_str());
+  const Request parsed = parse_command_line(static_cast<int>(line.size()), line.data()).value();
+  run.reports = reports_of(parsed);
+  for (const RunFile& file : files_read(parsed)) run.read.push_back(file.path);
+  for (const RunFile& file : files_written(parsed))
+    if (run.keeps_reports || file.option != "--report") run.written.push_back(file.path);
+  return run;
+}
+
+void require_apart(const BatchRequest& request, std::span<const Model> models) {
+  std::map<std::string, const Model*> taken;
+  for (const Model& model : models)
+    taken.emplace(fs::path(request.folder + "/" + model.path).lexically_normal(), nullptr);
+  for (const Model& model : models)
+    for (const std::string& path : run_of(request, model).written) {
+      const auto [other, is_new] = taken.emplace(fs::path(path).lexically_normal(), &model);
+      if (is_new) continue;
+      if (!other->second)
+        throw UsageError(fmt::format("{}: expected outputs that are no models, got {}", model.path, path));
+      throw UsageError(
+          fmt::format("--output: expected a name of its own for each model, got {} for {} and {} (use "
+                      "{{ending}}, or --models)",
+                      path, other->second->path, model.path));
+    }
+}
+
+}  // namespace vdb_offset::tool

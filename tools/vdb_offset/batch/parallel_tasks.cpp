@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tasks of a batch on other machines, by GNU parallel.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "batch/plan.h"
+#include "batch/program.h"
+#include "batch/remote_jobs.h"
+#include "batch/shell_words.h"
+#include "messages.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+class ParallelTasks : public Tasks {
+ public:
+  ParallelTasks(const std::vector<std::string>& words, const std::string& input, const std::string& log)
+      : log_(log), program_(words, "--sshlogin", input, log) {}
+
+  bool are_at_work() override { return program_.is_at_work(); }
+  /// The tasks find the file that stops them; parallel begins no other once it is told to end.
+  void stop() override { program_.signal(SIGTERM); }
+  std::string last_words() const override { return last_line_of(log_); }
+
+ private:
+  std::string log_;
+  Program program_;
+};
+
+}  // namespace
+
+std::unique_ptr<Tasks> start_by_parallel(const BatchRequest& request, std::size_t tasks) {
+  std::vector<std::string> words{"parallel", "--will-cite", "--halt", "never", "--sshlogin", request.sshlogin};
+  if (request.jobs) words.insert(words.end(), {"--jobs", fmt::format("{}", *request.jobs)});
+  words.push_back(words_of_task(request.out));
+  std::string numbers;
+  for (std::size_t task = 0; task < tasks; ++task) numbers += fmt::format("{}\n", task);
+  return std::make_unique<ParallelTasks>(words, numbers, log_of_tasks(request.out));
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "batch/batch_request.h"
+#include "batch/models.h"
+
+namespace vdb_offset::tool {
+
+/// The work of a batch for other machines, as they find it in a file: which models, and how. It is shared out as tasks:
+/// task i of n has the models i, i + n, i + 2 n ...
+struct Plan {
+  BatchRequest request;
+  std::vector<Model> models;
+  std::size_t tasks = 0;
+};
+
+std::string path_of_plan(const std::string& out);
+
+/// A file that makes the tasks stop, wherever they are, once it is there.
+std::string path_of_stop(const std::string& out);
+
+/// \throw WriteError
+void write_plan(const Plan& plan);
+
+/// Reads a plan, and enters the folder that it was made in. \throw ReadError, InvalidInput
+Plan read_plan(const std::string& path);
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/record.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "batch/fingerprint.h"
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/version.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kRecordVersion = 1;
+
+std::string path_of_record(const std::string& out, const Model& model) {
+  return fmt::format("{}/{}.json", folder_of_records(out), state_name(model));
+}
+
+/// A file's JSON; discarded if it is none.
+json read_json(const std::string& path) {
+  std::ifstream file(path);
+  return json::parse(file, nullptr, false);
+}
+
+/// The value at a place in a report as text; empty if there is none.
+std::string figure(const json& report, const char* place) {
+  const json::json_pointer pointer(place);
+  if (!report.contains(pointer)) return {};
+  const json& value = report.at(pointer);
+  return value.is_string() ? value.get<std::string>() : value.is_number() ? value.dump() : std::string();
+}
+
+/// What a report says for the table. That of an iso-surface has its figures elsewhere.
+Record::Figures figures_of(const json& report) {
+  const std::string at = report.contains("surface") ? "/surface" : "";
+  return {.distance = figure(report, "/distance_as_given"),
+          .vertices = figure(report, at.empty() ? "/mesh/vertices" : "/surface/vertices"),
+          .share_reached = figure(report, "/achieved/share_reached"),
+          .mean_error = figure(report, (at + "/faces/mean_error").c_str()),
+          .within_1_percent = figure(report, (at + "/faces/share_within_1_percent").c_str()),
+          .certified = figure(report, "/certified/certified")};
+}
+
+std::int64_t size_of(const std::string& path) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(path, unknown)) return -1;
+  const auto size = fs::file_size(path, unknown);
+  return unknown ? -1 : static_cast<std::int64_t>(size);
+}
+
+json to_json(const Record& record) {
+  json figures = json::array();
+  for (const Record::Figures& each : record.figures)
+    figures.push_back(
+        {each.distance, each.vertices, each.share_reached, each.mean_error, each.within_1_percent, each.certified});
+  const Ending& ending = record.ending;
+  return {{"version", kRecordVersion},
+          {"key", record.key},
+          {"exit_code", ending.exit_code},
+          {"seconds", ending.seconds},
+          {"memory", ending.peak_memory},
+          {"message", ending.message},
+          {"figures", figures},
+          {"sizes", record.sizes}};
+}
+
+Record from_json(const json& text) {
+  Record record{.key = text.at("key").get<std::string>(),
+                .ending = {text.at("exit_code").get<int>(), text.at("seconds").get<double>(),
+                           text.at("memory").get<std::size_t>(), text.at("message").get<std::string>()},
+                .figures = {},
+                .sizes = text.at("sizes").get<std::vector<std::int64_t>>()};
+  for (const json& each : text.at("figures")) {
+    const auto texts = each.get<std::array<std::string, 6>>();
+    record.figures.push_back({texts[0], texts[1], texts[2], texts[3], texts[4], texts[5]});
+  }
+  return record;
+}
+
+}  // namespace
+
+std::string folder_of_records(const std::string& out) { return state_folder(out) + "/records"; }
+
+std::string key_of(const BatchRequest& request, const Model& model, const ModelRun& run) {
+  std::vector<std::string> words{version(), model.path, request.output};
+  for (const GivenOption& option : request.each) {
+    if (option.name == "--threads" || option.name == "--no-sync") continue;  // the result is the same
+    words.push_back(option.name);
+    words.push_back(option.value.value_or(""));
+  }
+  // A limit of memory may make the grid coarser.
+  if (request.max_memory) words.push_back(fmt::format("--max-memory {}", *request.max_memory));
+  return fingerprint_of(words, run.read);
+}
+
+Record record_of(const ModelRun& run, std::string key, Ending ending) {
+  Record record{.key = std::move(key), .ending = std::move(ending), .figures = {}, .sizes = {}};
+  for (const std::string& path : run.reports) {
+    const json report = read_json(path);
+    if (report.is_object()) record.figures.push_back(figures_of(report));
+    std::error_code gone;
+    if (!run.keeps_reports) fs::remove(path, gone);
+  }
+  for (const std::string& path : run.written) record.sizes.push_back(size_of(path));
+  return record;
+}
+
+bool are_there(const ModelRun& run, const Record& record) {
+  std::vector<std::int64_t> sizes;
+  for (const std::string& path : run.written) sizes.push_back(size_of(path));
+  return sizes == record.sizes;
+}
+
+std::optional<Record> load_record(const std::string& out, const Model& model) {
+  const json text = read_json(path_of_record(out, model));
+  if (!text.is_object() || text.value("version", 0) != kRecordVersion) return std::nullopt;
+  try {
+    return from_json(text);
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+void save_record(const std::string& out, const Model& model, const Record& record) {
+  const std::string text = to_json(record).dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  OutputFiles files(OutputFiles::Sync::No);  // one that is lost is made again
+  write_file(path_of_record(out, model), text);
+  files.commit();
+}
+
+void remove_record(const std::string& out, const Model& model) {
+  std::error_code gone;
+  fs::remove(path_of_record(out, model), gone);
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/shell_words.h"
+
+#include <fstream>
+
+#include "batch/child.h"
+#include "batch/model_run.h"
+#include "batch/plan.h"
+#include "messages.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+std::string in_quotes(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') quoted += "'\\''";
+    else quoted += c;
+  }
+  return quoted + "'";
+}
+
+}  // namespace
+
+std::string words_of_task(const std::string& out) {
+  return in_quotes(this_program()) + " batch-task " + in_quotes(path_of_plan(out));
+}
+
+std::string log_of_tasks(const std::string& out) { return state_folder(out) + "/tasks.log"; }
+
+std::string last_line_of(const std::string& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty()) last = line;
+  return last.empty() ? "it said nothing" : readable(last);
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/table.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/output_files.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+constexpr std::string_view kHeading =
+    "model,distance,seconds,memory_mib,vertices,share_reached,faces_mean_error,faces_within_1_percent,faces_certified,"
+    "exit_code,message\n";
+
+std::string quoted(const std::string& text) {
+  std::string field = "\"";
+  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
+  return field + '"';
+}
+
+/// A text as a field: in quotes where it holds what ends a field.
+std::string field(const std::string& text) {
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : quoted(text);
+}
+
+}  // namespace
+
+std::string rows_of(const Model& model, const Record& record) {
+  const Ending& ending = record.ending;
+  const std::vector<Record::Figures> none(1);
+  std::string rows;
+  for (const Record::Figures& figures : record.figures.empty() ? none : record.figures)
+    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{}\n", quoted(model.path), field(figures.distance),
+                        ending.seconds, static_cast<double>(ending.peak_memory) / 1048576.0, figures.vertices,
+                        figures.share_reached, figures.mean_error, figures.within_1_percent, figures.certified,
+                        ending.exit_code, field(ending.message));
+  return rows;
+}
+
+Table::Table(const std::string& out) : path_(out + "/batch.csv") {}
+
+void Table::keep(std::size_t model, std::string rows) { rows_.emplace_back(model, std::move(rows)); }
+
+void Table::begin() { write(); }
+
+void Table::add(std::size_t model, std::string rows) {
+  const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  // All at once, so that the table never ends within a row.
+  const bool written = file >= 0 && ::write(file, rows.data(), rows.size()) == static_cast<ssize_t>(rows.size());
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (!written) throw WriteError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
+  keep(model, std::move(rows));
+}
+
+void Table::finish() {
+  std::sort(rows_.begin(), rows_.end());
+  write();
+}
+
+void Table::write() {
+  std::string text(kHeading);
+  for (const auto& [model, rows] : rows_) text += rows;
+  write_file(path_, text);
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads files of options with toml++.
+#include "request/config_file.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "request/option_values.h"
+#include "request/request.h"
+#include "vdb_offset/error.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+// Bytes; options by hand are less, and a file of another kind is not to be read to its end.
+constexpr std::size_t kLargestConfig = std::size_t{1} << 20;
+
+/// \throw ReadError, UsageError
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kLargestConfig + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad()) throw ReadError(path + ": expected a file of options that can be read");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  require(text.size() <= kLargestConfig,
+          fmt::format("{}: expected a file of options (TOML), got more than {} bytes", path, kLargestConfig));
+  return text;
+}
+
+std::string place_of(const std::string& path, const toml::source_region& source) {
+  return fmt::format("{}:{}", path, source.begin.line);
+}
+
+/// A string or a number as on the command line. \throw UsageError for anything else
+std::string text_of(const toml::node& node, const std::string& place) {
+  if (const auto* const text = node.as_string()) return text->get();
+  if (const auto* const number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* const number = node.as_floating_point()) return fmt::format("{}", number->get());
+  throw UsageError(fmt::format("{}: expected a string, a number, true, false or an array of them", place));
+}
+
+ConfigEntry entry_of(std::string_view name, const toml::node& node, const std::string& path) {
+  ConfigEntry entry{.name = std::string(name), .values = {}, .place = place_of(path, node.source())};
+  if (const auto* const on = node.as_boolean()) {
+    entry.is_switch = true;
+    entry.is_on = on->get();
+  } else if (const auto* const array = node.as_array()) {
+    for (const toml::node& each : *array) entry.values.push_back(text_of(each, place_of(path, each.source())));
+  } else {
+    entry.values.push_back(text_of(node, entry.place));
+  }
+  return entry;
+}
+
+}  // namespace
+
+std::vector<ConfigEntry> read_config(const std::string& path) {
+  const std::string text = read_text(path);
+  std::vector<ConfigEntry> entries;
+  try {
+    const toml::table table = toml::parse(text);
+    for (const auto& [key, node] : table) entries.push_back(entry_of(key.str(), node, path));
+  } catch (const toml::parse_error& error) {
+    throw UsageError(fmt::format("{}: expected TOML: {}", place_of(path, error.source()), error.description()));
+  }
+  std::sort(entries.begin(), entries.end(), [](const ConfigEntry& a, const ConfigEntry& b) { return a.name < b.name; });
+  return entries;
+}
+
+}  // namespace vdb_offset::tool

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "request/command_line.h"
+#include "request/request.h"
+
+namespace vdb_offset::tool {
+
+/// A request that is being made, and values that become part of it only if another option says so.
+struct Draft {
+  Request request;
+  bool is_iso = false, no_sync = false;
+  IsoRequest iso;
+  LayersRequest layers;
+  ToleranceRequest tolerance;
+  std::string distance_xy, distance_z;
+};
+
+/// Declares all options of an offset. \pre the draft lives as long as the command line
+void declare_offset_options(CommandLine& line, Draft& draft);
+
+}  // namespace vdb_offset::tool
