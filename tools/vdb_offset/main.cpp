@@ -9,7 +9,7 @@
 #include <string>
 
 #include "batch/batch_command.h"
-#include "batch/gate.h"
+#include "batch/process/gate.h"
 #include "check_command.h"
 #include "iso_command.h"
 #include "job.h"

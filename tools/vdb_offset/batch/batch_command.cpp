@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "batch/batch_request.h"
-#include "batch/child.h"
 #include "batch/local_jobs.h"
+#include "batch/process/child.h"
+#include "batch/process/stop.h"
 #include "batch/progress_line.h"
-#include "batch/remote_jobs.h"
-#include "batch/stop.h"
+#include "batch/remote/remote_jobs.h"
 #include "batch/table.h"
 #include "job.h"
 #include "messages.h"

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <thread>
 
-#include "batch/stop.h"
+#include "batch/process/stop.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {

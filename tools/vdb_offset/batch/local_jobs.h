@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "batch/batch_request.h"
-#include "batch/child.h"
 #include "batch/model_run.h"
 #include "batch/models.h"
+#include "batch/process/child.h"
 #include "batch/record.h"
 #include "outputs.h"
 

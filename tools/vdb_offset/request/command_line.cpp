@@ -110,7 +110,10 @@ std::vector<std::string> CommandLine::words_of_config() const {
                                                     is_flag ? "true or false" : "a value, not true or false"));
     if (option->count() > 0) continue;
     if (entry.is_on) words.push_back("--" + entry.name);
-    for (const std::string& value : entry.values) words.push_back("--" + entry.name + "=" + value);
+    for (const std::string& value : entry.values) {
+      require(!value.empty(), fmt::format("{}: {}: expected a value, got ''", entry.place, entry.name));
+      words.push_back("--" + entry.name + "=" + value);
+    }
   }
   return words;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/shell_words.h"
+#include "batch/remote/shell_words.h"
 
 #include <fstream>
 
-#include "batch/child.h"
 #include "batch/model_run.h"
-#include "batch/plan.h"
+#include "batch/process/child.h"
+#include "batch/remote/plan.h"
 #include "messages.h"
 
 namespace vdb_offset::tool {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "batch/record.h"
@@ -29,6 +30,9 @@ class Descriptor {
 
 /// The path of this program.
 std::string this_program();
+
+/// What a process has told, as one line: without the prefix of messages, and with semicolons between them.
+std::string on_one_line(std::string_view told);
 
 /// A model's process: this program with another command line.
 class Child {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/gate.h"
+#include "batch/process/gate.h"
 
 #include <fmt/format.h>
 #include <sys/prctl.h>

@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
 
 #include "batch/model_run.h"
-#include "batch/plan.h"
-#include "batch/program.h"
-#include "batch/remote_jobs.h"
-#include "batch/shell_words.h"
+#include "batch/process/child.h"
+#include "batch/process/program.h"
+#include "batch/remote/plan.h"
+#include "batch/remote/remote_jobs.h"
+#include "batch/remote/shell_words.h"
 #include "outputs.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -19,9 +24,25 @@ namespace {
 constexpr const char* kOption = "--slurm";
 constexpr double kSecondsBetweenQuestions = 2;  // to Slurm, which answers all of its users
 
+/// Where the number of the array is while it is at work.
+std::string note_of_array(const std::string& out) { return state_folder(out) + "/array"; }
+
+/// Ends the array of a batch that was killed, as it would work on beside the new one.
+void cancel_array_before(const std::string& out) {
+  std::string array;
+  if (std::ifstream(note_of_array(out)) >> array) ask_program({"scancel", array}, kOption);
+}
+
 class SlurmTasks : public Tasks {
  public:
-  SlurmTasks(std::string array, std::string log) : array_(std::move(array)), log_(std::move(log)) {}
+  SlurmTasks(std::string array, const std::string& out)
+      : array_(std::move(array)), log_(log_of_tasks(out)), note_(note_of_array(out)) {
+    write_file(note_, array_);
+  }
+  ~SlurmTasks() override {
+    std::error_code gone;
+    std::filesystem::remove(note_, gone);
+  }
 
   bool are_at_work() override {
     if (!at_work_ || seconds_since(asked_) < kSecondsBetweenQuestions) return at_work_;
@@ -36,7 +57,7 @@ class SlurmTasks : public Tasks {
   std::string last_words() const override { return last_line_of(log_); }
 
  private:
-  std::string array_, log_;
+  std::string array_, log_, note_;
   Clock::time_point asked_ = Clock::now();
   bool at_work_ = true;
 };
@@ -56,7 +77,10 @@ std::size_t most_tasks_of_slurm() {
 }
 
 std::unique_ptr<Tasks> start_by_slurm(const BatchRequest& request, std::size_t tasks) {
+  cancel_array_before(request.out);
   const std::string log = log_of_tasks(request.out);
+  std::error_code gone;
+  std::filesystem::remove(log, gone);
   std::vector<std::string> words{"sbatch",
                                  "--parsable",
                                  "--job-name=vdb_offset",
@@ -69,9 +93,9 @@ std::unique_ptr<Tasks> start_by_slurm(const BatchRequest& request, std::size_t t
     if (option.name == "--threads" && *option.value != "0") words.push_back("--cpus-per-task=" + *option.value);
   words.push_back("--wrap=" + words_of_task(request.out) + " \"$SLURM_ARRAY_TASK_ID\"");
   const Answer answer = ask_program(words, kOption);
-  if (answer.exit_code != 0) throw InvalidInput(fmt::format("{}: sbatch: {}", kOption, answer.printed));
+  if (answer.exit_code != 0) throw InvalidInput(fmt::format("{}: {}", kOption, on_one_line(answer.printed)));
   // The number of the array, and behind a semicolon the name of the cluster.
-  return std::make_unique<SlurmTasks>(answer.printed.substr(0, answer.printed.find(';')), log);
+  return std::make_unique<SlurmTasks>(answer.printed.substr(0, answer.printed.find(';')), request.out);
 }
 
 }  // namespace vdb_offset::tool

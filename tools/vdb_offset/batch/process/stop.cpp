@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/stop.h"
+#include "batch/process/stop.h"
 
 #include <fcntl.h>
 #include <unistd.h>

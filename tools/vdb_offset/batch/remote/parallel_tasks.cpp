@@ -5,10 +5,10 @@
 #include <csignal>
 #include <fstream>
 
-#include "batch/plan.h"
-#include "batch/program.h"
-#include "batch/remote_jobs.h"
-#include "batch/shell_words.h"
+#include "batch/process/program.h"
+#include "batch/remote/plan.h"
+#include "batch/remote/remote_jobs.h"
+#include "batch/remote/shell_words.h"
 #include "messages.h"
 
 namespace vdb_offset::tool {
@@ -32,7 +32,8 @@ class ParallelTasks : public Tasks {
 }  // namespace
 
 std::unique_ptr<Tasks> start_by_parallel(const BatchRequest& request, std::size_t tasks) {
-  std::vector<std::string> words{"parallel", "--will-cite", "--halt", "never", "--sshlogin", request.sshlogin};
+  std::vector<std::string> words{"parallel", "--will-cite", "--retries",  "3",
+                                 "--halt",   "never",       "--sshlogin", request.sshlogin};
   if (request.jobs) words.insert(words.end(), {"--jobs", fmt::format("{}", *request.jobs)});
   words.push_back(words_of_task(request.out));
   std::string numbers;

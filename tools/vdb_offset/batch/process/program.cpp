@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/program.h"
+#include "batch/process/program.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 #include <cstring>
 #include <system_error>
 
-#include "batch/child.h"
+#include "batch/process/child.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::tool {

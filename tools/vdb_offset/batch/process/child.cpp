@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/child.h"
+#include "batch/process/child.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 #include <system_error>
 #include <utility>
 
-#include "batch/gate.h"
+#include "batch/process/gate.h"
 #include "messages.h"
 
 namespace vdb_offset::tool {
@@ -66,21 +66,6 @@ pid_t spawn(std::vector<std::string> words, int errors, int gate) {
   return process;
 }
 
-/// What a process has told, as one line: without the prefix of messages, and with semicolons between them.
-std::string on_one_line(std::string_view told) {
-  std::string line;
-  while (!told.empty()) {
-    const std::size_t end = std::min(told.find('\n'), told.size());
-    std::string_view message = told.substr(0, end);
-    told.remove_prefix(std::min(end + 1, told.size()));
-    if (message.starts_with(kPrefix)) message.remove_prefix(kPrefix.size());
-    if (message.empty()) continue;
-    if (!line.empty()) line += "; ";
-    line += message;
-  }
-  return line.empty() ? line : readable(line);
-}
-
 }  // namespace
 
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
@@ -96,6 +81,20 @@ void Descriptor::close() {
 }
 
 std::string this_program() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
+
+std::string on_one_line(std::string_view told) {
+  std::string line;
+  while (!told.empty()) {
+    const std::size_t end = std::min(told.find('\n'), told.size());
+    std::string_view message = told.substr(0, end);
+    told.remove_prefix(std::min(end + 1, told.size()));
+    if (message.starts_with(kPrefix)) message.remove_prefix(kPrefix.size());
+    if (message.empty()) continue;
+    if (!line.empty()) line += "; ";
+    line += message;
+  }
+  return line.empty() ? line : readable(line);
+}
 
 Child::Child(std::span<const std::string> words) {
   int pipe[2], sockets[2];

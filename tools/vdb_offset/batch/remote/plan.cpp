@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A plan is a list of texts with a zero byte behind each, which no name and no option holds.
-#include "batch/plan.h"
+#include "batch/remote/plan.h"
 
 #include <fmt/format.h>
 

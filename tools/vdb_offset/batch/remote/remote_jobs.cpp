@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/remote_jobs.h"
+#include "batch/remote/remote_jobs.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -11,8 +11,8 @@
 #include <system_error>
 #include <unordered_map>
 
-#include "batch/plan.h"
-#include "batch/stop.h"
+#include "batch/process/stop.h"
+#include "batch/remote/plan.h"
 #include "messages.h"
 #include "request/option_values.h"
 

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files of options that are none, or that say what no option takes."""
+from attack import attack, attack_each
+
+ONE = ('box.obj', 'o.obj', '--config', 'all.toml')
+
+# What the file holds, the exit code, and what is said.
+FILES = {
+    'no option': ('distance = 0.1\n\nshells = 1\n', 1, "^vdb_offset: all.toml:3: expected the long name of an option, got 'shells'$"),
+    'short name': ('d = 0.1\n', 1, "all.toml:1: expected the long name of an option, got 'd'"),
+    'dashes': ('"--distance" = 0.1\n', 1, "all.toml:1: expected the long name of an option, got '--distance'"),
+    'itself': ('config = "all.toml"\n', 1, "got 'config'"),
+    'help': ('help = true\n', 1, "got 'help'"),
+    'position': ('INPUT = "other.obj"\ndistance = 1\n', 1, "got 'INPUT'"),
+    'flag with a value': ('distance = 1\nstrict = "yes"\n', 1, 'all.toml:2: strict: expected true or false'),
+    'value that is none': ('distance = true\n', 1, 'all.toml:1: distance: expected a value, not true or false'),
+    'empty value': ('distance = ""\n', 1, "expected a value, got ''"),
+    'wrong value': ('distance = 1\ncorners = "mitre"\n', 1, "--corners: expected 'round' or 'miter', got 'mitre'"),
+    'twice': ('distance = 1\ndistance = 2\n', 1, 'all.toml:2: expected TOML'),
+    'several of one': ('distance = 1\ncorners = ["round", "miter"]\n', 1, '--corners'),
+    'lists in lists': ('distance = [[1, 2]]\n', 1, 'all.toml:1: expected a string, a number, true, false or an array'),
+    'table': ('[distance]\nxy = 1\n', 1, 'all.toml:1: expected a string, a number'),
+    'date': ('distance = 2026-11-26\n', 1, 'all.toml:1: expected a string, a number'),
+    'infinite': ('distance = inf\n', 1, 'distance'),
+    'no TOML': ('distance: 1%\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'not text': (b'distance = "\xff\xfe"\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'zeros': (b'\0' * 4096, 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'deep': ('distance = ' + '[' * 100000 + '\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'cut': ('distance = "1', 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'large': ('# a\n' * 1000000, 1, 'all.toml: expected a file of options .TOML., got more than'),
+    'several lines': ('distance = """1\n2"""\n', 1, 'distance'),
+}
+
+
+@attack_each(FILES)
+def file_of_options(place, case):
+    text, code, says = case
+    place.box()
+    place.file('all.toml', text)
+    place.refused(place.run(*ONE), code, says)
+
+
+@attack
+def no_file_of_options(place):
+    place.box()
+    for path in ('nowhere.toml', '.', '/dev/zero', ''):
+        place.refused(place.run('box.obj', 'o.obj', '-d', '1', '--config', path), 1 if path in ('/dev/zero', '') else 2,
+                      'expected a file of options|expected a value')
+
+
+@attack
+def what_a_file_says_counts_after_the_command_line(place):
+    place.box()
+    place.file('all.toml', 'distance = [0.1, 0.2] # two\nstrict = false\nquiet = true\nreport = "r_{i}#.json"\n')
+    place.ended_well(place.run(*ONE), 0)
+    place.check(place.names() == ['all.toml', 'box.obj', 'o_001.obj', 'o_002.obj', 'r_001#.json', 'r_002#.json'],
+                'expected two outputs and reports')
+    place.ended_well(place.run(*ONE, '--distance', '0.3', '--report', 'one.json'), 0)
+    place.check('o.obj' in place.names() and 'one.json' in place.names(), 'expected one output and report')
