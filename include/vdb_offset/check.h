@@ -9,6 +9,7 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 
@@ -30,7 +31,8 @@ struct VDB_OFFSET_API CheckOptions {
   /// How far faces may be off at any point of them, as a share of the distance or in world units; then it is proven of
   /// as many as possible. One of them is above 0, or nothing is proven. Not with a metric.
   double tolerance_share = 0, tolerance_length = 0;
-  int threads = 0;  ///< 0: as many as the machine has.
+  int threads = 0;            ///< 0: as many as the machine has.
+  ProgressCallback progress;  ///< See run.h; all of a check is Stage::Measure. May cancel.
 };
 
 /// Measures of an offset, wherever it comes from.
@@ -58,7 +60,8 @@ struct CheckResult {
 /// Measures `positions` as an offset of `source`: exact distances, and the faults that FaultFinder finds. For positions
 /// made by offset(), rounded as they were stored, these are the faults that offset() has found itself. The result does
 /// not depend on the number of threads. \throw InvalidInput for a source without faces, distances or positions that are
-/// not one for each of its vertices, or positions that are not finite.
+/// not one for each of its vertices, or positions that are not finite; Cancelled when the progress callback asks for
+/// it.
 VDB_OFFSET_API CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions,
                                         const CheckOptions& options = {});
 

@@ -109,6 +109,23 @@ TEST_CASE("curve check: each fault is found", "[curves][check]") {
   }
 }
 
+TEST_CASE("curve check: progress changes nothing, and cancels", "[curves][check]") {
+  const Curves curves = l_shape();
+  const std::vector<Vec3d> positions = offset_by(curves, 0.1).positions;
+  CheckOptions options;
+  options.distance = 0.1;
+  std::vector<double> shares;
+  options.progress = [&](Stage, double share) {
+    shares.push_back(share);
+    return true;
+  };
+  CHECK(check_curves(curves.view(), positions, options).achieved == check_at(curves, positions, 0.1).achieved);
+  CHECK(std::is_sorted(shares.begin(), shares.end()));
+  CHECK(shares.back() == 1);
+  options.progress = [](Stage, double share) { return share < 0.5; };
+  CHECK_THROWS_AS(check_curves(curves.view(), positions, options), Cancelled);
+}
+
 TEST_CASE("curve layers: at a concave corner, segments keep a share of the wall's", "[curves][layers]") {
   const Curves curves = l_shape();
   for (const double total : {0.15, 0.3, 0.45}) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "support/oracles.h"
 #include "vdb_offset/error.h"
@@ -135,4 +137,37 @@ TEST_CASE("check: what cannot be compared is refused", "[check]") {
                   InvalidInput);
   CHECK(check_of(box, box.positions).valid());
   CHECK(check_of(box, box.positions).distance == 0);
+}
+
+TEST_CASE("check: progress rises to its end, changes nothing, and cancels at each step", "[check]") {
+  const Polygons sphere = scene::icosphere(1, 4);
+  OffsetOptions making;
+  making.distance = 0.1;
+  const std::vector<Vec3d> positions = offset(sphere.view(), making).positions;
+  CheckOptions options;
+  options.distance = 0.1;
+  options.threads = 1;  // so that no share is told late
+  options.tolerance_share = 0.02;
+  const CheckResult silent = check_offset(sphere.view(), positions, options);
+  std::vector<double> shares;
+  options.progress = [&](Stage stage, double share) {
+    CHECK(stage == Stage::Measure);
+    shares.push_back(share);
+    return true;
+  };
+  const CheckResult told = check_offset(sphere.view(), positions, options);
+  CHECK(told.achieved == silent.achieved);
+  CHECK(told.states == silent.states);
+  CHECK(told.certified->certified == silent.certified->certified);
+  CHECK(told.faces.mean == silent.faces.mean);
+  CHECK(std::is_sorted(shares.begin(), shares.end()));
+  CHECK(shares.front() == 0);
+  CHECK(shares.back() == Approx(1));
+  CHECK(shares.size() > 10);
+  for (const std::size_t last : {std::size_t{1}, shares.size() / 2, shares.size()}) {
+    std::size_t calls = 0;
+    options.progress = [&](Stage, double) { return ++calls < last; };
+    CHECK_THROWS_AS(check_offset(sphere.view(), positions, options), Cancelled);
+    CHECK(calls == last);
+  }
 }

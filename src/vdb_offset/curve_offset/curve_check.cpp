@@ -9,6 +9,7 @@
 #include <string>
 
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/curve/curve_line.h"
 #include "vdb_offset/curve_offset/curve_faults.h"
@@ -44,6 +45,7 @@ class CurveChecker {
   }
 
   void run() {
+    Progress progress(options_.progress, Stage::Measure, 3);  // of three steps
     result_.distance = options_.distance ? options_.distance->farthest() : find_distance();
     result_.distances = Distances(result_.distance);
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p)
@@ -57,7 +59,9 @@ class CurveChecker {
     CurveFaults faults(curves);
     Indices all(positions_.size());
     std::iota(all.begin(), all.end(), 0u);
+    progress.advance(1);
     faults.move(all, positions_);
+    progress.advance(1);
     result_.faults = faults.count();
     result_.source_crossings = faults.source_crossings();
     result_.more_source_crossings = faults.more_in_source();
@@ -67,6 +71,7 @@ class CurveChecker {
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p)
       if (drawn_.vertex[p] != kNone) states[drawn_.vertex[p]] = result_.states[p];
     result_.faces = measure_segments(curves, positions_, states);
+    progress.advance(1);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/parts/mesh_parts.h"
@@ -21,6 +22,9 @@
 
 namespace vdb_offset {
 namespace {
+
+// Vertices between two times that progress is told: milliseconds. Not measured.
+constexpr std::size_t kVerticesTold = 1024;
 
 void require_usable(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
   if (source.face_count() == 0) throw InvalidInput("check: expected a source with faces, found none");
@@ -130,8 +134,8 @@ void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const
 std::optional<CertifiedFaces> prove_faces(const MeshParts& parts, const ClosestQuery& query,
                                           std::span<const Vec3d> source, std::span<const Vec3d> in_offset,
                                           const Distances& distances, std::span<const VertexState> states,
-                                          const CheckOptions& options) {
-  const auto& [share, length] = std::pair{options.tolerance_share, options.tolerance_length};
+                                          const CheckOptions& options, Progress& progress) {
+  const double share = options.tolerance_share, length = options.tolerance_length;
   if (share + length == 0) return {};
   const Surface& surface = parts.surface();
   std::vector<OffsetFace> faces;
@@ -143,10 +147,31 @@ std::optional<CertifiedFaces> prove_faces(const MeshParts& parts, const ClosestQ
     tolerance[w] = share > 0 ? share * std::abs(asked[w]) : length;
   }
   CertifiedFaces certified =
-      certify({query, surface, faces, source, in_offset, asked, tolerance, states, options.corners});
+      certify({query, surface, faces, source, in_offset, asked, tolerance, states, options.corners}, &progress);
   certified.share = share;
   certified.length = length;
   return certified;
+}
+
+/// Units of progress: the source's crossings, the faults and the errors of faces take about as long; proofs, which go
+/// on face by face, far longer.
+std::size_t units_of(const Surface& surface, const CheckOptions& options) {
+  const bool proves = options.tolerance_share + options.tolerance_length > 0;
+  return 3 * surface.vertices.size() + (proves ? surface.triangles.size() : 0);
+}
+
+/// Moves all vertices to where they are in the offset, and finds the faults there. \param crossing pairs of the
+/// source's triangles that go through an obstacle
+void find_faults(FaultFinder& finder, std::span<const Vec3d> in_offset, std::size_t crossing, Progress& progress,
+                 CheckResult& result) {
+  finder.move_all([&](std::uint32_t v) {
+    if (v % kVerticesTold == 0) progress.advance(std::min(kVerticesTold, in_offset.size() - v));
+    return in_offset[v];
+  });
+  result.faults = finder.count();
+  result.source_crossings = finder.source_crossings().count() - crossing;
+  result.crossings_near_source = finder.crossings_near_source();
+  result.more_source_crossings = finder.source_crossings().has_more();
 }
 
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
@@ -156,6 +181,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), {.find = false, .planes = {}}, 0);
   const Surface& surface = parts.surface();
+  Progress progress(options.progress, Stage::Measure, units_of(surface, options));
   const ClosestQuery query(parts.moving_part);
   const std::vector<Vec3d> source = parts.source(space.view()),
                            in_offset = positions_in_offset(surface, source, moved.view().positions),
@@ -185,17 +211,15 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   std::optional<SelfCrossings> source_crossings;
   if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
   FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));
-  finder.move_all([&](std::uint32_t v) { return in_offset[v]; });
-  result.faults = finder.count();
-  result.source_crossings = finder.source_crossings().count() - (surroundings ? surroundings->crossing() : 0);
-  result.crossings_near_source = finder.crossings_near_source();
-  result.more_source_crossings = finder.source_crossings().has_more();
+  progress.advance(in_offset.size());
+  find_faults(finder, in_offset, surroundings ? surroundings->crossing() : 0, progress, result);
   judge_vertices(surface, source, finder, distances, miters, options.precision, result);
   std::vector<VertexState> states(source.size(), VertexState::Reached);
   for (std::size_t w = 0; w < states.size(); ++w)
     if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];
   result.faces = measure_faces({constrained, in_offset, distances, source, states});
-  result.certified = prove_faces(parts, query, source, in_offset, distances, states, options);
+  progress.advance(in_offset.size());
+  result.certified = prove_faces(parts, query, source, in_offset, distances, states, options, progress);
 }
 
 }  // namespace

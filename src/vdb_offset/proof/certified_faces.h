@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/proof/offset_prover.h"
 #include "vdb_offset/query/closest_query.h"
@@ -35,8 +36,9 @@ struct CertifiedMesh {
 /// A face for its proof. \pre all of its vertices are asked to go to one side
 OffsetTriangle offset_triangle(const CertifiedMesh& mesh, const OffsetFace& face);
 
-/// Tells what is proven of all faces. The result does not depend on the number of threads.
-CertifiedFaces certify(const CertifiedMesh& mesh);
+/// Tells what is proven of all faces. The result does not depend on the number of threads. \param progress told of each
+/// face, if there is one
+CertifiedFaces certify(const CertifiedMesh& mesh, Progress* progress = nullptr);
 
 /// Whether a vertex gets to its distance, or to that from its own planes.
 constexpr bool is_there(VertexState state) { return state == VertexState::Reached || state == VertexState::Mitred; }
