@@ -2,6 +2,7 @@
 #include "arrays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "vdb_offset/error.h"
@@ -9,7 +10,7 @@
 namespace vdb_offset::python {
 namespace {
 
-static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+static_assert(sizeof(Vec3d) == 3 * sizeof(double) && sizeof(Vec2d) == 2 * sizeof(double));
 
 }  // namespace
 
@@ -130,6 +131,32 @@ py::object faces_of(const Polygons& polygons) {
   if (is_even) return owning_array(polygons.corners, {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(size)});
   return py::make_tuple(owning_array(polygons.face_begin, {static_cast<py::ssize_t>(count) + 1}),
                         owning_array(polygons.corners, {corners}));
+}
+
+std::vector<Vec2d> texture_of(const py::object& texture, PolygonView mesh) {
+  const py::array given = as_array(texture, "texture");
+  const std::size_t pairs = static_cast<std::size_t>(given.size()) / 2, corners = mesh.corners.size();
+  const bool are_numbers = is_integral(given) || given.dtype().kind() == 'f',
+             are_pairs = given.ndim() >= 2 && given.shape(given.ndim() - 1) == 2,
+             of_vertices = given.ndim() == 2 && pairs == mesh.positions.size(),
+             of_corners = (given.ndim() == 2 || given.ndim() == 3) && pairs == corners;
+  if (!are_numbers || !are_pairs || !(of_vertices || of_corners))
+    throw InvalidInput("texture: expected two numbers for each of " + std::to_string(mesh.positions.size()) +
+                       " vertices or " + std::to_string(corners) + " corners, got " + shape_of(given) + " of " +
+                       std::string(py::str(py::object(given.dtype()))));
+  const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(given);
+  const auto* const values = reinterpret_cast<const Vec2d*>(numbers.data());
+  if (of_vertices) return std::vector<Vec2d>(values, values + pairs);
+  const auto is_none = [](const Vec2d& uv) { return std::isnan(uv[0]) || std::isnan(uv[1]); };
+  std::vector<Vec2d> of_vertex(mesh.positions.size(), Vec2d(0.0));
+  std::vector<std::uint8_t> has_value(of_vertex.size(), 0);
+  for (std::size_t c = 0; c < corners; ++c) {
+    const std::uint32_t v = mesh.corners[c];
+    if (has_value[v]) continue;
+    has_value[v] = !is_none(values[c]);
+    of_vertex[v] = values[c];
+  }
+  return of_vertex;
 }
 
 std::vector<std::uint8_t> marks_of(const py::object& selection, std::size_t faces) {

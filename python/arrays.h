@@ -67,6 +67,10 @@ py::array owning_array(std::vector<Vec3d> positions);
 /// Faces as an (m, k) array if all have k corners, else as a pair of offsets and corners.
 py::object faces_of(const Polygons& polygons);
 
+/// The texture coordinates of vertices, out of (n, 2) numbers, one pair a vertex, or one a corner: (m, k, 2), or (c, 2)
+/// for c corners in all. A vertex has those of its first corner that has any (NaNs are none). \throw InvalidInput
+std::vector<Vec2d> texture_of(const py::object& texture, PolygonView mesh);
+
 /// One mark a face, out of an array of booleans or the numbers of faces. \throw InvalidInput
 std::vector<std::uint8_t> marks_of(const py::object& selection, std::size_t faces);
 

@@ -5,74 +5,24 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
+#include <map>
 #include <string>
-#include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
-#include "vdb_offset/curves.h"
+#include "distance_values.h"
+#include "keywords.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/run.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::python {
 namespace {
-
-/// Reads keywords one by one, and leaves those alone that were not given.
-class Keywords {
- public:
-  explicit Keywords(const py::dict& given) : given_(given) {}
-
-  py::object operator[](const char* name) const {
-    return given_.contains(name) ? py::reinterpret_borrow<py::object>(given_[name]) : py::none();
-  }
-
-  template <class Value>
-  void read(const char* name, Value& value) const {
-    const py::object given = (*this)[name];
-    if (given.is_none()) return;
-    try {
-      value = given.cast<Value>();
-    } catch (const py::cast_error&) {
-      throw InvalidOption(std::string(name) + ": expected " + what<Value>() + ", got " + text_of(given));
-    }
-  }
-  template <class Value>
-  void read(const char* name, std::optional<Value>& value) const {
-    Value given{};
-    if ((*this)[name].is_none()) return;
-    read(name, given);
-    value = given;
-  }
-  /// One of some words.
-  template <class Value, std::size_t kCount>
-  void read(const char* name, Value& value, const std::array<std::pair<const char*, Value>, kCount>& words) const {
-    const py::object given = (*this)[name];
-    if (given.is_none()) return;
-    std::string expected;
-    for (const auto& [word, meaning] : words) {
-      if (py::isinstance<py::str>(given) && given.cast<std::string>() == word) {
-        value = meaning;
-        return;
-      }
-      expected += (expected.empty() ? "'" : " or '") + std::string(word) + "'";
-    }
-    throw InvalidOption(std::string(name) + ": expected " + expected + ", got " + text_of(given));
-  }
-
-  static std::string text_of(const py::object& given) { return py::repr(given).cast<std::string>(); }
-
- private:
-  template <class Value>
-  static const char* what() {
-    if constexpr (std::is_same_v<Value, bool>) return "True or False";
-    else if constexpr (std::is_integral_v<Value>) return "a whole number, 0 or more";
-    else return "a number";
-  }
-
-  const py::dict& given_;
-};
 
 /// Whether it is True or False, Python's own or NumPy's, which are numbers to Python.
 bool is_truth(const py::object& given) {
@@ -134,6 +84,34 @@ SymmetryOptions symmetry_of(const py::object& given) {
   return symmetry;
 }
 
+/// Bytes: a number, 0 for no limit, or a text with a unit, as the command takes it.
+std::size_t size_of(const py::object& given) {
+  static const std::map<std::string, double> kUnits = {
+      {"", 1},         {"B", 1},       {"K", 0x1p10},   {"KB", 0x1p10}, {"KIB", 0x1p10},
+      {"M", 0x1p20},   {"MB", 0x1p20}, {"MIB", 0x1p20}, {"G", 0x1p30},  {"GB", 0x1p30},
+      {"GIB", 0x1p30}, {"T", 0x1p40},  {"TB", 0x1p40},  {"TIB", 0x1p40}};
+  constexpr double kMost = 0x1p60;
+  if (py::isinstance<py::str>(given)) {
+    const auto text = given.cast<std::string>();
+    const char* const last = text.data() + text.size();
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), last, value);
+    std::string suffix;
+    for (const char* c = end; c != last; ++c)
+      if (*c != ' ') suffix += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
+    const auto unit = kUnits.find(suffix);
+    if (error == std::errc() && unit != kUnits.end() && value > 0 && value * unit->second <= kMost)
+      return std::max<std::size_t>(1, static_cast<std::size_t>(value * unit->second));
+  } else if (!is_truth(given) && PyIndex_Check(given.ptr()) == 1) {
+    try {
+      return given.cast<std::size_t>();
+    } catch (const py::cast_error&) {  // negative, or more than there can be
+    }
+  }
+  throw InvalidOption("max_memory: expected a number of bytes, or a size such as '4G' or '512M', got " +
+                      Keywords::text_of(given));
+}
+
 constexpr std::array kOrients = {std::pair{"keep", Orient::Keep},
                                  std::pair{"fix-direction-only", Orient::FixDirectionOnly}};
 
@@ -146,7 +124,7 @@ void read_common(const Keywords& keywords, Options& options) {
   // What the command takes without being asked.
   constexpr double kMemoryShare = 0.8;
   options.max_memory = static_cast<std::size_t>(kMemoryShare * static_cast<double>(available_memory()));
-  keywords.read("max_memory", options.max_memory);
+  if (const py::object size = keywords["max_memory"]; !size.is_none()) options.max_memory = size_of(size);
   keywords.read("threads", options.threads);
   if (options.threads < 0) throw InvalidOption("threads: expected a whole number, 0 or more");
   options.weld = weld_of(keywords["weld"]);
@@ -155,8 +133,24 @@ void read_common(const Keywords& keywords, Options& options) {
 
 }  // namespace
 
-AskedOptions asked_options(const py::dict& given, const MeshArrays& mesh) {
+double clearance_of(const py::object& given, PolygonView mesh) {
+  if (py::isinstance<py::str>(given)) {
+    try {
+      const scene::Distance clearance = scene::parse_distance(given.cast<std::string>());
+      if (clearance.value >= 0) return clearance.in_world_units(clearance.percent ? used_diagonal(mesh) : 0);
+    } catch (const InvalidInput&) {  // no number
+    }
+  } else if (!is_truth(given) && PyNumber_Check(given.ptr()) == 1) {
+    const auto clearance = given.cast<double>();
+    if (clearance >= 0 && std::isfinite(clearance)) return clearance;
+  }
+  throw InvalidOption("clearance: expected a number of world units, or a text with one or percent, 0 or more, got " +
+                      Keywords::text_of(given));
+}
+
+AskedOptions asked_options(const py::dict& given, const Source& source) {
   const Keywords keywords(given);
+  const PolygonView mesh = source.view();
   AskedOptions asked;
   OffsetOptions& options = asked.options;
   read_common(keywords, options);
@@ -171,26 +165,26 @@ AskedOptions asked_options(const py::dict& given, const MeshArrays& mesh) {
                            std::pair{"free", Border::Free}});
   keywords.read("miter_limit", options.miter_limit);
   if (!(options.miter_limit >= 1)) throw InvalidOption("miter_limit: expected a number of 1 or more");
-  keywords.read("clearance", options.clearance);
+  if (const py::object clearance = keywords["clearance"]; !clearance.is_none())
+    options.clearance = clearance_of(clearance, mesh);
   keywords.read("paths", options.keep_paths);
   options.symmetry = symmetry_of(keywords["symmetry"]);
-  if (const py::object only = keywords["only"]; !only.is_none())
-    options.only = marks_of(only, mesh.view().face_count());
+  if (const py::object only = keywords["only"]; !only.is_none()) options.only = marks_of(only, mesh.face_count());
   if (const py::object obstacles = keywords["obstacles"]; !obstacles.is_none()) {
     const py::tuple pair = py::isinstance<py::tuple>(obstacles) ? py::tuple(obstacles) : py::tuple();
     if (pair.size() != 2) throw InvalidOption("obstacles: expected a pair of vertices and faces");
     asked.obstacles.emplace(pair[0], pair[1]);
     options.obstacles = asked.obstacles->view();
   }
+  if (const py::object texture = keywords["texture"]; !texture.is_none()) asked.texture = texture_of(texture, mesh);
+  if (const py::object path = keywords["save_vdb"]; !path.is_none()) {
+    asked.vdb = py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
+    options.keep_field = true;
+  }
   return asked;
 }
 
-std::pair<double, double> tolerance_of(const py::object& tolerance) {
-  const scene::Distance asked = scene::parse_distance(py::str(tolerance).cast<std::string>());
-  return asked.percent ? std::pair(asked.value / 100, 0.0) : std::pair(0.0, asked.value);
-}
-
-CheckOptions check_options(const AskedOptions& asked, const py::dict& given) {
+CheckOptions check_options(const AskedOptions& asked, const py::object& tolerance) {
   const OffsetOptions& options = asked.options;
   CheckOptions check;
   check.only = options.only;
@@ -203,9 +197,7 @@ CheckOptions check_options(const AskedOptions& asked, const py::dict& given) {
   check.orient = options.orient;
   check.precision = options.precision;
   check.threads = options.threads;
-  if (const py::object tolerance = Keywords(given)["tolerance"]; !tolerance.is_none()) {
-    std::tie(check.tolerance_share, check.tolerance_length) = tolerance_of(tolerance);
-  }
+  if (!tolerance.is_none()) std::tie(check.tolerance_share, check.tolerance_length) = tolerance_of(tolerance);
   return check;
 }
 
@@ -217,50 +209,6 @@ IsoOptions iso_options(const py::dict& given) {
   keywords.read("adaptivity", options.adaptivity);
   keywords.read("keep_specks", options.keep_specks);
   return options;
-}
-
-Distances distances_of(const py::object& distance, PolygonView mesh, bool curves, const OffsetOptions& options) {
-  if (py::isinstance<py::str>(distance)) {
-    const auto normals = [&] {
-      return curves ? curve_normals(mesh) : vertex_normals(mesh, options.weld, options.orient);
-    };
-    const auto texture = []() -> std::vector<Vec2d> {
-      throw InvalidInput("distance: expected an expression without u and v: arrays have no texture coordinates");
-    };
-    return scene::distances_of(scene::parse_distance_or_expression(distance.cast<std::string>()), mesh, normals,
-                               texture);
-  }
-  const auto numbers = [&]() -> py::array_t<double, py::array::c_style | py::array::forcecast> {
-    try {
-      return {distance};
-    } catch (const py::error_already_set& error) {
-      if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
-      throw InvalidOption("distance: expected a number, an array or a text, got " + Keywords::text_of(distance));
-    }
-  }();
-  if (numbers.ndim() == 0) {
-    if (!std::isfinite(*numbers.data()))
-      throw InvalidOption("distance: expected a finite number, got " + Keywords::text_of(distance));
-    return *numbers.data();
-  }
-  if (numbers.ndim() != 1 || static_cast<std::size_t>(numbers.size()) != mesh.positions.size())
-    throw InvalidInput("distance: expected one for each of " + std::to_string(mesh.positions.size()) +
-                       " vertices, got an array of the shape " + shape_of(numbers));
-  return Distances(std::vector<double>(numbers.data(), numbers.data() + numbers.size()));
-}
-
-void measure_by_axis(const py::dict& keywords, const Distances& distance, PolygonView mesh, Metric& metric) {
-  // Beyond this ratio the lesser distance drowns in the rounding of the larger one, as the command says.
-  constexpr double kMostRatio = 1000;
-  const py::object given = Keywords(keywords)["distance_z"];
-  if (given.is_none()) return;
-  const Distances z = distances_of(given, mesh, false, {});
-  const double ratio = distance[0] / z[0];
-  if (!distance.uniform() || !z.uniform() || !(std::max(ratio, 1 / ratio) <= kMostRatio && ratio > 0))
-    throw InvalidOption("distance_z: expected one number beside one distance, of its sign and within " +
-                        std::to_string(static_cast<int>(kMostRatio)) + " times it, either way, got " +
-                        Keywords::text_of(given));
-  metric = Metric::of_half_axes(distance[0], z[0]);
 }
 
 }  // namespace vdb_offset::python

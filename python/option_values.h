@@ -2,10 +2,11 @@
 #pragma once
 
 #include <optional>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "arrays.h"
+#include "source.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/offset.h"
@@ -17,28 +18,21 @@ namespace vdb_offset::python {
 struct AskedOptions {
   OffsetOptions options;
   std::optional<MeshArrays> obstacles;
+  std::vector<Vec2d> texture;  ///< Of each vertex: what u and v are in an expression. Empty: they are unknown.
+  std::string vdb;             ///< A file for the field; empty: none.
 };
 
-/// \param keywords those that were given; see vdb_offset/__init__.py for what each may be
+/// \param keywords those that were given; see vdb_offset/_options.py for what each may be
 /// \throw InvalidOption for a value that means nothing, InvalidInput for arrays that do not fit
-AskedOptions asked_options(const py::dict& keywords, const MeshArrays& mesh);
+AskedOptions asked_options(const py::dict& keywords, const Source& source);
 
-/// A tolerance as a share of the distance and a length, one of which is 0: a number in world units, or a text with a
-/// percentage. \throw InvalidInput
-std::pair<double, double> tolerance_of(const py::object& tolerance);
+/// A clearance: world units, or a text with a percentage of the mesh's diagonal. \throw InvalidOption
+double clearance_of(const py::object& given, PolygonView mesh);
 
-/// Lets distances along z be `distance_z`, and those in the plane across it `distance`, if the keyword is given: both
-/// of one sign, as distances_of() has them. \throw InvalidOption
-void measure_by_axis(const py::dict& keywords, const Distances& distance, PolygonView mesh, Metric& metric);
-
-/// The options of a check: those of the offset, and a tolerance.
-CheckOptions check_options(const AskedOptions& asked, const py::dict& keywords);
+/// The options of a check: those of the offset, and a tolerance, or None.
+CheckOptions check_options(const AskedOptions& asked, const py::object& tolerance);
 
 /// The options of an iso-surface. \throw as asked_options()
 IsoOptions iso_options(const py::dict& keywords);
-
-/// A distance: a number, an array with one for each vertex, or a text: a number, a percentage of the diagonal, or an
-/// expression. \throw InvalidOption, InvalidInput
-Distances distances_of(const py::object& distance, PolygonView mesh, bool curves, const OffsetOptions& options);
 
 }  // namespace vdb_offset::python

@@ -23,11 +23,12 @@ std::vector<std::int64_t> vtk_cells(const VolumeMesh& mesh) {
   return cells;
 }
 
-py::dict fields_of(std::vector<VolumeField> fields) {
+/// Fields as arrays of a shape; an empty one stands for as many values as there are.
+py::dict fields_of(std::vector<VolumeField> fields, const std::vector<py::ssize_t>& shape = {}) {
   py::dict arrays;
   for (VolumeField& field : fields) {
-    const auto count = static_cast<py::ssize_t>(field.values.size());
-    arrays[py::str(field.name)] = owning_array(std::move(field.values), {count});
+    const std::vector<py::ssize_t> all = {static_cast<py::ssize_t>(field.values.size())};
+    arrays[py::str(field.name)] = owning_array(std::move(field.values), shape.empty() ? all : shape);
   }
   return arrays;
 }
@@ -53,6 +54,14 @@ py::dict volume_as_dict(VolumeMesh mesh) {
   all["point_data"] = fields_of(std::move(mesh.point_fields));
   all["cell_data"] = fields_of(std::move(mesh.cell_fields));
   all["points"] = owning_array(std::move(mesh.points));
+  return all;
+}
+
+py::dict block_as_dict(StructuredBlock block) {
+  const std::vector<py::ssize_t> shape = {block.nk, block.nj, block.ni};
+  py::dict all;
+  all["point_data"] = fields_of(std::move(block.point_fields), shape);
+  all["points"] = owning_array(std::move(block.points)).reshape({shape[0], shape[1], shape[2], py::ssize_t{3}});
   return all;
 }
 

@@ -12,4 +12,7 @@ namespace vdb_offset::python {
 /// boundary by name, each a pair of offsets and points.
 py::dict volume_as_dict(VolumeMesh mesh);
 
+/// A structured block: `points`, (nk, nj, ni, 3), and `point_data`, (nk, nj, ni) arrays by name.
+py::dict block_as_dict(StructuredBlock block);
+
 }  // namespace vdb_offset::python

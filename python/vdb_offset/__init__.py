@@ -23,23 +23,23 @@ it returns False the call raises `Cancelled`, and what it raises itself is raise
 """
 
 from ._calls import (
-    Check,
-    Iso,
-    Layers,
-    Offset,
-    Refined,
-    Shell,
     check,
     check_curves,
     curve_layers,
     fit,
+    iso_shell,
     iso_surface,
+    iso_surface_several,
     layers,
     offset,
     offset_curves,
+    offset_curves_several,
     offset_several,
     offset_to_tolerance,
     shell,
+    shell_several,
+    structured_curve_layers,
+    structured_layers,
 )
 from ._core import (
     Cancelled,
@@ -51,11 +51,13 @@ from ._core import (
     states as STATES,
     version as __version__,
 )
+from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shell
 from .meshes import arrays_of, offset_mesh, with_positions
 
 __all__ = [
-    "Cancelled", "Check", "Error", "InvalidExpression", "InvalidInput", "InvalidOption", "Iso", "Layers", "Offset",
-    "OutOfBudget", "Refined", "STATES", "Shell", "arrays_of", "check", "check_curves", "curve_layers", "fit",
-    "iso_surface", "layers", "offset", "offset_curves", "offset_mesh", "offset_several", "offset_to_tolerance", "shell",
-    "with_positions",
+    "Block", "Cancelled", "Check", "Error", "InvalidExpression", "InvalidInput", "InvalidOption", "Iso", "IsoShell",
+    "Layers", "Offset", "OutOfBudget", "Refined", "STATES", "Shell", "arrays_of", "check", "check_curves",
+    "curve_layers", "fit", "iso_shell", "iso_surface", "iso_surface_several", "layers", "offset", "offset_curves",
+    "offset_curves_several", "offset_mesh", "offset_several", "offset_to_tolerance", "shell", "shell_several",
+    "structured_curve_layers", "structured_layers", "with_positions",
 ]

@@ -6,7 +6,10 @@ from typing import Any, Tuple
 
 import numpy as np
 
-from ._calls import Distance, Faces, Offset, offset
+from . import _options
+from ._calls import offset
+from ._options import Distance, Faces, takes
+from ._results import Offset
 
 
 def _from_counts(cells: np.ndarray) -> Faces:
@@ -94,10 +97,12 @@ def with_positions(mesh: Any, positions: np.ndarray) -> Any:
     return moved
 
 
+@takes(_options.OFFSET)
 def offset_mesh(mesh: Any, distance: Distance, **options: Any) -> Tuple[Any, Offset]:
     """Offsets a mesh of trimesh, PyVista, VTK, meshio or Open3D.
 
-    :param options: see `offset_several()`
+    :param distance: see the module
+    :param options: by keyword; `help()` tells of each
     :return: a copy of the mesh with its vertices moved, and what `offset()` returns
     :raises TypeError: for anything else, and as `offset()`
     """

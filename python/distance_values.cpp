@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "distance_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "keywords.h"
+#include "vdb_offset/curves.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/scene.h"
+
+namespace vdb_offset::python {
+namespace {
+
+Distances distances_of_text(const std::string& text, const Source& source, const AskedOptions& asked,
+                            const std::string& what) {
+  const PolygonView mesh = source.view();
+  const auto normals = [&] {
+    return source.curves() ? curve_normals(mesh) : vertex_normals(mesh, asked.options.weld, asked.options.orient);
+  };
+  const auto texture = [&] {
+    if (!asked.texture.empty()) return asked.texture;
+    throw InvalidInput(what + ": expected an expression without u and v, as " +
+                       (source.curves() ? "curves have no texture coordinates" : "no texture was given"));
+  };
+  return scene::distances_of(scene::parse_distance_or_expression(text), mesh, normals, texture);
+}
+
+}  // namespace
+
+Distances distances_of(const py::object& distance, const Source& source, const AskedOptions& asked, const char* what) {
+  const std::string name(what);
+  if (py::isinstance<py::str>(distance)) return distances_of_text(distance.cast<std::string>(), source, asked, name);
+  const auto numbers = [&]() -> py::array_t<double, py::array::c_style | py::array::forcecast> {
+    try {
+      return {distance};
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+      throw InvalidOption(name + ": expected a number, an array or a text, got " + Keywords::text_of(distance));
+    }
+  }();
+  if (numbers.ndim() == 0) {
+    if (!std::isfinite(*numbers.data()))
+      throw InvalidOption(name + ": expected a finite number, got " + Keywords::text_of(distance));
+    return *numbers.data();
+  }
+  const std::size_t vertices = source.view().positions.size();
+  if (numbers.ndim() != 1 || static_cast<std::size_t>(numbers.size()) != vertices)
+    throw InvalidInput(name + ": expected one for each of " + std::to_string(vertices) +
+                       " vertices, got an array of the shape " + shape_of(numbers));
+  return Distances(std::vector<double>(numbers.data(), numbers.data() + numbers.size()));
+}
+
+std::vector<Distances> distances_of_all(const py::list& distances, const Source& source, const AskedOptions& asked) {
+  std::vector<Distances> all;
+  for (const auto distance : distances)
+    all.push_back(distances_of(py::reinterpret_borrow<py::object>(distance), source, asked));
+  return all;
+}
+
+Distances inward_distances_of(const py::object& inner, const Source& source, const AskedOptions& asked,
+                              std::span<const Distances> outer) {
+  const Distances given = distances_of(inner, source, asked, "inner");
+  if (given.inward() > 0 || (given.uniform() && given[0] == 0))
+    throw InvalidInput("inner: expected a distance above 0, or distances of 0 or more, got " +
+                       Keywords::text_of(inner));
+  for (const Distances& each : outer)
+    if (each.inward() > 0) throw InvalidInput("distance: expected distances of 0 or more at all vertices with inner");
+  if (given.uniform()) return -given[0];
+  std::vector<double> each(given.count());
+  for (std::size_t v = 0; v < each.size(); ++v) each[v] = -given[v];
+  return Distances(std::move(each));
+}
+
+std::pair<double, double> tolerance_of(const py::object& tolerance) {
+  const scene::Distance asked = scene::parse_distance(py::str(tolerance).cast<std::string>());
+  return asked.percent ? std::pair(asked.value / 100, 0.0) : std::pair(0.0, asked.value);
+}
+
+Metric metric_of(const py::dict& keywords, std::span<const Distances> distance, const Source& source,
+                 const AskedOptions& asked) {
+  // Beyond this ratio the lesser distance drowns in the rounding of the larger one, as the command says.
+  constexpr double kMostRatio = 1000;
+  const py::object given = Keywords(keywords)["distance_z"];
+  if (given.is_none()) return {};
+  if (distance.size() != 1)
+    throw InvalidOption("distance_z: expected one distance beside it, got " + std::to_string(distance.size()));
+  if (!asked.vdb.empty()) throw InvalidOption("distance_z and save_vdb exclude each other");
+  if (source.curves() && asked.options.precision.kind != Precision::Kind::Double)
+    throw InvalidOption("distance_z and precision exclude each other for curves");
+  const Distances z = distances_of(given, source, {}, "distance_z");
+  const double xy = distance[0][0], ratio = xy / z[0];
+  if (!distance[0].uniform() || !z.uniform() || !(std::max(ratio, 1 / ratio) <= kMostRatio && ratio > 0))
+    throw InvalidOption("distance_z: expected one number beside one distance, of its sign and within " +
+                        std::to_string(static_cast<int>(kMostRatio)) + " times it, either way, got " +
+                        Keywords::text_of(given));
+  return Metric::of_half_axes(xy, z[0]);
+}
+
+}  // namespace vdb_offset::python

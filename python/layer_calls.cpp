@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls for layers of cells.
+#include <utility>
+#include <vector>
+
+#include "calls.h"
+#include "distance_values.h"
+#include "interruptible.h"
+#include "results.h"
+#include "vdb_offset/curve_offset.h"
+#include "volume_arrays.h"
+
+namespace vdb_offset::python {
+
+py::object evaluate(Input input, const py::object& vertices, const py::object& faces, const py::object& distance,
+                    const py::dict& keywords) {
+  const Source source(input, vertices, faces, keywords);
+  const Distances distances = distances_of(distance, source, asked_options(keywords, source));
+  if (distances.uniform()) return py::float_(distances[0]);
+  return distances_array(distances, source.view().positions.size());
+}
+
+namespace {
+
+/// Layers, and either their cells or a block of them.
+struct Grown {
+  LayersResult layers;
+  LayerReport report;
+  VolumeMesh cells;
+  StructuredBlock block;
+};
+
+enum class Product : bool { Cells, Block };
+
+Grown grow_on_curves(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options,
+                     Product product) {
+  Grown grown{grow_curve_layers(curves, heights, options), {}, {}, {}};
+  CurveCells cells = make_curve_cells(curves, grown.layers);
+  grown.report =
+      report_layers(cells.segments.view(), grown.layers, {}, cells.facts, measure_curve_cells(cells, grown.layers));
+  if (product == Product::Block) grown.block = make_curve_block(curves, grown.layers);
+  else grown.cells = std::move(cells.mesh);
+  return grown;
+}
+
+Grown grow_on_mesh(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
+                   Product product) {
+  Grown grown{grow_layers(mesh, heights, options), {}, {}, {}};
+  MeasuredCells cells(mesh, grown.layers);
+  grown.report = report_layers(mesh, grown.layers, {}, cells.facts(), cells.quality());
+  if (product == Product::Block) {
+    grown.block = make_block(mesh, grown.layers);
+    grown.report.inverted_block_cells = inverted_cells(grown.block);
+  } else {
+    grown.cells = std::move(cells).make({});
+  }
+  return grown;
+}
+
+py::dict grown_arrays(Input input, Product product, const py::object& vertices, const py::object& faces,
+                      const py::list& heights, const py::dict& keywords, const py::object& progress) {
+  const auto start = Clock::now();
+  const Source source(input, vertices, faces, keywords, MeshArrays::Corners::Copied);
+  AskedOptions asked = asked_options(keywords, source);
+  const std::vector<Distances> wanted = distances_of_all(heights, source, asked);
+  Interruptible run(progress);
+  asked.options.progress = run.progress();
+  Grown grown = run([&] {
+    return source.curves() ? grow_on_curves(source.view(), wanted, asked.options, product)
+                           : grow_on_mesh(source.view(), wanted, asked.options, product);
+  });
+  RunFacts facts = facts_of_run("", start);
+  facts.layers = std::move(grown.report);
+  const auto count = static_cast<py::ssize_t>(grown.layers.states.size());
+  py::dict all =
+      product == Product::Block ? block_as_dict(std::move(grown.block)) : volume_as_dict(std::move(grown.cells));
+  all["statistics"] = from_json(report_json(grown.layers, facts));
+  all["states"] = states_of(grown.layers.states);
+  all["share"] = owning_array(std::move(grown.layers.share), {count});
+  all["achieved"] = owning_array(std::move(grown.layers.achieved), {count});
+  return all;
+}
+
+}  // namespace
+
+py::dict layer_arrays(Input input, const py::object& vertices, const py::object& faces, const py::list& heights,
+                      const py::dict& keywords, const py::object& progress) {
+  return grown_arrays(input, Product::Cells, vertices, faces, heights, keywords, progress);
+}
+
+py::dict block_arrays(Input input, const py::object& vertices, const py::object& faces, const py::list& heights,
+                      const py::dict& keywords, const py::object& progress) {
+  return grown_arrays(input, Product::Block, vertices, faces, heights, keywords, progress);
+}
+
+}  // namespace vdb_offset::python

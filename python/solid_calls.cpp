@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls for new surfaces: shells, iso-surfaces and hollow solids.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calls.h"
+#include "distance_values.h"
+#include "interruptible.h"
+#include "results.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/iso_surface.h"
+#include "vdb_offset/shell.h"
+
+namespace vdb_offset::python {
+namespace {
+
+py::dict shell_as_dict(Shell shell, OffsetResult result, RunFacts facts) {
+  facts.shell = shell.facts;
+  std::vector<std::uint8_t> parts(shell.polygons.face_count());
+  std::vector<std::uint32_t> sources(parts.size());
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    parts[f] = static_cast<std::uint8_t>(shell.part(f));
+    sources[f] = shell.source_face(f);
+  }
+  const auto count = static_cast<py::ssize_t>(parts.size());
+  py::dict all = as_dict(std::move(result), facts);
+  all["faces"] = faces_of(shell.polygons);
+  all["parts"] = owning_array(std::move(parts), {count});
+  all["source_faces"] = owning_array(std::move(sources), {count});
+  all["vertices"] = owning_array(std::move(shell.polygons.positions));
+  return all;
+}
+
+/// The offsets that were made with `off_source`, the last of which is the inner skin if there is one, as shells.
+std::vector<Shell> shells_of(PolygonView mesh, std::vector<OffsetResult>& results, const OffsetOptions& options) {
+  const OffsetResult* const inner = options.inner_skin_last ? &results.back() : nullptr;
+  std::vector<Shell> shells;
+  for (std::size_t i = 0; i + (inner ? 1 : 0) < results.size(); ++i) {
+    shells.push_back(shell_of(mesh, results[i], options, inner));
+    tell_states(shells.back(), results[i]);
+  }
+  return shells;
+}
+
+}  // namespace
+
+py::list shell_arrays(const py::object& vertices, const py::object& faces, const py::list& distances,
+                      const py::object& inner, const py::dict& keywords, const py::object& progress) {
+  const auto start = Clock::now();
+  const Source source(Input::Mesh, vertices, faces, keywords);
+  AskedOptions asked = asked_options(keywords, source);
+  std::vector<Distances> wanted = distances_of_all(distances, source, asked);
+  if (wanted.empty()) throw InvalidOption("distances: expected one or more, got none");
+  if (!inner.is_none()) wanted.push_back(inward_distances_of(inner, source, asked, wanted));
+  require_field(asked, wanted);
+  asked.options.off_source = true;
+  asked.options.inner_skin_last = !inner.is_none();
+  std::vector<std::string> texts;
+  for (const auto distance : distances) texts.push_back(text_of(py::reinterpret_borrow<py::object>(distance)));
+  Interruptible run(progress);
+  asked.options.progress = run.progress();
+  auto made = run([&] {
+    std::vector<OffsetResult> results = offset_several(source.view(), wanted, asked.options);
+    save_field(asked, results.front(), texts.front());
+    std::vector<Shell> shells = shells_of(source.view(), results, asked.options);
+    return std::pair(std::move(results), std::move(shells));
+  });
+  py::list all;
+  for (std::size_t i = 0; i < made.second.size(); ++i)
+    all.append(shell_as_dict(std::move(made.second[i]), std::move(made.first[i]), facts_of_run(texts[i], start)));
+  return all;
+}
+
+namespace {
+
+double distance_of_all(const Distances& distances) {
+  if (!distances.uniform()) throw InvalidOption("distance: expected one for all vertices of an iso-surface");
+  return distances[0];
+}
+
+py::dict hollow_as_dict(const Hollow& hollow, RunFacts facts, const IsoStatistics& outer, const IsoResult* inner) {
+  facts.shell = hollow.facts;
+  if (inner) facts.inner_surface = inner->statistics;
+  std::vector<std::uint8_t> parts(hollow.polygons.face_count(), 1);
+  std::fill_n(parts.begin(), hollow.outer_faces, std::uint8_t{0});
+  const auto count = static_cast<py::ssize_t>(parts.size());
+  py::dict all;
+  all["statistics"] = from_json(report_json(outer, facts));
+  all["faces"] = faces_of(hollow.polygons);
+  all["parts"] = owning_array(std::move(parts), {count});
+  all["vertices"] = owning_array(hollow.polygons.positions);
+  return all;
+}
+
+/// The mesh and the iso-surface, or two of these, as one solid.
+Hollow hollow_of(PolygonView mesh, double distance, const IsoResult& iso, const IsoResult* inner) {
+  const PolygonView skin = iso.polygons.view();
+  if (inner) return make_hollow(skin, inner->polygons.view(), Hollow::Source::Neither);
+  return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer) : make_hollow(skin, mesh, Hollow::Source::Inner);
+}
+
+}  // namespace
+
+py::dict iso_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
+                    const py::dict& keywords, const py::object& progress) {
+  const auto start = Clock::now();
+  const Source source(Input::Mesh, vertices, faces, keywords);
+  IsoOptions options = iso_options(keywords);
+  const Distances wanted = distances_of(distance, source, {});
+  options.distance = distance_of_all(wanted);
+  const Metric metric = metric_of(keywords, {&wanted, 1}, source, {});
+  Interruptible run(progress);
+  options.progress = run.progress();
+  IsoResult result = run([&] { return make_iso_surface_in_metric(source.view(), options, metric); });
+  py::dict all;
+  all["statistics"] = from_json(report_json(result.statistics, facts_of_run(text_of(distance), start)));
+  all["faces"] = faces_of(result.polygons);
+  all["normals"] = owning_array(std::move(result.normals));
+  all["vertices"] = owning_array(std::move(result.polygons.positions));
+  return all;
+}
+
+py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
+                          const py::object& inner, const py::dict& keywords, const py::object& progress) {
+  const auto start = Clock::now();
+  const Source source(Input::Mesh, vertices, faces, keywords);
+  IsoOptions options = iso_options(keywords);
+  const Distances wanted = distances_of(distance, source, {});
+  const double outward = distance_of_all(wanted);
+  std::optional<double> inward;
+  if (!inner.is_none()) inward = distance_of_all(inward_distances_of(inner, source, {}, {&wanted, 1}));
+  Interruptible run(progress);
+  options.progress = run.progress();
+  struct Made {
+    IsoResult surface;
+    std::optional<IsoResult> cavity;
+    Hollow hollow;
+  };
+  const Made made = run([&]() -> Made {
+    const auto at = [&](double d) {
+      options.distance = d;
+      IsoResult result = make_iso_surface(source.view(), options);
+      if (!result.statistics.is_signed)
+        throw InvalidInput("iso_shell: expected a mesh that has an inside, got an open one");
+      return result;
+    };
+    Made all{at(outward), {}, {}};
+    if (inward) all.cavity = at(*inward);
+    all.hollow = hollow_of(source.view(), outward, all.surface, all.cavity ? &*all.cavity : nullptr);
+    return all;
+  });
+  return hollow_as_dict(made.hollow, facts_of_run(text_of(distance), start), made.surface.statistics,
+                        made.cavity ? &*made.cavity : nullptr);
+}
+
+}  // namespace vdb_offset::python

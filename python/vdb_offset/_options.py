@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The keywords that functions share: the one list of their names, types, defaults and meanings. Signatures, what
+`help()` tells, the stubs, and what is refused are made of it."""
+
+import inspect
+import os
+from typing import Any, Callable, Dict, List, Literal, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union
+
+import numpy as np
+
+Distance = Union[float, str, np.ndarray]
+Faces = Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]
+Progress = Optional[Callable[[str, float], Any]]
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Option(NamedTuple):
+    """A keyword of several functions."""
+
+    type: Any
+    default: Any
+    text: str
+
+
+OPTIONS: Dict[str, Option] = {
+    "inner": Option(Optional[Distance], None,
+                    "how far inward the inner skin lies, not negative; None: on the mesh itself"),
+    "count": Option(Optional[int], None, "instead of heights: how many layers, with"),
+    "first": Option(Optional[Distance], None, "the height of the first one, or"),
+    "total": Option(Optional[Distance], None, "that of the last one, and"),
+    "growth": Option(float, 1.2, "how many times as thick each layer is as the one before"),
+    "use_winding": Option(bool, True, "whether a mesh that is not closed can have an inside"),
+    "adaptivity": Option(Optional[float], None,
+                         "how readily voxels are merged, from 0 to 1; None: where it costs no accuracy"),
+    "keep_specks": Option(bool, False, "whether pieces smaller than a voxel are kept"),
+    "distance_z": Option(Optional[Union[float, str]], None, "the distance along z, beside a single one in the plane across it"),
+    "corners": Option(Literal["round", "miter"], "round",
+                      '"round": vertices at the distance; "miter": faces at the distance, beside sharp edges as well'),
+    "miter_limit": Option(float, 4.0, "the longest miter, in distances, 1 or more"),
+    "collision": Option(Literal["limit", "merge"], "limit",
+                        '"limit": the result stays valid; "merge": each vertex goes as far as the distance grows'),
+    "only": Option(Optional[np.ndarray], None,
+                   "(m,) booleans, or numbers of faces: those that are offset; the others stay, and are in the way"),
+    "border": Option(Literal["slide", "fixed", "free"], "slide", "what the edge of that part does"),
+    "symmetry": Option(Union[bool, Sequence[Sequence[float]]], True,
+                       "whether borders stay in the planes that they lie in; or planes (A, B, C, D), all x with\n"
+                       "A x + B y + C z = D, in which everything stays that lies there"),
+    "obstacles": Option(Optional[Tuple[np.ndarray, Faces]], None, "vertices and faces of what is in the way"),
+    "clearance": Option(Union[float, str], 0.0,
+                        'the least distance from these: world units, or "1%" of the diagonal of the mesh'),
+    "close": Option(bool, False,
+                    "whether curves whose ends are near each other, less than a tenth of their length, are closed"),
+    "weld": Option(Union[Literal["auto", "exact", "none"], float], "auto",
+                   "which vertices are one; a number: those that are no farther apart, world units"),
+    "orient": Option(Literal["keep", "fix-direction-only"], "keep",
+                     '"fix-direction-only": outward is out of the solid that closed parts enclose'),
+    "solver": Option(Literal["closest", "eikonal"], "closest", '"eikonal": the paper\'s'),
+    "texture": Option(Optional[np.ndarray], None,
+                      "what u and v are in a distance: (n, 2) numbers, one pair a vertex; or one a corner, (m, k, 2)\n"
+                      "or (c, 2) for c corners in all: a vertex has those of its first corner"),
+    "precision": Option(Union[Literal["double", "single"], int], "double",
+                        "what will be kept of coordinates, on which validity is judged; a number: 1 to 17 digits"),
+    "voxel_size": Option(Optional[float], None, "of the grid, world units: the length of the edges of an iso-surface; or"),
+    "voxels_per_distance": Option(Optional[float], None, "how many voxels there are to a distance"),
+    "paths": Option(bool, False, "whether the result has the vertices' ways"),
+    "save_vdb": Option(Optional[Union[str, os.PathLike]], None,
+                       "a file to write: phi and the closest triangles as OpenVDB grids"),
+    "threads": Option(int, 0, "0: as many as the machine has"),
+    "max_memory": Option(Optional[Union[int, str]], None,
+                         'for the run: bytes, or "4G"; 0: no limit; None: 80 % of what is free'),
+    "progress": Option(Progress, None, "called with a stage and the share of it that is done; False cancels (see the module)"),
+}
+
+_OF_LAYERS = ["count", "first", "total", "growth"]
+_OF_ISO = ["use_winding", "adaptivity", "keep_specks"]
+_COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_memory", "progress"]
+#: What functions of one kind take.
+OFFSET = [name for name in OPTIONS if name not in ("inner", "close", *_OF_LAYERS, *_OF_ISO)]
+CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths", "save_vdb", *_COMMON]
+ISO = [*_OF_ISO, "weld", "orient", *_COMMON]
+_NOT_OF_LAYERS = ("paths", "collision", "distance_z", "save_vdb")
+LAYERS = [*_OF_LAYERS, *(name for name in OFFSET if name not in _NOT_OF_LAYERS)]
+CURVE_LAYERS = [*_OF_LAYERS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
+
+#: Stands in docstrings for the options.
+_PLACE = "    :param options: by keyword; `help()` tells of each\n"
+
+
+def takes(names: Sequence[str], without: Sequence[str] = ()) -> Callable[[Function], Function]:
+    """Has a function with `**options` take some of the keywords: its signature and its documentation say so, and
+    `given()` asks for no others."""
+
+    def decorate(function: Function) -> Function:
+        own = inspect.signature(function)
+        parameters = [each for each in own.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
+        lines = ""
+        for name in (each for each in OPTIONS if each in names and each not in without):
+            option = OPTIONS[name]
+            parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=option.default,
+                                                annotation=option.type))
+            lines += f"    :param {name}: " + option.text.replace("\n", "\n        ") + "\n"
+        assert function.__doc__ and _PLACE in function.__doc__, function.__name__
+        function.__doc__ = function.__doc__.replace(_PLACE, lines)
+        function.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
+        function.__annotations__ = {**{each.name: each.annotation for each in parameters}, "return": own.return_annotation}
+        return function
+
+    return decorate
+
+
+def given(function: Callable[..., Any], options: Dict[str, Any]) -> Tuple[Dict[str, Any], Progress]:
+    """The options that a function was called with, `progress` apart from the others; None is as good as nothing.
+
+    :raises TypeError: for a keyword that is not in the function's signature
+    """
+    names: List[str] = list(inspect.signature(function).parameters)
+    for name in options:
+        if name not in names:
+            raise TypeError(f"{function.__name__}() got an unexpected keyword argument '{name}'")
+    keywords = {name: value for name, value in options.items() if value is not None and name != "progress"}
+    return keywords, options.get("progress")

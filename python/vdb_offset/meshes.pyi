@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Made by scripts/python_stubs.
+import os
+from typing import Any, List, Literal, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ._options import Distance, Faces, Progress
+from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shell
+
+def arrays_of(
+    mesh: Any
+) -> Tuple[np.ndarray, Faces]: ...
+
+def with_positions(
+    mesh: Any, positions: np.ndarray
+) -> Any: ...
+
+def offset_mesh(
+    mesh: Any, distance: Distance, *, distance_z: Union[float, str, None] = None,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
+    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
+    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
+    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
+    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
+    progress: Progress = None
+) -> Tuple[Any, Offset]: ...

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Offsets of meshes, beside the command's."""
+import numpy as np
+
+import vdb_offset
+from beside import CUBE, QUADS, BesideTheCommand, shape_of
+
+
+class Offsets(BesideTheCommand):
+    def check(self, scene, distance, arguments=(), **options):
+        run = self.run_command
+        vertices, faces = shape_of(scene, run)
+        run(run.path("shape.obj"), run.path("made.obj"), f"--distance={distance}", "--precision", "17", "--report",
+            run.path("report.json"), *arguments)
+        result = vdb_offset.offset(vertices, faces, distance, precision=17, **options)
+        made, _ = run.read("made.obj")
+        self.check_bits(result.positions, made)
+        self.assertFalse((made == vertices).all())
+        self.check_report(result.statistics, run.report())
+
+    def test_outward(self):
+        self.check("bumpy_sphere", "3%")
+
+    def test_inward_where_fronts_meet(self):
+        self.check("gear", "-4%")
+
+    def test_merge(self):
+        self.check("bumpy_sphere", "4%", ["--collision", "merge"], collision="merge")
+
+    def test_miter(self):
+        self.check("gear", "0.5%", ["--corners", "miter", "--miter-limit", "3"], corners="miter", miter_limit=3)
+
+    def test_expression(self):
+        self.check("torus", "0.05 + 0.02*sin(4*pi*z) + 0.01*nx")
+
+    def test_eikonal(self):
+        self.check("torus", "2%", ["--solver", "eikonal", "--voxel-size", "0.05"], solver="eikonal", voxel_size=0.05)
+
+    def test_open_surface_with_symmetry(self):
+        self.check("patch", "0.2", ["--symmetry", "none"], symmetry=False)
+
+    def test_array_of_distances(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        each = 0.02 + 0.01 * vertices[:, 0]
+        with open(run.path("each.txt"), "w", encoding="ascii") as out:
+            out.writelines(f"{float(d)!r}\n" for d in each)
+        run(run.path("shape.obj"), run.path("made.obj"), "--distance-from", run.path("each.txt"), "--precision", "17")
+        result = vdb_offset.offset(vertices, faces, each)
+        self.check_bits(result.positions, run.read("made.obj")[0])
+        self.assertTrue((result.distances == each).all())
+
+    def test_several_distances(self):
+        run = self.run_command
+        vertices, faces = shape_of("gear", run)
+        run(run.path("shape.obj"), run.path("made_{i}.obj"), "--distance=0.02", "--distance=-1%", "--precision", "17",
+            "--report", run.path("report_{i}.json"))
+        for i, result in enumerate(vdb_offset.offset_several(vertices, faces, [0.02, "-1%"], precision=17)):
+            self.check_bits(result.positions, run.read(f"made_00{i + 1}.obj")[0])
+            self.check_report(result.statistics, run.report(f"report_00{i + 1}.json"))
+
+    def test_distances_by_axis(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        run(run.path("shape.obj"), run.path("made.obj"), "--distance-xy=0.03", "--distance-z=0.06", "--precision", "17")
+        result = vdb_offset.offset(vertices, faces, 0.03, distance_z=0.06, precision=17)
+        self.check_bits(result.positions, run.read("made.obj")[0])
+        self.assertTrue(vdb_offset.check(vertices, faces, result.positions, 0.03, distance_z=0.06).valid)
+        for wrong in (-0.06, 0, "-1%", 1e9):
+            with self.assertRaises(vdb_offset.InvalidOption):
+                vdb_offset.offset(vertices, faces, 0.03, distance_z=wrong)
+        with self.assertRaises(vdb_offset.InvalidOption):
+            vdb_offset.offset_several(vertices, faces, [0.03, 0.04], distance_z=0.06)
+
+    def test_tolerance(self):
+        run = self.run_command
+        run.write("cube.obj", CUBE, QUADS)
+        run("cube.obj", "made.obj", "--distance=0.1", "--tolerance", "2%", "--refined-source", "source.obj", "--precision",
+            "17")
+        refined = vdb_offset.offset_to_tolerance(CUBE, QUADS, 0.1, "2%", precision=17)
+        made, made_faces = run.read("made.obj")
+        self.assertTrue((made == refined.positions).all())
+        self.assertTrue((run.read("source.obj")[0] == refined.source).all())
+        corners = refined.faces[1] if isinstance(refined.faces, tuple) else refined.faces.ravel()
+        self.assertEqual([v for face in made_faces for v in face], corners.tolist())
+        self.assertEqual(refined.statistics["certified"]["certified"], 1)
+        added = refined.added
+        there = np.einsum("ik,ikj->ij", added["shares"], CUBE[added["vertices"]])
+        np.testing.assert_allclose(there, refined.source[8:], atol=1e-12)
+
+    def test_fit(self):
+        run = self.run_command
+        near = CUBE * [1, 1, 0.5] + [0, 0, 1.02]
+        run.write("cube.obj", CUBE, QUADS)
+        run.write("near.obj", near, QUADS)
+        run("cube.obj", "made.obj", "--fit", "near.obj", "--clearance", "0.05", "--precision", "17")
+        result = vdb_offset.fit(CUBE, QUADS, (near, QUADS), 0.05, precision=17)
+        self.check_bits(result.positions, run.read("made.obj")[0])
+        self.assertFalse((result.positions == CUBE).all())
+
+    def test_check(self):
+        run = self.run_command
+        vertices, faces = shape_of("gear", run)
+        result = vdb_offset.offset(vertices, faces, "0.5%", corners="miter")
+        found = vdb_offset.check(vertices, faces, result.positions, "0.5%", corners="miter", tolerance="1%")
+        self.assertTrue(found.valid)
+        self.assertTrue((found.states == result.states).all())
+        self.assertGreater(found.statistics["certified"]["certified"], 0.9)
+        turned = vdb_offset.check(vertices, faces, 2 * vertices[:, [1, 0, 2]], "0.5%")
+        self.assertFalse(turned.valid)
+
+    def test_clearance_in_percent(self):
+        run = self.run_command
+        above = CUBE + [0, 0, 1.1]
+        run.write("cube.obj", CUBE, QUADS)
+        run.write("above.obj", above, QUADS)
+        run("cube.obj", "made.obj", "--distance=0.2", "--obstacle", "above.obj", "--clearance", "2%", "--precision", "17",
+            "--report", "report.json")
+        result = vdb_offset.offset(CUBE, QUADS, 0.2, obstacles=(above, QUADS), clearance="2%", precision=17)
+        self.check_bits(result.positions, run.read("made.obj")[0])
+        self.check_report(result.statistics, run.report())
+        run("cube.obj", "fit.obj", "--fit", "above.obj", "--clearance", "8%", "--precision", "17")
+        fit = vdb_offset.fit(CUBE, QUADS, (above, QUADS), "8%", precision=17)
+        self.check_bits(fit.positions, run.read("fit.obj")[0])
+        self.assertFalse((fit.positions == CUBE).all())
+
+    def write_with_texture(self, name, vertices, faces, texture, corners):
+        with open(self.run_command.path(name), "w", encoding="ascii") as out:
+            out.writelines("v {!r} {!r} {!r}\n".format(*map(float, v)) for v in vertices)
+            out.writelines("vt {!r} {!r}\n".format(*map(float, uv)) for uv in texture)
+            for face, of_face in zip(faces, corners):
+                out.write("f " + " ".join(f"{v + 1}/{t + 1}" for v, t in zip(face, of_face)) + "\n")
+
+    def test_texture_of_vertices(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        texture = vertices[:, :2] ** 2
+        self.write_with_texture("with.obj", vertices, faces, texture, faces)
+        run("with.obj", "made.obj", "--distance", "0.02 + 0.03*u*v", "--precision", "17")
+        result = vdb_offset.offset(vertices, faces, "0.02 + 0.03*u*v", texture=texture, precision=17)
+        self.check_bits(result.positions, run.read("made.obj")[0])
+        self.assertGreater(np.ptp(result.distances), 0.005)
+
+    def test_texture_of_corners_has_seams(self):
+        run = self.run_command
+        corners = np.arange(24).reshape(6, 4)
+        texture = np.stack([np.arange(24) / 24, np.arange(24) % 5], 1)
+        self.write_with_texture("with.obj", CUBE, QUADS, texture, corners)
+        run("with.obj", "made.obj", "--distance", "0.1 + 0.1*u + 0.01*v", "--precision", "17")
+        for given in (texture, texture.reshape(6, 4, 2), texture.reshape(6, 4, 2).tolist()):
+            result = vdb_offset.offset(CUBE, QUADS, "0.1 + 0.1*u + 0.01*v", texture=given, precision=17)
+            self.check_bits(result.positions, run.read("made.obj")[0])
+        # A corner without texture leaves its vertex to the next one.
+        texture[QUADS.ravel().tolist().index(2)] = np.nan
+        other = vdb_offset.offset(CUBE, QUADS, "u", texture=texture).distances
+        self.assertEqual(other[2], QUADS.ravel().tolist().index(2, 2) / 24)
+
+    def test_texture_that_does_not_fit(self):
+        for texture in (np.zeros((7, 2)), np.zeros((8, 3)), np.zeros(16), np.zeros((8, 2), bool), "u", np.zeros((3, 4, 2))):
+            with self.assertRaisesRegex(vdb_offset.InvalidInput, "^texture: expected"):
+                vdb_offset.offset(CUBE, QUADS, "u", texture=texture)
+        with self.assertRaisesRegex(vdb_offset.InvalidInput, "without u and v"):
+            vdb_offset.offset(CUBE, QUADS, "u")
+        with self.assertRaises(vdb_offset.InvalidInput):
+            vdb_offset.offset(CUBE, QUADS, "u", texture=np.full((8, 2), np.nan))
+
+    def test_field_is_saved(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        run("shape.obj", "made.obj", "--distance=0.05", "--save-vdb", "made.vdb")
+        vdb_offset.offset(vertices, faces, 0.05, save_vdb=run.path("field.vdb"))
+        with open(run.path("made.vdb"), "rb") as made, open(run.path("field.vdb"), "rb") as field:
+            expected, found = made.read(), field.read()
+        # Names and an identifier differ, and so do offsets in the file; the values of both grids do not.
+        pieces = [expected[at:at + 64] for at in range(0, len(expected), 64)]
+        self.assertGreater(sum(piece in found for piece in pieces) / len(pieces), 0.95)
+        vdb_offset.offset(vertices, faces, 0.06, save_vdb=run.path("other.vdb"))
+        with open(run.path("other.vdb"), "rb") as field:
+            found = field.read()
+        self.assertLess(sum(piece in found for piece in pieces) / len(pieces), 0.95)
+
+    def test_field_that_cannot_be_saved(self):
+        path = self.run_command.path("field.vdb")
+        for options, kind in (({"save_vdb": self.run_command.path("no/field.vdb")}, vdb_offset.Error),
+                              ({"save_vdb": path, "distance_z": 0.2}, vdb_offset.InvalidOption)):
+            with self.assertRaises(kind):
+                vdb_offset.offset(CUBE, QUADS, 0.1, **options)
+        with self.assertRaisesRegex(vdb_offset.InvalidOption, "save_vdb: expected a distance other than 0"):
+            vdb_offset.offset_several(CUBE, QUADS, [0, 0], save_vdb=path)
+        with self.assertRaises(TypeError):
+            vdb_offset.offset(CUBE, QUADS, 0.1, save_vdb=1.5)

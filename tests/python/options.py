@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The keywords: what signatures, `help()` and the stubs say of them, and what they take."""
+import importlib.machinery
+import importlib.util
+import inspect
+import os
+import pydoc
+import unittest
+
+import vdb_offset
+from beside import CUBE, QUADS, ROOT
+from vdb_offset import _calls, _options, meshes
+
+
+def functions():
+    return [getattr(vdb_offset, name) for name in vdb_offset.__all__ if inspect.isfunction(getattr(vdb_offset, name))]
+
+
+class Options(unittest.TestCase):
+    def test_signatures_list_every_option(self):
+        parameters = inspect.signature(vdb_offset.offset).parameters
+        self.assertEqual(parameters["corners"].default, "round")
+        self.assertIn("miter", str(parameters["corners"].annotation))
+        self.assertEqual([name for name in parameters if name not in _options.OPTIONS], ["vertices", "faces", "distance"])
+        for function in functions():
+            kinds = {each.kind for each in inspect.signature(function).parameters.values()}
+            self.assertNotIn(inspect.Parameter.VAR_KEYWORD, kinds, function.__name__)
+
+    def test_every_option_is_in_a_signature(self):
+        listed = {name for function in functions() for name in inspect.signature(function).parameters}
+        self.assertEqual(set(_options.OPTIONS) - listed, set())
+
+    def test_help_tells_of_each(self):
+        for function in functions():
+            text = pydoc.render_doc(function, renderer=pydoc.plaintext)
+            for name, parameter in inspect.signature(function).parameters.items():
+                if parameter.kind is inspect.Parameter.KEYWORD_ONLY:
+                    self.assertIn(f":param {name}: ", text, function.__name__)
+            self.assertNotIn(":param options:", text)
+
+    def test_defaults_are_the_ones_that_hold(self):
+        expected = vdb_offset.offset(CUBE, QUADS, 0.1)
+        parameters = inspect.signature(vdb_offset.offset).parameters.values()
+        given = {each.name: each.default for each in parameters if each.kind is inspect.Parameter.KEYWORD_ONLY}
+        found = vdb_offset.offset(CUBE, QUADS, 0.1, **given)
+        self.assertTrue((found.positions == expected.positions).all())
+        self.assertEqual(found.statistics["miters"], expected.statistics["miters"])
+
+    def test_stubs_are_those_of_the_signatures(self):
+        loader = importlib.machinery.SourceFileLoader("python_stubs", os.path.join(ROOT, "scripts", "python_stubs"))
+        stubs = importlib.util.module_from_spec(importlib.util.spec_from_loader("python_stubs", loader))
+        loader.exec_module(stubs)
+        for module, name in ((_calls, "_calls.pyi"), (meshes, "meshes.pyi")):
+            with open(os.path.join(ROOT, "python", "vdb_offset", name), encoding="utf-8") as stub:
+                self.assertEqual(stub.read(), stubs.stubs_of(module), "run scripts/python_stubs")
+
+    def test_stubs_can_be_read(self):
+        for name in ("_calls.pyi", "meshes.pyi"):
+            path = os.path.join(ROOT, "python", "vdb_offset", name)
+            with open(path, encoding="utf-8") as stub:
+                text = stub.read().replace("from ._", "from vdb_offset._")
+            names = {}
+            exec(compile(text, path, "exec"), names)  # pylint: disable=exec-used
+            for function in functions():
+                if function.__name__ in names:
+                    stubbed = inspect.signature(names[function.__name__])
+                    self.assertEqual(stubbed, inspect.signature(function), function.__name__)
+
+    def test_memory_as_a_text(self):
+        def offset(size):
+            return vdb_offset.offset(CUBE, QUADS, 0.1, voxel_size=1e-3, max_memory=size)
+
+        for little in ("10M", "10 MiB", "10mb", "+1e4K", "10000000B", 10**7, "0.01G", "1e-5T"):
+            with self.subTest(little), self.assertRaises(vdb_offset.OutOfBudget):
+                offset(little)
+        for much in ("4G", "1T", 0, 2**32):
+            vdb_offset.offset(CUBE, QUADS, 0.1, max_memory=much)
+        for wrong in ("0", "4X", "G", "-1G", "", "nan", "2e30", -1, 1.5, True, 2**70, [1]):
+            with self.subTest(wrong), self.assertRaisesRegex(vdb_offset.InvalidOption, "max_memory: expected"):
+                offset(wrong)
+
+    def test_clearance_as_a_text(self):
+        for wrong in ("-1%", "1 foot", "", -0.1, float("nan"), True, [1], "x"):
+            with self.subTest(wrong), self.assertRaisesRegex(vdb_offset.InvalidOption, "clearance: expected"):
+                vdb_offset.offset(CUBE, QUADS, 0.1, obstacles=(CUBE + 3, QUADS), clearance=wrong)
+            with self.subTest(wrong), self.assertRaisesRegex(vdb_offset.InvalidOption, "clearance: expected"):
+                vdb_offset.fit(CUBE, QUADS, (CUBE + 3, QUADS), wrong)
+
+    def test_unknown_keywords_are_refused_by_name(self):
+        for function, arguments in ((vdb_offset.shell, (CUBE, QUADS, 0.1)), (vdb_offset.check, (CUBE, QUADS, CUBE)),
+                                    (vdb_offset.layers, (CUBE, QUADS, [0.1])), (vdb_offset.iso_surface, (CUBE, QUADS, 0.1))):
+            with self.assertRaisesRegex(TypeError, f"{function.__name__}\\(\\) got an unexpected keyword argument 'corner'"):
+                function(*arguments, corner="miter")
