@@ -75,8 +75,13 @@ Distances inward_distances_of(const py::object& inner, const Source& source, con
 }
 
 std::pair<double, double> tolerance_of(const py::object& tolerance) {
-  const scene::Distance asked = scene::parse_distance(py::str(tolerance).cast<std::string>());
-  return asked.percent ? std::pair(asked.value / 100, 0.0) : std::pair(0.0, asked.value);
+  try {
+    const scene::Distance asked = scene::parse_distance(py::str(tolerance).cast<std::string>());
+    if (asked.value > 0) return asked.percent ? std::pair(asked.value / 100, 0.0) : std::pair(0.0, asked.value);
+  } catch (const InvalidInput&) {  // no number
+  }
+  throw InvalidOption("tolerance: expected a length above 0, or a text with one or percent of the distance, got " +
+                      Keywords::text_of(tolerance));
 }
 
 Metric metric_of(const py::dict& keywords, std::span<const Distances> distance, const Source& source,

@@ -26,7 +26,7 @@ Distances inward_distances_of(const py::object& inner, const Source& source, con
                               std::span<const Distances> outer);
 
 /// A tolerance as a share of the distance and a length, one of which is 0: a number in world units, or a text with a
-/// percentage. \throw InvalidInput
+/// percentage. \throw InvalidOption
 std::pair<double, double> tolerance_of(const py::object& tolerance);
 
 /// The metric in which distances along z are `distance_z`, and those in the plane across it `distance`, if the keyword

@@ -179,6 +179,7 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
   if (const py::object texture = keywords["texture"]; !texture.is_none()) asked.texture = texture_of(texture, mesh);
   if (const py::object path = keywords["save_vdb"]; !path.is_none()) {
     asked.vdb = py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
+    if (asked.vdb.empty()) throw InvalidOption("save_vdb: expected the name of a file, got an empty one");
     options.keep_field = true;
   }
   return asked;

@@ -87,6 +87,12 @@ class Curves(BesideTheCommand):
         self.assertEqual(set(grown.patches), {"wall", "outer"})
         self.assertEqual(set(vdb_offset.curve_layers(WEDGE, OPEN, [0.05, 0.1]).patches), {"wall", "outer", "sides"})
 
+    def test_field_is_saved(self):
+        path = self.run_command.path("field.vdb")
+        vdb_offset.offset_curves_several(L_SHAPE, CLOSED, [0.1, -0.1], save_vdb=path)
+        with open(path, "rb") as field:
+            self.assertIn(b"closest", field.read())
+
     def test_what_curves_do_not_have(self):
         for option in ("only", "texture", "weld", "border"):
             with self.assertRaisesRegex(TypeError, f"unexpected keyword argument '{option}'"):

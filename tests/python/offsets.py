@@ -109,6 +109,16 @@ class Offsets(BesideTheCommand):
         turned = vdb_offset.check(vertices, faces, 2 * vertices[:, [1, 0, 2]], "0.5%")
         self.assertFalse(turned.valid)
 
+    def test_check_finds_what_the_command_finds(self):
+        run = self.run_command
+        vertices, faces = shape_of("gear", run)
+        run("shape.obj", "made.obj", "--distance=0.5%", "--precision", "17")
+        run("check", "shape.obj", "made.obj", "--distance=0.5%", "--tolerance", "1%", "--precision", "17", "--report",
+            "report.json")
+        found = vdb_offset.check(vertices, faces, run.read("made.obj")[0], "0.5%", tolerance="1%", precision=17)
+        self.check_report(found.statistics, run.report(), ["source", "offset"])
+        self.assertLess(found.statistics["certified"]["certified"], 1)
+
     def test_clearance_in_percent(self):
         run = self.run_command
         above = CUBE + [0, 0, 1.1]
@@ -189,3 +199,13 @@ class Offsets(BesideTheCommand):
             vdb_offset.offset_several(CUBE, QUADS, [0, 0], save_vdb=path)
         with self.assertRaises(TypeError):
             vdb_offset.offset(CUBE, QUADS, 0.1, save_vdb=1.5)
+        with self.assertRaisesRegex(vdb_offset.InvalidOption, "save_vdb: expected the name of a file"):
+            vdb_offset.offset(CUBE, QUADS, 0.1, save_vdb="")
+
+    def test_tolerances_that_cannot_be(self):
+        for wrong in (0, -1, "x", "-1%", None, [1], float("nan")):
+            with self.subTest(wrong), self.assertRaisesRegex(vdb_offset.InvalidOption, "^tolerance: expected"):
+                vdb_offset.offset_to_tolerance(CUBE, QUADS, 0.1, wrong)
+            if wrong is not None:
+                with self.assertRaisesRegex(vdb_offset.InvalidOption, "^tolerance: expected"):
+                    vdb_offset.check(CUBE, QUADS, CUBE, 0.1, tolerance=wrong)
