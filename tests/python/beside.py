@@ -31,7 +31,8 @@ class Run:
         return os.path.join(self.folder.name, name)
 
     def __call__(self, *arguments):
-        done = subprocess.run([self.command, *arguments, "--quiet"], cwd=self.folder.name, capture_output=True, text=True)
+        quiet = [] if arguments[0] == "check" else ["--quiet"]
+        done = subprocess.run([self.command, *arguments, *quiet], cwd=self.folder.name, capture_output=True, text=True)
         if done.returncode not in (0, 3):
             raise RuntimeError(done.stderr)
         return done

@@ -1,9 +1,61 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Structured blocks of layers, beside the command's."""
+"""Layers, as cells and as structured blocks, beside the command's."""
 import numpy as np
 
 import vdb_offset
 from beside import CUBE, QUADS, BesideTheCommand, shape_of
+
+
+#: SU2's numbers of cell types are VTK's, but for the order of a prism's corners.
+WEDGE = 13
+
+
+class Layers(BesideTheCommand):
+    def read_cells(self, name):
+        """Points and cells of an SU2 file, each cell its type and its corners."""
+        with open(self.run_command.path(name), encoding="ascii") as file:
+            lines = [line.split() for line in file]
+        dimension = int(lines[0][1])
+        first = {words[0]: i for i, words in enumerate(lines)}
+        cells = [[int(w) for w in lines[first["NELEM="] + 1 + c][:-1]] for c in range(int(lines[first["NELEM="]][1]))]
+        points = [[float(w) for w in lines[first["NPOIN="] + 1 + p][:dimension]] for p in range(int(lines[first["NPOIN="]][1]))]
+        return np.array(points), cells
+
+    def check_cells(self, grown, name):
+        points, cells = self.read_cells(name)
+        self.check_bits(grown.points[:, :points.shape[1]], points)
+        at = 0
+        for kind, (number, *corners) in zip(grown.cell_types, cells):
+            mine = grown.cells[at + 1:at + 1 + grown.cells[at]]
+            at += len(mine) + 1
+            self.assertEqual(number, kind)
+            self.assertEqual(corners, mine[[0, 2, 1, 3, 5, 4]].tolist() if kind == WEDGE else mine.tolist())
+        self.assertEqual(len(cells), len(grown.cell_types))
+        self.check_report(grown.statistics, self.run_command.report())
+
+    def test_on_a_mesh(self):
+        vertices, faces = shape_of("wedge", self.run_command)
+        self.run_command("shape.obj", "made.su2", "--layers", "3", "--first-height", "2%", "--growth", "1.3", "--corners",
+                         "miter", "--report", "report.json")
+        self.check_cells(vdb_offset.layers(vertices, faces, count=3, first="2%", growth=1.3, corners="miter"), "made.su2")
+
+    def test_where_there_is_no_room(self):
+        vertices, faces = shape_of("plates_open", self.run_command)
+        self.run_command("shape.obj", "made.su2", "--layers", "3", "--total-thickness", "0.2", "--report", "report.json")
+        grown = vdb_offset.layers(vertices, faces, count=3, total=0.2)
+        self.check_cells(grown, "made.su2")
+        self.assertLess(grown.share.min(), 1)
+
+    def test_on_a_curve(self):
+        points = np.array([[np.cos(t), np.sin(t), 0] for t in np.linspace(0, 2, 20)])
+        with open(self.run_command.path("arc.txt"), "w", encoding="ascii") as out:
+            out.writelines(f"{float(x)!r} {float(y)!r}\n" for x, y, _ in points)
+        heights = [0.02, "3%", "0.1 + 0.1*x^2"]
+        with open(self.run_command.path("heights.txt"), "w", encoding="ascii") as out:
+            out.writelines(f"{height}\n" for height in heights)
+        self.run_command("arc.txt", "made.su2", "--heights", "heights.txt", "--report", "report.json")
+        grown = vdb_offset.curve_layers(points, (np.array([0, 20]), np.arange(20)), heights)
+        self.check_cells(grown, "made.su2")
 
 
 class Blocks(BesideTheCommand):
