@@ -22,7 +22,8 @@ def offset_several(vertices: np.ndarray, faces: Faces, distances: Sequence[Dista
     :param options: by keyword; `help()` tells of each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
-    return [Offset(**result) for result in _core.offset(vertices, faces, list(distances), *given(offset_several, options))]
+    results = _core.offset(vertices, faces, list(distances), *given(offset_several, options))
+    return [Offset(**result) for result in results]
 
 
 @takes(_options.OFFSET)
@@ -49,7 +50,8 @@ def offset(vertices: np.ndarray, faces: Faces, distance: Distance, **options: An
 
 
 @takes(_options.CURVES)
-def offset_curves_several(points: np.ndarray, curves: Faces, distances: Sequence[Distance], **options: Any) -> List[Offset]:
+def offset_curves_several(points: np.ndarray, curves: Faces, distances: Sequence[Distance],
+                          **options: Any) -> List[Offset]:
     """Offsets plane curves by each of several distances; see `offset_curves()`.
 
     :param options: by keyword; `help()` tells of each
@@ -194,7 +196,8 @@ def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distan
 
 
 @takes(_options.CURVE_LAYERS)
-def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, **options: Any) -> Layers:
+def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None,
+                 **options: Any) -> Layers:
     """Grows layers of quadrilaterals on plane curves; see `layers()` and `offset_curves()`.
 
     :param options: by keyword; `help()` tells of each

@@ -33,7 +33,8 @@ OPTIONS: Dict[str, Option] = {
     "adaptivity": Option(Optional[float], None,
                          "how readily voxels are merged, from 0 to 1; None: where it costs no accuracy"),
     "keep_specks": Option(bool, False, "whether pieces smaller than a voxel are kept"),
-    "distance_z": Option(Optional[Union[float, str]], None, "the distance along z, beside a single one in the plane across it"),
+    "distance_z": Option(Optional[Union[float, str]], None,
+                         "the distance along z, beside a single one in the plane across it"),
     "corners": Option(Literal["round", "miter"], "round",
                       '"round": vertices at the distance; "miter": faces at the distance, beside sharp edges as well'),
     "miter_limit": Option(float, 4.0, "the longest miter, in distances, 1 or more"),
@@ -41,7 +42,8 @@ OPTIONS: Dict[str, Option] = {
                         '"limit": the result stays valid; "merge": each vertex goes as far as the distance grows'),
     "only": Option(Optional[np.ndarray], None,
                    "(m,) booleans, or numbers of faces: those that are offset; the others stay, and are in the way"),
-    "border": Option(Literal["slide", "fixed", "free"], "slide", "what the edge of that part does"),
+    "border": Option(Literal["slide", "fixed", "free"], "slide",
+                     "what the edge of that part does: it slides along what stays, is fixed, or moves freely"),
     "symmetry": Option(Union[bool, Sequence[Sequence[float]]], True,
                        "whether borders stay in the planes that they lie in; or planes (A, B, C, D), all x with\n"
                        "A x + B y + C z = D, in which everything stays that lies there"),
@@ -51,16 +53,19 @@ OPTIONS: Dict[str, Option] = {
     "close": Option(bool, False,
                     "whether curves whose ends are near each other, less than a tenth of their length, are closed"),
     "weld": Option(Union[Literal["auto", "exact", "none"], float], "auto",
-                   "which vertices are one; a number: those that are no farther apart, world units"),
+                   'which vertices are one: "exact": those at equal positions; "auto": also on borders that are one\n'
+                   'but for rounding; "none"; or a number: those that are no farther apart, world units'),
     "orient": Option(Literal["keep", "fix-direction-only"], "keep",
-                     '"fix-direction-only": outward is out of the solid that closed parts enclose'),
-    "solver": Option(Literal["closest", "eikonal"], "closest", '"eikonal": the paper\'s'),
+                     'outward is where faces point; "fix-direction-only": it is out of what closed parts enclose'),
+    "solver": Option(Literal["closest", "eikonal"], "closest",
+                     'how the field is extended: "closest" (exact), or "eikonal" (first order, the paper\'s)'),
     "texture": Option(Optional[np.ndarray], None,
                       "what u and v are in a distance: (n, 2) numbers, one pair a vertex; or one a corner, (m, k, 2)\n"
                       "or (c, 2) for c corners in all: a vertex has those of its first corner"),
     "precision": Option(Union[Literal["double", "single"], int], "double",
                         "what will be kept of coordinates, on which validity is judged; a number: 1 to 17 digits"),
-    "voxel_size": Option(Optional[float], None, "of the grid, world units: the length of the edges of an iso-surface; or"),
+    "voxel_size": Option(Optional[float], None,
+                         "of the grid, world units: the length of the edges of an iso-surface; or"),
     "voxels_per_distance": Option(Optional[float], None, "how many voxels there are to a distance"),
     "paths": Option(bool, False, "whether the result has the vertices' ways"),
     "save_vdb": Option(Optional[Union[str, os.PathLike]], None,
@@ -68,7 +73,8 @@ OPTIONS: Dict[str, Option] = {
     "threads": Option(int, 0, "0: as many as the machine has"),
     "max_memory": Option(Optional[Union[int, str]], None,
                          'for the run: bytes, or "4G"; 0: no limit; None: 80 % of what is free'),
-    "progress": Option(Progress, None, "called with a stage and the share of it that is done; False cancels (see the module)"),
+    "progress": Option(Progress, None,
+                       "called with a stage and the share of it that is done; False cancels (see the module)"),
 }
 
 _OF_LAYERS = ["count", "first", "total", "growth"]
@@ -99,8 +105,8 @@ def takes(names: Sequence[str], without: Sequence[str] = ()) -> Callable[[Functi
             parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=option.default,
                                                 annotation=option.type))
             lines += f"    :param {name}: " + option.text.replace("\n", "\n        ") + "\n"
-        assert function.__doc__ and _PLACE in function.__doc__, function.__name__
-        function.__doc__ = function.__doc__.replace(_PLACE, lines)
+        if function.__doc__:  # python -OO leaves none
+            function.__doc__ = function.__doc__.replace(_PLACE, lines)
         function.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
         function.__annotations__ = {**{each.name: each.annotation for each in parameters}, "return": own.return_annotation}
         return function

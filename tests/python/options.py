@@ -5,6 +5,8 @@ import importlib.util
 import inspect
 import os
 import pydoc
+import subprocess
+import sys
 import unittest
 
 import vdb_offset
@@ -65,6 +67,11 @@ class Options(unittest.TestCase):
                 if function.__name__ in names:
                     stubbed = inspect.signature(names[function.__name__])
                     self.assertEqual(stubbed, inspect.signature(function), function.__name__)
+
+    def test_import_without_docstrings(self):
+        code = "import vdb_offset as o; print(o.offset.__doc__, o.offset.__kwdefaults__)"
+        done = subprocess.run([sys.executable, "-B", "-OO", "-c", code], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout.strip(), "None None")
 
     def test_memory_as_a_text(self):
         def offset(size):
