@@ -32,7 +32,7 @@ struct VDB_OFFSET_API IsoOptions {
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
   ProgressCallback progress;   ///< See run.h; may cancel.
-  ReserveCallback reserve;    ///< See run.h; may wait, and cancel.
+  ReserveCallback reserve;     ///< See run.h; may wait, and cancel.
 };
 
 /// What a run will need, known before it starts.

@@ -20,9 +20,9 @@ VDB_OFFSET_API const char* name(Stage stage);
 /// then throws Cancelled. Calls never overlap, but come from whichever thread has something to tell.
 using ProgressCallback = std::function<bool(Stage, double)>;
 
-/// Called before the memory of a run is taken, with the bytes that it is estimated to hold at most. May wait until there
-/// is room for them. Return false to cancel: the call that works then throws Cancelled. A run of several steps, as one
-/// to a tolerance, calls it before each.
+/// Called before the memory of a run is taken, with the bytes that it is estimated to hold at most. May wait until
+/// there is room for them. Return false to cancel: the call that works then throws Cancelled. A run of several steps,
+/// as one to a tolerance, calls it before each.
 using ReserveCallback = std::function<bool(std::size_t bytes)>;
 
 /// Bytes that this process may still take: what the system has free, or its control group leaves, if less.
