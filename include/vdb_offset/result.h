@@ -24,6 +24,9 @@ struct OffsetResult {
   /// Only with keep_paths: the positions of each input vertex on its march, from that in the source to the last; and
   /// behind these its final position, if it has been moved to keep the result valid.
   std::vector<std::vector<Vec3d>> paths;
+  /// Only with keep_face_errors and a distance other than 0: of each input face the mean error of points of it, as a
+  /// share of the distance asked there. NaN for faces that nothing is asked of, or that have no area.
+  std::vector<float> face_errors;
 };
 
 }  // namespace vdb_offset

@@ -31,8 +31,8 @@ struct RefinedOffset {
 /// Added vertices go to the point at their distance that is nearest to the middle between the ends of their neighbours.
 /// The result is an offset() of the refined mesh, in which the given mesh's vertices go where they go without
 /// refinement, unless something has to be held back; the proof is made of its positions as written. Options are those
-/// of offset(), but for `metric`, `off_source`, `inner_skin_last`, `keep_field` and `keep_paths`. \throw as offset(),
-/// and InvalidInput for a tolerance that cannot be used, or one of these options
+/// of offset(), but for `metric`, `off_source`, `inner_skin_last`, `keep_field` and `keep_paths`; `keep_face_errors`
+/// has no effect. \throw as offset(), and InvalidInput for a tolerance that cannot be used, or one of these options
 VDB_OFFSET_API RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options,
                                                  const Tolerance& tolerance);
 

@@ -24,8 +24,10 @@
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/curves.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/states_file.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/scene.h"
@@ -116,6 +118,10 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   line.option("--threads", "N", "Threads; 0 takes all [0]",
               [&made](const std::string& text) { made.threads = parse_count("--threads", text, 0, kMostThreads); });
   line.option("--report", "FILE", "Write what is found as JSON", made.report);
+  line.option("--states", "FILE",
+              "Write state, target and achieved distance of every vertex, as found: .csv, or .vtp or .ply to colour by "
+              "in a viewer",
+              made.states);
   line.flag("--json", "Print JSON, not text", request.json);
   line.flag("--strict",
             "Exit with 3 if a vertex in use is not at the distance, or not all of the area proven to be within "
@@ -125,6 +131,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
               [&made](const std::string& text) { made.strict_faces = parse_strict_faces(text); });
   if (!line.parse(argc, argv)) return std::nullopt;
   require_miters(made);
+  require_states_file(made);
   require(!line.has("--clearance") || line.has("--obstacle"), "--clearance needs --obstacle");
   require(!line.has("--distance") || !line.has("--distance-from"), "--distance-from and --distance exclude each other");
   request.axes = parse_axes(distance_xy, distance_z);
@@ -143,17 +150,19 @@ void take_distances_of_meshes(CheckRequest& request) {
   made.distance_option = "--distance-from";
 }
 
-/// Refuses a report that would replace one of the files that are measured, or be mixed with the printed summary.
-void require_report_apart(const CheckRequest& request) {
+/// Refuses files to write that would replace one of those that are measured, or be mixed with the printed summary.
+void require_outputs_apart(const CheckRequest& request) {
   const Request& made = request.made;
-  if (made.report.empty()) return;
-  std::vector<RunFile> read = surroundings_of(made);
+  std::vector<RunFile> read = surroundings_of(made), written;
   read.push_back({"SOURCE", made.input});
   read.push_back({"OFFSET", made.output});
-  require_apart(read, std::vector<RunFile>{{"--report", made.report}});
-  if (request.json && is_standard_output(made.report))
-    throw UsageError("--report: expected a file of its own, got " + made.report +
-                     ", which is that of --json (standard output)");
+  if (!made.report.empty()) written.push_back({"--report", made.report});
+  if (!made.states.empty()) written.push_back({"--states", made.states});
+  require_apart(read, written);
+  for (const RunFile& file : written)
+    if (request.json && is_standard_output(file.path))
+      throw UsageError(fmt::format("{}: expected a file of its own, got {}, which is that of --json (standard output)",
+                                   file.option, file.path));
 }
 
 /// The positions of the source's vertices in the offset, which has the same faces or, as an STL file, their triangles.
@@ -229,6 +238,12 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
   fmt::print(out, "{}\n", result.valid() ? "valid" : "not valid");
 }
 
+/// Writes what was found of each vertex, if that is asked for.
+void write_states(const Request& made, PolygonView offset, const CheckResult& result, const io::ResultFaces& faces) {
+  if (!made.states.empty())
+    io::write_states(made.states, offset, {result.states, result.achieved, result.distances}, faces);
+}
+
 CheckResult measure_curves(const CheckRequest& request) {
   const Request& made = request.made;
   io::CurveFile source = io::read_curves(made.input);
@@ -247,7 +262,10 @@ CheckResult measure_curves(const CheckRequest& request) {
   options.corners = made.corners.value_or(Corners::Round);
   options.miter_limit = made.miter_limit.value_or(options.miter_limit);
   if (const auto distance = parse_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
-  return check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
+  CheckResult result = check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
+  const Curves& curves = source.file.polygons;
+  write_states(made, {offset.file.polygons.positions, curves.corners, curves.face_begin}, result, {{}, nullptr, true});
+  return result;
 }
 
 CheckResult measure_meshes(const CheckRequest& request) {
@@ -281,7 +299,12 @@ CheckResult measure_meshes(const CheckRequest& request) {
     options.metric = metric;
     options.distance = distance;
   }
-  return check_offset(source.view(), positions, options);
+  options.keep_face_errors = made.states.ends_with(".vtp");
+  CheckResult result = check_offset(source.view(), positions, options);
+  const WallNames groups = io::wall_names(*source.file);
+  write_states(made, {positions, source.view().corners, source.view().face_begin}, result,
+               {result.face_errors, &groups, false});
+  return result;
 }
 
 }  // namespace
@@ -296,11 +319,11 @@ int run_check(int argc, const char* const* argv) {
   const bool curves = holds_curves(made.input);
   if (curves && request->axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
   if (!curves) take_distances_of_meshes(*request);
-  require_report_apart(*request);
+  require_outputs_apart(*request);
   const CheckResult result = curves ? measure_curves(*request) : measure_meshes(*request);
   const std::string json = check_json(result, made.input, made.output);
   if (!made.report.empty()) write_file(made.report, json);
-  const Printout out(is_standard_output(made.report));
+  const Printout out(is_standard_output(made.report) || is_standard_output(made.states));
   if (request->json) fmt::print(out, "{}", json);
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;

@@ -158,7 +158,7 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   OutputFiles outputs(request.sync);
   if (!request.states.empty())
     io::write_states(request.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
-                     {layers.states, layers.achieved, layers.heights.back()});
+                     {layers.states, layers.achieved, layers.heights.back()}, {{}, &grown.names, job.curves()});
   const auto writing = Clock::now();
   write_cells(job, grown);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);

@@ -232,10 +232,14 @@ std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, 
     tell_states(*shell, outcome.result);
     facts = shell->facts;
   }
-  if (!to.states.empty())
-    io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin},
-                     {result.states, result.achieved, result.distances});
-  if (!to.paths.empty()) write_paths(to.paths, result.paths);
+  const io::VertexStates states{result.states, result.achieved, result.distances};
+  if (!to.states.empty()) {
+    const WallNames groups = job.source.file ? io::wall_names(*job.source.file) : WallNames{};
+    io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin}, states,
+                     {result.face_errors, &groups, job.curves()});
+  }
+  if (io::is_lines_file(to.paths)) io::write_path_lines(to.paths, result.paths, states);
+  else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   const io::WriteResult written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!to.report.empty()) write_report(job, outcome, facts, start);

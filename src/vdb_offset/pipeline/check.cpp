@@ -217,7 +217,9 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   std::vector<VertexState> states(source.size(), VertexState::Reached);
   for (std::size_t w = 0; w < states.size(); ++w)
     if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];
-  result.faces = measure_faces({constrained, in_offset, distances, source, states});
+  const MeasuredFaces faces{constrained, in_offset, distances, source, states};
+  result.faces = measure_faces(faces);
+  if (options.keep_face_errors) result.face_errors = measure_each_face(faces, mesh.face_count());
   progress.advance(in_offset.size());
   result.certified = prove_faces(parts, query, source, in_offset, distances, states, options, progress);
 }

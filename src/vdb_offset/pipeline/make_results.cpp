@@ -188,8 +188,10 @@ class ResultMaker {
     {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
       if (mesh_.surroundings()) result.statistics.obstacles = mesh_.surroundings()->facts(positions);
-      result.statistics.faces =
-          measure_faces({draft.constrained, positions, draft.distances, mesh_.source(), draft.marched.paths.state});
+      const MeasuredFaces faces{draft.constrained, positions, draft.distances, mesh_.source(),
+                                draft.marched.paths.state};
+      result.statistics.faces = measure_faces(faces);
+      if (options_.keep_face_errors) result.face_errors = measure_each_face(faces, mesh_.mesh().face_count());
     }
     return result;
   }

@@ -2,9 +2,11 @@
 #include "vdb_offset/validity/face_error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
@@ -18,6 +20,12 @@ namespace {
 constexpr std::size_t kMostSamples = 40000;
 // Points of a triangle on average, where there are few of them. Not measured.
 constexpr std::size_t kMostOfTriangle = 256;
+// Where each triangle is measured if each face has an error of its own: its middle, and towards its corners. The same
+// on all, so that like faces have like colours.
+constexpr double kMost = 2.0 / 3, kLeast = 1.0 / 6, kThird = 1.0 / 3;
+constexpr std::array<std::array<double, 3>, 4> kOnEachTriangle = {
+    {{kThird, kThird, kThird}, {kMost, kLeast, kLeast}, {kLeast, kMost, kLeast}, {kLeast, kLeast, kMost}}};
+constexpr std::size_t kOfEachTriangle = kOnEachTriangle.size();
 // Points that are measured together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kPointsTogether = 16;
 // Share of the largest distance below which a point counts as asked to stay. Reasoned: errors are relative.
@@ -61,10 +69,7 @@ class FaceMeter {
 
   FaceError operator()() {
     if (triangles_.empty() || !(area_up_to_.back() > 0)) return {};
-    count_ = std::min(kMostSamples, kMostOfTriangle * triangles_.size());
-    error_.assign(count_, kNotMeasured);
-    of_.assign(count_, 0);
-    for_each_index((count_ + kPointsTogether - 1) / kPointsTogether, [&](std::size_t block) { measure(block); }, 4);
+    measure_all(std::min(kMostSamples, kMostOfTriangle * triangles_.size()));
     std::vector<double> errors = error_;
     std::erase(errors, kNotMeasured);
     FaceError result = sum_up_errors(std::move(errors));
@@ -72,7 +77,33 @@ class FaceMeter {
     return result;
   }
 
+  /// The mean error of each of so many faces of the input, as measure_each_face().
+  std::vector<float> of_each(std::size_t faces) {
+    of_each_triangle_ = true;
+    measure_all(kOfEachTriangle * triangles_.size());
+    std::vector<double> sum(faces, 0), area(faces, 0);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t at = i / kOfEachTriangle;
+      const std::uint32_t face = surface_.face[triangles_[at]];
+      if (error_[i] == kNotMeasured || face >= faces) continue;
+      const double share = area_up_to_[at] - (at > 0 ? area_up_to_[at - 1] : 0);
+      sum[face] += error_[i] * share;
+      area[face] += share;
+    }
+    std::vector<float> errors(faces, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t f = 0; f < faces; ++f)
+      if (area[f] > 0) errors[f] = static_cast<float>(sum[f] / area[f]);
+    return errors;
+  }
+
  private:
+  void measure_all(std::size_t count) {
+    count_ = count;
+    error_.assign(count_, kNotMeasured);
+    of_.assign(count_, 0);
+    for_each_index((count_ + kPointsTogether - 1) / kPointsTogether, [&](std::size_t block) { measure(block); }, 4);
+  }
+
   /// Lists the triangles of the moving part, with the areas of all up to each of them.
   void sum_up_areas() {
     double sum = 0;
@@ -97,7 +128,8 @@ class FaceMeter {
     for (std::size_t i = 0; i < size; ++i) {
       const std::uint32_t t = triangle_of(begin + i);
       const auto& corners = surface_.triangles[t];
-      const std::array<double, 3> shares = shares_of(begin + i);
+      const std::array<double, 3> shares =
+          of_each_triangle_ ? kOnEachTriangle[(begin + i) % kOfEachTriangle] : shares_of(begin + i);
       Vec3d point(0.0);
       for (std::size_t k = 0; k < 3; ++k) {
         point += faces_.positions[corners[k]] * shares[k];
@@ -121,8 +153,9 @@ class FaceMeter {
     }
   }
 
-  /// The triangle at the middle of a sample's share of the area.
+  /// The triangle at the middle of a sample's share of the area, or each for as many samples as the others.
   std::uint32_t triangle_of(std::size_t sample) const {
+    if (of_each_triangle_) return triangles_[sample / kOfEachTriangle];
     const double area = area_up_to_.back() * (static_cast<double>(sample) + 0.5) / static_cast<double>(count_);
     const auto at = std::upper_bound(area_up_to_.begin(), area_up_to_.end() - 1, area);
     return triangles_[static_cast<std::size_t>(at - area_up_to_.begin())];
@@ -161,6 +194,7 @@ class FaceMeter {
   std::vector<std::uint32_t> triangles_;
   std::vector<double> area_up_to_;  // twice the areas
   std::size_t count_ = 0;
+  bool of_each_triangle_ = false;
   std::vector<double> error_;      // of each sample
   std::vector<std::uint32_t> of_;  // likewise, the triangle that it is on
 };
@@ -168,6 +202,10 @@ class FaceMeter {
 }  // namespace
 
 FaceError measure_faces(const MeasuredFaces& faces) { return FaceMeter(faces)(); }
+
+std::vector<float> measure_each_face(const MeasuredFaces& faces, std::size_t count) {
+  return FaceMeter(faces).of_each(count);
+}
 
 FaceError sum_up_errors(std::vector<double> errors) {
   if (errors.empty()) return {};

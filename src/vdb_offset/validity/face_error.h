@@ -33,6 +33,10 @@ struct MeasuredFaces {
 /// threads.
 FaceError measure_faces(const MeasuredFaces& faces);
 
+/// Measures each of the input's `count` faces by itself: the mean error of a few points of it, as a share of the
+/// distance that is asked there. NaN for faces that are not of the moving part, have no area or are asked to stay.
+std::vector<float> measure_each_face(const MeasuredFaces& faces, std::size_t count);
+
 /// Sums up errors relative to the distance that was asked, each of the same share of the area or length.
 FaceError sum_up_errors(std::vector<double> errors);
 

@@ -275,10 +275,11 @@ void declare_files(CommandLine& line, Draft& draft) {
   line.option("--max-memory", "SIZE", "Refuse work that would need more, as in 4G [80 % of what is free]",
               [&request](const std::string& text) { request.max_memory = parse_size(text); });
   line.option("--report", "FILE", "Write what happened as JSON", request.report);
-  line.option("--states", "FILE",
-              "Write state, target and achieved distance of every vertex: .csv, or .ply to colour by in a viewer",
-              request.states);
-  line.option("--paths", "FILE", "Write the path of every vertex as a line: .obj (or .txt)", request.paths);
+  line.option(
+      "--states", "FILE",
+      "Write state, target and achieved distance of every vertex: .csv, or .vtp or .ply to colour by in a viewer",
+      request.states);
+  line.option("--paths", "FILE", "Write the path of every vertex as a line: .vtp, .obj (or .txt)", request.paths);
   line.option("--save-vdb", "FILE", "Write phi and the closest triangles as OpenVDB grids", request.vdb);
 }
 

@@ -86,11 +86,10 @@ void require_for_mesh(const Request& request) {
 }
 
 void require_endings(const Request& request) {
-  require(request.states.empty() || io::is_states_file(request.states),
-          request.states + ": expected a file of states that ends in .csv or .ply");
-  require(request.paths.empty() ||
+  require_states_file(request);
+  require(request.paths.empty() || io::is_lines_file(request.paths) ||
               (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg),
-          request.paths + ": expected a file of paths that ends in .obj or .txt");
+          request.paths + ": expected a file of paths that ends in .obj, .txt or .vtp");
   require(request.vdb != "-", "--save-vdb: expected a file, got '-'");
   for (const std::string& path : request.obstacles)
     require(format_of(path, request).has_value(),
@@ -164,6 +163,11 @@ void require_together(const CommandLine& line, bool is_iso) {
   require_one(line, "--distance-from", "--distance");
   require_one(line, "--voxel-size", "--voxels-per-distance");
   require_one(line, "--quiet", "--verbose");
+}
+
+void require_states_file(const Request& request) {
+  require(request.states.empty() || io::is_states_file(request.states),
+          request.states + ": expected a file of states that ends in .csv, .ply or .vtp");
 }
 
 void require_miters(const Request& request) {

@@ -13,6 +13,8 @@ void require_together(const CommandLine& line, bool is_iso);
 /// \throw UsageError if values do not go together, or a file's name has no ending that tells what it is to hold. What
 /// depends on whether INPUT holds curves is for require_for_input().
 void require_sound(const Request& request);
+/// Requires an ending that files of states have; check's rule as well. \throw UsageError
+void require_states_file(const Request& request);
 /// Requires miters where there is a limit of them; check's rule as well. \throw UsageError
 void require_miters(const Request& request);
 
