@@ -66,7 +66,11 @@ ExitCode run(const Request& request) {
     bar.show(stage, share);
     return true;
   };
-  if (of_batch) job.options.reserve = wait_for_memory;
+  if (of_batch) {
+    if (source.scene && !source.scene->mesh_path.empty()) tell_file_read(source.scene->mesh_path);
+    for (const std::string& path : job.files_of_heights) tell_file_read(path);
+    job.options.reserve = wait_for_memory;
+  }
   return run(job, {start, seconds_since(start)}, bar);
 }
 

@@ -35,17 +35,6 @@ std::size_t character_at(std::string_view text) {
   return is_control ? 0 : length;
 }
 
-std::string with_escapes(std::string_view text) {
-  std::string shown;
-  while (!text.empty()) {
-    const std::size_t length = character_at(text);
-    if (length > 0) shown += text.substr(0, length);
-    else shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
-    text.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return shown;
-}
-
 void write_to_error(std::string_view text) noexcept {
   while (!text.empty()) {
     const ssize_t count = ::write(STDERR_FILENO, text.data(), text.size());
@@ -56,6 +45,17 @@ void write_to_error(std::string_view text) noexcept {
 }
 
 }  // namespace
+
+std::string as_text(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const std::size_t length = character_at(text);
+    if (length > 0) shown += text.substr(0, length);
+    else shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return shown;
+}
 
 std::string shortened(std::string_view text, std::size_t most) {
   constexpr std::string_view kGap = "...";
@@ -72,7 +72,7 @@ std::string readable(std::string_view message) {
   std::string line;
   for (std::size_t begin = 0; begin < whole.size();) {
     const std::size_t end = std::min(whole.find(' ', begin), whole.size());
-    const std::string word = with_escapes(std::string_view(whole).substr(begin, end - begin));
+    const std::string word = as_text(std::string_view(whole).substr(begin, end - begin));
     line += shortened(word, kLongestWord);
     if (end < whole.size()) line += ' ';
     begin = end + 1;

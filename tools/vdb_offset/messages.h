@@ -10,6 +10,9 @@ namespace vdb_offset::tool {
 /// A text of at most so many bytes: what is longer loses its middle, never a part of a character.
 std::string shortened(std::string_view text, std::size_t most);
 
+/// Bytes as text on one line: those that are no text, and control characters, as `\xff`.
+std::string as_text(std::string_view bytes);
+
 /// A message as a terminal can show it, whatever names and values are in it: on one line, bytes that are no text as
 /// `\xff`, words and the whole of a length that can be read.
 std::string readable(std::string_view message);

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "batch/process/stop.h"
 #include "batch/progress_line.h"
 #include "batch/remote/remote_jobs.h"
+#include "batch/remote/run_mark.h"
 #include "batch/table.h"
 #include "job.h"
 #include "messages.h"
@@ -39,6 +41,12 @@ void settle_folders(BatchRequest& request) {
   fs::path out = fs::weakly_canonical(fs::absolute(request.out));
   if (!out.has_filename()) out = out.parent_path();
   request.out = out.string();
+  for (const char* const mark : {"{i}", "{d}"})
+    if (request.out.find(mark) != std::string::npos)
+      throw UsageError(
+          "OUT: expected a folder without {i} and {d} in its path, which stand for the number of a distance "
+          "and for the distance, got " +
+          request.out);
   if (request.out == request.folder) throw UsageError("OUT: expected another folder than DIR, got " + request.out);
 }
 
@@ -62,26 +70,32 @@ Descriptor lock(const std::string& out) {
   return file;
 }
 
+Way way_of(const BatchRequest& request) {
+  return !request.sshlogin.empty() ? Way::SshLogin : !request.partition.empty() ? Way::Slurm : Way::Here;
+}
+
 /// A batch, from what is there already to the table.
 class Batch {
  public:
-  Batch(const BatchRequest& request, const std::vector<Model>& models)
-      : request_(request), models_(models), table_(request.out) {
+  Batch(const BatchRequest& request, const FoundModels& found)
+      : request_(request), models_(found.models), left_out_(found.unreadable.size()), table_(request.out) {
     sort_out();
   }
 
   void print_plan() const;
   /// Does what is to be done, unless a stop is asked for.
-  ExitCode run();
+  ExitCode run(const RunMark& mark);
 
  private:
   void sort_out();
+  std::optional<Record> record_that_holds(const Model& model) const;
   double work_of(std::size_t model) const;
   void end(std::size_t model, const Record& record, ProgressLine& progress);
   void print_summary(double seconds) const;
 
   const BatchRequest& request_;
   const std::vector<Model>& models_;
+  std::size_t left_out_;  // folders
   Table table_;
   std::vector<std::size_t> to_do_;
   std::size_t kept_ = 0, done_ = 0, failed_ = 0;
@@ -89,20 +103,38 @@ class Batch {
 
 /// Finds out which models are done already, with the same content and options.
 void Batch::sort_out() {
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    const auto record = load_record(request_.out, models_[i]);
-    const bool failed = record && record->ending.exit_code != 0;
-    bool as_it_is = record && !(failed && request_.retry_failed);
-    if (as_it_is) {
-      const ModelRun run = run_of(request_, models_[i]);
-      as_it_is = are_there(run, *record) && record->key == key_of(request_, models_[i], run);
-    }
-    if (!as_it_is) {
+  ProgressLine progress(!request_.quiet, models_.size(), 0, "looked at");
+  for (std::size_t i = 0; i < models_.size() && !stop_signal(); ++i) {
+    const std::optional<Record> record = record_that_holds(models_[i]);
+    progress.count(0, false);
+    progress.show();
+    if (!record) {
       to_do_.push_back(i);
       continue;
     }
-    ++(failed ? failed_ : kept_);
+    ++(record->ending.exit_code != 0 ? failed_ : kept_);
     table_.keep(i, rows_of(models_[i], *record));
+  }
+}
+
+/// The record of a model that need not be done again.
+std::optional<Record> Batch::record_that_holds(const Model& model) const {
+  std::optional<Record> record = load_record(request_.out, model);
+  if (!record) return std::nullopt;
+  // What the disk or a signal did to it may be over.
+  if (record->ending.exit_code != 0 && (request_.retry_failed || !record->failed_for_good())) return std::nullopt;
+  try {
+    const ModelRun run = run_of(request_, model);
+    if (!are_there(run, *record)) return std::nullopt;
+    const Ingredients made_of = ingredients_of(request_, model, run);
+    const std::string stamp = made_of.stamp(record->read_besides);
+    if (record->stamp == stamp) return record;
+    if (record->key != made_of.key(record->read_besides)) return std::nullopt;
+    record->stamp = stamp;
+    if (!request_.dry_run) save_record(request_.out, model, *record);
+    return record;
+  } catch (const UnusableName&) {
+    return std::nullopt;
   }
 }
 
@@ -129,25 +161,25 @@ void Batch::end(std::size_t model, const Record& record, ProgressLine& progress)
   if (request_.verbose) fmt::print(Printout(), "{}", rows);
 }
 
-ExitCode Batch::run() {
+ExitCode Batch::run(const RunMark& mark) {
   const auto begun = Clock::now();
-  table_.begin();
   double work = 0;
   for (const std::size_t model : to_do_) work += work_of(model);
-  ProgressLine progress(!request_.quiet, to_do_.size(), work);
-  const auto ended = [&](std::size_t model, const Record& record) { end(model, record, progress); };
-  const auto waited = [&] { progress.show(); };
-  if (to_do_.empty()) progress.clear();
-  else if (!request_.sshlogin.empty() || !request_.partition.empty())
-    run_remotely(request_, models_, to_do_, ended, waited);
-  else LocalJobs(request_, models_, share_out(request_)).run(to_do_, ended, waited);
+  ProgressLine progress(!request_.quiet, to_do_.size(), work, "done");
+  BatchNews news;
+  news.begun = [&] { table_.begin(); };
+  news.ended = [&](std::size_t model, const Record& record) { end(model, record, progress); };
+  news.waited = [&] { progress.show(); };
+  if (to_do_.empty() || stop_signal()) news.begun();
+  else if (way_of(request_) != Way::Here) run_remotely(request_, models_, to_do_, mark, news);
+  else LocalJobs(request_, models_, share_out(request_), mark.name()).run(to_do_, news);
   progress.clear();
   table_.finish();
   if (stop_signal())
     tell(fmt::format("stopped: {} of {} have ended; the same call goes on from there", kept_ + done_ + failed_,
                      models_in_words(models_.size())));
   else if (!request_.quiet) print_summary(seconds_since(begun));
-  return failed_ == 0 ? kDone : kProcessing;
+  return failed_ + left_out_ == 0 ? kDone : kProcessing;
 }
 
 void Batch::print_summary(double seconds) const {
@@ -168,16 +200,21 @@ int run_batch(int argc, const char* const* argv) {
   auto request = parse_batch(argc - 1, argv + 1);
   if (!request) return kDone;
   settle_folders(*request);
-  const std::vector<Model> models = find_models(request->folder, request->out, request->selection);
-  require_apart(*request, models);
+  const FoundModels found = find_models(request->folder, request->out, request->selection);
+  for (const std::string& folder : found.unreadable) tell(folder + "; left out");
+  require_apart(*request, found.models);
   if (request->dry_run) {
-    Batch(*request, models).print_plan();
+    Batch(*request, found).print_plan();
     return kDone;
   }
   make_state_folders(request->out);
   const Descriptor alone = lock(request->out);
   catch_stops();
-  const ExitCode code = Batch(*request, models).run();
+  ExitCode code;
+  {
+    const RunMark mark(request->out, way_of(*request));
+    code = Batch(*request, found).run(mark);
+  }
   if (stop_signal()) end_by_stop();
   return code;
 }

@@ -9,8 +9,11 @@
 #define XXH_INLINE_ALL  // NOLINT(readability-identifier-naming): it is xxHash's
 #include <xxhash.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
+
+#include "batch/process/stop.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -27,6 +30,9 @@ class Hash {
   }
   /// Adds the bytes of a file, and their number.
   void add_file(const std::string& path);
+
+  /// Adds what changes with each writing of a file.
+  void add_stamp(const std::string& path);
 
   std::string digits() const {
     const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
@@ -48,7 +54,7 @@ void Hash::add_file(const std::string& path) {
   const bool readable = file >= 0 && ::fstat(file, &facts) == 0 && S_ISREG(facts.st_mode);
   std::uint64_t size = readable ? 0 : kUnread;
   std::vector<char> chunk(readable ? kChunk : 0);
-  for (ssize_t count = 1; size != kUnread && count > 0;) {
+  for (ssize_t count = 1; size != kUnread && count > 0 && !stop_signal();) {
     count = ::read(file, chunk.data(), chunk.size());
     if (count > 0) add(chunk.data(), static_cast<std::size_t>(count));
     size = count < 0 ? kUnread : size + static_cast<std::uint64_t>(count);
@@ -57,7 +63,25 @@ void Hash::add_file(const std::string& path) {
   add(&size, sizeof size);
 }
 
+void Hash::add_stamp(const std::string& path) {
+  struct stat facts {};
+  if (::stat(path.c_str(), &facts) != 0) facts = {};
+  for (const auto number :
+       {static_cast<std::int64_t>(facts.st_dev), static_cast<std::int64_t>(facts.st_ino),
+        static_cast<std::int64_t>(facts.st_size), static_cast<std::int64_t>(facts.st_mtim.tv_sec),
+        static_cast<std::int64_t>(facts.st_mtim.tv_nsec), static_cast<std::int64_t>(facts.st_ctim.tv_sec),
+        static_cast<std::int64_t>(facts.st_ctim.tv_nsec)})
+    add(&number, sizeof number);
+}
+
 }  // namespace
+
+std::string stamp_of(std::span<const std::string> words, std::span<const std::string> files) {
+  Hash hash;
+  for (const std::string& word : words) hash.add(word);
+  for (const std::string& file : files) hash.add_stamp(file);
+  return hash.digits();
+}
 
 std::string fingerprint_of(std::string_view text) {
   Hash hash;

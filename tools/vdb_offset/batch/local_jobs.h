@@ -27,33 +27,46 @@ struct Shares {
 /// What this machine has, shared out as the request says.
 Shares share_out(const BatchRequest& request);
 
+/// What a batch tells while it is at work.
+struct BatchNews {
+  std::function<void()> begun = [] {};  ///< Models are about to be done; before that, nothing has been changed.
+  std::function<void(std::size_t model, const Record& record)> ended = [](std::size_t, const Record&) {};
+  std::function<void()> waited = [] {};  ///< Several times a second.
+};
+
 /// Offsets models on this machine, several at once, each by a process of its own. Once a stop is asked for (see
 /// stop.h), they are ended, and no other is begun.
 class LocalJobs {
  public:
-  using Ended = std::function<void(std::size_t model, const Record& record)>;
+  using Ended = decltype(BatchNews::ended);
 
-  LocalJobs(const BatchRequest& request, std::span<const Model> models, const Shares& shares)
-      : request_(request), models_(models), shares_(shares) {}
+  /// `mark` is that of the batch (see RunMark).
+  LocalJobs(const BatchRequest& request, std::span<const Model> models, const Shares& shares, std::string mark)
+      : request_(request), models_(models), shares_(shares), mark_(std::move(mark)) {}
 
-  /// Offsets these of the models. A record is saved for each that has ended, then `ended` is called; `waited` is called
-  /// several times a second. \throw WriteError
-  void run(std::span<const std::size_t> which, const Ended& ended, const std::function<void()>& waited);
+  /// Offsets these of the models. A record is saved for each that has ended, then news.ended is called. \throw
+  /// WriteError
+  void run(std::span<const std::size_t> which, const BatchNews& news);
 
  private:
   struct Job {
     std::size_t model;
     ModelRun run;
-    std::string key;
+    Ingredients made_of;
+    std::string key, stamp;
     Clock::time_point begun;
     double waited = 0;       // seconds, for memory
     std::size_t held = 0;    // bytes that it may take
     std::size_t wanted = 0;  // bytes that it waits for; 0: it does not
     Clock::time_point asked = {};
+    std::size_t overtaken = 0;  // by how many that asked later
     Child child;
   };
 
-  void begin(std::size_t model);
+  bool has_room_for(std::size_t model) const;
+  bool try_to_begin(std::size_t model, const Ended& ended);
+  void begin(std::size_t model, ModelRun run);
+  void refuse(std::size_t model, const char* why, const Ended& ended);
   void hand_out_memory();
   void wait_for_news(const Ended& ended);
   bool read_news(Job& job);
@@ -63,7 +76,9 @@ class LocalJobs {
   const BatchRequest& request_;
   std::span<const Model> models_;
   Shares shares_;
+  std::string mark_;
   std::list<Job> jobs_;
+  bool forced_ = false;  // models have been ended by force
 };
 
 }  // namespace vdb_offset::tool

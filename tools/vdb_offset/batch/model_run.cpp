@@ -2,16 +2,22 @@
 #include "batch/model_run.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "batch/fingerprint.h"
 #include "outputs.h"
 #include "request/request.h"
 #include "run_files.h"
+#include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/volume_file.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -62,24 +68,48 @@ std::vector<std::string> reports_of(const Request& request) {
   return reports;
 }
 
-/// {i} and {d} mean something else in the names of outputs.
+/// {i} and {d} mean something else in the names of outputs. \throw UnusableName
 void require_plain(const std::string& path, const char* of_what) {
   for (const char* const mark : {"{i}", "{d}"})
     if (path.find(mark) != std::string::npos)
-      throw UsageError(
+      throw UnusableName(
           fmt::format("{}: expected {} without {{i}} and {{d}}, which stand for the number of a distance "
                       "and for the distance",
                       path, of_what));
 }
 
+std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return std::nullopt;
+  return std::pair{file.st_dev, file.st_ino};
+}
+
+/// The files that a model's run writes; none if its name cannot be used, which is told when it comes to it.
+std::vector<std::string> written_by(const BatchRequest& request, const Model& model) {
+  try {
+    return run_of(request, model).written;
+  } catch (const UnusableName&) {
+    return {};
+  }
+}
+
+/// Requires an ending of a format that can be written, so that this is not found out model by model. \throw UsageError
+void require_known_ending(const Request& request) {
+  const std::string& path = request.output;
+  if (!format_of(path, request) && !io::curve_format_of(path) &&
+      !(request.layers && (io::volume_format_of(path) || io::structured_format_of(path))))
+    throw UsageError(fmt::format("--output: expected names that end in a format's ending, got {}", path));
+}
+
 }  // namespace
 
-std::string state_folder(const std::string& out) { return out + "/.batch"; }
+std::string path_of_table(const std::string& out) { return out + "/batch.csv"; }
+
+std::string state_folder(const std::string& out) { return out + "/" + kStateFolder; }
 
 std::string state_name(const Model& model) { return fingerprint_of(model.path); }
 
 ModelRun run_of(const BatchRequest& request, const Model& model) {
-  require_plain(request.out, "a folder");
   require_plain(model.path, "the name of a model");
   const std::string stem = model.path.substr(0, model.ending), ending = model.path.substr(model.ending);
   const auto output = [&](const std::string& option, const std::string& pattern) {
@@ -101,6 +131,7 @@ ModelRun run_of(const BatchRequest& request, const Model& model) {
   std::vector<const char*> line{"vdb_offset"};
   for (const std::string& word : run.words) line.push_back(word.c_str());
   const Request parsed = parse_command_line(static_cast<int>(line.size()), line.data()).value();
+  require_known_ending(parsed);
   run.reports = reports_of(parsed);
   for (const RunFile& file : files_read(parsed)) run.read.push_back(file.path);
   for (const RunFile& file : files_written(parsed))
@@ -109,19 +140,28 @@ ModelRun run_of(const BatchRequest& request, const Model& model) {
 }
 
 void require_apart(const BatchRequest& request, std::span<const Model> models) {
+  const std::string table = path_of_table(request.out), state = state_folder(request.out) + "/";
   std::map<std::string, const Model*> taken;
+  std::set<std::pair<dev_t, ino_t>> files_of_models;
+  for (const Model& model : models) {
+    const std::string path = request.folder + "/" + model.path;
+    taken.emplace(fs::path(path).lexically_normal(), nullptr);
+    if (const auto identity = identity_of(path)) files_of_models.insert(*identity);
+  }
   for (const Model& model : models)
-    taken.emplace(fs::path(request.folder + "/" + model.path).lexically_normal(), nullptr);
-  for (const Model& model : models)
-    for (const std::string& path : run_of(request, model).written) {
+    for (const std::string& path : written_by(request, model)) {
       const auto [other, is_new] = taken.emplace(fs::path(path).lexically_normal(), &model);
-      if (is_new) continue;
-      if (!other->second)
+      const auto identity = identity_of(path);
+      // By whatever link it is reached.
+      if ((!is_new && !other->second) || (identity && files_of_models.contains(*identity)))
         throw UsageError(fmt::format("{}: expected outputs that are no models, got {}", model.path, path));
-      throw UsageError(
-          fmt::format("--output: expected a name of its own for each model, got {} for {} and {} (use "
-                      "{{ending}}, or --models)",
-                      path, other->second->path, model.path));
+      if (path == table || path.starts_with(state))
+        throw UsageError(fmt::format("{}: expected outputs beside the table and {}, got {}", model.path, state, path));
+      if (!is_new)
+        throw UsageError(
+            fmt::format("--output: expected a name of its own for each model, got {} for {} and {} (use "
+                        "{{ending}}, or --models)",
+                        path, other->second->path, model.path));
     }
 }
 

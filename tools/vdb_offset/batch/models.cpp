@@ -34,7 +34,8 @@ bool has_ending_of_model(const std::string& name) {
 
 bool is_selected(const std::string& path, std::span<const std::string> patterns) {
   const std::string name = path.substr(path.rfind('/') + 1);
-  if (patterns.empty()) return has_ending_of_model(name);
+  // (Macs put a file of their own, ._NAME, beside each.)
+  if (patterns.empty()) return has_ending_of_model(name) && !name.starts_with("._");
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
     const bool of_path = pattern.find('/') != std::string::npos;
     return ::fnmatch(pattern.c_str(), (of_path ? path : name).c_str(), 0) == 0;
@@ -42,34 +43,37 @@ bool is_selected(const std::string& path, std::span<const std::string> patterns)
 }
 
 void go_through(const fs::path& folder, const std::string& below, const fs::path& out,
-                std::span<const std::string> patterns, std::vector<Model>& models) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+                std::span<const std::string> patterns, FoundModels& found) {
+  std::error_code failed;
+  fs::directory_iterator entries(folder, failed);
+  if (failed) {
+    found.unreadable.push_back(fmt::format("{}: {}", folder.string(), failed.message()));
+    return;
+  }
+  for (const fs::directory_entry& entry : entries) {
     const std::string path = below + entry.path().filename().string();
-    if (entry.is_directory()) {
-      if (!entry.is_symlink() && entry.path() != out) go_through(entry.path(), path + "/", out, patterns, models);
-    } else if (entry.is_regular_file() && is_selected(path, patterns)) {
-      models.push_back({path, ending_of(path)});
+    std::error_code unknown;
+    if (!entry.is_symlink(unknown) && entry.is_directory(unknown)) {
+      if (entry.path() != out && entry.path().filename() != kStateFolder)
+        go_through(entry.path(), path + "/", out, patterns, found);
+    } else if (entry.is_regular_file(unknown) && is_selected(path, patterns)) {
+      found.models.push_back({path, ending_of(path)});
     }
   }
 }
 
 }  // namespace
 
-std::vector<Model> find_models(const std::string& folder, const std::string& out,
-                               std::span<const std::string> patterns) {
-  std::vector<Model> models;
-  try {
-    go_through(folder, "", out, patterns, models);
-  } catch (const fs::filesystem_error& error) {
-    throw ReadError(
-        fmt::format("{}: expected a folder that can be read, got: {}", error.path1().string(), error.code().message()));
-  }
-  if (models.empty())
-    throw InvalidInput(fmt::format("{}: expected a model ({}), got none", folder,
+FoundModels find_models(const std::string& folder, const std::string& out, std::span<const std::string> patterns) {
+  FoundModels found;
+  go_through(folder, "", out, patterns, found);
+  if (found.models.empty())
+    throw InvalidInput(fmt::format("{}: expected a model ({}), got none{}", folder,
                                    patterns.empty() ? fmt::format("{}", fmt::join(kEndings, " "))
-                                                    : fmt::format("--models {}", fmt::join(patterns, " "))));
-  std::sort(models.begin(), models.end(), [](const Model& a, const Model& b) { return a.path < b.path; });
-  return models;
+                                                    : fmt::format("--models {}", fmt::join(patterns, " ")),
+                                   found.unreadable.empty() ? "" : "; " + found.unreadable.front()));
+  std::sort(found.models.begin(), found.models.end(), [](const Model& a, const Model& b) { return a.path < b.path; });
+  return found;
 }
 
 }  // namespace vdb_offset::tool

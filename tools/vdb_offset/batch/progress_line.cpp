@@ -27,8 +27,12 @@ std::string time_in_words(double seconds) {
 
 std::string models_in_words(std::size_t count) { return fmt::format("{} model{}", count, count == 1 ? "" : "s"); }
 
-ProgressLine::ProgressLine(bool wanted, std::size_t models, double work)
-    : wanted_(wanted && models > 0), on_terminal_(::isatty(STDERR_FILENO) == 1), models_(models), work_(work) {}
+ProgressLine::ProgressLine(bool wanted, std::size_t models, double work, const char* what)
+    : wanted_(wanted && models > 0),
+      on_terminal_(::isatty(STDERR_FILENO) == 1),
+      what_(what),
+      models_(models),
+      work_(work) {}
 
 void ProgressLine::count(double work, bool failed) {
   ++done_;
@@ -40,7 +44,7 @@ void ProgressLine::count(double work, bool failed) {
 }
 
 std::string ProgressLine::text() const {
-  std::string line = fmt::format("{} of {}", done_, models_in_words(models_));
+  std::string line = fmt::format("{} of {} {}", done_, models_in_words(models_), what_);
   if (failed_ > 0) line += fmt::format(", {} failed", failed_);
   if (expected_ && done_ < models_)
     line += fmt::format(", {} left", time_in_words(std::max(0.0, *expected_ - seconds_since(begun_))));

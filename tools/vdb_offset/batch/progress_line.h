@@ -14,7 +14,8 @@ namespace vdb_offset::tool {
 class ProgressLine {
  public:
   /// `work`: a measure of all that there is to do, as bytes of models; that of a model is told when it has ended.
-  ProgressLine(bool wanted, std::size_t models, double work);
+  /// `what`: what becomes of models.
+  ProgressLine(bool wanted, std::size_t models, double work, const char* what);
   ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -29,6 +30,7 @@ class ProgressLine {
   std::string text() const;
 
   bool wanted_, on_terminal_;
+  const char* what_;
   std::size_t models_, done_ = 0, failed_ = 0;
   double work_, work_done_ = 0;
   std::optional<double> expected_;  // seconds for all

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "batch/fingerprint.h"
+#include "job.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/version.h"
 
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kRecordVersion = 1;
+constexpr int kRecordVersion = 2;
 
 std::string path_of_record(const std::string& out, const Model& model) {
   return fmt::format("{}/{}.json", folder_of_records(out), state_name(model));
@@ -27,8 +28,24 @@ std::string path_of_record(const std::string& out, const Model& model) {
 
 /// A file's JSON; discarded if it is none.
 json read_json(const std::string& path) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(path, unknown)) return json(json::value_t::discarded);
   std::ifstream file(path);
   return json::parse(file, nullptr, false);
+}
+
+/// Bytes that need not be text, as JSON has them.
+std::string as_digits(const std::string& bytes) {
+  std::string digits;
+  for (const char c : bytes) digits += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return digits;
+}
+
+std::string from_digits(const std::string& digits) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+  return bytes;
 }
 
 /// The value at a place in a report as text; empty if there is none.
@@ -58,27 +75,28 @@ std::int64_t size_of(const std::string& path) {
 }
 
 json to_json(const Record& record) {
-  json figures = json::array();
+  json figures = json::array(), besides = json::array();
   for (const Record::Figures& each : record.figures)
     figures.push_back(
         {each.distance, each.vertices, each.share_reached, each.mean_error, each.within_1_percent, each.certified});
+  for (const std::string& path : record.read_besides) besides.push_back(as_digits(path));
   const Ending& ending = record.ending;
-  return {{"version", kRecordVersion},
-          {"key", record.key},
-          {"exit_code", ending.exit_code},
-          {"seconds", ending.seconds},
-          {"memory", ending.peak_memory},
-          {"message", ending.message},
-          {"figures", figures},
-          {"sizes", record.sizes}};
+  return {{"version", kRecordVersion}, {"batch", record.batch},        {"key", record.key},
+          {"stamp", record.stamp},     {"read_besides", besides},      {"exit_code", ending.exit_code},
+          {"seconds", ending.seconds}, {"memory", ending.peak_memory}, {"message", ending.message},
+          {"figures", figures},        {"sizes", record.sizes}};
 }
 
 Record from_json(const json& text) {
-  Record record{.key = text.at("key").get<std::string>(),
+  Record record{.batch = text.at("batch").get<std::string>(),
+                .key = text.at("key").get<std::string>(),
+                .stamp = text.at("stamp").get<std::string>(),
+                .read_besides = {},
                 .ending = {text.at("exit_code").get<int>(), text.at("seconds").get<double>(),
                            text.at("memory").get<std::size_t>(), text.at("message").get<std::string>()},
                 .figures = {},
                 .sizes = text.at("sizes").get<std::vector<std::int64_t>>()};
+  for (const json& path : text.at("read_besides")) record.read_besides.push_back(from_digits(path.get<std::string>()));
   for (const json& each : text.at("figures")) {
     const auto texts = each.get<std::array<std::string, 6>>();
     record.figures.push_back({texts[0], texts[1], texts[2], texts[3], texts[4], texts[5]});
@@ -86,24 +104,40 @@ Record from_json(const json& text) {
   return record;
 }
 
+std::vector<std::string> joined(std::vector<std::string> files, std::span<const std::string> more) {
+  files.insert(files.end(), more.begin(), more.end());
+  return files;
+}
+
 }  // namespace
 
 std::string folder_of_records(const std::string& out) { return state_folder(out) + "/records"; }
 
-std::string key_of(const BatchRequest& request, const Model& model, const ModelRun& run) {
-  std::vector<std::string> words{version(), model.path, request.output};
-  for (const GivenOption& option : request.each) {
-    if (option.name == "--threads" || option.name == "--no-sync") continue;  // the result is the same
-    words.push_back(option.name);
-    words.push_back(option.value.value_or(""));
-  }
-  // A limit of memory may make the grid coarser.
-  if (request.max_memory) words.push_back(fmt::format("--max-memory {}", *request.max_memory));
-  return fingerprint_of(words, run.read);
+std::string Ingredients::key(std::span<const std::string> read_besides) const {
+  return fingerprint_of(words, joined(files, read_besides));
 }
 
-Record record_of(const ModelRun& run, std::string key, Ending ending) {
-  Record record{.key = std::move(key), .ending = std::move(ending), .figures = {}, .sizes = {}};
+std::string Ingredients::stamp(std::span<const std::string> read_besides) const {
+  return stamp_of(words, joined(files, read_besides));
+}
+
+Ingredients ingredients_of(const BatchRequest& request, const Model& model, const ModelRun& run) {
+  Ingredients made_of{{version(), model.path, request.output}, run.read};
+  for (const GivenOption& option : request.each) {
+    if (option.name == "--threads" || option.name == "--no-sync") continue;  // the result is the same
+    made_of.words.push_back(option.name);
+    made_of.words.push_back(option.value.value_or(""));
+  }
+  // A limit of memory may make the grid coarser.
+  if (request.max_memory) made_of.words.push_back(fmt::format("--max-memory {}", *request.max_memory));
+  return made_of;
+}
+
+bool Record::failed_for_good() const { return ending.exit_code != 0 && ending.exit_code < kOutput; }
+
+Record record_of(const ModelRun& run, Ending ending) {
+  Record record;
+  record.ending = std::move(ending);
   for (const std::string& path : run.reports) {
     const json report = read_json(path);
     if (report.is_object()) record.figures.push_back(figures_of(report));
@@ -121,13 +155,12 @@ bool are_there(const ModelRun& run, const Record& record) {
 }
 
 std::optional<Record> load_record(const std::string& out, const Model& model) {
-  const json text = read_json(path_of_record(out, model));
-  if (!text.is_object() || text.value("version", 0) != kRecordVersion) return std::nullopt;
   try {
-    return from_json(text);
-  } catch (const json::exception&) {
-    return std::nullopt;
+    const json text = read_json(path_of_record(out, model));
+    if (text.is_object() && text.value("version", 0) == kRecordVersion) return from_json(text);
+  } catch (const std::exception&) {  // whatever has become of it, the model is done again
   }
+  return std::nullopt;
 }
 
 void save_record(const std::string& out, const Model& model, const Record& record) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,22 @@ struct Ending {
   std::string message;          ///< What it said, on one line.
 };
 
+/// What a model is made of: the model and all files that its options name, the options, and the version of the command.
+struct Ingredients {
+  std::vector<std::string> words, files;
+
+  /// Stands for the contents. That of files which are named in files is `read_besides`.
+  std::string key(std::span<const std::string> read_besides) const;
+  /// Stands for what the system notes of them; the same stamp means the same key.
+  std::string stamp(std::span<const std::string> read_besides) const;
+};
+Ingredients ingredients_of(const BatchRequest& request, const Model& model, const ModelRun& run);
+
 /// What the batch remembers of a model.
 struct Record {
-  std::string key;  ///< Of the content and the options that it was made of.
+  std::string batch;                      ///< The mark of the batch that made it (see RunMark).
+  std::string key, stamp;                 ///< Of its ingredients.
+  std::vector<std::string> read_besides;  ///< Files that the run read and its options do not name.
   Ending ending;
   /// What the reports say, for the table: for each distance, texts by the names of columns.
   struct Figures {
@@ -29,14 +43,13 @@ struct Record {
   };
   std::vector<Figures> figures;
   std::vector<std::int64_t> sizes;  ///< Of the files written, in their order; -1: none, or a folder.
+
+  /// Whether it failed for what the model or the options are, and would again.
+  bool failed_for_good() const;
 };
 
-/// What a model is made of: the model's content and that of all files that its options name, the options, and the
-/// version of the command.
-std::string key_of(const BatchRequest& request, const Model& model, const ModelRun& run);
-
 /// Makes the record of a run that has ended, from its reports, and removes those that nobody keeps.
-Record record_of(const ModelRun& run, std::string key, Ending ending);
+Record record_of(const ModelRun& run, Ending ending);
 
 /// Whether the files that a run wrote are there, of the sizes that they had.
 bool are_there(const ModelRun& run, const Record& record);

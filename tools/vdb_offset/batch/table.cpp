@@ -3,12 +3,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 
+#include "messages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
 
@@ -37,14 +39,14 @@ std::string rows_of(const Model& model, const Record& record) {
   const std::vector<Record::Figures> none(1);
   std::string rows;
   for (const Record::Figures& figures : record.figures.empty() ? none : record.figures)
-    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{}\n", quoted(model.path), field(figures.distance),
-                        ending.seconds, static_cast<double>(ending.peak_memory) / 1048576.0, figures.vertices,
-                        figures.share_reached, figures.mean_error, figures.within_1_percent, figures.certified,
-                        ending.exit_code, field(ending.message));
+    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{}\n", quoted(as_text(model.path)),
+                        field(figures.distance), ending.seconds, static_cast<double>(ending.peak_memory) / 1048576.0,
+                        figures.vertices, figures.share_reached, figures.mean_error, figures.within_1_percent,
+                        figures.certified, ending.exit_code, field(ending.message));
   return rows;
 }
 
-Table::Table(const std::string& out) : path_(out + "/batch.csv") {}
+Table::Table(const std::string& out) : path_(path_of_table(out)) {}
 
 void Table::keep(std::size_t model, std::string rows) { rows_.emplace_back(model, std::move(rows)); }
 
@@ -52,9 +54,16 @@ void Table::begin() { write(); }
 
 void Table::add(std::size_t model, std::string rows) {
   const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  // All at once, so that the table never ends within a row.
-  const bool written = file >= 0 && ::write(file, rows.data(), rows.size()) == static_cast<ssize_t>(rows.size());
-  const int error = errno;
+  struct stat before {};
+  bool written = file >= 0 && ::fstat(file, &before) == 0;
+  int error = errno;
+  if (written) {
+    // All at once, so that the table never ends within a row.
+    const ssize_t count = ::write(file, rows.data(), rows.size());
+    error = count < 0 ? errno : ENOSPC;
+    written = count == static_cast<ssize_t>(rows.size());
+    if (!written && ::ftruncate(file, before.st_size) != 0) error = errno;
+  }
   if (file >= 0) ::close(file);
   if (!written) throw WriteError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
   keep(model, std::move(rows));

@@ -56,13 +56,22 @@ pid_t spawn(std::vector<std::string> words, int errors, int gate) {
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&files, errors, STDERR_FILENO);
   posix_spawn_file_actions_adddup2(&files, gate, kGate);
-  const std::string program = this_program();
+  // Whoever ignores SIGTERM, a model's process has to end with the batch.
+  posix_spawnattr_t attributes;
+  require_done(posix_spawnattr_init(&attributes), "vdb_offset batch");
+  sigset_t term;
+  sigemptyset(&term);
+  sigaddset(&term, SIGTERM);
+  posix_spawnattr_setsigdefault(&attributes, &term);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   std::vector<std::string> variables = environment_of_child();
   pid_t process = -1;
+  // This very program, even if another has taken its place on the disk meanwhile.
   const int error =
-      posix_spawn(&process, program.c_str(), &files, nullptr, pointers(words).data(), pointers(variables).data());
+      posix_spawn(&process, "/proc/self/exe", &files, &attributes, pointers(words).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&files);
-  require_done(error, program.c_str());
+  posix_spawnattr_destroy(&attributes);
+  require_done(error, "vdb_offset batch");
   return process;
 }
 
@@ -117,17 +126,18 @@ void Child::read_errors() {
     if (told_.size() < kMostTold) told_.append(bytes.data(), static_cast<std::size_t>(count));
 }
 
-std::size_t Child::read_request(bool& is_there) {
-  std::array<char, 64> bytes;
-  const ssize_t count = ::recv(gate_.number(), bytes.data(), bytes.size(), 0);
-  is_there = count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
-  if (count > 0) asked_.append(bytes.data(), static_cast<std::size_t>(count));
-  const std::size_t end = asked_.find('\n');
-  if (end == std::string::npos) return 0;
-  std::size_t wanted = 0;
-  std::from_chars(asked_.data(), asked_.data() + end, wanted);
-  asked_.erase(0, end + 1);
-  return wanted;
+bool Child::read_gate() {
+  std::array<char, 4096> bytes;
+  ssize_t count;
+  while ((count = ::recv(gate_.number(), bytes.data(), bytes.size(), 0)) > 0)
+    at_gate_.append(bytes.data(), static_cast<std::size_t>(count));
+  const bool is_there = count < 0 && (errno == EAGAIN || errno == EINTR);
+  for (std::size_t end; (end = at_gate_.find('\0')) != std::string::npos; at_gate_.erase(0, end + 1)) {
+    const std::string text = at_gate_.substr(1, end - 1);
+    if (at_gate_.front() == kHasReadFile) files_read_.push_back(text);
+    else std::from_chars(text.data(), text.data() + text.size(), wanted_);
+  }
+  return is_there;
 }
 
 void Child::let_go() { ::send(gate_.number(), "", 1, MSG_NOSIGNAL); }

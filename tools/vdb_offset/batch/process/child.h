@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "batch/record.h"
@@ -46,8 +47,12 @@ class Child {
 
   /// Takes in what it has written on standard error.
   void read_errors();
-  /// The bytes that it asks for since the last call; 0 if it asks for none. False in `is_there` once it has ended.
-  std::size_t read_request(bool& is_there);
+  /// Takes in what it asks for and tells (see gate.h). False once it has ended.
+  bool read_gate();
+  /// The bytes that it asks for since the last call; 0 if it asks for none.
+  std::size_t wanted() { return std::exchange(wanted_, 0); }
+  /// The files that it has read besides those that its command line names.
+  const std::vector<std::string>& files_read() const { return files_read_; }
   /// Lets it go on.
   void let_go();
   void signal(int number) const;
@@ -57,7 +62,9 @@ class Child {
  private:
   pid_t process_ = -1;
   Descriptor errors_, gate_;
-  std::string told_, asked_;
+  std::string told_, at_gate_;
+  std::size_t wanted_ = 0;
+  std::vector<std::string> files_read_;
 };
 
 }  // namespace vdb_offset::tool

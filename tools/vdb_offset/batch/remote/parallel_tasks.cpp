@@ -20,7 +20,7 @@ class ParallelTasks : public Tasks {
       : log_(log), program_(words, "--sshlogin", input, log) {}
 
   bool are_at_work() override { return program_.is_at_work(); }
-  /// The tasks find the file that stops them; parallel begins no other once it is told to end.
+  /// The tasks miss the mark of the batch; parallel begins no other once it is told to end.
   void stop() override { program_.signal(SIGTERM); }
   std::string last_words() const override { return last_line_of(log_); }
 
@@ -31,14 +31,16 @@ class ParallelTasks : public Tasks {
 
 }  // namespace
 
-std::unique_ptr<Tasks> start_by_parallel(const BatchRequest& request, std::size_t tasks) {
-  std::vector<std::string> words{"parallel", "--will-cite", "--retries",  "3",
+std::unique_ptr<Tasks> start_by_parallel(const Plan& plan) {
+  const BatchRequest& request = plan.request;
+  std::vector<std::string> words{"parallel", "--will-cite", "--null",     "--retries",     "3",
                                  "--halt",   "never",       "--sshlogin", request.sshlogin};
   if (request.jobs) words.insert(words.end(), {"--jobs", fmt::format("{}", *request.jobs)});
-  words.push_back(words_of_task(request.out));
-  std::string numbers;
-  for (std::size_t task = 0; task < tasks; ++task) numbers += fmt::format("{}\n", task);
-  return std::make_unique<ParallelTasks>(words, numbers, log_of_tasks(request.out));
+  // Whole commands, as in a command with numbers to be filled in, some characters of names mean something.
+  std::string commands;
+  for (std::size_t task = 0; task < plan.tasks; ++task)
+    commands += fmt::format("{} {}", words_of_task(request.out), task) + '\0';
+  return std::make_unique<ParallelTasks>(words, commands, log_of_tasks(request.out));
 }
 
 }  // namespace vdb_offset::tool

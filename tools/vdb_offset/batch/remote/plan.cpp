@@ -49,16 +49,14 @@ class Texts {
 
 std::string path_of_plan(const std::string& out) { return state_folder(out) + "/plan"; }
 
-std::string path_of_stop(const std::string& out) { return state_folder(out) + "/stop"; }
-
 void write_plan(const Plan& plan) {
   const BatchRequest& request = plan.request;
   std::string bytes;
   const auto add = [&](const std::string& text) { bytes.append(text).append(1, '\0'); };
-  for (const std::string& text :
-       {first_text(), fs::current_path().string(), request.folder, request.out, request.output,
-        fmt::format("{}", request.jobs.value_or(0)), fmt::format("{}", request.max_memory.value_or(0)),
-        fmt::format("{}", plan.tasks), fmt::format("{}", request.each.size())})
+  for (const std::string& text : {first_text(), fs::current_path().string(), plan.mark, request.folder, request.out,
+                                  request.output, request.partition, fmt::format("{}", request.jobs.value_or(0)),
+                                  fmt::format("{}", request.max_memory.value_or(0)), fmt::format("{}", plan.tasks),
+                                  fmt::format("{}", request.each.size())})
     add(text);
   for (const GivenOption& option : request.each) {
     add(option.name);
@@ -80,7 +78,8 @@ Plan read_plan(const std::string& path) {
     throw ReadError(fmt::format("{}: expected the same folder on each machine: {}", folder, failed.message()));
   Plan plan;
   BatchRequest& request = plan.request;
-  for (std::string* const text : {&request.folder, &request.out, &request.output}) *text = texts.next();
+  for (std::string* const text : {&plan.mark, &request.folder, &request.out, &request.output, &request.partition})
+    *text = texts.next();
   if (const auto jobs = static_cast<int>(texts.next_count()); jobs > 0) request.jobs = jobs;
   if (const std::size_t bytes = std::stoull(texts.next()); bytes > 0) request.max_memory = bytes;
   plan.tasks = std::max<std::size_t>(1, texts.next_count());

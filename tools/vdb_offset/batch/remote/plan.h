@@ -14,13 +14,12 @@ namespace vdb_offset::tool {
 struct Plan {
   BatchRequest request;
   std::vector<Model> models;
+  std::string mark;  ///< Of the batch.
   std::size_t tasks = 0;
+  std::size_t most_at_once = 0;  ///< Of the tasks; 0: as many as there is room for. Not for the tasks themselves.
 };
 
 std::string path_of_plan(const std::string& out);
-
-/// A file that makes the tasks stop, wherever they are, once it is there.
-std::string path_of_stop(const std::string& out);
 
 /// \throw WriteError
 void write_plan(const Plan& plan);

@@ -5,15 +5,17 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <charconv>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
-#include <set>
+#include <string_view>
 #include <system_error>
 #include <unordered_map>
 
 #include "batch/process/stop.h"
 #include "batch/remote/plan.h"
-#include "messages.h"
+#include "job.h"
 #include "request/option_values.h"
 
 namespace vdb_offset::tool {
@@ -36,51 +38,62 @@ void rest() {
 using Awaited = std::unordered_map<std::string, std::size_t>;
 
 /// Tells of the records that have come.
-void look_for_records(const BatchRequest& request, std::span<const Model> models, Awaited& awaited,
-                      const LocalJobs::Ended& ended) {
+void look_for_records(const BatchRequest& request, std::span<const Model> models, const std::string& mark,
+                      Awaited& awaited, const LocalJobs::Ended& ended) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_of_records(request.out))) {
     const auto found = awaited.find(entry.path().stem().string());
     if (found == awaited.end() || entry.path().extension() != ".json") continue;
     const std::optional<Record> record = load_record(request.out, models[found->second]);
-    if (!record) continue;
+    if (!record || record->batch != mark) continue;
     ended(found->second, *record);
     awaited.erase(found);
   }
 }
 
+/// What one of the tasks on this machine may take: GNU parallel begins as many at once as it was told to, for all
+/// machines or for this one, or as many as there are processors; those of Slurm have processors of their own.
+Shares shares_of_task(BatchRequest request) {
+  if (const char* const login = std::getenv("PARALLEL_SSHLOGIN"); login && request.partition.empty()) {
+    int jobs = 0;
+    const std::string_view text = login;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), jobs);
+    if (error == std::errc() && jobs > 0 && end != text.data() + text.size() && *end == '/') request.jobs = jobs;
+  }
+  Shares shares = share_out(request);
+  shares.memory = std::max<std::size_t>(1, shares.memory / std::exchange(shares.jobs, 1));
+  return shares;
+}
+
 }  // namespace
 
 void run_remotely(const BatchRequest& request, std::span<const Model> models, std::span<const std::size_t> which,
-                  const LocalJobs::Ended& ended, const std::function<void()>& waited) {
+                  const RunMark& mark, const BatchNews& news) {
   const bool by_slurm = !request.partition.empty();
-  Plan plan{request, {}, by_slurm ? std::min(which.size(), most_tasks_of_slurm()) : which.size()};
+  Plan plan{request, {}, mark.name(), by_slurm ? std::min(which.size(), most_tasks_of_slurm()) : which.size()};
+  if (by_slurm) plan.most_at_once = static_cast<std::size_t>(plan.request.jobs.value_or(0));
   if (by_slurm) plan.request.jobs = 1;  // in a task: the others are Slurm's to begin
   Awaited awaited;
   for (const std::size_t model : which) {
-    remove_record(request.out, models[model]);
     plan.models.push_back(models[model]);
     awaited.emplace(state_name(models[model]), model);
   }
-  std::error_code gone;
-  fs::remove(path_of_stop(request.out), gone);
   write_plan(plan);
-  const std::unique_ptr<Tasks> tasks =
-      by_slurm ? start_by_slurm(request, plan.tasks) : start_by_parallel(request, plan.tasks);
+  const std::unique_ptr<Tasks> tasks = by_slurm ? start_by_slurm(plan) : start_by_parallel(plan);
+  news.begun();
   for (int looks_left = kLastLooks; looks_left > 0 && !awaited.empty() && !stop_signal();) {
     if (!tasks->are_at_work()) --looks_left;
-    look_for_records(request, models, awaited, ended);
-    waited();
+    look_for_records(request, models, mark.name(), awaited, news.ended);
+    news.waited();
     if (!awaited.empty()) rest();
   }
   if (stop_signal()) {
-    write_file(path_of_stop(request.out), "");
     tasks->stop();
-    look_for_records(request, models, awaited, ended);
+    look_for_records(request, models, mark.name(), awaited, news.ended);
     return;
   }
   Record lost;
-  lost.ending = {.exit_code = 3, .message = "its task ended without a result: " + tasks->last_words()};
-  for (const auto& [name, model] : awaited) ended(model, lost);
+  lost.ending = {.exit_code = kProcessing, .message = "its task ended without a result: " + tasks->last_words()};
+  for (const auto& [name, model] : awaited) news.ended(model, lost);
 }
 
 int run_task(int argc, const char* const* argv) {
@@ -91,16 +104,12 @@ int run_task(int argc, const char* const* argv) {
   std::vector<std::size_t> which;
   for (std::size_t model = number; model < plan.models.size(); model += plan.tasks) which.push_back(model);
   catch_stops();
-  Shares shares = share_out(plan.request);
-  shares.memory /= std::exchange(shares.jobs, 1);  // the others are tasks, too
-  const std::string stop = path_of_stop(plan.request.out);
-  LocalJobs(plan.request, plan.models, shares)
-      .run(
-          which, [](std::size_t, const Record&) {},
-          [&] {
-            std::error_code unknown;
-            if (fs::exists(stop, unknown)) std::raise(SIGTERM);
-          });
+  BatchNews news;
+  news.waited = [&] {
+    if (batch_at_work(plan.request.out) != plan.mark) std::raise(SIGTERM);
+  };
+  news.waited();
+  LocalJobs(plan.request, plan.models, shares_of_task(plan.request), plan.mark).run(which, news);
   if (stop_signal()) end_by_stop();
   return 0;
 }

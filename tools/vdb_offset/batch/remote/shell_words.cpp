@@ -9,8 +9,6 @@
 #include "messages.h"
 
 namespace vdb_offset::tool {
-namespace {
-
 std::string in_quotes(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -19,8 +17,6 @@ std::string in_quotes(const std::string& text) {
   }
   return quoted + "'";
 }
-
-}  // namespace
 
 std::string words_of_task(const std::string& out) {
   return in_quotes(this_program()) + " batch-task " + in_quotes(path_of_plan(out));

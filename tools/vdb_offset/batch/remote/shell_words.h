@@ -7,6 +7,9 @@
 
 namespace vdb_offset::tool {
 
+/// A text as one word of a shell.
+std::string in_quotes(const std::string& text);
+
 /// The call of a task, for a shell, without its number.
 std::string words_of_task(const std::string& out);
 
