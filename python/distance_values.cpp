@@ -84,24 +84,73 @@ std::pair<double, double> tolerance_of(const py::object& tolerance) {
                       Keywords::text_of(tolerance));
 }
 
-Metric metric_of(const py::dict& keywords, std::span<const Distances> distance, const Source& source,
-                 const AskedOptions& asked) {
-  // Beyond this ratio the lesser distance drowns in the rounding of the larger one, as the command says.
-  constexpr double kMostRatio = 1000;
-  const py::object given = Keywords(keywords)["distance_z"];
-  if (given.is_none()) return {};
-  if (distance.size() != 1)
-    throw InvalidOption("distance_z: expected one distance beside it, got " + std::to_string(distance.size()));
+std::optional<scene::Distance> length_of(const py::object& given) {
+  scene::Distance length;
+  if (py::isinstance<py::str>(given)) {
+    try {
+      return scene::parse_distance(given.cast<std::string>());
+    } catch (const InvalidInput&) {
+      return std::nullopt;
+    }
+  }
+  if (is_truth(given) || PyNumber_Check(given.ptr()) != 1) return std::nullopt;
+  try {
+    length.value = given.cast<double>();
+  } catch (const py::cast_error&) {  // an array, or a number out of range
+    return std::nullopt;
+  }
+  if (!std::isfinite(length.value)) return std::nullopt;
+  return length;
+}
+
+namespace {
+
+// The largest ratio of distances by axis, which a distance of 0 also gets: beyond this the lesser one drowns in the
+// rounding of the larger one, as the command says.
+constexpr double kMostRatio = 1000;
+
+void require_alone(const py::list& distances, const Source& source, const AskedOptions& asked) {
+  if (distances.size() != 1)
+    throw InvalidOption("distance_z: expected one distance beside it, got " + std::to_string(distances.size()));
   if (!asked.vdb.empty()) throw InvalidOption("distance_z and save_vdb exclude each other");
+  if (asked.obstacles) throw InvalidOption("distance_z and obstacles exclude each other");
   if (source.curves() && asked.options.precision.kind != Precision::Kind::Double)
     throw InvalidOption("distance_z and precision exclude each other for curves");
-  const Distances z = distances_of(given, source, {}, "distance_z");
-  const double xy = distance[0][0], ratio = xy / z[0];
-  if (!distance[0].uniform() || !z.uniform() || !(std::max(ratio, 1 / ratio) <= kMostRatio && ratio > 0))
-    throw InvalidOption("distance_z: expected one number beside one distance, of its sign and within " +
+}
+
+scene::Distance length_by_axis(const py::object& given, const char* name) {
+  if (const auto length = length_of(given)) return *length;
+  throw InvalidOption(std::string(name) + ": expected a number of world units, or a text with one or percent, as " +
+                      "distances by axis are, got " + Keywords::text_of(given));
+}
+
+}  // namespace
+
+std::optional<ByAxis> by_axis(const py::dict& keywords, const py::list& distances, const Source& source,
+                              const AskedOptions& asked) {
+  const py::object along = Keywords(keywords)["distance_z"];
+  if (along.is_none()) return std::nullopt;
+  require_alone(distances, source, asked);
+  const py::object across = distances[0];
+  scene::Distance xy = length_by_axis(across, "distance"), z = length_by_axis(along, "distance_z");
+  if (xy.value == 0 && z.value == 0)
+    throw InvalidOption("distance_z: expected one other than 0, as the distance beside it is, got " +
+                        Keywords::text_of(along));
+  const auto least_beside = [](scene::Distance other) {
+    other.value /= kMostRatio;
+    return other;
+  };
+  if (xy.value == 0) xy = least_beside(z);
+  if (z.value == 0) z = least_beside(xy);
+  const double diagonal = xy.percent || z.percent ? used_diagonal(source.view()) : 0,
+               length = xy.in_world_units(diagonal), ratio = length / z.in_world_units(diagonal);
+  if (!(ratio > 0) || !(std::max(ratio, 1 / ratio) <= kMostRatio * (1 + 1e-9)))
+    throw InvalidOption("distance_z: expected one of the sign of the distance beside it, and within " +
                         std::to_string(static_cast<int>(kMostRatio)) + " times it, either way, got " +
-                        Keywords::text_of(given));
-  return Metric::of_half_axes(xy, z[0]);
+                        Keywords::text_of(along) + " beside " + Keywords::text_of(across));
+  const auto text = [](const py::object& given) { return py::str(given).cast<std::string>(); };
+  return ByAxis{Metric::of_half_axes(length, z.in_world_units(diagonal)), length,
+                text(across) + " xy " + text(along) + " z"};
 }
 
 }  // namespace vdb_offset::python

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.h"
 #include "option_values.h"
 #include "source.h"
+#include "vdb_offset/scene.h"
 
 /// Lengths as Python has them: numbers, arrays, and texts as the command takes them.
 namespace vdb_offset::python {
@@ -29,9 +32,19 @@ Distances inward_distances_of(const py::object& inner, const Source& source, con
 /// percentage. \throw InvalidOption
 std::pair<double, double> tolerance_of(const py::object& tolerance);
 
-/// The metric in which distances along z are `distance_z`, and those in the plane across it `distance`, if the keyword
-/// is given: both of one sign, as distances_of() has them. \throw InvalidOption
-Metric metric_of(const py::dict& keywords, std::span<const Distances> distance, const Source& source,
-                 const AskedOptions& asked);
+/// A number of world units, or a text with one or percent. Nothing for anything else.
+std::optional<scene::Distance> length_of(const py::object& given);
+
+/// Distances by axis: a space in which they are one distance.
+struct ByAxis {
+  Metric metric;
+  double distance = 0;
+  std::string text;  ///< Both, in the words of reports.
+};
+
+/// What the keyword `distance_z` makes of the only one of some distances: that is the one in the plane across z. One of
+/// both may be 0, which is a thousandth of the other. Nothing without the keyword. \throw InvalidOption
+std::optional<ByAxis> by_axis(const py::dict& keywords, const py::list& distances, const Source& source,
+                              const AskedOptions& asked);
 
 }  // namespace vdb_offset::python

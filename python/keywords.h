@@ -16,6 +16,11 @@ namespace vdb_offset::python {
 
 namespace py = pybind11;
 
+/// Whether it is True or False, Python's own or NumPy's, which are numbers to Python.
+inline bool is_truth(const py::object& given) {
+  return py::isinstance<py::bool_>(given) || py::type::of(given).attr("__name__").cast<std::string>() == "bool_";
+}
+
 /// Reads keywords one by one, and leaves those alone that were not given. Each throws InvalidOption for a value that
 /// means nothing.
 class Keywords {

@@ -8,6 +8,7 @@
 #include "calls.h"
 #include "distance_values.h"
 #include "interruptible.h"
+#include "keywords.h"
 #include "results.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
@@ -20,11 +21,15 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
   const auto start = Clock::now();
   const Source source(input, vertices, faces, keywords);
   AskedOptions asked = asked_options(keywords, source);
-  const std::vector<Distances> wanted = distances_of_all(distances, source, asked);
-  asked.options.metric = metric_of(keywords, wanted, source, asked);
-  require_field(asked, wanted);
+  std::vector<Distances> wanted = distances_of_all(distances, source, asked);
   std::vector<std::string> texts;
   for (const auto distance : distances) texts.push_back(text_of(py::reinterpret_borrow<py::object>(distance)));
+  if (const auto axes = by_axis(keywords, distances, source, asked)) {
+    asked.options.metric = axes->metric;
+    wanted = {axes->distance};
+    texts = {axes->text};
+  }
+  require_field(asked, wanted);
   Interruptible run(progress);
   asked.options.progress = run.progress();
   std::vector<OffsetResult> results = run([&] {
@@ -47,6 +52,7 @@ py::dict fit_arrays(const py::object& vertices, const py::object& faces, const p
   const MeshArrays near(other[0], other[1]);
   AskedOptions asked = asked_options(keywords, source);
   const double room = clearance_of(clearance, source.view());
+  if (room == 0) throw InvalidOption("clearance: expected one above 0, got " + Keywords::text_of(clearance));
   Interruptible run(progress);
   asked.options.progress = run.progress();
   OffsetResult result = run([&] { return fit(source.view(), near.view(), room, asked.options); });
@@ -120,7 +126,13 @@ py::dict check_arrays(Input input, const py::object& vertices, const py::object&
   CheckOptions options = check_options(asked, tolerance);
   if (!distance.is_none()) {
     options.distance = distances_of(distance, source, asked);
-    options.metric = metric_of(keywords, {&*options.distance, 1}, source, asked);
+    py::list one;
+    one.append(distance);
+    if (const auto axes = by_axis(keywords, one, source, asked)) {
+      options.metric = axes->metric;
+      options.distance = axes->distance;
+      if (!tolerance.is_none()) throw InvalidOption("distance_z and tolerance exclude each other");
+    }
   } else if (keywords.contains("distance_z")) {
     throw InvalidOption("distance_z: expected a distance beside it, got none");
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -18,16 +19,12 @@
 #include "keywords.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/run.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::python {
 namespace {
-
-/// Whether it is True or False, Python's own or NumPy's, which are numbers to Python.
-bool is_truth(const py::object& given) {
-  return py::isinstance<py::bool_>(given) || py::type::of(given).attr("__name__").cast<std::string>() == "bool_";
-}
 
 WeldOptions weld_of(const py::object& given) {
   if (given.is_none()) return WeldOptions::automatic();
@@ -61,7 +58,56 @@ Precision precision_of(const py::object& given) {
   throw InvalidOption("precision: expected 'double', 'single' or 1 to 17 digits, got " + Keywords::text_of(given));
 }
 
-/// True, False, or a list of planes (A, B, C, D): all x with A x + B y + C z = D.
+/// The plane of all x with A x + B y + C z = D, if there is one.
+std::optional<SymmetryPlane> plane_of(const std::array<double, 4>& factors) {
+  const auto [a, b, c, d] = factors;
+  const double length = std::hypot(a, b, c);
+  if (!(length > 0) || !std::isfinite(length) || !std::isfinite(d)) return std::nullopt;
+  return SymmetryPlane{Vec3d(a / length, b / length, c / length), d / length};
+}
+
+/// A plane as the command takes it: 'x=0', or 'A,B,C,D'.
+std::optional<SymmetryPlane> plane_of(std::string_view text) {
+  std::array<double, 4> factors{};
+  if (text.size() > 2 && text[1] == '=' && text[0] >= 'x' && text[0] <= 'z') {
+    const auto offset = decimal<double>(text.substr(2));
+    if (!offset) return std::nullopt;
+    factors[static_cast<std::size_t>(text[0] - 'x')] = 1;
+    factors[3] = *offset;
+    return plane_of(factors);
+  }
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const bool is_last = k + 1 == factors.size();
+    const std::size_t end = is_last ? text.size() : text.find(',');
+    const auto factor = end == std::string_view::npos ? std::nullopt : decimal<double>(text.substr(0, end));
+    if (!factor) return std::nullopt;
+    factors[k] = *factor;
+    if (!is_last) text.remove_prefix(end + 1);
+  }
+  return plane_of(factors);
+}
+
+/// Takes a plane, as a text or as four numbers, or 'none'. Returns false for anything else.
+bool take_plane(const py::object& given, SymmetryOptions& symmetry) {
+  std::optional<SymmetryPlane> plane;
+  if (py::isinstance<py::str>(given)) {
+    const auto text = given.cast<std::string>();
+    if (text == "none") {
+      symmetry.find = false;
+      return true;
+    }
+    plane = plane_of(std::string_view(text));
+  } else {
+    try {
+      plane = plane_of(given.cast<std::array<double, 4>>());
+    } catch (const py::cast_error&) {  // no four numbers
+    }
+  }
+  if (plane) symmetry.planes.push_back(*plane);
+  return plane.has_value();
+}
+
+/// True, False, a text, or a list of planes.
 SymmetryOptions symmetry_of(const py::object& given) {
   SymmetryOptions symmetry;
   if (given.is_none()) return symmetry;
@@ -69,18 +115,16 @@ SymmetryOptions symmetry_of(const py::object& given) {
     symmetry.find = PyObject_IsTrue(given.ptr()) == 1;
     return symmetry;
   }
-  try {
-    for (const auto& plane : given.cast<std::vector<std::array<double, 4>>>()) {
-      const Vec3d normal(plane[0], plane[1], plane[2]);
-      const double length = normal.length();
-      if (!(length > 0) || !std::isfinite(length))
-        throw InvalidOption("symmetry: expected planes with a normal that is not 0");
-      symmetry.planes.push_back({normal / length, plane[3] / length});
-    }
-  } catch (const py::cast_error&) {
-    throw InvalidOption("symmetry: expected True, False, or planes of four numbers each, got " +
-                        Keywords::text_of(given));
-  }
+  bool is_understood =
+      py::isinstance<py::str>(given) ? take_plane(given, symmetry) : py::isinstance<py::iterable>(given);
+  if (is_understood && !py::isinstance<py::str>(given))
+    for (const py::handle each : given)
+      is_understood = is_understood && take_plane(py::reinterpret_borrow<py::object>(each), symmetry);
+  if (!is_understood)
+    throw InvalidOption(
+        "symmetry: expected True, False, 'none', or planes, each 'x=0' (or y, z), 'A,B,C,D' or four numbers for "
+        "A x + B y + C z = D, got " +
+        Keywords::text_of(given));
   return symmetry;
 }
 
@@ -126,7 +170,9 @@ void read_common(const Keywords& keywords, Options& options) {
   options.max_memory = static_cast<std::size_t>(kMemoryShare * static_cast<double>(available_memory()));
   if (const py::object size = keywords["max_memory"]; !size.is_none()) options.max_memory = size_of(size);
   keywords.read("threads", options.threads);
-  if (options.threads < 0) throw InvalidOption("threads: expected a whole number, 0 or more");
+  constexpr int kMostThreads = 4096;  // as the command has it
+  if (options.threads < 0 || options.threads > kMostThreads)
+    throw InvalidOption("threads: expected a whole number, 0 to " + std::to_string(kMostThreads));
   options.weld = weld_of(keywords["weld"]);
   options.precision = precision_of(keywords["precision"]);
 }
@@ -134,16 +180,8 @@ void read_common(const Keywords& keywords, Options& options) {
 }  // namespace
 
 double clearance_of(const py::object& given, PolygonView mesh) {
-  if (py::isinstance<py::str>(given)) {
-    try {
-      const scene::Distance clearance = scene::parse_distance(given.cast<std::string>());
-      if (clearance.value >= 0) return clearance.in_world_units(clearance.percent ? used_diagonal(mesh) : 0);
-    } catch (const InvalidInput&) {  // no number
-    }
-  } else if (!is_truth(given) && PyNumber_Check(given.ptr()) == 1) {
-    const auto clearance = given.cast<double>();
-    if (clearance >= 0 && std::isfinite(clearance)) return clearance;
-  }
+  if (const auto clearance = length_of(given); clearance && clearance->value >= 0)
+    return clearance->in_world_units(clearance->percent ? used_diagonal(mesh) : 0);
   throw InvalidOption("clearance: expected a number of world units, or a text with one or percent, 0 or more, got " +
                       Keywords::text_of(given));
 }
@@ -164,9 +202,14 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
                 std::array{std::pair{"slide", Border::Slide}, std::pair{"fixed", Border::Fixed},
                            std::pair{"free", Border::Free}});
   keywords.read("miter_limit", options.miter_limit);
-  if (!(options.miter_limit >= 1)) throw InvalidOption("miter_limit: expected a number of 1 or more");
-  if (const py::object clearance = keywords["clearance"]; !clearance.is_none())
+  if (!(options.miter_limit >= 1) || !std::isfinite(options.miter_limit))
+    throw InvalidOption("miter_limit: expected a number of 1 or more");
+  if (given.contains("miter_limit") && options.corners != Corners::Miter)
+    throw InvalidOption("miter_limit needs corners='miter'");
+  if (const py::object clearance = keywords["clearance"]; !clearance.is_none()) {
     options.clearance = clearance_of(clearance, mesh);
+    if (!given.contains("obstacles")) throw InvalidOption("clearance needs obstacles");
+  }
   keywords.read("paths", options.keep_paths);
   options.symmetry = symmetry_of(keywords["symmetry"]);
   if (const py::object only = keywords["only"]; !only.is_none()) options.only = marks_of(only, mesh.face_count());
@@ -206,7 +249,7 @@ IsoOptions iso_options(const py::dict& given) {
   const Keywords keywords(given);
   IsoOptions options;
   read_common(keywords, options);
-  keywords.read("use_winding", options.use_winding);
+  keywords.read("inside", options.use_winding, std::array{std::pair{"winding", true}, std::pair{"never", false}});
   keywords.read("adaptivity", options.adaptivity);
   keywords.read("keep_specks", options.keep_specks);
   return options;

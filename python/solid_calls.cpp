@@ -8,6 +8,7 @@
 #include "calls.h"
 #include "distance_values.h"
 #include "interruptible.h"
+#include "keywords.h"
 #include "results.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/iso_surface.h"
@@ -75,8 +76,23 @@ py::list shell_arrays(const py::object& vertices, const py::object& faces, const
 
 namespace {
 
-double distance_of_all(const Distances& distances) {
-  if (!distances.uniform()) throw InvalidOption("distance: expected one for all vertices of an iso-surface");
+/// The distance of an iso-surface, the same everywhere.
+double distance_of_all(const py::object& distance, const Source& source) {
+  if (!length_of(distance))
+    throw InvalidOption(
+        "distance: expected a number of world units, or a text with one or percent, as the distance of "
+        "an iso-surface is, got " +
+        Keywords::text_of(distance));
+  return distances_of(distance, source, {})[0];
+}
+
+void require_distance(double distance, const py::object& given) {
+  if (distance == 0) throw InvalidOption("distance: expected one other than 0, got " + Keywords::text_of(given));
+}
+
+double cavity_distance(const py::object& inner, const Source& source, const Distances& outer) {
+  const Distances distances = inward_distances_of(inner, source, {}, {&outer, 1});
+  if (!distances.uniform()) throw InvalidOption("inner: expected one distance for the whole of an iso-surface");
   return distances[0];
 }
 
@@ -108,14 +124,19 @@ py::dict iso_arrays(const py::object& vertices, const py::object& faces, const p
   const auto start = Clock::now();
   const Source source(Input::Mesh, vertices, faces, keywords);
   IsoOptions options = iso_options(keywords);
-  const Distances wanted = distances_of(distance, source, {});
-  options.distance = distance_of_all(wanted);
-  const Metric metric = metric_of(keywords, {&wanted, 1}, source, {});
+  options.distance = distance_of_all(distance, source);
+  py::list one;
+  one.append(distance);
+  const std::optional<ByAxis> axes = by_axis(keywords, one, source, {});
+  if (axes) options.distance = axes->distance;
+  require_distance(options.distance, distance);
+  const std::string text = axes ? axes->text : text_of(distance);
   Interruptible run(progress);
   options.progress = run.progress();
-  IsoResult result = run([&] { return make_iso_surface_in_metric(source.view(), options, metric); });
+  IsoResult result =
+      run([&] { return make_iso_surface_in_metric(source.view(), options, axes ? axes->metric : Metric()); });
   py::dict all;
-  all["statistics"] = from_json(report_json(result.statistics, facts_of_run(text_of(distance), start)));
+  all["statistics"] = from_json(report_json(result.statistics, facts_of_run(text, start)));
   all["faces"] = faces_of(result.polygons);
   all["normals"] = owning_array(std::move(result.normals));
   all["vertices"] = owning_array(std::move(result.polygons.positions));
@@ -127,10 +148,11 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
   const auto start = Clock::now();
   const Source source(Input::Mesh, vertices, faces, keywords);
   IsoOptions options = iso_options(keywords);
-  const Distances wanted = distances_of(distance, source, {});
-  const double outward = distance_of_all(wanted);
+  const double outward = distance_of_all(distance, source);
+  require_distance(outward, distance);
   std::optional<double> inward;
-  if (!inner.is_none()) inward = distance_of_all(inward_distances_of(inner, source, {}, {&wanted, 1}));
+  if (!inner.is_none()) inward = cavity_distance(inner, source, outward);
+  const std::string text = text_of(distance);
   Interruptible run(progress);
   options.progress = run.progress();
   struct Made {
@@ -151,7 +173,7 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
     all.hollow = hollow_of(source.view(), outward, all.surface, all.cavity ? &*all.cavity : nullptr);
     return all;
   });
-  return hollow_as_dict(made.hollow, facts_of_run(text_of(distance), start), made.surface.statistics,
+  return hollow_as_dict(made.hollow, facts_of_run(text, start), made.surface.statistics,
                         made.cavity ? &*made.cavity : nullptr);
 }
 

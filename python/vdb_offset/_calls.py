@@ -155,19 +155,30 @@ def shell(vertices: np.ndarray, faces: Faces, distance: Distance, **options: Any
     return _shells(vertices, faces, [distance], given(shell, options))[0]
 
 
+# What the command takes at most.
+_MOST_LAYERS, _MOST_GROWTH = 1000, 10
+
+
 def _heights(evaluate: Callable[..., Any], arrays: Sequence[Any], heights: Any, keywords: Dict[str, Any]) -> List[Any]:
     """The heights of layers: those that are given, or `count` whose thickness grows by a factor. Takes the keywords
     that say so out of the others."""
     count, first, total = (keywords.pop(name, None) for name in ("count", "first", "total"))
-    growth = keywords.pop("growth", _options.OPTIONS["growth"].default)
+    growth = keywords.pop("growth", None)
     if heights is not None:
-        if count is not None or first is not None or total is not None:
-            raise TypeError("expected heights, or a count with the first one or the total, got both")
-        return list(heights)
+        for name, value in (("first", first), ("total", total), ("growth", growth)):
+            if value is not None:
+                raise _core.InvalidOption(f"{name} and heights exclude each other")
+        each = list(heights)
+        if count is not None and count != len(each):
+            raise _core.InvalidOption(f"count: expected {len(each)}, as many as there are heights, got {count!r}")
+        return each
     if count is None or (first is None) == (total is None):
-        raise TypeError("expected heights, or a count with the first one or the total")
-    if not (growth > 0 and np.isfinite(growth)):
-        raise _core.InvalidOption(f"growth: expected a number above 0, got {growth!r}")
+        raise _core.InvalidOption("expected heights, or a count with one of first and total")
+    if not (isinstance(count, (int, np.integer)) and 1 <= count <= _MOST_LAYERS) or isinstance(count, bool):
+        raise _core.InvalidOption(f"count: expected a whole number, 1 to {_MOST_LAYERS}, got {count!r}")
+    growth = 1.2 if growth is None else growth
+    if not (isinstance(growth, (int, float, np.number)) and 0 < growth <= _MOST_GROWTH):
+        raise _core.InvalidOption(f"growth: expected a number above 0, up to {_MOST_GROWTH}, got {growth!r}")
     base = evaluate(*arrays, first if first is not None else total, keywords)
     factors, step = [], 1.0
     for _ in range(count):

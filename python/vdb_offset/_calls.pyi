@@ -11,9 +11,10 @@ from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shel
 def offset_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], *,
     distance_z: Union[float, str, None] = None, corners: Literal['round', 'miter'] = 'round',
-    miter_limit: float = 4.0, collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    miter_limit: Optional[float] = None, collision: Literal['limit', 'merge'] = 'limit',
+    only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
@@ -24,10 +25,11 @@ def offset_several(
 
 def offset(
     vertices: np.ndarray, faces: Faces, distance: Distance, *, distance_z: Union[float, str, None] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
@@ -38,7 +40,7 @@ def offset(
 
 def offset_curves_several(
     points: np.ndarray, curves: Faces, distances: Sequence[Distance], *, distance_z: Union[float, str, None] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, paths: bool = False,
@@ -48,7 +50,7 @@ def offset_curves_several(
 
 def offset_curves(
     points: np.ndarray, curves: Faces, distance: Distance, *, distance_z: Union[float, str, None] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, paths: bool = False,
@@ -58,10 +60,11 @@ def offset_curves(
 
 def offset_to_tolerance(
     vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *, max_faces: int = 0,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
@@ -72,7 +75,7 @@ def offset_to_tolerance(
 def fit(
     vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], clearance: Union[float, str], *,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
-    symmetry: Union[bool, Sequence[Sequence[float]]] = True,
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
@@ -82,10 +85,11 @@ def fit(
 
 def shell_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], *, inner: Optional[Distance] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
@@ -96,10 +100,11 @@ def shell_several(
 
 def shell(
     vertices: np.ndarray, faces: Faces, distance: Distance, *, inner: Optional[Distance] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
@@ -111,10 +116,12 @@ def shell(
 def layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: float = 1.2, corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
-    only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
-    symmetry: Union[bool, Sequence[Sequence[float]]] = True, obstacles: Optional[Tuple[np.ndarray, Faces]] = None,
-    clearance: Union[float, str] = 0.0, weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    growth: Optional[float] = None, corners: Literal['round', 'miter'] = 'round',
+    miter_limit: Optional[float] = None, only: Optional[np.ndarray] = None,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
+    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
@@ -123,17 +130,17 @@ def layers(
 
 def curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
-    first: Optional[Distance] = None, total: Optional[Distance] = None, growth: float = 1.2,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0, close: bool = False,
+    first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None, close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
     progress: Progress = None
 ) -> Layers: ...
 
 def iso_surface(
-    vertices: np.ndarray, faces: Faces, distance: Union[float, str], *, use_winding: bool = True,
-    adaptivity: Optional[float] = None, keep_specks: bool = False, distance_z: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    vertices: np.ndarray, faces: Faces, distance: Union[float, str], *,
+    inside: Literal['winding', 'never'] = 'winding', adaptivity: Optional[float] = None, keep_specks: bool = False,
+    distance_z: Union[float, str, None] = None, weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
@@ -141,9 +148,9 @@ def iso_surface(
 ) -> Iso: ...
 
 def iso_surface_several(
-    vertices: np.ndarray, faces: Faces, distances: Sequence[Union[float, str]], *, use_winding: bool = True,
-    adaptivity: Optional[float] = None, keep_specks: bool = False, distance_z: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    vertices: np.ndarray, faces: Faces, distances: Sequence[Union[float, str]], *,
+    inside: Literal['winding', 'never'] = 'winding', adaptivity: Optional[float] = None, keep_specks: bool = False,
+    distance_z: Union[float, str, None] = None, weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
@@ -152,7 +159,7 @@ def iso_surface_several(
 
 def iso_shell(
     vertices: np.ndarray, faces: Faces, distance: Union[float, str], *, inner: Optional[Distance] = None,
-    use_winding: bool = True, adaptivity: Optional[float] = None, keep_specks: bool = False,
+    inside: Literal['winding', 'never'] = 'winding', adaptivity: Optional[float] = None, keep_specks: bool = False,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
@@ -163,10 +170,12 @@ def iso_shell(
 def structured_layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: float = 1.2, corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
-    only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
-    symmetry: Union[bool, Sequence[Sequence[float]]] = True, obstacles: Optional[Tuple[np.ndarray, Faces]] = None,
-    clearance: Union[float, str] = 0.0, weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    growth: Optional[float] = None, corners: Literal['round', 'miter'] = 'round',
+    miter_limit: Optional[float] = None, only: Optional[np.ndarray] = None,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
+    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
@@ -175,8 +184,8 @@ def structured_layers(
 
 def structured_curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
-    first: Optional[Distance] = None, total: Optional[Distance] = None, growth: float = 1.2,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0, close: bool = False,
+    first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None, close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
     progress: Progress = None
@@ -185,10 +194,11 @@ def structured_curve_layers(
 def check(
     vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
     tolerance: Union[float, str, None] = None, distance_z: Union[float, str, None] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
@@ -199,7 +209,7 @@ def check(
 
 def check_curves(
     points: np.ndarray, curves: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, paths: bool = False,

@@ -28,28 +28,33 @@ OPTIONS: Dict[str, Option] = {
     "count": Option(Optional[int], None, "instead of heights: how many layers, with"),
     "first": Option(Optional[Distance], None, "the height of the first one, or"),
     "total": Option(Optional[Distance], None, "that of the last one, and"),
-    "growth": Option(float, 1.2, "how many times as thick each layer is as the one before"),
-    "use_winding": Option(bool, True, "whether a mesh that is not closed can have an inside"),
+    "growth": Option(Optional[float], None, "how many times as thick each layer is as the one before; None: 1.2"),
+    "inside": Option(Literal["winding", "never"], "winding",
+                     '"winding": a mesh that is closed but for small holes has an inside; "never": it is open'),
     "adaptivity": Option(Optional[float], None,
                          "how readily voxels are merged, from 0 to 1; None: where it costs no accuracy"),
     "keep_specks": Option(bool, False, "whether pieces smaller than a voxel are kept"),
     "distance_z": Option(Optional[Union[float, str]], None,
-                         "the distance along z, beside a single one in the plane across it"),
+                         "the distance along z, beside a single one in the plane across it, of its sign; one of both\n"
+                         "may be 0, which is a thousandth of the other"),
     "corners": Option(Literal["round", "miter"], "round",
                       '"round": vertices at the distance; "miter": faces at the distance, beside sharp edges as well'),
-    "miter_limit": Option(float, 4.0, "the longest miter, in distances, 1 or more"),
+    "miter_limit": Option(Optional[float], None,
+                          'with corners="miter": the longest one, in distances, 1 or more; None: 4'),
     "collision": Option(Literal["limit", "merge"], "limit",
                         '"limit": the result stays valid; "merge": each vertex goes as far as the distance grows'),
     "only": Option(Optional[np.ndarray], None,
                    "(m,) booleans, or numbers of faces: those that are offset; the others stay, and are in the way"),
     "border": Option(Literal["slide", "fixed", "free"], "slide",
                      "what the edge of that part does: it slides along what stays, is fixed, or moves freely"),
-    "symmetry": Option(Union[bool, Sequence[Sequence[float]]], True,
-                       "whether borders stay in the planes that they lie in; or planes (A, B, C, D), all x with\n"
-                       "A x + B y + C z = D, in which everything stays that lies there"),
+    "symmetry": Option(Union[bool, str, Sequence[Union[str, Sequence[float]]]], True,
+                       'whether borders stay in the planes that they lie in; False or "none": they need not. Or a\n'
+                       'plane, or several, in which everything stays that lies there: "x=0", "z=-1.5", "A,B,C,D" or\n'
+                       "(A, B, C, D) for A x + B y + C z = D"),
     "obstacles": Option(Optional[Tuple[np.ndarray, Faces]], None, "vertices and faces of what is in the way"),
-    "clearance": Option(Union[float, str], 0.0,
-                        'the least distance from these: world units, or "1%" of the diagonal of the mesh'),
+    "clearance": Option(Optional[Union[float, str]], None,
+                        'with obstacles: the least distance from these, world units, or "1%" of the diagonal of the\n'
+                        "mesh; None: 0"),
     "close": Option(bool, False,
                     "whether curves whose ends are near each other, less than a tenth of their length, are closed"),
     "weld": Option(Union[Literal["auto", "exact", "none"], float], "auto",
@@ -78,7 +83,7 @@ OPTIONS: Dict[str, Option] = {
 }
 
 _OF_LAYERS = ["count", "first", "total", "growth"]
-_OF_ISO = ["use_winding", "adaptivity", "keep_specks"]
+_OF_ISO = ["inside", "adaptivity", "keep_specks"]
 _COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_memory", "progress"]
 #: What functions of one kind take.
 OFFSET = [name for name in OPTIONS if name not in ("inner", "close", *_OF_LAYERS, *_OF_ISO)]

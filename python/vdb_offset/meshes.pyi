@@ -18,10 +18,11 @@ def with_positions(
 
 def offset_mesh(
     mesh: Any, distance: Distance, *, distance_z: Union[float, str, None] = None,
-    corners: Literal['round', 'miter'] = 'round', miter_limit: float = 4.0,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide', symmetry: Union[bool, Sequence[Sequence[float]]] = True,
-    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str] = 0.0,
+    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
+    obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',

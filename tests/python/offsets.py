@@ -39,6 +39,34 @@ class Offsets(BesideTheCommand):
     def test_open_surface_with_symmetry(self):
         self.check("patch", "0.2", ["--symmetry", "none"], symmetry=False)
 
+    def test_symmetry_as_a_text(self):
+        self.check("patch", "0.2", ["--symmetry", "none"], symmetry="none")
+        self.check("bumpy_sphere", "2%", ["--symmetry", "x=0"], symmetry="x=0")
+        self.check("bumpy_sphere", "2%", ["--symmetry", "x=0", "--symmetry", "z=0"], symmetry=["x=0", "z=0"])
+
+    def test_symmetry_as_a_text_of_factors(self):
+        # A wavy sheet, one border of which lies in the plane.
+        along, across = (each.ravel() for each in np.meshgrid(np.linspace(0, 3, 31), np.arange(3.0)))
+        sheet = np.stack([3 * along + 0.2 * across, 0.3 * across - 2 * along, np.sin(4 * along + across)], 1)
+        first = np.arange(93).reshape(3, 31)[:-1, :-1].ravel()
+        faces = np.stack([first, first + 1, first + 32, first + 31], 1)
+        run = self.run_command
+        run.write("shape.obj", sheet, faces)
+        run("shape.obj", "made.obj", "--distance=0.1", "--symmetry", "0.2,0.3,0,-0.0", "--symmetry", "none", "--precision", "17")
+        made, _ = run.read("made.obj")
+        for plane in ("0.2,0.3,0,-0.0", (0.2, 0.3, 0, -0.0), np.array([0.2, 0.3, 0, 0])):
+            for planes in ([plane, "none"], ("none", plane)):
+                found = vdb_offset.offset(sheet, faces, 0.1, symmetry=planes, precision=17)
+                self.check_bits(found.positions, made)
+        free = vdb_offset.offset(sheet, faces, 0.1, symmetry="none", precision=17)
+        self.assertFalse((free.positions == made).all())
+
+    def test_symmetry_that_means_nothing(self):
+        for wrong in ("w=0", "x=", "x", "x=a", "", "1,2,3", "1,2,3,4,5", "0,0,0,1", "1,,0,0", "1,0,0,inf", "None", 3, 0.5, [3],
+                      ["x=0", "all"], [(0, 0, 0, 1)], [(1, 0, 0)], (1, 0, 0, 1), [True], b"x=0", {"x": 0}):
+            with self.subTest(str(wrong)), self.assertRaisesRegex(vdb_offset.InvalidOption, "^symmetry: expected"):
+                vdb_offset.offset(CUBE, QUADS, 0.1, symmetry=wrong)
+
     def test_array_of_distances(self):
         run = self.run_command
         vertices, faces = shape_of("torus", run)
@@ -66,11 +94,29 @@ class Offsets(BesideTheCommand):
         result = vdb_offset.offset(vertices, faces, 0.03, distance_z=0.06, precision=17)
         self.check_bits(result.positions, run.read("made.obj")[0])
         self.assertTrue(vdb_offset.check(vertices, faces, result.positions, 0.03, distance_z=0.06).valid)
-        for wrong in (-0.06, 0, "-1%", 1e9):
+        for wrong in (-0.06, "-1%", 1e9, "0.03 + 0", [0.06], float("nan"), True):
             with self.assertRaises(vdb_offset.InvalidOption):
                 vdb_offset.offset(vertices, faces, 0.03, distance_z=wrong)
         with self.assertRaises(vdb_offset.InvalidOption):
             vdb_offset.offset_several(vertices, faces, [0.03, 0.04], distance_z=0.06)
+
+    def test_distances_by_axis_of_which_one_is_0(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        for xy, z in ((0.03, 0), (0, 0.03), ("1%", "0"), ("0%", "-1.1%"), (-0.03, "0%")):
+            with self.subTest(str((xy, z))):
+                run("shape.obj", "made.obj", f"--distance-xy={xy}", f"--distance-z={z}", "--precision", "17", "--report",
+                    "report.json")
+                result = vdb_offset.offset(vertices, faces, xy, distance_z=z, precision=17)
+                self.check_bits(result.positions, run.read("made.obj")[0])
+                self.assertFalse((result.positions == vertices).all())
+                self.check_report(result.statistics, run.report())
+                run("check", "shape.obj", "made.obj", f"--distance-xy={xy}", f"--distance-z={z}", "--precision", "17", "--report",
+                    "check.json")
+                found = vdb_offset.check(vertices, faces, result.positions, xy, distance_z=z, precision=17)
+                self.check_report(found.statistics, run.report("check.json"), ["source", "offset"])
+        with self.assertRaisesRegex(vdb_offset.InvalidOption, "distance_z: expected one other than 0"):
+            vdb_offset.offset(vertices, faces, 0, distance_z=0)
 
     def test_tolerance(self):
         run = self.run_command

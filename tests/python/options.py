@@ -9,6 +9,8 @@ import subprocess
 import sys
 import unittest
 
+import numpy as np
+
 import vdb_offset
 from beside import CUBE, QUADS, ROOT
 from vdb_offset import _calls, _options, meshes
@@ -92,6 +94,41 @@ class Options(unittest.TestCase):
                 vdb_offset.offset(CUBE, QUADS, 0.1, obstacles=(CUBE + 3, QUADS), clearance=wrong)
             with self.subTest(wrong), self.assertRaisesRegex(vdb_offset.InvalidOption, "clearance: expected"):
                 vdb_offset.fit(CUBE, QUADS, (CUBE + 3, QUADS), wrong)
+
+    def test_what_does_not_go_together(self):
+        near, box = (CUBE + 3, QUADS), (CUBE, QUADS, 0.1)
+        square, faces = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float), np.array([[0, 1, 2, 3]])
+        cases = [(vdb_offset.offset, box, {"clearance": 0.1}, "clearance needs obstacles"),
+                 (vdb_offset.offset, box, {"clearance": 0}, "clearance needs obstacles"),
+                 (vdb_offset.check, (CUBE, QUADS, CUBE), {"clearance": 0.1}, "clearance needs obstacles"),
+                 (vdb_offset.offset, box, {"miter_limit": 4}, "miter_limit needs corners='miter'"),
+                 (vdb_offset.offset, box, {"miter_limit": 4, "corners": "round"}, "miter_limit needs corners='miter'"),
+                 (vdb_offset.offset_curves, (square, faces[:, [0, 1]], 0.1), {"miter_limit": 4}, "miter_limit needs"),
+                 (vdb_offset.offset, box, {"voxel_size": 0.1, "voxels_per_distance": 2}, "voxel size or voxels per"),
+                 (vdb_offset.offset, box, {"distance_z": 0.2, "obstacles": near}, "distance_z and obstacles exclude"),
+                 (vdb_offset.check, (CUBE, QUADS, CUBE, 0.1), {"distance_z": 0.2, "obstacles": near}, "distance_z and obs"),
+                 (vdb_offset.check, (CUBE, QUADS, CUBE, 0.1), {"distance_z": 0.2, "tolerance": "1%"}, "distance_z and tol"),
+                 (vdb_offset.layers, (CUBE, QUADS, [0.1]), {"growth": 1.2}, "growth and heights exclude each other"),
+                 (vdb_offset.layers, (CUBE, QUADS, [0.1]), {"first": 0.1}, "first and heights exclude each other"),
+                 (vdb_offset.layers, (CUBE, QUADS, [0.1]), {"total": 0.1}, "total and heights exclude each other"),
+                 (vdb_offset.layers, (CUBE, QUADS, [0.1]), {"count": 2}, "count: expected 1, as many as"),
+                 (vdb_offset.layers, (CUBE, QUADS), {"count": 2, "first": 0.1, "total": 0.1}, "one of first and total"),
+                 (vdb_offset.layers, (CUBE, QUADS), {"count": 2}, "one of first and total"),
+                 (vdb_offset.layers, (CUBE, QUADS), {"count": 0, "first": 0.1}, "count: expected a whole number, 1"),
+                 (vdb_offset.layers, (CUBE, QUADS), {"count": 1001, "first": 0.1}, "count: expected a whole number, 1"),
+                 (vdb_offset.layers, (CUBE, QUADS), {"count": 2.0, "first": 0.1}, "count: expected a whole number, 1"),
+                 (vdb_offset.layers, (CUBE, QUADS), {"count": 2, "first": 0.1, "growth": 11}, "growth: expected a number"),
+                 (vdb_offset.fit, (CUBE, QUADS, near, 0), {}, "clearance: expected"),
+                 (vdb_offset.iso_surface, (CUBE, QUADS, "0.1 + 0"), {}, "distance: expected a number"),
+                 (vdb_offset.iso_surface, (CUBE, QUADS, [0.1] * 8), {}, "distance: expected a number"),
+                 (vdb_offset.iso_surface, (CUBE, QUADS, 0), {}, "distance: expected")]
+        for function, arguments, options, text in cases:
+            with self.subTest(str(options)), self.assertRaisesRegex(ValueError, text) as caught:
+                function(*arguments, **options)
+            self.assertIsInstance(caught.exception, vdb_offset.Error)
+        # None is as good as nothing.
+        vdb_offset.offset(*box, clearance=None, miter_limit=None, distance_z=None)
+        self.assertEqual(len(vdb_offset.layers(CUBE, QUADS, [0.1, 0.2], count=2).cell_types), 12)
 
     def test_unknown_keywords_are_refused_by_name(self):
         for function, arguments in ((vdb_offset.shell, (CUBE, QUADS, 0.1)), (vdb_offset.check, (CUBE, QUADS, CUBE)),

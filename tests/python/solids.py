@@ -91,6 +91,31 @@ class Solids(BesideTheCommand):
             self.check_bits(iso.vertices, run.read(f"made_00{i + 1}.obj")[0])
         self.assertEqual(i, 1)
 
+    def test_iso_surface_by_axis_of_which_one_is_0(self):
+        run = self.run_command
+        plate = CUBE * [1, 1, 0.01]
+        run.write("plate.obj", plate, QUADS)
+        run("plate.obj", "made.obj", "--mode", "iso", "--distance-xy=0.2", "--distance-z=0", "--precision", "17")
+        iso = vdb_offset.iso_surface(plate, QUADS, 0.2, distance_z=0, precision=17)
+        self.check_bits(iso.vertices, run.read("made.obj")[0])
+        self.assertLess(np.ptp(iso.vertices[:, 2]), 0.0105)
+
+    def test_what_is_inside(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        holed = faces[1:]  # one face in many is missing
+        run.write("holed.obj", vertices, holed)
+        sizes = []
+        for inside in ("winding", "never"):
+            run("holed.obj", "made.obj", "--mode", "iso", "--distance=5%", "--inside", inside, "--precision", "17")
+            iso = vdb_offset.iso_surface(vertices, holed, "5%", inside=inside, precision=17)
+            self.check_bits(iso.vertices, run.read("made.obj")[0])
+            sizes.append(len(iso.vertices))
+        self.assertLess(sizes[0], sizes[1])
+        for wrong in ("always", True, ""):
+            with self.assertRaisesRegex(vdb_offset.InvalidOption, "inside: expected 'winding' or 'never'"):
+                vdb_offset.iso_surface(vertices, holed, "5%", inside=wrong)
+
     def test_hollow_solids(self):
         for distance in (-0.1, 0.1):
             solid = self.check_iso([f"--distance={distance}", "--shell"],

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calls that take a while: what they tell and ask, what ends them, and what goes on meanwhile."""
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import vdb_offset
+from beside import Run, shape_of
+
+
+class LongCalls(unittest.TestCase):
+    """What goes on during a call: some seconds of work, most of which are never done."""
+
+    @classmethod
+    def setUpClass(cls):
+        run = Run()
+        cls.mesh = shape_of("bumpy_sphere", run)
+        run.folder.cleanup()
+
+    def offset(self, **options):
+        return vdb_offset.offset(*self.mesh, "1%", voxel_size=0.008, **options)
+
+    def test_callback_is_told_and_cancels(self):
+        told = []
+
+        def progress(stage, share):
+            told.append((stage, share))
+            return len(told) < 5
+
+        with self.assertRaises(vdb_offset.Cancelled):
+            self.offset(progress=progress)
+        self.assertGreaterEqual(len(told), 5)
+        self.assertTrue(all(isinstance(stage, str) and 0 <= share <= 1 for stage, share in told))
+
+    def test_what_the_callback_raises_is_raised(self):
+        def progress(stage, share):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            self.offset(progress=progress)
+
+    def test_control_c_ends_the_call(self):
+        begun = threading.Event()
+        threading.Thread(target=lambda: (begun.wait(60), os.kill(os.getpid(), signal.SIGINT)), daemon=True).start()
+        with self.assertRaises(KeyboardInterrupt):
+            self.offset(progress=lambda stage, share: begun.set())
+
+    def check(self, **options):
+        vertices, faces = self.mesh
+        return vdb_offset.check(vertices, faces, 1.01 * vertices, tolerance="0.1%", **options)
+
+    def test_check_is_told_and_cancels(self):
+        told = []
+
+        def progress(stage, share):
+            told.append((stage, share))
+            return len(told) < 5
+
+        with self.assertRaises(vdb_offset.Cancelled):
+            self.check(progress=progress)
+        self.assertEqual({stage for stage, share in told}, {"measure"})
+        self.assertEqual(told[0][1], 0)
+        quiet = self.check()
+        # By one thread, as another one that has something to tell does not wait until it can.
+        loud = self.check(threads=1, progress=lambda stage, share: told.append((stage, share)))
+        self.assertTrue((quiet.achieved == loud.achieved).all())
+        self.assertEqual(quiet.statistics, loud.statistics)
+        self.assertEqual(max(share for stage, share in told), 1)
+
+    def test_control_c_ends_a_check(self):
+        told = []
+
+        def stop(stage, share):
+            told.append(share)
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.2)  # longer than what is waited between two looks for signals
+
+        with self.assertRaises(KeyboardInterrupt):
+            self.check(progress=stop)
+        self.assertLess(len(told), 3)
+
+    def test_numpy_false_cancels(self):
+        with self.assertRaises(vdb_offset.Cancelled):
+            self.offset(progress=lambda stage, share: np.False_)
+
+    def test_python_ends_during_a_call_of_another_thread(self):
+        code = ("import threading, time, numpy as np, vdb_offset as o; t = np.linspace(0, 6.28, 200); "
+                "v = np.stack([np.cos(t), np.sin(t), 0 * t], 1); f = np.stack([np.arange(198), np.arange(1, 199), "
+                "np.full(198, 199)], 1); e = threading.Event(); "
+                "threading.Thread(target=lambda: o.offset(v, f, 0.1, voxel_size=0.005, progress=lambda s, x: e.set()), "
+                "daemon=True).start(); e.wait(60)")
+        done = subprocess.run([sys.executable, "-B", "-c", code], env=dict(os.environ), capture_output=True, text=True,
+                              check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_other_threads_go_on(self):
+        ticks, is_done = [], threading.Event()
+
+        def tick():
+            while not is_done.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        start = time.monotonic()
+        vdb_offset.offset(*self.mesh, "1%", voxel_size=0.02)
+        end = time.monotonic()
+        is_done.set()
+        thread.join()
+        during = [t for t in ticks if start < t < end]
+        self.assertGreater(len(during), min(5, (end - start) / 0.05))
