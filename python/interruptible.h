@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <future>
 #include <thread>
@@ -35,15 +36,22 @@ class Calls {
 /// callback that returns what counts as false, but None, or raises an exception. \pre the caller holds Python's lock
 class Interruptible {
  public:
-  /// \param callback called with the stage's name and the share of it that is done, or None
-  explicit Interruptible(py::object callback) : callback_(std::move(callback)) { ++Calls::count; }
+  /// \param progress called with the stage's name and the share of it that is done, or None
+  /// \param reserve called with the bytes that the work is about to take, or None
+  explicit Interruptible(py::object progress, py::object reserve = py::none())
+      : progress_(std::move(progress)), reserve_(std::move(reserve)) {
+    ++Calls::count;
+  }
   Interruptible(const Interruptible&) = delete;
   Interruptible& operator=(const Interruptible&) = delete;
   ~Interruptible() { --Calls::count; }
 
-  /// What the library is to call.
-  ProgressCallback progress() {
-    return [this](Stage stage, double share) { return tell(stage, share); };
+  /// Has the library call what was handed in.
+  template <class Options>
+  void attach(Options& options) {
+    options.progress = [this](Stage stage, double share) { return ask(progress_, name(stage), share); };
+    if constexpr (requires { options.reserve; })
+      options.reserve = [this](std::size_t bytes) { return ask(reserve_, bytes); };
   }
 
   /// Returns what work() returns, or throws what it throws. Python delivers signals to the thread that holds its lock,
@@ -77,12 +85,14 @@ class Interruptible {
     raised_ = std::make_exception_ptr(py::error_already_set());
     is_cancelled_ = true;
   }
-  bool tell(Stage stage, double share) {
+  /// Whether the work is to go on, by a callback that may be None.
+  template <class... Values>
+  bool ask(const py::object& callback, const Values&... values) {
     if (is_cancelled_ || Calls::is_ending) return false;
-    if (callback_.is_none()) return true;
+    if (callback.is_none()) return true;
     const py::gil_scoped_acquire held;
     try {
-      const py::object answer = callback_(name(stage), share);
+      const py::object answer = callback(values...);
       if (answer.is_none()) return true;
       const int is_true = PyObject_IsTrue(answer.ptr());
       if (is_true < 0) throw py::error_already_set();
@@ -94,7 +104,7 @@ class Interruptible {
     }
   }
 
-  py::object callback_;
+  py::object progress_, reserve_;
   std::exception_ptr raised_;
   std::atomic<bool> is_cancelled_ = false;
 };

@@ -6,6 +6,7 @@
 #include "calls.h"
 #include "distance_values.h"
 #include "interruptible.h"
+#include "keywords.h"
 #include "results.h"
 #include "vdb_offset/curve_offset.h"
 #include "volume_arrays.h"
@@ -63,8 +64,8 @@ py::dict grown_arrays(Input input, Product product, const py::object& vertices, 
   const Source source(input, vertices, faces, keywords, MeshArrays::Corners::Copied);
   AskedOptions asked = asked_options(keywords, source);
   const std::vector<Distances> wanted = distances_of_all(heights, source, asked);
-  Interruptible run(progress);
-  asked.options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(asked.options);
   Grown grown = run([&] {
     return source.curves() ? grow_on_curves(source.view(), wanted, asked.options, product)
                            : grow_on_mesh(source.view(), wanted, asked.options, product);

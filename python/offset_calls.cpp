@@ -30,8 +30,8 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
     texts = {axes->text};
   }
   require_field(asked, wanted);
-  Interruptible run(progress);
-  asked.options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(asked.options);
   std::vector<OffsetResult> results = run([&] {
     std::vector<OffsetResult> made = source.curves() ? offset_curves(source.view(), wanted, asked.options)
                                                      : offset_several(source.view(), wanted, asked.options);
@@ -53,8 +53,8 @@ py::dict fit_arrays(const py::object& vertices, const py::object& faces, const p
   AskedOptions asked = asked_options(keywords, source);
   const double room = clearance_of(clearance, source.view());
   if (room == 0) throw InvalidOption("clearance: expected one above 0, got " + Keywords::text_of(clearance));
-  Interruptible run(progress);
-  asked.options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(asked.options);
   OffsetResult result = run([&] { return fit(source.view(), near.view(), room, asked.options); });
   return as_dict(std::move(result), facts_of_run("fit", start));
 }
@@ -89,8 +89,8 @@ py::dict refined_arrays(const py::object& vertices, const py::object& faces, con
   asked.options.distance = distances_of(distance, source, asked);
   Tolerance within{.most_faces = most_faces, .precision = asked.options.precision};
   std::tie(within.share, within.length) = tolerance_of(tolerance);
-  Interruptible run(progress);
-  asked.options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(asked.options);
   RefinedOffset refined = run([&] { return offset_to_tolerance(source.view(), asked.options, within); });
   Refinement& refinement = refined.refinement;
   py::dict all = as_dict(std::move(refined.result), facts_of_run(text_of(distance), start));
@@ -136,8 +136,8 @@ py::dict check_arrays(Input input, const py::object& vertices, const py::object&
   } else if (keywords.contains("distance_z")) {
     throw InvalidOption("distance_z: expected a distance beside it, got none");
   }
-  Interruptible run(progress);
-  options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(options);
   return check_as_dict(run([&] {
     return source.curves() ? check_curves(source.view(), moved.view().positions, options)
                            : check_offset(source.view(), moved.view().positions, options);

@@ -60,8 +60,8 @@ py::list shell_arrays(const py::object& vertices, const py::object& faces, const
   asked.options.inner_skin_last = !inner.is_none();
   std::vector<std::string> texts;
   for (const auto distance : distances) texts.push_back(text_of(py::reinterpret_borrow<py::object>(distance)));
-  Interruptible run(progress);
-  asked.options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(asked.options);
   auto made = run([&] {
     std::vector<OffsetResult> results = offset_several(source.view(), wanted, asked.options);
     save_field(asked, results.front(), texts.front());
@@ -131,8 +131,8 @@ py::dict iso_arrays(const py::object& vertices, const py::object& faces, const p
   if (axes) options.distance = axes->distance;
   require_distance(options.distance, distance);
   const std::string text = axes ? axes->text : text_of(distance);
-  Interruptible run(progress);
-  options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(options);
   IsoResult result =
       run([&] { return make_iso_surface_in_metric(source.view(), options, axes ? axes->metric : Metric()); });
   py::dict all;
@@ -153,8 +153,8 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
   std::optional<double> inward;
   if (!inner.is_none()) inward = cavity_distance(inner, source, outward);
   const std::string text = text_of(distance);
-  Interruptible run(progress);
-  options.progress = run.progress();
+  Interruptible run(progress, Keywords(keywords)["reserve"]);
+  run.attach(options);
   struct Made {
     IsoResult surface;
     std::optional<IsoResult> cavity;

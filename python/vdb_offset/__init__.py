@@ -19,7 +19,9 @@ takes it: "1%" of the diagonal of the bounding box, or an expression, "0.1 + 0.0
 
 Errors are classes of this module's: `InvalidInput` and `InvalidOption` are ValueErrors, `OutOfBudget` is a MemoryError,
 and all of them are `Error`. `progress` is called with the name of a stage and the share of it that is done, 0 to 1; if
-it returns False the call raises `Cancelled`, and what it raises itself is raised by the call. So is Ctrl-C.
+it returns False the call raises `Cancelled`, and what it raises itself is raised by the call. So is Ctrl-C. `reserve`
+is called with the bytes that the run is estimated to hold at most, before it takes them. It may wait until there is room
+for them; Ctrl-C ends the call once it returns. It cancels and raises as `progress` does.
 """
 
 from ._calls import (

@@ -288,7 +288,7 @@ def structured_curve_layers(points: np.ndarray, curves: Faces, heights: Optional
     return Block(**_core.structured_curve_layers(points, curves, wanted, keywords, progress))
 
 
-@takes(_options.OFFSET)
+@takes(_options.OFFSET, without=["reserve"])
 def check(vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
           tolerance: Optional[Union[float, str]] = None, **options: Any) -> Check:
     """Measures positions as an offset of a mesh, wherever they come from: exact distances, and faults.
@@ -306,7 +306,7 @@ def check(vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: O
     return Check(**_core.check(vertices, faces, positions, distance, tolerance, keywords, progress))
 
 
-@takes(_options.CURVES, without=["distance_z"])
+@takes(_options.CURVES, without=["distance_z", "reserve"])
 def check_curves(points: np.ndarray, curves: Faces, positions: np.ndarray, distance: Optional[Distance] = None,
                  **options: Any) -> Check:
     """Measures positions as an offset of plane curves; see `check()` and `offset_curves()`.

@@ -5,7 +5,7 @@ from typing import Any, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ._options import Distance, Faces, Progress
+from ._options import Distance, Faces, Progress, Reserve
 from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shell
 
 def offset_several(
@@ -20,7 +20,7 @@ def offset_several(
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> List[Offset]: ...
 
 def offset(
@@ -35,7 +35,7 @@ def offset(
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def offset_curves_several(
@@ -45,7 +45,7 @@ def offset_curves_several(
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> List[Offset]: ...
 
 def offset_curves(
@@ -55,7 +55,7 @@ def offset_curves(
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def offset_to_tolerance(
@@ -69,7 +69,7 @@ def offset_to_tolerance(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, progress: Progress = None
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Refined: ...
 
 def fit(
@@ -80,7 +80,7 @@ def fit(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def shell_several(
@@ -95,7 +95,7 @@ def shell_several(
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> List[Shell]: ...
 
 def shell(
@@ -110,7 +110,7 @@ def shell(
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Shell: ...
 
 def layers(
@@ -125,7 +125,7 @@ def layers(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, progress: Progress = None
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
 def curve_layers(
@@ -134,7 +134,7 @@ def curve_layers(
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None, close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
 def iso_surface(
@@ -144,7 +144,7 @@ def iso_surface(
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Iso: ...
 
 def iso_surface_several(
@@ -154,7 +154,7 @@ def iso_surface_several(
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> List[Iso]: ...
 
 def iso_shell(
@@ -164,7 +164,7 @@ def iso_shell(
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> IsoShell: ...
 
 def structured_layers(
@@ -179,7 +179,7 @@ def structured_layers(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, progress: Progress = None
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def structured_curve_layers(
@@ -188,7 +188,7 @@ def structured_curve_layers(
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None, close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
     voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def check(

@@ -11,6 +11,7 @@ import numpy as np
 Distance = Union[float, str, np.ndarray]
 Faces = Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]
 Progress = Optional[Callable[[str, float], Any]]
+Reserve = Optional[Callable[[int], Any]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -78,13 +79,16 @@ OPTIONS: Dict[str, Option] = {
     "threads": Option(int, 0, "0: as many as the machine has"),
     "max_memory": Option(Optional[Union[int, str]], None,
                          'for the run: bytes, or "4G"; 0: no limit; None: 80 % of what is free'),
+    "reserve": Option(Reserve, None,
+                      "called with the bytes that the run is estimated to hold, before it takes them; may wait until\n"
+                      "there is room for them; False cancels (see the module)"),
     "progress": Option(Progress, None,
                        "called with a stage and the share of it that is done; False cancels (see the module)"),
 }
 
 _OF_LAYERS = ["count", "first", "total", "growth"]
 _OF_ISO = ["inside", "adaptivity", "keep_specks"]
-_COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_memory", "progress"]
+_COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_memory", "reserve", "progress"]
 #: What functions of one kind take.
 OFFSET = [name for name in OPTIONS if name not in ("inner", "close", *_OF_LAYERS, *_OF_ISO)]
 CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths", "save_vdb", *_COMMON]

@@ -5,7 +5,7 @@ from typing import Any, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ._options import Distance, Faces, Progress
+from ._options import Distance, Faces, Progress, Reserve
 from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shell
 
 def arrays_of(
@@ -28,5 +28,5 @@ def offset_mesh(
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    reserve: Reserve = None, progress: Progress = None
 ) -> Tuple[Any, Offset]: ...

@@ -11,7 +11,7 @@ import unittest
 import numpy as np
 
 import vdb_offset
-from beside import Run, shape_of
+from beside import CUBE, QUADS, Run, shape_of
 
 
 class LongCalls(unittest.TestCase):
@@ -50,6 +50,73 @@ class LongCalls(unittest.TestCase):
         threading.Thread(target=lambda: (begun.wait(60), os.kill(os.getpid(), signal.SIGINT)), daemon=True).start()
         with self.assertRaises(KeyboardInterrupt):
             self.offset(progress=lambda stage, share: begun.set())
+
+    def test_memory_is_asked_for_before_it_is_taken(self):
+        told, asked = [], []
+
+        def reserve(size):
+            self.assertNotIn("rasterise", told)
+            asked.append(size)
+
+        result = self.offset(reserve=reserve, progress=lambda stage, share: told.append(stage))
+        self.assertEqual(asked, [result.statistics["grid"]["estimated_bytes"]])
+        self.assertIn("rasterise", told)
+
+    def test_memory_that_is_refused(self):
+        for answer in (False, 0, np.False_):
+            told = []
+            with self.assertRaises(vdb_offset.Cancelled):
+                self.offset(reserve=lambda size: answer, progress=lambda stage, share: told.append(stage))
+            self.assertNotIn("rasterise", told)
+
+        def fail(size):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            self.offset(reserve=fail)
+        with self.assertRaises(TypeError):
+            self.offset(reserve="4G")
+
+    def test_other_threads_go_on_while_memory_is_waited_for(self):
+        is_room, waits = threading.Event(), threading.Event()
+
+        def make_room():
+            waits.wait(60)
+            is_room.set()
+
+        def reserve(size):
+            waits.set()
+            return is_room.wait(60)
+
+        thread = threading.Thread(target=make_room)
+        thread.start()
+        vdb_offset.offset(CUBE, QUADS, 0.1, reserve=reserve)
+        thread.join()
+
+    def test_control_c_ends_a_call_that_waits_for_memory(self):
+        def reserve(size):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.2)  # longer than what is waited between two looks for signals
+            return True
+
+        told = []
+        with self.assertRaises(KeyboardInterrupt):
+            self.offset(reserve=reserve, progress=lambda stage, share: told.append(stage))
+        self.assertNotIn("rasterise", told)
+
+    def test_every_function_asks_for_memory(self):
+        square, faces = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float), np.array([[0, 1, 2, 3]])
+        loop, near = (np.array([0, 5]), np.array([0, 1, 2, 3, 0])), CUBE * [1, 1, 0.5] + [0, 0, 1.02]
+        calls = {"offset": (CUBE, QUADS, 0.1), "offset_several": (CUBE, QUADS, [0.1]), "shell": (CUBE, QUADS, 0.1),
+                 "shell_several": (CUBE, QUADS, [0.1]), "offset_to_tolerance": (CUBE, QUADS, 0.1, "5%"),
+                 "fit": (CUBE, QUADS, (near, QUADS), 0.05), "layers": (CUBE, QUADS, [0.1]), "iso_shell": (CUBE, QUADS, 0.1),
+                 "iso_surface": (CUBE, QUADS, 0.1), "iso_surface_several": (CUBE, QUADS, [0.1]),
+                 "structured_layers": (square, faces, [0.1]), "offset_curves": (square, loop, 0.1),
+                 "offset_curves_several": (square, loop, [0.1]), "curve_layers": (square, loop, [0.1]),
+                 "structured_curve_layers": (square, loop, [0.1])}
+        for name, arguments in calls.items():
+            with self.subTest(name), self.assertRaises(vdb_offset.Cancelled):
+                getattr(vdb_offset, name)(*arguments, reserve=lambda size: False)
 
     def check(self, **options):
         vertices, faces = self.mesh
