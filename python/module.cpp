@@ -5,6 +5,7 @@
 
 #include "calls.h"
 #include "interruptible.h"
+#include "results.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/statistics.h"
 #include "vdb_offset/version.h"
@@ -26,7 +27,7 @@ py::object exception_class(py::module_& module, const char* name, const py::tupl
 /// The library's exceptions as Python's. Their classes live as long as the module does.
 void add_exceptions(py::module_& module) {
   const auto builtin = [](PyObject* base) { return py::reinterpret_borrow<py::object>(base); };
-  static const PyObject *error, *input, *option, *expression, *budget, *cancelled;
+  static const PyObject *error, *input, *option, *expression, *budget, *cancelled, *result;
   const py::object base = exception_class(module, "Error", py::make_tuple(builtin(PyExc_Exception)),
                                           "Base class of all that the library raises on purpose.");
   const auto add = [&](const char* name, const py::object& above, PyObject* beside, const char* text) {
@@ -40,12 +41,15 @@ void add_exceptions(py::module_& module) {
   const py::object of_budget =
       add("OutOfBudget", base, PyExc_MemoryError, "Work that was refused before it started, as it would not fit.");
   const py::object of_cancelled = add("Cancelled", base, nullptr, "The progress callback asked to stop.");
+  const py::object of_result =
+      add("InvalidResult", base, PyExc_RuntimeError, "An iso-surface that is not valid: `statistics` is its report.");
   error = base.ptr();
   input = of_input.ptr();
   option = of_option.ptr();
   expression = of_expression.ptr();
   budget = of_budget.ptr();
   cancelled = of_cancelled.ptr();
+  result = of_result.ptr();
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11's own signature
   py::register_exception_translator([](std::exception_ptr thrown) {
     const auto raise = [](const PyObject* type, const std::exception& e) {
@@ -65,6 +69,11 @@ void add_exceptions(py::module_& module) {
       raise(budget, e);
     } catch (const Cancelled& e) {
       raise(cancelled, e);
+    } catch (const InvalidResult& e) {
+      const py::handle type(const_cast<PyObject*>(result));
+      const py::object raised = type(e.what());
+      raised.attr("statistics") = from_json(e.report);
+      PyErr_SetObject(type.ptr(), raised.ptr());
     } catch (const Error& e) {
       raise(error, e);
     }

@@ -5,16 +5,25 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
 #include "option_values.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/report.h"
 
 /// What calls return: dictionaries of arrays that own what they show.
 namespace vdb_offset::python {
 
 using Clock = std::chrono::steady_clock;
+
+/// A result that is not valid, where nothing but a valid one is of use.
+struct InvalidResult : Error {
+  InvalidResult(const std::string& what, std::string statistics) : Error(what), report(std::move(statistics)) {}
+
+  std::string report;  ///< JSON text.
+};
 
 /// JSON text as Python's objects.
 py::object from_json(const std::string& text);

@@ -96,6 +96,20 @@ double cavity_distance(const py::object& inner, const Source& source, const Dist
   return distances[0];
 }
 
+/// \throw InvalidResult for a surface that is not valid, which is never handed out
+void require_valid(const IsoStatistics& found, const std::string& distance, Clock::time_point start) {
+  if (found.valid()) return;
+  const auto count = [](std::size_t many, const char* what) { return std::to_string(many) + what; };
+  throw InvalidResult("capture: expected a closed, manifold surface that does not cross itself, got " +
+                          count(found.border_edges, " border edges, ") +
+                          count(found.non_manifold_edges, " non-manifold edges, ") +
+                          count(found.pinched_vertices, " pinched vertices, ") +
+                          count(found.mending.left.crossings, " crossings and ") +
+                          count(found.mending.left.needles, " triangles without area on each of ") +
+                          count(found.attempts, " lattices (try another voxel_size, or more digits)"),
+                      report_json(found, facts_of_run(distance, start)));
+}
+
 py::dict hollow_as_dict(const Hollow& hollow, RunFacts facts, const IsoStatistics& outer, const IsoResult* inner) {
   facts.shell = hollow.facts;
   if (inner) facts.inner_surface = inner->statistics;
@@ -135,6 +149,7 @@ py::dict iso_arrays(const py::object& vertices, const py::object& faces, const p
   run.attach(options);
   IsoResult result =
       run([&] { return make_iso_surface_in_metric(source.view(), options, axes ? axes->metric : Metric()); });
+  require_valid(result.statistics, text, start);
   py::dict all;
   all["statistics"] = from_json(report_json(result.statistics, facts_of_run(text, start)));
   all["faces"] = faces_of(result.polygons);
@@ -164,6 +179,7 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
     const auto at = [&](double d) {
       options.distance = d;
       IsoResult result = make_iso_surface(source.view(), options);
+      require_valid(result.statistics, text, start);
       if (!result.statistics.is_signed)
         throw InvalidInput("iso_shell: expected a mesh that has an inside, got an open one");
       return result;

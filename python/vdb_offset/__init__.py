@@ -18,7 +18,8 @@ A `distance` is a number in world units, negative inward; an array with one for 
 takes it: "1%" of the diagonal of the bounding box, or an expression, "0.1 + 0.05*sin(4*pi*z)".
 
 Errors are classes of this module's: `InvalidInput` and `InvalidOption` are ValueErrors, `OutOfBudget` is a MemoryError,
-and all of them are `Error`. `progress` is called with the name of a stage and the share of it that is done, 0 to 1; if
+`InvalidResult`, of an iso-surface that is not valid, is a RuntimeError with the surface's `statistics`, and all of them
+are `Error`. `progress` is called with the name of a stage and the share of it that is done, 0 to 1; if
 it returns False the call raises `Cancelled`, and what it raises itself is raised by the call. So is Ctrl-C. `reserve`
 is called with the bytes that the run is estimated to hold at most, before it takes them. It may wait until there is room
 for them; Ctrl-C ends the call once it returns. It cancels and raises as `progress` does.
@@ -49,6 +50,7 @@ from ._core import (
     InvalidExpression,
     InvalidInput,
     InvalidOption,
+    InvalidResult,
     OutOfBudget,
     states as STATES,
     version as __version__,
@@ -57,8 +59,8 @@ from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shel
 from .meshes import arrays_of, offset_mesh, with_positions
 
 __all__ = [
-    "Block", "Cancelled", "Check", "Error", "InvalidExpression", "InvalidInput", "InvalidOption", "Iso", "IsoShell",
-    "Layers", "Offset", "OutOfBudget", "Refined", "STATES", "Shell", "arrays_of", "check", "check_curves",
+    "Block", "Cancelled", "Check", "Error", "InvalidExpression", "InvalidInput", "InvalidOption",
+    "InvalidResult", "Iso", "IsoShell", "Layers", "Offset", "OutOfBudget", "Refined", "STATES", "Shell", "arrays_of", "check", "check_curves",
     "curve_layers", "fit", "iso_shell", "iso_surface", "iso_surface_several", "layers", "offset", "offset_curves",
     "offset_curves_several", "offset_mesh", "offset_several", "offset_to_tolerance", "shell", "shell_several",
     "structured_curve_layers", "structured_layers", "with_positions",

@@ -224,6 +224,7 @@ def iso_surface(vertices: np.ndarray, faces: Faces, distance: Union[float, str],
 
     :param distance: for all vertices, not 0
     :param options: by keyword; `help()` tells of each
+    :raises InvalidResult: if the surface is not valid; `statistics` of the exception are its report
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
     >>> import numpy as np
@@ -253,6 +254,7 @@ def iso_shell(vertices: np.ndarray, faces: Faces, distance: Union[float, str], *
     :param distance: for all vertices, not 0
     :param options: by keyword; `help()` tells of each
     :raises InvalidInput: for a mesh that has no inside, too
+    :raises InvalidResult: as `iso_surface()`
     :raises InvalidOption, OutOfBudget, Cancelled:
     """
     keywords, progress = given(iso_shell, options)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 version: str
 states: Tuple[str, ...]
@@ -10,6 +10,8 @@ class InvalidOption(Error, ValueError): ...
 class InvalidExpression(InvalidOption): ...
 class OutOfBudget(Error, MemoryError): ...
 class Cancelled(Error): ...
+class InvalidResult(Error, RuntimeError):
+    statistics: Mapping[str, Any]
 
 Progress = Optional[Callable[[str, float], Any]]
 

@@ -116,6 +116,25 @@ class Solids(BesideTheCommand):
             with self.assertRaisesRegex(vdb_offset.InvalidOption, "inside: expected 'winding' or 'never'"):
                 vdb_offset.iso_surface(vertices, holed, "5%", inside=wrong)
 
+    def test_no_surface_that_is_not_valid(self):
+        soup, faces = np.random.RandomState(10).random_sample((60, 3)), np.arange(60).reshape(20, 3)  # pylint: disable=no-member
+        run = self.run_command
+        run.write("soup.obj", soup, faces)
+        done = run("soup.obj", "made.obj", "--mode", "iso", "--distance=0.03", "--adaptivity", "1", "--voxel-size", "0.05",
+                   "--precision", "2")
+        self.assertEqual(done.returncode, 3, "the test needs a surface that is not valid")
+        options = {"adaptivity": 1, "voxel_size": 0.05, "precision": 2}
+        for make in (lambda: vdb_offset.iso_surface(soup, faces, 0.03, **options),
+                     lambda: vdb_offset.iso_shell(soup, faces, 0.03, **options)):
+            with self.assertRaises(vdb_offset.InvalidResult) as caught:
+                make()
+            error = caught.exception
+            self.assertIsInstance(error, RuntimeError)
+            self.assertIsInstance(error, vdb_offset.Error)
+            # What the command says, but for how the option is spelt.
+            self.assertIn(str(error), done.stderr.replace("--voxel-size", "voxel_size"))
+            self.assertFalse(error.statistics["surface"]["valid"])
+
     def test_hollow_solids(self):
         for distance in (-0.1, 0.1):
             solid = self.check_iso([f"--distance={distance}", "--shell"],
