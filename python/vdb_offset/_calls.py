@@ -102,7 +102,7 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
     return Refined(**_core.offset_to_tolerance(vertices, faces, distance, tolerance, max_faces, *keywords))
 
 
-@takes(_options.OFFSET, without=["paths", "obstacles", "clearance", "distance_z", "corners", "miter_limit", "collision",
+@takes(_options.OFFSET, without=["obstacles", "clearance", "distance_z", "corners", "miter_limit", "collision",
                                  "texture", "save_vdb"])
 def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], clearance: Union[float, str],
         **options: Any) -> Offset:
@@ -118,7 +118,7 @@ def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], cle
 
 
 _OF_SHELLS = ["inner", *_options.OFFSET]
-_NOT_OF_SHELLS = ["paths", "distance_z"]
+_NOT_OF_SHELLS = ["distance_z"]
 
 
 def _shells(vertices: np.ndarray, faces: Faces, distances: List[Distance],

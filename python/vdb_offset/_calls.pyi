@@ -79,8 +79,8 @@ def fit(
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    voxels_per_distance: Optional[float] = None, paths: bool = False, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def shell_several(
@@ -93,7 +93,7 @@ def shell_several(
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None,
+    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
     reserve: Reserve = None, progress: Progress = None
 ) -> List[Shell]: ...
@@ -108,7 +108,7 @@ def shell(
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None,
+    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
     save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
     reserve: Reserve = None, progress: Progress = None
 ) -> Shell: ...

@@ -78,6 +78,8 @@ class Shell(_Vertices):
     parts: np.ndarray
     #: (m,) numbers of the input's faces that these come from.
     source_faces: np.ndarray
+    #: With `paths=True`, of each vertex of the input the (k, 3) positions on its way to the outer skin; else None.
+    paths: Optional[List[np.ndarray]]
 
 
 @dataclass(frozen=True, eq=False)

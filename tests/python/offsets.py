@@ -118,6 +118,36 @@ class Offsets(BesideTheCommand):
         with self.assertRaisesRegex(vdb_offset.InvalidOption, "distance_z: expected one other than 0"):
             vdb_offset.offset(vertices, faces, 0, distance_z=0)
 
+    def read_paths(self, name):
+        """The ways in a file, each a block of lines with a position each."""
+        with open(self.run_command.path(name), encoding="ascii") as file:
+            blocks = file.read().split("\n\n")
+        return [np.array([line.split() for line in block.splitlines()], float) for block in blocks if block.strip()]
+
+    def test_paths_of_a_fit(self):
+        run = self.run_command
+        near = CUBE * [1, 1, 0.5] + [0, 0, 1.02]
+        run.write("cube.obj", CUBE, QUADS)
+        run.write("near.obj", near, QUADS)
+        run("cube.obj", "made.obj", "--fit", "near.obj", "--clearance", "0.05", "--paths", "ways.txt")
+        fit = vdb_offset.fit(CUBE, QUADS, (near, QUADS), 0.05, paths=True)
+        self.check_ways([path for path, moved in zip(fit.paths, (fit.positions != CUBE).any(axis=1)) if moved], "ways.txt")
+        self.assertEqual(len(fit.paths), 8)
+        self.assertIsNone(vdb_offset.fit(CUBE, QUADS, (near, QUADS), 0.05).paths)
+
+    def check_ways(self, paths, name):
+        ways = self.read_paths(name)
+        self.assertEqual(len(paths), len(ways))
+        for path, way in zip(paths, ways):
+            self.check_bits(path, way)
+
+    def test_paths_of_a_shell(self):
+        run = self.run_command
+        run.write("cube.obj", CUBE, QUADS)
+        run("cube.obj", "made.obj", "--shell", "--distance=0.1", "--paths", "ways.txt")
+        self.check_ways(vdb_offset.shell(CUBE, QUADS, 0.1, paths=True).paths, "ways.txt")
+        self.assertIsNone(vdb_offset.shell(CUBE, QUADS, 0.1).paths)
+
     def test_tolerance(self):
         run = self.run_command
         run.write("cube.obj", CUBE, QUADS)
