@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls for layers of cells.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -9,6 +13,7 @@
 #include "keywords.h"
 #include "results.h"
 #include "vdb_offset/curve_offset.h"
+#include "vdb_offset/error.h"
 #include "volume_arrays.h"
 
 namespace vdb_offset::python {
@@ -44,16 +49,50 @@ Grown grow_on_curves(CurvesView curves, std::span<const Distances> heights, cons
   return grown;
 }
 
+/// What a mesh has, beside curves: names of its faces, and rules for cells.
+struct Walls {
+  WallNames names;
+  CellRules rules = CellRules::AnySolver;
+};
+
+/// The names of faces, which are numbered as they come first. \throw InvalidInput unless each face has one
+WallNames wall_names(const py::object& given, std::size_t faces) {
+  WallNames walls;
+  if (given.is_none()) return walls;
+  const auto refuse = [&](const std::string& got) {
+    throw InvalidInput("walls: expected a name, a text, for each of " + std::to_string(faces) + " faces, got " + got);
+  };
+  if (py::isinstance<py::str>(given) || !py::isinstance<py::iterable>(given)) refuse(Keywords::text_of(given));
+  std::unordered_map<std::string, std::uint32_t> numbers;
+  for (const py::handle each : given) {
+    if (!py::isinstance<py::str>(each)) refuse(py::repr(each).cast<std::string>());
+    auto name = each.cast<std::string>();
+    const auto [known, is_new] = numbers.try_emplace(name, static_cast<std::uint32_t>(walls.names.size()));
+    if (is_new) walls.names.push_back(name.empty() ? "wall" : std::move(name));
+    walls.of_face.push_back(known->second);
+  }
+  if (walls.of_face.size() != faces) refuse(std::to_string(walls.of_face.size()));
+  return walls;
+}
+
+Walls walls_of(const py::dict& given, std::size_t faces) {
+  const Keywords keywords(given);
+  Walls walls{wall_names(keywords["walls"], faces)};
+  keywords.read("cells", walls.rules,
+                std::array{std::pair{"any", CellRules::AnySolver}, std::pair{"openfoam", CellRules::OpenFoam}});
+  return walls;
+}
+
 Grown grow_on_mesh(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
-                   Product product) {
-  Grown grown{grow_layers(mesh, heights, options), {}, {}, {}};
+                   const Walls& walls, Product product) {
+  Grown grown{grow_layers(mesh, heights, options, walls.rules), {}, {}, {}};
   MeasuredCells cells(mesh, grown.layers);
-  grown.report = report_layers(mesh, grown.layers, {}, cells.facts(), cells.quality());
+  grown.report = report_layers(mesh, grown.layers, walls.names, cells.facts(), cells.quality());
   if (product == Product::Block) {
     grown.block = make_block(mesh, grown.layers);
     grown.report.inverted_block_cells = inverted_cells(grown.block);
   } else {
-    grown.cells = std::move(cells).make({});
+    grown.cells = std::move(cells).make(walls.names);
   }
   return grown;
 }
@@ -64,11 +103,12 @@ py::dict grown_arrays(Input input, Product product, const py::object& vertices, 
   const Source source(input, vertices, faces, keywords, MeshArrays::Corners::Copied);
   AskedOptions asked = asked_options(keywords, source);
   const std::vector<Distances> wanted = distances_of_all(heights, source, asked);
+  const Walls walls = walls_of(keywords, source.view().face_count());
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(asked.options);
   Grown grown = run([&] {
     return source.curves() ? grow_on_curves(source.view(), wanted, asked.options, product)
-                           : grow_on_mesh(source.view(), wanted, asked.options, product);
+                           : grow_on_mesh(source.view(), wanted, asked.options, walls, product);
   });
   RunFacts facts = facts_of_run("", start);
   facts.layers = std::move(grown.report);

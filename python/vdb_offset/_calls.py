@@ -261,7 +261,7 @@ def iso_shell(vertices: np.ndarray, faces: Faces, distance: Union[float, str], *
     return IsoShell(**_core.iso_shell(vertices, faces, distance, keywords.pop("inner", None), keywords, progress))
 
 
-@takes(_options.LAYERS)
+@takes(_options.LAYERS, without=["cells"])
 def structured_layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None,
                       **options: Any) -> Block:
     """Grows layers on a mesh that is a grid of quads, as a structured block of hexahedra; see `layers()`.

@@ -116,7 +116,8 @@ def shell(
 def layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: Optional[float] = None, corners: Literal['round', 'miter'] = 'round',
+    growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
+    cells: Literal['any', 'openfoam'] = 'any', corners: Literal['round', 'miter'] = 'round',
     miter_limit: Optional[float] = None, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -170,9 +171,9 @@ def iso_shell(
 def structured_layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: Optional[float] = None, corners: Literal['round', 'miter'] = 'round',
-    miter_limit: Optional[float] = None, only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
+    corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
+    only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',

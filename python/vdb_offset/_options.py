@@ -30,6 +30,11 @@ OPTIONS: Dict[str, Option] = {
     "first": Option(Optional[Distance], None, "the height of the first one, or"),
     "total": Option(Optional[Distance], None, "that of the last one, and"),
     "growth": Option(Optional[float], None, "how many times as thick each layer is as the one before; None: 1.2"),
+    "walls": Option(Optional[Sequence[str]], None,
+                    "(m,) texts: the name of the patch of each face of the wall, which the result has in `patches`;\n"
+                    'None: all are "wall"'),
+    "cells": Option(Literal["any", "openfoam"], "any",
+                    '"openfoam": valid as its checkMesh finds it, too, as in a polyMesh that the command writes'),
     "inside": Option(Literal["winding", "never"], "winding",
                      '"winding": a mesh that is closed but for small holes has an inside; "never": it is open'),
     "adaptivity": Option(Optional[float], None,
@@ -86,7 +91,8 @@ OPTIONS: Dict[str, Option] = {
                        "called with a stage and the share of it that is done; False cancels (see the module)"),
 }
 
-_OF_LAYERS = ["count", "first", "total", "growth"]
+_HEIGHTS = ["count", "first", "total", "growth"]
+_OF_LAYERS = [*_HEIGHTS, "walls", "cells"]
 _OF_ISO = ["inside", "adaptivity", "keep_specks"]
 _COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_memory", "reserve", "progress"]
 #: What functions of one kind take.
@@ -95,7 +101,7 @@ CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths",
 ISO = [*_OF_ISO, "weld", "orient", *_COMMON]
 _NOT_OF_LAYERS = ("paths", "collision", "distance_z", "save_vdb")
 LAYERS = [*_OF_LAYERS, *(name for name in OFFSET if name not in _NOT_OF_LAYERS)]
-CURVE_LAYERS = [*_OF_LAYERS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
+CURVE_LAYERS = [*_HEIGHTS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
 
 #: Stands in docstrings for the options.
 _PLACE = "    :param options: by keyword; `help()` tells of each\n"

@@ -39,6 +39,58 @@ class Layers(BesideTheCommand):
                          "miter", "--report", "report.json")
         self.check_cells(vdb_offset.layers(vertices, faces, count=3, first="2%", growth=1.3, corners="miter"), "made.su2")
 
+    def write_with_groups(self, name, vertices, faces, groups):
+        with open(self.run_command.path(name), "w", encoding="ascii") as out:
+            out.writelines("v {!r} {!r} {!r}\n".format(*map(float, v)) for v in vertices)
+            for face, group in zip(faces, groups):
+                out.write(f"g {group}\nf " + " ".join(str(v + 1) for v in face) + "\n")
+
+    def test_names_of_walls(self):
+        run = self.run_command
+        names = ["floor", "roof", "side 1", "side 1", "2nd", "outer"]
+        self.write_with_groups("cube.obj", CUBE, QUADS, [name.replace(" ", "_") for name in names])
+        with open(run.path("heights.txt"), "w", encoding="ascii") as out:
+            out.write("0.1\n0.2\n")
+        run("cube.obj", "made.su2", "--heights", "heights.txt", "--report", "report.json")
+        for walls in (names, tuple(names), np.array(names), np.array(names, object)):
+            grown = vdb_offset.layers(CUBE, QUADS, [0.1, 0.2], walls=walls)
+            self.check_cells(grown, "made.su2")
+        self.assertEqual(list(grown.patches), ["floor", "roof", "side_1", "wall_2nd", "outer_2", "outer"])
+        self.assertEqual([len(grown.patches[name][0]) - 1 for name in grown.patches], [1, 1, 2, 1, 1, 6])
+        with open(run.path("made.su2"), encoding="ascii") as file:
+            self.assertEqual([line.split()[1] for line in file if line.startswith("MARKER_TAG")], list(grown.patches))
+        self.assertEqual([patch["name"] for patch in grown.statistics["layers"]["patches"]], list(grown.patches)[:5])
+
+    def test_names_that_are_none(self):
+        for wrong in (["a"] * 5, ["a"] * 7, "abcdef", ["a", "b", 3, "d", "e", "f"], 6, [b"a"] * 6, [None] * 6):
+            with self.subTest(str(wrong)), self.assertRaisesRegex(vdb_offset.InvalidInput, "^walls: expected a name"):
+                vdb_offset.layers(CUBE, QUADS, [0.1], walls=wrong)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'walls'"):
+            vdb_offset.curve_layers(CUBE[:2], np.array([[0, 1]]), [0.1], walls=["a"])
+
+    def test_cells_for_openfoam(self):
+        run = self.run_command
+        # Quads that are bent: cells over them are valid sooner than OpenFOAM finds them to be.
+        x, y = np.meshgrid(np.arange(8.0), np.arange(8.0))
+        random = np.random.RandomState(1)  # pylint: disable=no-member
+        vertices = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], 1) + (random.random_sample((64, 3)) - 0.5) * [0.8, 0.8, 1.5]
+        first = np.arange(64).reshape(8, 8)[:-1, :-1].ravel()
+        faces = np.stack([first, first + 1, first + 9, first + 8], 1)
+        run.write("shape.obj", vertices, faces)
+        run("shape.obj", "polyMesh", "--layers", "2", "--total-thickness", "1", "--report", "report.json")
+        with open(run.path("polyMesh/points"), encoding="ascii") as file:
+            points = np.array([line.strip("()\n").split() for line in file if line.startswith("(") and len(line) > 2], float)
+        grown = vdb_offset.layers(vertices, faces, count=2, total=1, cells="openfoam")
+        self.check_bits(grown.points, points)
+        # What is in OpenFOAM's terms is measured as its files are written.
+        report = run.report()
+        self.assertEqual(report["layers"].pop("openfoam")["wrong_faces"], 0)
+        self.check_report(grown.statistics, report)
+        plain = vdb_offset.layers(vertices, faces, count=2, total=1)
+        self.assertFalse(plain.points.shape == grown.points.shape and (plain.points == grown.points).all())
+        with self.assertRaisesRegex(vdb_offset.InvalidOption, "cells: expected 'any' or 'openfoam'"):
+            vdb_offset.layers(vertices, faces, [0.1], cells="OpenFOAM")
+
     def test_where_there_is_no_room(self):
         vertices, faces = shape_of("plates_open", self.run_command)
         self.run_command("shape.obj", "made.su2", "--layers", "3", "--total-thickness", "0.2", "--report", "report.json")
