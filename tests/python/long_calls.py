@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls that take a while: what they tell and ask, what ends them, and what goes on meanwhile."""
+import contextlib
 import os
 import signal
 import subprocess
@@ -12,6 +13,28 @@ import numpy as np
 
 import vdb_offset
 from beside import CUBE, QUADS, Run, shape_of
+
+
+@contextlib.contextmanager
+def control_c():
+    """What presses Ctrl-C, once, and returns when Python has seen it: a second one would come after the call."""
+    seen, before = threading.Event(), signal.getsignal(signal.SIGINT)
+
+    def see(number, frame):
+        seen.set()
+        raise KeyboardInterrupt
+
+    def press():
+        if not seen.is_set():
+            os.kill(os.getpid(), signal.SIGINT)
+            seen.wait(60)
+            time.sleep(0.2)  # for the call to be told
+
+    signal.signal(signal.SIGINT, see)
+    try:
+        yield press
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 class LongCalls(unittest.TestCase):
@@ -94,14 +117,9 @@ class LongCalls(unittest.TestCase):
         thread.join()
 
     def test_control_c_ends_a_call_that_waits_for_memory(self):
-        def reserve(size):
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(0.2)  # longer than what is waited between two looks for signals
-            return True
-
         told = []
-        with self.assertRaises(KeyboardInterrupt):
-            self.offset(reserve=reserve, progress=lambda stage, share: told.append(stage))
+        with control_c() as press, self.assertRaises(KeyboardInterrupt):
+            self.offset(reserve=lambda size: press(), progress=lambda stage, share: told.append(stage))
         self.assertNotIn("rasterise", told)
 
     def test_every_function_asks_for_memory(self):
@@ -142,14 +160,8 @@ class LongCalls(unittest.TestCase):
 
     def test_control_c_ends_a_check(self):
         told = []
-
-        def stop(stage, share):
-            told.append(share)
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(0.2)  # longer than what is waited between two looks for signals
-
-        with self.assertRaises(KeyboardInterrupt):
-            self.check(progress=stop)
+        with control_c() as press, self.assertRaises(KeyboardInterrupt):
+            self.check(progress=lambda stage, share: (told.append(share), press()))
         self.assertLess(len(told), 3)
 
     def test_numpy_false_cancels(self):
