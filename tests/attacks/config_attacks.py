@@ -57,3 +57,12 @@ def what_a_file_says_counts_after_the_command_line(place):
                 'expected two outputs and reports')
     place.ended_well(place.run(*ONE, '--distance', '0.3', '--report', 'one.json'), 0)
     place.check('o.obj' in place.names() and 'one.json' in place.names(), 'expected one output and report')
+
+
+@attack
+def what_the_line_says_of_the_distance_counts_for_all_that_the_file_says(place):
+    place.box()
+    place.file('all.toml', 'distance = 0.1\nreports = true\noutput = "{model}.ply"\nstrict = true\n')
+    place.ended_well(place.run(*ONE), 0)
+    place.ended_well(place.run(*ONE, '--distance-xy', '0.1', '--distance-z', '0.2', '--strict=false'), 0)
+    place.check(place.names() == ['all.toml', 'box.obj', 'o.obj'], 'expected that what is for batch is passed over')

@@ -22,8 +22,8 @@ constexpr const char* kBatchMore = R"(
 All options of vdb_offset hold for each model (vdb_offset --help). Those that name a file take a pattern, in which
 {model} is the model's path under DIR without its ending, and {ending} that ending: '{model}.states.ply'. What is
 written goes below OUT. Of what is read, {model} stands for the path with DIR: --distance-from '{model}.txt'.
-Some are for the batch as a whole: --max-memory holds for all models at once, by their estimates; --dry-run prints which
-models would be done; --verbose prints the row of each model as it ends; --quiet prints nothing but errors.
+Some are for the batch as a whole: --max-memory holds for all models at once, by their estimates (with --sshlogin of each
+machine, with --slurm of each job); --dry-run prints which models would be done; --verbose prints the row of each model as it ends; --quiet prints nothing but errors.
 
 Models are files that end in .obj, .ply, .stl, .off, .svg, .dat or .xy, compressed with .gz or .zst behind it; others
 (.txt, scenes in .json) are taken where --models names them.
@@ -72,7 +72,7 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   line.file("DIR", "Folder with models, in subfolders as well", request.folder);
   line.file("OUT", "Folder to write to; it is made if it is not there", request.out);
   declare_batch(line, request, reports);
-  line.add_config();
+  line.add_config(options_of_distance());
   line.hide_what_follows();
   declare_offset_options(line, draft);
   if (!line.parse(argc, argv)) return std::nullopt;

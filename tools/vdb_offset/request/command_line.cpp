@@ -76,7 +76,9 @@ void CommandLine::place(CLI::Option* option) {
   hidden_options_.push_back(option);
 }
 
-void CommandLine::add_config() {
+void CommandLine::add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over) {
+  alternatives_ = std::move(alternatives);
+  passed_over_ = std::move(passed_over);
   app_->add_option("--config", config_,
                    "Take options from FILE, too, in TOML by their long names, as in 'distance = \"1%\"' and 'strict = "
                    "true'; what is given here counts instead")
@@ -99,8 +101,14 @@ bool CommandLine::understand(std::vector<std::string> reversed) {
 }
 
 std::vector<std::string> CommandLine::words_of_config() const {
+  const auto is_among = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const bool has_alternative = std::any_of(alternatives_.begin(), alternatives_.end(),
+                                           [this](const std::string& name) { return has(("--" + name).c_str()); });
   std::vector<std::string> words;
   for (const ConfigEntry& entry : read_config(config_)) {
+    if (is_among(passed_over_, entry.name) || (has_alternative && is_among(alternatives_, entry.name))) continue;
     const CLI::Option* const option = app_->get_option_no_throw("--" + entry.name);
     const bool is_known = option && option->get_positional() == false && entry.name != "config" &&
                           entry.name != "help" && entry.name != "version";

@@ -36,8 +36,9 @@ class CommandLine {
 
   /// -V and --version, which print `version`.
   void add_version(const std::string& version);
-  /// --config, a file with values of options that the line does not have.
-  void add_config();
+  /// --config, a file with values of options that the line does not have. One of `alternatives` on the line counts
+  /// instead of all of them in the file. Names that are `passed_over` are options of other commands.
+  void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {});
   /// What is declared from here on is not listed in --help.
   void hide_what_follows() { hidden_ = true; }
   /// A file that the command cannot do without, by its position.
@@ -75,6 +76,7 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
   const char* help_;
   std::string config_;
+  std::vector<std::string> alternatives_, passed_over_;
   bool hidden_ = false;
   std::vector<const CLI::Option*> hidden_options_;
   std::deque<Value> values_;  // CLI11 keeps references to their texts

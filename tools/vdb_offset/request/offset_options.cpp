@@ -317,6 +317,10 @@ void complete(const CommandLine& line, Draft& draft) {
 
 }  // namespace
 
+std::vector<std::string> options_of_distance() {
+  return {"distance", "distance-from", "distance-xy", "distance-z", "fit"};
+}
+
 void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_distances(line, draft);
   declare_tolerance(line, draft);
@@ -334,7 +338,7 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
             draft.request.input);
   line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
-  line.add_config();
+  line.add_config(options_of_distance(), {"output", "models", "jobs", "reports", "retry-failed", "sshlogin", "slurm"});
   declare_offset_options(line, draft);
   if (!line.parse(argc, argv)) return std::nullopt;
   require_together(line, draft.is_iso);

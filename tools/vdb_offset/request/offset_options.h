@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "request/command_line.h"
 #include "request/request.h"
@@ -17,6 +18,9 @@ struct Draft {
   ToleranceRequest tolerance;
   std::string distance_xy, distance_z;
 };
+
+/// The options that say how far the offset goes, of which one counts.
+std::vector<std::string> options_of_distance();
 
 /// Declares all options of an offset. \pre the draft lives as long as the command line
 void declare_offset_options(CommandLine& line, Draft& draft);

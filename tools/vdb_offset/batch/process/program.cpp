@@ -26,6 +26,7 @@ constexpr int kNotFound = 127;  // the exit code of a program that could not be 
 /// SIGTERM when this process ends.
 pid_t start(const std::vector<std::string>& words, int input, int output) {
   std::vector<char*> line;
+  line.reserve(words.size() + 1);
   for (const std::string& word : words) line.push_back(const_cast<char*>(word.c_str()));
   line.push_back(nullptr);
   const pid_t process = ::fork();
