@@ -58,6 +58,7 @@ struct CheckRequest {
 /// Declares the options that say how the offset was made.
 void declare_offset(CommandLine& line, CheckRequest& request, std::string& distance_xy, std::string& distance_z) {
   Request& made = request.made;
+  line.add_unit(made.unit);
   line.option("-d,--distance", "D",
               "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
               "expression [the median of what is found]",

@@ -54,7 +54,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
   const LayersRequest layers = request.layers.value_or(LayersRequest{});
   const IsoRequest iso = request.iso.value_or(IsoRequest{});
   const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
-  return {{"distance", to.distance},
+  return {{"unit", request.unit},
+          {"distance", to.distance},
           {"metric", fmt::format("{}", fmt::join(std::vector{options.metric.scale[0], options.metric.scale[1],
                                                              options.metric.scale[2]},
                                                  " "))},

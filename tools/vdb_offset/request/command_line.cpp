@@ -13,9 +13,14 @@
 #include "request/config_file.h"
 #include "request/option_values.h"
 #include "request/request.h"
+#include "request/units.h"
 
 namespace vdb_offset::tool {
 namespace {
+
+// Options whose values are lengths.
+constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z", "inner",     "clearance",
+                                    "first-height", "total-thickness", "voxel-size", "tolerance", "weld"};
 
 /// The words behind the name of a program or subcommand in reverse order, as CLI11 takes them. Words behind `--` are
 /// names of files, whatever they begin with.
@@ -126,6 +131,24 @@ std::vector<std::string> CommandLine::words_of_config() const {
   return words;
 }
 
+void CommandLine::add_unit(std::string& unit) {
+  unit_ = &unit;
+  option("--unit", "UNIT",
+         "What the numbers of the file are: 'um', 'mm', 'cm', 'm', 'in' or 'ft'; then distances and other lengths may "
+         "have a unit, as in 0.2mm",
+         [&unit](const std::string& text) {
+           require(micrometres_of(text).has_value(),
+                   "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft', got '" + text + "'");
+           unit = text;
+         });
+}
+
+std::string CommandLine::text_of(const CLI::Option& option, const std::string& given) const {
+  const std::string& name = option.get_lnames().front();
+  const bool is_length = std::find(std::begin(kLengths), std::end(kLengths), name) != std::end(kLengths);
+  return unit_ && is_length ? in_file_units("--" + name, given, *unit_) : given;
+}
+
 bool CommandLine::parse(int argc, const char* const* argv) {
   std::vector<std::string> reversed = reversed_arguments(argc, argv);
   if (!understand(reversed)) return false;
@@ -139,8 +162,8 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   require_values();
   for (const Value& value : values_) {
     if (value.option->count() == 0) continue;
-    if (value.texts.empty()) value.take(value.text);
-    for (const std::string& text : value.texts) value.take(text);
+    if (value.texts.empty()) value.take(text_of(*value.option, value.text));
+    for (const std::string& text : value.texts) value.take(text_of(*value.option, text));
   }
   return true;
 }

@@ -61,6 +61,7 @@ constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
 /// Declares the options that say how far the offset goes, and what kind of offset it is.
 void declare_distances(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
+  line.add_unit(request.unit);
   line.repeated(
       "-d,--distance", "D",
       "Distance: world units, percent of the diagonal as in 1.5%, or an expression; negative is inward; given "

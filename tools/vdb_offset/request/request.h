@@ -92,6 +92,7 @@ struct Request {
   std::size_t max_memory = 0;  ///< Bytes.
   bool close = false;          ///< Join ends of curves that are near each other.
 
+  std::string unit;  ///< Of the file's numbers; empty: not said.
   // Texts as given, for the report.
   std::vector<std::string> only_texts, symmetry_texts;
   std::string clearance_text, weld_text = "auto", orient_text = "keep";

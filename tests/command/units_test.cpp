@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lengths with units.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
+
+#include "command/shell_command.h"
+
+namespace {
+
+/// Requires that two calls write the same bytes.
+void check_same(const ShellCommand& shell, const std::string& with_units, const std::string& without) {
+  INFO(with_units << "  =  " << without);
+  CHECK(shell("sphere.obj a.obj -q " + with_units).code == 0);
+  CHECK(shell("sphere.obj b.obj -q " + without).code == 0);
+  const std::string written = shell.slurp(shell.file("a.obj"));
+  CHECK(written.size() > 1000);
+  CHECK(written == shell.slurp(shell.file("b.obj")));
+}
+
+}  // namespace
+
+TEST_CASE("units: a length with a unit is that length in the unit of the file", "[command]") {
+  const ShellCommand shell;
+  check_same(shell, "-d 0.1mm --unit mm", "-d 0.1");
+  check_same(shell, "-d 0.1mm --unit cm", "-d 0.01");
+  check_same(shell, "-d 2mm --unit m", "-d 0.002");
+  check_same(shell, "-d -2cm --unit ft", "-d -0.06561679790026247");
+  check_same(shell, "-d '0.1 in' --unit in", "-d 0.1");
+  check_same(shell, "-d 0.1in --unit mm", "-d 2.54");
+  check_same(shell, "--unit um -d 1e-3mm", "-d 1");
+  check_same(shell, "-d 1% --unit mm", "-d 1%");
+  check_same(shell, "-d 0.1 --unit mm", "-d 0.1");
+  check_same(shell, "-d '0.1 + 0.01*x' --unit mm", "-d '0.1 + 0.01*x'");
+  check_same(shell, "--distance-xy 1cm --distance-z 0.5mm --unit cm", "--distance-xy 1 --distance-z 0.05");
+  check_same(shell, "-d 1mm --voxel-size 0.5mm --weld 1um --unit cm", "-d 0.1 --voxel-size 0.05 --weld 1e-4");
+  check_same(shell, "-d 1mm --shell --inner 2mm --unit cm", "-d 0.1 --shell --inner 0.2");
+  check_same(shell, "-d 1mm --tolerance 0.1mm --unit cm", "-d 0.1 --tolerance 0.01");
+  CHECK(shell("sphere.obj out.msh --layers 2 --first-height 1mm --unit cm -q").code == 0);
+  CHECK(shell("sphere.obj out.obj -d 1mm --unit cm -q").code == 0);
+  CHECK(shell("check sphere.obj out.obj -d 1mm --unit cm --strict").code == 0);
+  CHECK(shell("check sphere.obj out.obj -d 1mm --unit mm --strict").code == 3);
+}
+
+TEST_CASE("units: what cannot be meant is told", "[command]") {
+  const ShellCommand shell;
+  check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "--distance: expected --unit as well");
+  check_failure(shell, "sphere.obj a.obj -d 0.2 --unit parsec", 1,
+                "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft'");
+  check_failure(shell, "sphere.obj a.obj -d 0.2km --unit m", 1, "--distance: distance '0.2km'");
+  check_failure(shell, "sphere.obj a.obj -d mm --unit mm", 1, "unknown name 'mm'");
+  check_failure(shell, "sphere.obj a.obj -d 0.2mmm --unit mm", 1, "--distance: distance '0.2mmm'");
+  check_failure(shell, "sphere.obj a.obj -d 0.1 --max-memory 4mm --unit mm", 1, "--max-memory");
+}

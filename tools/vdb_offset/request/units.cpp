@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "request/units.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "request/option_values.h"
+#include "vdb_offset/numbers.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+struct Unit {
+  std::string_view name;
+  double micrometres;  // whole, so that a quotient of two is the nearest number to what is meant
+};
+constexpr Unit kUnitsOfLength[] = {{"um", 1}, {"mm", 1000}, {"cm", 1e4}, {"m", 1e6}, {"in", 25400}, {"ft", 304800}};
+
+}  // namespace
+
+std::optional<double> micrometres_of(const std::string& unit) {
+  for (const Unit& each : kUnitsOfLength)
+    if (each.name == unit) return each.micrometres;
+  return std::nullopt;
+}
+
+std::string in_file_units(const std::string& option, const std::string& text, const std::string& file_unit) {
+  // The longest name counts: 0.2mm is no number of metres with an m behind it.
+  const std::size_t letters = text.find_last_not_of("umcintf") + 1;
+  const std::optional<double> given = micrometres_of(text.substr(letters));
+  std::string number = text.substr(0, letters);
+  while (number.ends_with(' ')) number.pop_back();
+  const auto value = decimal<double>(number);
+  if (!given || !value) return text;
+  require(!file_unit.empty(),
+          fmt::format("{}: expected --unit as well, which says what the file's numbers are, got '{}'", option, text));
+  const double of_file = *micrometres_of(file_unit);
+  return *given == of_file ? number : fmt::format("{}", *value * *given / of_file);
+}
+
+}  // namespace vdb_offset::tool
