@@ -375,7 +375,7 @@ TEST_CASE("curve files: drawings as programs write them", "[curves][io]") {
         "<path d='M30.123456,1 L2.12,3'/></svg>");
 }
 
-TEST_CASE("curve files: what a drawing has besides straight lines is told by its line", "[curves][io]") {
+TEST_CASE("curve files: mistakes in a drawing are told by their line", "[curves][io]") {
   const auto fails = [](const std::string& text, const std::string& message) {
     CHECK_THROWS_WITH(io::parse_curves("f.svg", io::CurveFormat::Svg, text), Catch::Contains(message));
   };
@@ -385,17 +385,15 @@ TEST_CASE("curve files: what a drawing has besides straight lines is told by its
   fails("solid\n", "f.svg, line 1: expected XML");
   fails("<html/>", "f.svg, line 1: expected an element 'svg', got 'html'");
   fails(std::string("\xff\xfe<\0s\0", 6), "expected a drawing in UTF-8, got UTF-16");
-  fails("<svg><defs><path d='M0 0L1 1'/></defs></svg>", "expected a path, polyline or polygon with two points");
-  fails(path("M0 0 C 1 1 2 2 3 3"),
-        "f.svg, line 2: expected straight segments (M, L, H, V, Z), got 'C 1 1 2 2 3 3' in a path's 'd'");
+  fails("<svg><defs><path d='M0 0L1 1'/></defs></svg>", "expected a path or another shape with two points");
+  fails(path("M0 0 B 1 1"),
+        "f.svg, line 2: expected one of the commands M, L, H, V, C, S, Q, T, A and Z, got 'B 1 1' in a path's 'd'");
   fails(path("M0 0 1"), "expected a number for y, got its end in a path's 'd'");
   fails(path("L0 0"), "expected a path that begins with M, got 'L0 0'");
-  fails(path("1 2"), "expected one of the commands M, L, H, V and Z, got '1 2'");
+  fails(path("1 2"), "expected one of the commands M, L, H, V, C, S, Q, T, A and Z, got '1 2'");
   fails(path("M0 0Z 1 2"), "expected one of the commands");
   fails(path("M0 0L1e999 2"), "expected a number for x, got '1e999 2'");
   fails(path("M0 0Linf 2"), "expected a number for x, got 'inf 2'");
-  fails("<svg>\n\n<circle r='1'/></svg>",
-        "f.svg, line 3: expected paths, polylines and polygons alone, got an element 'circle'");
   fails("<svg><svg><path d='M0 0L1 1'/></svg></svg>", "expected one element 'svg', got another one in it");
   fails("<svg><polygon points='0 0 1'/></svg>", "expected a number for y, got its end in a list of points");
   fails("<svg transform='turn(3)'/>", "expected a transform that SVG knows, not 'turn' of 1 numbers, before here");
@@ -405,7 +403,6 @@ TEST_CASE("curve files: what a drawing has besides straight lines is told by its
         "f.svg, line 2: expected an attribute 'd' in the element itself, got one that a DTD declares");
   fails("<!DOCTYPE svg [<!ATTLIST path d CDATA 'M0 0L1 1'>]>\n<svg><path id='a'/><path d='M0 0L1 1'/></svg>",
         "f.svg, line 2: expected an attribute 'd' in the element itself");
-  fails("<svg><use href='#a'/></svg>", "got an element 'use'");
   fails("<svg><g style='fill:none; transform : scale(2)'/></svg>", "expected transforms that are attributes");
   fails(path("M0 +-1L1 1"), "expected a number for y, got '+-1L1 1'");
   fails("<svg transform='scale(0)'><path d='M0 0L1 1'/></svg>", "expected a transform that can be undone");

@@ -245,6 +245,12 @@ void curves_seeds() {
   write("drawing.curves",
         "A<svg xmlns='x'><g transform='translate(1)'><path d='m0,0 1-1.5.5h3V2z l1 1'/></g>"
         "<polygon points='0 0 1,0 1 1'/><polyline points='2 2 3 3'/><defs><path d='M0'/></defs></svg>");
+  write(
+      "curved.curves",
+      "A<svg><defs><g id='g'><circle id='c' cx='1' r='2'/><use href='#c' x='3'/></g><symbol id='s' viewBox='0 0 2 1'>"
+      "<rect width='2' height='1' rx='.2'/></symbol></defs><use href='#g' id='u'/><use href='#s' width='4' height='4'/>"
+      "<ellipse rx='2' ry='1' transform='skewX(9)'/><line x2='5'/>"
+      "<path d='m1,2c1,1,2,1,3,0s2-1 3 0q1 1 2 0t2 0a1 2 30 01-1 1z'/></svg>");
   write("plain.curves", "A<svg><path d=\"M0 0L1 0L1 1Z m2 2 3 3\"/><text>a</text></svg>");
 }
 

@@ -188,7 +188,7 @@ class LineElementParser {
       ahead_;  // byte and index of vertices that had not been read yet where they were named
 };
 
-CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes bytes) {
+CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes bytes, const CurveReading& how) {
   CurveFile curves;
   curves.format = format;
   curves.file.path = name;
@@ -203,9 +203,7 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
       LineElementParser(curves.file).run();
       break;
     case CurveFormat::Svg:
-      curves.svg = parse_svg(name, curves.file.text());
-      curves.file.polygons = std::exchange(curves.svg.curves, {});
-      curves.planar = true;
+      parse_svg(curves, how);
   }
   const Curves& read = curves.file.polygons;
   if (read.face_count() == 0) throw InvalidInput(name + ": expected an element 'l', got none");
@@ -292,12 +290,12 @@ bool holds_curves(const std::string& path) {
   return !has_line("f ") && !has_line("f\t") && (has_line("l ") || has_line("l\t"));
 }
 
-CurveFile read_curves(const std::string& path) {
-  return parse_bytes(path, format_of_curves(path), FileBytes::open(path));
+CurveFile read_curves(const std::string& path, const CurveReading& how) {
+  return parse_bytes(path, format_of_curves(path), FileBytes::open(path), how);
 }
 
-CurveFile parse_curves(const std::string& name, CurveFormat format, std::string bytes) {
-  return parse_bytes(name, format, FileBytes(std::move(bytes)));
+CurveFile parse_curves(const std::string& name, CurveFormat format, std::string bytes, const CurveReading& how) {
+  return parse_bytes(name, format, FileBytes(std::move(bytes)), how);
 }
 
 Precision precision_of_curves(const WriteOptions& options) {
@@ -319,7 +317,7 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
   const Pieces pieces =
       format != source.format ? in_sections(as_file(format, moved, precision), {})
       : format == CurveFormat::Svg
-          ? in_sections(rewrite_svg(source.file.text(), source.svg, read.view(), positions, precision), {})
+          ? in_sections(rewrite_svg(source.file.text(), *source.svg, read.view(), positions, precision), {})
           : rewrite_in_place(source.file, positions, precision);
   write_pieces_of(source.file.path, source.file.bytes, path, pieces);
 }

@@ -59,17 +59,25 @@ Vec2d transformed_back(const SvgMatrix& m, const Vec3d& p) {
   return {(m[3] * x - m[2] * y) / det, (m[0] * y - m[1] * x) / det};
 }
 
-bool has_transform(std::string_view style) {
+bool holds_name(std::string_view names, std::string_view name) {
+  while (!names.empty()) {
+    const std::string_view first = names.substr(0, names.find(' '));
+    if (first == name) return true;
+    names.remove_prefix(std::min(first.size() + 1, names.size()));
+  }
+  return false;
+}
+
+std::string_view declared_in(std::string_view style, std::string_view names) {
   while (!style.empty()) {
     std::string_view name = style.substr(0, style.find(';'));
     style.remove_prefix(std::min(name.size() + 1, style.size()));
     name = name.substr(0, name.find(':'));
     while (!name.empty() && is_svg_space(name.front())) name.remove_prefix(1);
     while (!name.empty() && is_svg_space(name.back())) name.remove_suffix(1);
-    for (const char* const moving : {"transform", "translate", "rotate", "scale"})
-      if (name == moving) return true;
+    if (!name.empty() && holds_name(names, name)) return name;
   }
-  return false;
+  return {};
 }
 
 SvgMatrix parse_transform(SvgValueScanner value) {

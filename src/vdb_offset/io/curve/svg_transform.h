@@ -32,6 +32,10 @@ bool has_inverse(const SvgMatrix& m);
 Vec3d transformed(const SvgMatrix& m, const Vec2d& p);
 Vec2d transformed_back(const SvgMatrix& m, const Vec3d& p);
 
+/// Absolute units of CSS in units of the drawing, of which 96 are an inch.
+inline constexpr std::pair<std::string_view, double> kSvgUnits[] = {
+    {"px", 1}, {"in", 96}, {"cm", 96 / 2.54}, {"mm", 96 / 25.4}, {"pt", 96. / 72}, {"pc", 16}, {"Q", 96 / 101.6}};
+
 /// Whether a character is white space in XML and in attributes of SVG.
 inline bool is_svg_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
 
@@ -63,6 +67,25 @@ class SvgValueScanner {
   }
 
   char letter() { return value_[at_++]; }
+
+  /// One of an arc's two flags: a single 0 or 1, which the next number may follow without anything between them.
+  bool flag() {
+    if (at_end() || (value_[at_] != '0' && value_[at_] != '1')) fail("a flag of an arc, 0 or 1");
+    return value_[at_++] == '1';
+  }
+
+  /// A length that is the whole value, in the units of the drawing: a number, or one with an absolute unit of CSS.
+  double length() {
+    const std::string_view whole = value_.substr(at_);
+    const double number = this->number("a length");
+    std::string_view unit = value_.substr(at_);
+    while (!unit.empty() && is_svg_space(unit.back())) unit.remove_suffix(1);
+    if (unit.empty()) return number;
+    for (const auto& [name, size] : kSvgUnits)
+      if (unit == name) return number * size;
+    fail_("a number, alone or with px, mm, cm, in, pt, pc or Q behind it", fmt::format("'{}'", whole.substr(0, 20)));
+    std::terminate();  // fail_ has thrown
+  }
 
   /// Skips the name of a function and "(". Returns the name.
   std::string_view function_name() {
@@ -96,7 +119,10 @@ class SvgValueScanner {
 /// The product of the transforms in a `transform` attribute.
 SvgMatrix parse_transform(SvgValueScanner value);
 
-/// Whether a list of CSS declarations has one that moves the element.
-bool has_transform(std::string_view style);
+/// The property among `names`, which blanks separate, that a list of CSS declarations has first; empty if none.
+std::string_view declared_in(std::string_view style, std::string_view names);
+
+/// Whether `names`, which single blanks separate, hold a name.
+bool holds_name(std::string_view names, std::string_view name);
 
 }  // namespace vdb_offset::io

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Offsets of curved shapes of drawings, beside closed forms.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/bytes.h"
+#include "support/folder.h"
+#include "vdb_offset/curve_offset.h"
+#include "vdb_offset/io/curve_file.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+// Names of its own, as tests are compiled several files at once.
+namespace drawings {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+io::CurveFile drawn(const std::string& inside, double tolerance) {
+  return io::parse_curves("t.svg", io::CurveFormat::Svg, "<svg>" + inside + "</svg>", {0, tolerance});
+}
+
+OffsetResult offset_of(const io::CurveFile& file, double distance, OffsetOptions options = {}) {
+  const Distances distances(distance);
+  return offset_curves(file.file.polygons.view(), {&distances, 1}, options).front();
+}
+
+/// The area that a closed curve encloses, below 0 if it runs the other way.
+double area_of(const CurvesView& curves, std::size_t curve) {
+  const auto points = curves.face(curve);
+  double twice = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Vec3d &a = curves.positions[points[k]], &b = curves.positions[points[(k + 1) % points.size()]];
+    twice += a[0] * b[1] - a[1] * b[0];
+  }
+  return twice / 2;
+}
+
+CurvesView moved(const io::CurveFile& file, const OffsetResult& result) {
+  return {result.positions, file.file.polygons.corners, file.file.polygons.face_begin};
+}
+
+}  // namespace
+}  // namespace drawings
+
+TEST_CASE("drawings: the offset of a circle is the circle, and its area converges", "[curves]") {
+  using namespace drawings;
+  for (const double d : {0.5, -0.5}) {
+    double before = 10;
+    for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4}) {
+      const io::CurveFile file = drawn("<circle cx='3' cy='4' r='2'/>", tolerance);
+      const OffsetResult result = offset_of(file, d);
+      // Outward points go along the radius. Inward they are where the parallels of both segments meet, which is no more
+      // than d (1 / cos(h / 2) - 1) beyond: less than the tolerance, as d is less than the radius.
+      for (const Vec3d& p : result.positions)
+        CHECK(std::abs(std::hypot(p[0] - 3, p[1] - 4) - (2 + d)) <= tolerance + 1e-9);
+      const double off = std::abs(area_of(moved(file, result), 0) - kPi * (2 + d) * (2 + d));
+      CHECK(off <= 2 * kPi * (2 + d) * 2 * tolerance);
+      CHECK(off < before / 3);
+      before = off;
+    }
+  }
+}
+
+TEST_CASE("drawings: the kerf of a plate with rounded corners and a hole", "[curves]") {
+  using namespace drawings;
+  const double kerf = 0.1, tolerance = 1e-4;
+  const io::CurveFile plate = drawn("<rect width='20' height='10' rx='3'/><circle cx='10' cy='5' r='2'/>", tolerance);
+  OffsetOptions options;
+  options.corners = Corners::Miter;
+  const OffsetResult result = offset_of(plate, kerf, options);
+  const CurvesView cut = moved(plate, result);
+  const auto plate_area = [](double d) {
+    const double r = 3 + d;
+    return (20 + 2 * d) * (10 + 2 * d) - (4 - kPi) * r * r;
+  };
+  // Each point of the flattened outline is within the tolerance of the exact one: areas differ by less than the length
+  // times the tolerance.
+  CHECK(std::abs(area_of(cut, 0)) == Approx(plate_area(kerf)).margin(60 * tolerance));
+  CHECK(std::abs(area_of(cut, 1)) == Approx(kPi * 1.9 * 1.9).margin(13 * tolerance));
+  for (const auto p : cut.face(0)) {
+    // Straight sides are where they have to be; corners are on their arcs.
+    const double x = std::min(result.positions[p][0], 20 - result.positions[p][0]),
+                 y = std::min(result.positions[p][1], 10 - result.positions[p][1]);
+    if (x < 3 && y < 3) CHECK(std::abs(std::hypot(x - 3, y - 3) - 3.1) <= tolerance + 1e-9);
+    else CHECK(std::abs(std::min(x, y) + 0.1) <= tolerance + 1e-9);
+  }
+}
+
+TEST_CASE("drawings: a drawing with curves, offset and written, is as it was but for what moved", "[curves][io]") {
+  using namespace drawings;
+  const std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?>\n<!-- Created by hand -->\n"
+      "<svg width=\"210mm\" height=\"297mm\" viewBox=\"0 0 210 297\" version=\"1.1\" id=\"svg5\"\n"
+      "   xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"\n"
+      "   xmlns=\"http://www.w3.org/2000/svg\">\n"
+      "  <inkscape:view id=\"namedview7\" inkscape:zoom=\"0.74\"/>\n"
+      "  <defs id=\"defs2\"/>\n"
+      "  <g inkscape:label=\"Layer 1\" id=\"layer1\" transform=\"translate(1.5e1,-2)\">\n"
+      "    <path style=\"fill:none;stroke:#ff0000;stroke-width:0.1\"\n"
+      "       d=\"m 40,60 c 11.04569,0 20,8.954305 20,20 0,11.045695 -8.954305,20 -20,20 -11.04569,0 -20,-8.954305 "
+      "-20,-20 0,-11.045695 8.954305,-20 20,-20 z\"\n       id=\"path1\" />\n"
+      "    <ellipse style=\"fill:none\" id=\"path2\" cx=\"120\" cy=\"80\" rx=\"20\" ry=\"10\" />\n"
+      "  </g>\n</svg>\n";
+  const io::CurveFile file = io::parse_curves("t.svg", io::CurveFormat::Svg, text);
+  const OffsetResult result = offset_of(file, 0.5);
+  const Folder folder;
+  io::write_curves(folder.file("o.svg"), file, result.positions);
+  const std::string written = slurp(folder.file("o.svg"));
+  for (const char* const kept : {"<!-- Created by hand -->", "inkscape:zoom=\"0.74\"/>", "id=\"path1\" />",
+                                 "<path style=\"fill:none\" id=\"path2\" d=\"M", "translate(1.5e1,-2)"})
+    CHECK(written.find(kept) != std::string::npos);
+  CHECK(written.find("ellipse") == std::string::npos);
+  const io::CurveFile back = io::read_curves(folder.file("o.svg"));
+  REQUIRE(back.file.polygons.positions.size() == result.positions.size());
+  for (std::size_t p = 0; p < result.positions.size(); ++p)
+    CHECK((back.file.polygons.positions[p] - result.positions[p]).length() < 1e-12);
+  // The path is a circle of radius 20 to 3 in 10,000, as four such curves are.
+  for (const auto p : moved(file, result).face(0))
+    CHECK(std::hypot(result.positions[p][0] - 55, result.positions[p][1] - 78) == Approx(20.5).epsilon(3e-4));
+}
