@@ -103,6 +103,9 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
                 made.orient_text = text;
                 made.orient = parse_orient(text);
               });
+  line.option("--flatten", "TOL",
+              "How far straight segments were from the curved ones of a drawing, as it was for the offset [0.001%]",
+              [&made](const std::string& text) { made.flatten = parse_flatten(text); });
   line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }
 
@@ -247,8 +250,11 @@ void write_states(const Request& made, PolygonView offset, const CheckResult& re
 
 CheckResult measure_curves(const CheckRequest& request) {
   const Request& made = request.made;
-  io::CurveFile source = io::read_curves(made.input);
-  const io::CurveFile offset = io::read_curves(made.output);
+  io::CurveReading how = curve_reading(made);
+  io::CurveFile source = io::read_curves(made.input, how);
+  // Shapes that did not move are curved in the offset as well, and get the same points.
+  if (source.flattened_shapes > 0) how = {0, source.flattened_to};
+  const io::CurveFile offset = io::read_curves(made.output, how);
   for (const auto& [name, given] : {std::pair{"--weld", made.weld_text != "auto"},
                                     {"--orient", made.orient_text != "keep"},
                                     {"--only", !made.only.empty()},
@@ -272,6 +278,7 @@ CheckResult measure_curves(const CheckRequest& request) {
 CheckResult measure_meshes(const CheckRequest& request) {
   const Request& made = request.made;
   if (made.close) throw UsageError("--close: expected curves, as this is not for meshes");
+  if (made.flatten) throw UsageError("--flatten: expected curves, as this is not for meshes");
   const Source source = read_source(made, false);
   if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);

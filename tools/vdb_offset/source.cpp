@@ -47,6 +47,14 @@ bool holds_curves(const std::string& path) {
   }
 }
 
+io::CurveReading curve_reading(const Request& request) {
+  io::CurveReading how;
+  if (!request.flatten) return how;
+  how.flatten_share = request.flatten->percent ? request.flatten->value / 100 : 0;
+  how.flatten_length = request.flatten->percent ? 0 : request.flatten->value;
+  return how;
+}
+
 void write_curves(const std::string& path, const Source& source, std::span<const Vec3d> positions,
                   const io::WriteOptions& options) {
   if (source.as_closed && io::curve_format_of(path) != source.curves->format)
@@ -77,7 +85,7 @@ Source read_source(const Request& request, bool curves) {
   set_memory_limit(request.max_memory);
   Source source;
   if (curves) {
-    source.curves = io::read_curves(request.input);
+    source.curves = io::read_curves(request.input, curve_reading(request));
     if (request.close) close_curves(request, source);
     return source;
   }

@@ -44,6 +44,9 @@ struct RefinedSource {
 /// Whether a file holds curves; one that cannot be opened is for the reader to tell of.
 bool holds_curves(const std::string& path);
 
+/// How curves are read for this request.
+io::CurveReading curve_reading(const Request& request);
+
 /// Prints what is wrong with a file that was read all the same.
 void tell_remarks(const io::MeshFile& file);
 

@@ -173,6 +173,9 @@ void print_room(std::FILE* out, const Job& job, const SideRoom& room) {
 }
 
 void print_curve_ends(std::FILE* out, const Source& source) {
+  if (const std::size_t flattened = source.curves->flattened_shapes; flattened > 0)
+    fmt::print(out, "{} curved shape{} flattened to within {:.3g} (--flatten)\n", flattened, plural(flattened),
+               source.curves->flattened_to);
   for (const OpenCurve& closed : source.closed) fmt::print(out, "closed by a straight segment of {:.6g}\n", closed.gap);
   std::vector<OpenCurve> open = open_curves(source.view());
   std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });

@@ -213,6 +213,10 @@ void declare_products(CommandLine& line, Draft& draft) {
             "Of curves: close those with ends near each other, by a straight segment, as over the base of a "
             "blunt trailing edge",
             request.close);
+  line.option("--flatten", "TOL",
+              "Of SVG drawings: replace curved segments by straight ones, no farther than this from them: world units, "
+              "or percent of the drawing's diagonal [0.001%]",
+              [&request](const std::string& text) { request.flatten = parse_flatten(text); });
 }
 
 /// Declares the options that say how the offset is computed.

@@ -72,7 +72,7 @@ void require_for_curves(const Request& request) {
 }
 
 void require_for_mesh(const Request& request) {
-  require_none("curves", {{"--close", request.close}});
+  require_none("curves", {{"--close", request.close}, {"--flatten", request.flatten.has_value()}});
   require(scene::is_scene(request.input) || format_of(request.input, request),
           request.input +
               ": expected an input that ends in .obj, .ply, .stl, .off (or these and .gz or .zst) or "

@@ -173,6 +173,18 @@ scene::Distance parse_clearance(const std::string& text) {
   return clearance;
 }
 
+scene::Distance parse_flatten(const std::string& text) {
+  scene::Distance flatten;
+  try {
+    flatten = scene::parse_distance(text);
+  } catch (const InvalidInput&) {
+    flatten.value = 0;
+  }
+  require(flatten.value > 0,
+          fmt::format("--flatten: expected a number of world units or percent, above 0, got '{}'", text));
+  return flatten;
+}
+
 WeldOptions parse_weld(const std::string& text) {
   WeldOptions weld;
   if (text == "auto") return WeldOptions::automatic();

@@ -71,6 +71,9 @@ Tolerance parse_tolerance(const std::string& text);
 /// World units or percent, 0 or more.
 scene::Distance parse_clearance(const std::string& text);
 
+/// World units or percent, above 0.
+scene::Distance parse_flatten(const std::string& text);
+
 /// 'auto', 'exact', 'none' or a tolerance.
 WeldOptions parse_weld(const std::string& text);
 
