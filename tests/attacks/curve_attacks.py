@@ -42,6 +42,12 @@ def path(d, more=''):
     return svg(f'<path d="{d}"{more}/>')
 
 
+def uses(depth, each, inside='<path d="M0 0L1 1"/>'):
+    """Groups, each of which shows the one before several times."""
+    groups = ''.join(f'<g id="g{k + 1}">' + f'<use href="#g{k}"/>' * each + '</g>' for k in range(depth))
+    return f'<defs><g id="g0">{inside}</g>{groups}</defs><use href="#g{depth}"/>'
+
+
 def nested(depth):
     return svg('<g>' * depth + '<path d="M0 0L1 0"/>' + '</g>' * depth)
 
@@ -51,14 +57,25 @@ SVG = {
     'as it is': (path('M0 0 L1 0 L1 1 Z'), 3),
     'empty': ('', 'byte 0', 'curves', 'an empty file'),
     'cut in a tag': (path('M0 0L1 0')[:60], WHERE, 'XML', ''),
-    'nothing drawn': (svg(''), r'line \d', 'a path, polyline or polygon', 'none'),
+    'nothing drawn': (svg(''), r'line \d', 'a path or another shape', 'none'),
     'a point alone': (path('M0 0'), None, 'expected'),
     **{f'path {d}': (path(d), WHERE, '', '') for d in (
-        'L1 0', 'M', 'M0 0L1', 'M0 0C1 1 2 2 3 3', 'M0 0L1e999 0', 'M1e308 0l1e308 0', 'M0 0L--1 0', 'M0 0Z1 1')},
+        'L1 0', 'M', 'M0 0L1', 'M0 0C1 1 2 2 3', 'M0 0B1 1', 'M0 0A1 1 0 2 0 1 1', 'M0 0A1 1 0 1', 'M0 0Q1e308 0 1e999 0', 'M1e308 0q1e308 0 1e308 1', 'M0 0L1e999 0', 'M1e308 0l1e308 0', 'M0 0L--1 0', 'M0 0Z1 1')},
     'points of an odd number': (svg('<polygon points="0 0 1 0 1"/>'), WHERE, 'a number for y', 'its end'),
     **{f'transform {t}': (path('M0 0L1 0', f' transform="{t}"'), WHERE, '', '') for t in (
         'scale(0)', 'scale(1', 'matrix(1 2 3)', 'scale(1e200)scale(1e200)')},
-    'a circle': (svg('<circle r="1"/>'), WHERE, 'paths, polylines and polygons alone', "'circle'"),
+    'a circle': (svg('<circle r="1"/>'), 420),
+    'an arc that is hardly one': (path('M0 0A1e300 1e-300 1e300 1 1 1 0'), WHERE, 'coordinates that are numbers', 'larger ones'),
+    'curves to the ends of all numbers': (path('M0 0C1e308 0 0 1e308 1 1'), None, 'expected'),
+    'a circle larger than any number': (svg('<circle r="1e308" cx="1e308"/>'), WHERE, 'coordinates that are numbers', 'larger ones'),
+    'a length in percent': (svg('<circle r="50%"/>'), WHERE, 'a number, alone or with px, mm', "'50%'"),
+    'a radius below 0': (svg('<circle r="-1"/>'), WHERE, "'r' of 0 or more", "'-1'"),
+    'a use of itself': (svg('<use id="a" href="#a"/>'), WHERE, 'something else than what it is part of', 'a circle'),
+    'a use of nothing': (svg('<use href="#a"/>'), WHERE, "an element with the id 'a'", 'none'),
+    'a use of a file': (svg('<use href="/etc/passwd#a"/>'), WHERE, 'a reference to an element of this file', 'passwd'),
+    'uses of uses of uses': (svg(uses(12, 10)), WHERE, "'use' of 1000000 elements at most", 'more'),
+    'uses of nothing in uses': (svg(uses(12, 10, '')), WHERE, "'use' of 1000000 elements at most", 'more'),
+    'a chain of 100,000 uses': (svg(uses(100000, 1)), WHERE, '100 deep', 'more'),
     'a drawing in it': (svg(svg('')), WHERE, "one element 'svg'", 'another one'),
     'entities of entities': ('<!DOCTYPE svg [<!ENTITY a "' + 'x' * 1000 + '">' + ''.join(
         f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in zip('abcdefgh', 'bcdefghi')) + ']>' + svg('&i;<path d="M0 0L1 0"/>'),

@@ -63,6 +63,11 @@ ENDLESS = {
     'a scene': (['-d', '0.1'], 's.json', b'{"shape": [', b'1,', 10 << 20, b'1]}', 3, '--max-memory'),
     'a path of SVG': (['-d', '0.1'], 'p.svg', b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0', b' 1 1', 2 << 20,
                       b'"/></svg>', 3, '--max-memory'),
+    'a path of curves': (['-d', '0.1'], 'p.svg', b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0t', b' 1 1 2 1', 64 << 10,
+                         b'"/></svg>', 3, '--max-memory'),
+    'a circle of more points than fit': (['-d', '0.1', '--flatten', '1e-15'], 'p.svg',
+                                         b'<svg xmlns="http://www.w3.org/2000/svg"><circle r="1"/>', b'', 0, b'</svg>', 3,
+                                         '--max-memory'),
 }
 
 

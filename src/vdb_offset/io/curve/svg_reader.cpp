@@ -51,15 +51,13 @@ class Flattener : public SvgPen {
     is_curved_ = false;
   }
 
-  void point(const Vec2d& p) override {
-    held_.add();
-    add_point(p);
-  }
+  void point(const Vec2d& p) override { add_point(p); }
 
   void curve(const SvgCurve& curve, Ends ends) override {
     is_curved_ = true;
     const std::size_t count = count_of(transformed(to_drawing_, curve));
-    require_memory(count * kBytesOfPoint, document_.path());
+    constexpr std::size_t kMany = 1 << 16;  // points of one curve; fewer are not worth asking the system about
+    if (count > kMany) require_memory(count * kBytesOfPoint, document_.path());
     for (std::size_t k = 1; k < count; ++k) add_point(point_at(curve, k, count));
     if (ends == Ends::There) add_point(point_at(curve, count, count));
   }
@@ -96,6 +94,7 @@ class Flattener : public SvgPen {
     const Vec3d position = transformed(to_drawing_, p);
     if (!std::isfinite(position[0]) || !std::isfinite(position[1]))
       document_.fail_at(shape_->begin, "coordinates that are numbers", "larger ones");
+    held_.add();
     curves_.corners.push_back(static_cast<std::uint32_t>(curves_.positions.size()));
     curves_.positions.push_back(position);
     drawing_.own.push_back(p);

@@ -35,7 +35,8 @@ class UseResolver {
   void visit(std::uint32_t first, const SvgMatrix& to_drawing, std::uint32_t use) {
     active_.push_back(first);
     const std::uint32_t end = elements_[first].subtree_end;
-    require_memory((end - first) * sizeof(SvgMatrix), document_.path());
+    constexpr std::size_t kMany = 1 << 14;  // elements; fewer are not worth asking the system about
+    if (end - first > kMany) require_memory((end - first) * sizeof(SvgMatrix), document_.path());
     std::vector<SvgMatrix> inside(end - first);  // of each element, what is in it
     for (std::uint32_t e = first; e < end;) {
       const SvgElement& element = elements_[e];
