@@ -66,15 +66,15 @@ Vec2d point_of(const SvgArc& arc, std::size_t k, std::size_t n) {
 
 /// Adds the points between the ends of a curve where it is farthest along x or y.
 void add_extremes(SvgBox& box, const SvgBezier& bezier) {
-  const auto& [a, b, c, d] = bezier.points;
+  const std::array<Vec2d, 4>& p = bezier.points;
   const auto add_at = [&](double t) {
     if (!(t > 0 && t < 1)) return;
     const double s = 1 - t;
-    box.add(s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d);
+    box.add(s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3]);
   };
   for (int k = 0; k < 2; ++k) {
     // The derivative is 3 (u (1 - t)^2 + 2 v (1 - t) t + w t^2).
-    const double u = b[k] - a[k], v = c[k] - b[k], w = d[k] - c[k];
+    const double u = p[1][k] - p[0][k], v = p[2][k] - p[1][k], w = p[3][k] - p[2][k];
     const double root = std::sqrt(std::max(0.0, v * v - u * w));
     for (const double sum : {u - v + root, u - v - root}) {
       add_at(sum / (u - 2 * v + w));
