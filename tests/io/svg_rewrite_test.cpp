@@ -178,6 +178,19 @@ TEST_CASE("drawings: references and lengths that cannot be followed are told by 
                     Catch::Contains("segments can follow to within 1e-300 (--flatten)"));
 }
 
+TEST_CASE("drawings: what says that it is not shown is not drawn", "[curves][io]") {
+  const auto curves_of = [](const std::string& hidden) {
+    return parsed(hidden + "<line x2='1'/>").file.polygons.face_count();
+  };
+  CHECK(curves_of("<rect class='BoundingBox' stroke='none' fill='none' width='9' height='9'/>") == 1);
+  CHECK(curves_of("<rect style='fill:none; stroke : none' width='9' height='9'/>") == 1);
+  CHECK(curves_of("<rect style='stroke:red' fill='none' stroke='none' width='9' height='9'/>") == 2);
+  CHECK(curves_of("<rect fill='none' width='9' height='9'/>") == 2);
+  CHECK(curves_of("<g style='display:none'><g><rect width='9' height='9'/></g></g>") == 1);
+  CHECK(curves_of("<g display='none' style='display:inline'><rect width='9' height='9'/></g>") == 2);
+  CHECK(curves_of("<use href='#a'><circle r='1'/></use><g id='a'/><circle r='1'><circle r='2'/></circle>") == 2);
+}
+
 TEST_CASE("drawings: what is only referred to is not drawn", "[curves][io]") {
   const io::CurveFile file = parsed(
       "<symbol id='s'><circle r='1'/></symbol><clipPath><use href='#nothing'/><rect width='50%'/></clipPath>"

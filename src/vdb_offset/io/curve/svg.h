@@ -45,10 +45,12 @@ struct SvgDrawing {
 /// Reads the curves of a drawing: `path`, `polyline`, `polygon`, `line`, `rect`, `circle` and `ellipse`, as they are
 /// drawn, with the transforms of all that they are in, and as `use` shows them. Curved segments are flattened. What is
 /// only referred to (`defs`, `clipPath`, `mask`, `marker`, `pattern`, `symbol`) is left alone, as is what has no
-/// lines, such as text and images, and what is not SVG's. Sets all of `file` that is a drawing's, from its text.
-/// \throw InvalidInput (file, line, what was expected, what was found) for what is no XML, or UTF-16, for another `svg`
-/// in the drawing, for transforms and geometry in a style, for lengths in percent or in units of a font, and for
-/// references out of the file, to nothing, in a circle, or to more than a million elements. OutOfBudget
+/// lines, such as text and images, what is not SVG's, and what says itself that it is not shown: `display` is `none`,
+/// or of a shape both `fill` and `stroke` are, as for the boxes that LibreOffice writes around shapes. Sets all of
+/// `file` that is a drawing's, from its text. \throw InvalidInput (file, line, what was expected, what was found) for
+/// what is no XML, or UTF-16, for another `svg` in the drawing, for transforms and geometry in a style, for lengths in
+/// percent or in units of a font, and for references out of the file, to nothing, in a circle, or to more than a
+/// million elements. OutOfBudget
 void parse_svg(CurveFile& file, const CurveReading& how);
 
 /// Rewrites a drawing with points at other positions: shapes of which a point has moved are written anew, in absolute

@@ -38,7 +38,7 @@ constexpr KnownElement kKnownElements[] = {{"svg", SvgKind::Drawing, ""},
                                            {"rect", SvgKind::Rect, "x y width height rx ry"},
                                            {"circle", SvgKind::Circle, "cx cy r"},
                                            {"ellipse", SvgKind::Ellipse, "cx cy rx ry"}};
-constexpr std::string_view kCommonAttributes = "id transform style";
+constexpr std::string_view kCommonAttributes = "id transform style display fill stroke";
 // What expat puts between the namespace of an element and its name.
 constexpr char kNamespaceEnd = '|';
 

@@ -42,7 +42,8 @@ struct SvgElement {
   std::uint32_t parent = 0, subtree_end = 0;  ///< Elements; those in it are the ones from its own number up to the end.
   std::uint64_t begin = 0, tag_end = 0;       ///< Bytes of its start tag.
   std::uint64_t end_tag = 0, end = 0;         ///< Bytes of its end tag; of an empty element both are tag_end.
-  /// Those that svg_geometry() names, and `id`, `transform` and `style`; both kinds of `href` under this name.
+  /// Those that svg_geometry() names, and `id`, `transform`, `style`, `display`, `fill` and `stroke`; both kinds of
+  /// `href` under this name.
   std::vector<Attribute> attributes;
 
   /// The value of an attribute; none if it is missing or "none".

@@ -68,16 +68,21 @@ bool holds_name(std::string_view names, std::string_view name) {
   return false;
 }
 
-std::string_view declared_in(std::string_view style, std::string_view names) {
+std::optional<SvgDeclaration> declared_in(std::string_view style, std::string_view names) {
+  const auto trimmed = [](std::string_view text) {
+    while (!text.empty() && is_svg_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_svg_space(text.back())) text.remove_suffix(1);
+    return text;
+  };
   while (!style.empty()) {
-    std::string_view name = style.substr(0, style.find(';'));
-    style.remove_prefix(std::min(name.size() + 1, style.size()));
-    name = name.substr(0, name.find(':'));
-    while (!name.empty() && is_svg_space(name.front())) name.remove_prefix(1);
-    while (!name.empty() && is_svg_space(name.back())) name.remove_suffix(1);
-    if (!name.empty() && holds_name(names, name)) return name;
+    const std::string_view declaration = style.substr(0, style.find(';'));
+    style.remove_prefix(std::min(declaration.size() + 1, style.size()));
+    const std::size_t colon = std::min(declaration.find(':'), declaration.size());
+    const std::string_view name = trimmed(declaration.substr(0, colon));
+    if (name.empty() || !holds_name(names, name)) continue;
+    return SvgDeclaration{name, trimmed(declaration.substr(std::min(colon + 1, declaration.size())))};
   }
-  return {};
+  return std::nullopt;
 }
 
 SvgMatrix parse_transform(SvgValueScanner value) {

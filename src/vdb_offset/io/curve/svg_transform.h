@@ -10,6 +10,7 @@
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -119,8 +120,13 @@ class SvgValueScanner {
 /// The product of the transforms in a `transform` attribute.
 SvgMatrix parse_transform(SvgValueScanner value);
 
-/// The property among `names`, which blanks separate, that a list of CSS declarations has first; empty if none.
-std::string_view declared_in(std::string_view style, std::string_view names);
+/// A property and its value in a list of CSS declarations.
+struct SvgDeclaration {
+  std::string_view name, value;
+};
+
+/// The first declaration in a list of these of one of the properties that `names` holds.
+std::optional<SvgDeclaration> declared_in(std::string_view style, std::string_view names);
 
 /// Whether `names`, which single blanks separate, hold a name.
 bool holds_name(std::string_view names, std::string_view name);

@@ -40,9 +40,8 @@ class UseResolver {
     std::vector<SvgMatrix> inside(end - first);  // of each element, what is in it
     for (std::uint32_t e = first; e < end;) {
       const SvgElement& element = elements_[e];
-      const bool shown = element.kind != SvgKind::Foreign && element.kind != SvgKind::Hidden &&
-                         (element.kind != SvgKind::Symbol || (e == first && use != SvgDrawing::kNoUse));
-      if (!shown) {
+      const bool is_target = e == first && use != SvgDrawing::kNoUse;
+      if (!is_shown(element, is_target)) {
         e = element.subtree_end;
         continue;
       }
@@ -50,18 +49,35 @@ class UseResolver {
         document_.fail_at(element.begin, "one element 'svg'", "another one in it");
       SvgMatrix& matrix = inside[e - first];
       matrix = product(e == first ? to_drawing : inside[element.parent - first],
-                       own_transform(element, e == first ? use : SvgDrawing::kNoUse));
+                       own_transform(element, is_target ? use : SvgDrawing::kNoUse));
       if (element.kind == SvgKind::Use) draw_use(e, matrix, use);
       else if (is_svg_shape(element.kind)) draw_shape(e, matrix, use);
-      ++e;
+      const bool is_whole = element.kind == SvgKind::Use || is_svg_shape(element.kind);  // nothing in it is drawn
+      e = is_whole ? element.subtree_end : e + 1;
     }
     active_.pop_back();
+  }
+
+  /// Whether an element is drawn, as far as it tells itself; a symbol is where a `use` refers to it.
+  static bool is_shown(const SvgElement& element, bool is_target) {
+    if (element.kind == SvgKind::Foreign || element.kind == SvgKind::Hidden || is_none(element, "display"))
+      return false;
+    if (element.kind == SvgKind::Symbol) return is_target;
+    return !is_svg_shape(element.kind) || !is_none(element, "fill") || !is_none(element, "stroke");
+  }
+
+  /// Whether a property of the element's own is 'none'. A style goes before an attribute.
+  static bool is_none(const SvgElement& element, std::string_view property) {
+    if (const auto* const style = element.value("style"))
+      if (const auto declared = declared_in(*style, property)) return declared->value == "none";
+    return std::any_of(element.attributes.begin(), element.attributes.end(),
+                       [&](const auto& each) { return each.name == property && each.value == "none"; });
   }
 
   /// The transform of an element's own attributes.
   SvgMatrix own_transform(const SvgElement& element, std::uint32_t shown_by) {
     if (const auto* const style = element.value("style"))
-      if (!declared_in(*style, kMovingProperties).empty())
+      if (declared_in(*style, kMovingProperties))
         document_.fail_at(element.begin, "transforms that are attributes", "one in a style");
     const std::string* const transform = element.value("transform");
     SvgMatrix own =
@@ -85,8 +101,9 @@ class UseResolver {
       has_any = has_any || (holds_name(geometry, attribute.name) && shape.value(attribute.name));
     if (!has_any) return;
     if (const auto* const style = shape.value("style"))
-      if (const std::string_view name = declared_in(*style, geometry); !name.empty())
-        document_.fail_at(shape.begin, "the geometry of shapes in attributes", fmt::format("'{}' in a style", name));
+      if (const auto declared = declared_in(*style, geometry))
+        document_.fail_at(shape.begin, "the geometry of shapes in attributes",
+                          fmt::format("'{}' in a style", declared->name));
     if (!has_inverse(to_drawing)) document_.fail_at(shape.begin, "a transform that can be undone", "one that flattens");
     require_in_tag(shape, geometry);
     held_.add();
