@@ -106,6 +106,7 @@ def names_that_are_not_text(place):
 # Options that take a number, and what stands around them.
 NUMBERS = {'--voxel-size': (), '--voxels-per-distance': (), '--threads': (), '--precision': (), '--weld': (),
            '--max-memory': (), '--tolerance': (), '--max-faces': ('--tolerance', '1%'), '--adaptivity': ('--mode', 'iso'), '--clearance': ('--obstacle', 'wall.obj'),
+           '--flatten': (),
            '--symmetry': ()}
 # No numbers: hexadecimal, octal as C has it, out of range, two signs, blanks, commas, lists.
 FEW_NO_NUMBERS = ('0x10', '1e-400', '+-1')

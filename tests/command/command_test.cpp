@@ -770,6 +770,32 @@ TEST_CASE("command: curves are offset, reported, and refuse what is for meshes",
   CHECK_FALSE(shell.has("none.dat"));
 }
 
+TEST_CASE("command: curved shapes of a drawing are flattened alike by an offset and a check", "[command][curves]") {
+  const ShellCommand shell;
+  std::ofstream(shell.file("plate.svg")) << "<svg><rect width='20' height='10' rx='3'/><circle cx='50' r='2'/></svg>";
+  const Run run = shell("plate.svg cut.svg -d 0.1 --report r.json");
+  REQUIRE(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("2 curved shapes flattened to within"));
+  const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
+  CHECK(std::stod(report["options"]["flatten"].get<std::string>()) == Approx(1e-5 * std::hypot(52, 12)).epsilon(1e-9));
+  CHECK(shell("check plate.svg cut.svg -d 0.1 --strict").code == 0);
+  // Told coarser, an offset has fewer points, and so has what it is compared with.
+  CHECK(shell("plate.svg coarse.svg -d 0.1 --flatten 0.05 -q").code == 0);
+  CHECK(fs::file_size(shell.file("coarse.svg")) < fs::file_size(shell.file("cut.svg")) / 4);
+  CHECK(shell("check plate.svg coarse.svg -d 0.1 --flatten 0.05 --strict").code == 0);
+  check_failure(shell, "check plate.svg coarse.svg -d 0.1", 2, "expected the points of plate.svg");
+  // Percent are of the diagonal; shapes that stay are curved in the output, and get the points of the source.
+  CHECK(shell("plate.svg percent.svg -d '(x > 30 ? 0 : 0.1)' --flatten 0.1% -q").code == 0);
+  CHECK_THAT(shell.slurp(shell.file("percent.svg")), Catch::Contains("<circle cx='50' r='2'/>"));
+  CHECK(shell("check plate.svg percent.svg --flatten 0.1%").code == 0);
+  CHECK(shell("plate.svg same.svg -d 0 -q").code == 0);
+  CHECK(shell.slurp(shell.file("same.svg")) == shell.slurp(shell.file("plate.svg")));
+  check_failure(shell, "plate.svg no.svg -d 0.1 --flatten 0", 1,
+                "--flatten: expected a number of world units or percent");
+  check_failure(shell, "sphere.obj no.obj -d 0.1 --flatten 1", 1, "--flatten: expected curves");
+  check_failure(shell, "check sphere.obj sphere.obj --flatten 1", 1, "--flatten: expected curves");
+}
+
 TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][curves][layers]") {
   const ShellCommand shell;
   std::ofstream(shell.file("square.dat")) << "1 0\n1 1\n0 1\n0 0\n1 0\n";

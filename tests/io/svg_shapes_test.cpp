@@ -227,5 +227,6 @@ TEST_CASE("drawings: without being told, the tolerance is a share of the diagona
   CHECK(tolerance_of("<path d='M0 0L3 4'/>", {}) == 0);
   // The box is around the curves, not around the points that they are drawn to: here from -1 to 1, and 0.75 high.
   CHECK(tolerance_of("<path d='M-1 0C-1 1 1 1 1 0'/>", {1, 0}) == Approx(std::hypot(2, 0.75)).epsilon(1e-12));
+  CHECK(tolerance_of("<path d='M-1 0C-1 1e200 1 1e200 1 0'/>", {1, 0}) == Approx(0.75e200).epsilon(1e-12));
   CHECK(tolerance_of("<path d='M0 0A1 1 0 0 1 2 0'/>", {1, 0}) == Approx(std::hypot(2, 1)).epsilon(1e-12));
 }

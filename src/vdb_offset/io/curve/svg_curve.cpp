@@ -73,8 +73,11 @@ void add_extremes(SvgBox& box, const SvgBezier& bezier) {
     box.add(s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3]);
   };
   for (int k = 0; k < 2; ++k) {
-    // The derivative is 3 (u (1 - t)^2 + 2 v (1 - t) t + w t^2).
-    const double u = p[1][k] - p[0][k], v = p[2][k] - p[1][k], w = p[3][k] - p[2][k];
+    // The derivative is 3 (u (1 - t)^2 + 2 v (1 - t) t + w t^2), here without a factor, so that no square overflows.
+    double u = p[1][k] - p[0][k], v = p[2][k] - p[1][k], w = p[3][k] - p[2][k];
+    const double largest = std::max({std::abs(u), std::abs(v), std::abs(w)});
+    if (!(largest > 0)) continue;
+    u /= largest, v /= largest, w /= largest;
     const double root = std::sqrt(std::max(0.0, v * v - u * w));
     for (const double sum : {u - v + root, u - v - root}) {
       add_at(sum / (u - 2 * v + w));

@@ -180,7 +180,7 @@ class UseResolver {
       document_.fail_at(use.begin, "a width and a height above 0 where a 'use' shows a symbol with a viewBox",
                         "others, or none");
     const std::string* const given = symbol.value("preserveAspectRatio");
-    const std::string_view how = given ? *given : "xMidYMid meet";
+    const std::string_view how = given ? std::string_view(*given) : "xMidYMid meet";
     double scale[] = {size[0] / from[2], size[1] / from[3]};
     // value() gives no 'none', so it is looked for among the attributes.
     const bool stretched = std::any_of(symbol.attributes.begin(), symbol.attributes.end(), [](const auto& each) {
