@@ -121,3 +121,45 @@ TEST_CASE("drawings: a drawing with curves, offset and written, is as it was but
   for (const auto p : moved(file, result).face(0))
     CHECK(std::hypot(result.positions[p][0] - 55, result.positions[p][1] - 78) == Approx(20.5).epsilon(3e-4));
 }
+
+TEST_CASE("drawings: the ways in which programs write them", "[curves][io]") {
+  using namespace drawings;
+  const auto read = [](const std::string& text) {
+    return io::parse_curves("t.svg", io::CurveFormat::Svg, text, {0, 1e-3});
+  };
+  // Entities for namespaces, a style sheet as character data, foreign elements in a switch, curves without separators.
+  const io::CurveFile entities = read(
+      "<?xml version=\"1.0\" encoding=\"iso-8859-1\"?>\n<!DOCTYPE svg PUBLIC \"-//W3C//DTD SVG 1.1//EN\" \"svg11.dtd\" "
+      "[\n"
+      "  <!ENTITY ns_svg \"http://www.w3.org/2000/svg\">\n  <!ENTITY ns_ai \"http://ns.example.com/ai/\">\n]>\n"
+      "<svg version=\"1.1\" xmlns=\"&ns_svg;\" xmlns:i=\"&ns_ai;\" x=\"0px\" y=\"0px\" xml:space=\"preserve\">\n"
+      "<style type=\"text/css\"><![CDATA[ .st0{fill:none;stroke:#FF0000;} ]]></style><switch>\n"
+      "<foreignObject requiredExtensions=\"&ns_ai;\" width=\"1\" height=\"1\"><i:pgf id=\"p\"/></foreignObject>\n"
+      "<g i:extraneous=\"self\"><path class=\"st0\" "
+      "d=\"M20.5,10.5c0,5.523-4.477,10-10,10s-10-4.477-10-10s4.477-10,10-10"
+      "S20.5,4.977,20.5,10.5z\"/><line class=\"st0\" x1=\"1e1\" y1=\"-.5\" x2=\"10\" y2=\"21\"/></g></switch></svg>");
+  REQUIRE(entities.file.polygons.face_count() == 2);
+  for (const auto p : entities.file.polygons.view().face(0)) {
+    const Vec3d& at = entities.file.polygons.positions[p];
+    CHECK(std::hypot(at[0] - 10.5, at[1] - 10.5) == Approx(10).epsilon(3e-4));
+  }
+  // Hundredths of a millimetre, a box around each shape that is not drawn, the same place written twice before the end.
+  const io::CurveFile boxes = read(
+      "<svg width='210mm' height='297mm' viewBox='0 0 21000 29700' xmlns='http://www.w3.org/2000/svg'>"
+      "<g class='com.sun.star.drawing.CustomShape'><g id='id3'><rect class='BoundingBox' stroke='none' fill='none' "
+      "x='2999' "
+      "y='3999' width='5003' height='3003'/><path fill='rgb(114,159,207)' stroke='none' d='M 5500,7000 L 3000,7000 "
+      "3000,4000 "
+      "8000,4000 8000,7000 5500,7000 Z'/><path fill='none' stroke='rgb(52,101,164)' d='M 5500,7000 L 3000,7000 "
+      "3000,4000 "
+      "8000,4000 8000,7000 5500,7000 Z'/></g></g></svg>");
+  CHECK(boxes.file.polygons.face_count() == 2);
+  CHECK(boxes.flattened_shapes == 0);
+  // One command for many coordinates, numbers with exponents, arcs with their flags glued to what follows.
+  const io::CurveFile glued = read(
+      "<svg xmlns='http://www.w3.org/2000/svg'><path d='m1e1 10a5 5 0 1110 0 5 5 0 01-1.0E+1 0zm30,0 "
+      "5e-1.5.5-.5'/></svg>");
+  REQUIRE(glued.file.polygons.face_count() == 2);
+  CHECK(std::abs(area_of(glued.file.polygons.view(), 0)) == Approx(kPi * 25).epsilon(1e-3));
+  CHECK(glued.file.polygons.positions.back() == Vec3d(41, 10, 0));
+}

@@ -186,6 +186,7 @@ TEST_CASE("drawings: what says that it is not shown is not drawn", "[curves][io]
   CHECK(curves_of("<rect style='fill:none; stroke : none' width='9' height='9'/>") == 1);
   CHECK(curves_of("<rect style='stroke:red' fill='none' stroke='none' width='9' height='9'/>") == 2);
   CHECK(curves_of("<rect fill='none' width='9' height='9'/>") == 2);
+  CHECK(curves_of("<rect fill='none' style='stroke:none;stroke:red' width='9' height='9'/>") == 2);
   CHECK(curves_of("<g style='display:none'><g><rect width='9' height='9'/></g></g>") == 1);
   CHECK(curves_of("<g display='none' style='display:inline'><rect width='9' height='9'/></g>") == 2);
   CHECK(curves_of("<use href='#a'><circle r='1'/></use><g id='a'/><circle r='1'><circle r='2'/></circle>") == 2);

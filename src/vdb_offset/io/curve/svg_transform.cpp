@@ -74,15 +74,16 @@ std::optional<SvgDeclaration> declared_in(std::string_view style, std::string_vi
     while (!text.empty() && is_svg_space(text.back())) text.remove_suffix(1);
     return text;
   };
+  std::optional<SvgDeclaration> last;
   while (!style.empty()) {
     const std::string_view declaration = style.substr(0, style.find(';'));
     style.remove_prefix(std::min(declaration.size() + 1, style.size()));
     const std::size_t colon = std::min(declaration.find(':'), declaration.size());
     const std::string_view name = trimmed(declaration.substr(0, colon));
     if (name.empty() || !holds_name(names, name)) continue;
-    return SvgDeclaration{name, trimmed(declaration.substr(std::min(colon + 1, declaration.size())))};
+    last = {name, trimmed(declaration.substr(std::min(colon + 1, declaration.size())))};
   }
-  return std::nullopt;
+  return last;
 }
 
 SvgMatrix parse_transform(SvgValueScanner value) {

@@ -125,7 +125,7 @@ struct SvgDeclaration {
   std::string_view name, value;
 };
 
-/// The first declaration in a list of these of one of the properties that `names` holds.
+/// The last declaration in a list of these of one of the properties that `names` holds: the one that counts.
 std::optional<SvgDeclaration> declared_in(std::string_view style, std::string_view names);
 
 /// Whether `names`, which single blanks separate, hold a name.
