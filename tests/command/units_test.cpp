@@ -20,7 +20,7 @@ void check_same(const ShellCommand& shell, const std::string& with_units, const 
 
 }  // namespace
 
-TEST_CASE("units: a length with a unit is that length in the unit of the file", "[command]") {
+TEST_CASE("units: a length with a unit is that length in the unit of the file", "[command][long]") {
   const ShellCommand shell;
   check_same(shell, "-d 0.1mm --unit mm", "-d 0.1");
   check_same(shell, "-d 0.1mm --unit cm", "-d 0.01");
