@@ -17,12 +17,13 @@ class Offsets(BesideTheCommand):
         self.check_bits(result.positions, made)
         self.assertFalse((made == vertices).all())
         self.check_report(result.statistics, run.report())
+        return result
 
     def test_outward(self):
         self.check("bumpy_sphere", "3%")
 
     def test_inward_where_fronts_meet(self):
-        self.check("gear", "-4%")
+        self.assertIn("collision", self.check("gear", "-6%").state_names)
 
     def test_merge(self):
         self.check("bumpy_sphere", "4%", ["--collision", "merge"], collision="merge")

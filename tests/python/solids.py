@@ -85,8 +85,9 @@ class Solids(BesideTheCommand):
     def test_iso_surfaces_at_several_distances(self):
         run = self.run_command
         run.write("cube.obj", CUBE, QUADS)
-        run("cube.obj", "made_{i}.obj", "--mode", "iso", "--distance=0.1", "--distance=-10%", "--precision", "17")
-        several = vdb_offset.iso_surface_several(CUBE, QUADS, [0.1, "-10%"], precision=17)
+        run("cube.obj", "made_{i}.obj", "--mode", "iso", "--distance=0.1", "--distance=-10%", "--precision", "17",
+            "--voxel-size=0.1")
+        several = vdb_offset.iso_surface_several(CUBE, QUADS, [0.1, "-10%"], precision=17, voxel_size=0.1)
         for i, iso in enumerate(several):
             self.check_bits(iso.vertices, run.read(f"made_00{i + 1}.obj")[0])
         self.assertEqual(i, 1)
@@ -95,8 +96,9 @@ class Solids(BesideTheCommand):
         run = self.run_command
         plate = CUBE * [1, 1, 0.01]
         run.write("plate.obj", plate, QUADS)
-        run("plate.obj", "made.obj", "--mode", "iso", "--distance-xy=0.2", "--distance-z=0", "--precision", "17")
-        iso = vdb_offset.iso_surface(plate, QUADS, 0.2, distance_z=0, precision=17)
+        run("plate.obj", "made.obj", "--mode", "iso", "--distance-xy=0.2", "--distance-z=0", "--precision", "17",
+            "--voxel-size=0.2")
+        iso = vdb_offset.iso_surface(plate, QUADS, 0.2, distance_z=0, precision=17, voxel_size=0.2)
         self.check_bits(iso.vertices, run.read("made.obj")[0])
         self.assertLess(np.ptp(iso.vertices[:, 2]), 0.0105)
 
@@ -107,8 +109,9 @@ class Solids(BesideTheCommand):
         run.write("holed.obj", vertices, holed)
         sizes = []
         for inside in ("winding", "never"):
-            run("holed.obj", "made.obj", "--mode", "iso", "--distance=5%", "--inside", inside, "--precision", "17")
-            iso = vdb_offset.iso_surface(vertices, holed, "5%", inside=inside, precision=17)
+            run("holed.obj", "made.obj", "--mode", "iso", "--distance=5%", "--inside", inside, "--precision", "17",
+                "--voxel-size=0.1")
+            iso = vdb_offset.iso_surface(vertices, holed, "5%", inside=inside, precision=17, voxel_size=0.1)
             self.check_bits(iso.vertices, run.read("made.obj")[0])
             sizes.append(len(iso.vertices))
         self.assertLess(sizes[0], sizes[1])
@@ -117,13 +120,13 @@ class Solids(BesideTheCommand):
                 vdb_offset.iso_surface(vertices, holed, "5%", inside=wrong)
 
     def test_no_surface_that_is_not_valid(self):
-        soup, faces = np.random.RandomState(10).random_sample((60, 3)), np.arange(60).reshape(20, 3)  # pylint: disable=no-member
+        soup, faces = np.random.RandomState(2).random_sample((36, 3)), np.arange(36).reshape(12, 3)  # pylint: disable=no-member
         run = self.run_command
         run.write("soup.obj", soup, faces)
-        done = run("soup.obj", "made.obj", "--mode", "iso", "--distance=0.03", "--adaptivity", "1", "--voxel-size", "0.05",
+        done = run("soup.obj", "made.obj", "--mode", "iso", "--distance=0.03", "--adaptivity", "1", "--voxel-size", "0.07",
                    "--precision", "2")
         self.assertEqual(done.returncode, 3, "the test needs a surface that is not valid")
-        options = {"adaptivity": 1, "voxel_size": 0.05, "precision": 2}
+        options = {"adaptivity": 1, "voxel_size": 0.07, "precision": 2}
         for make in (lambda: vdb_offset.iso_surface(soup, faces, 0.03, **options),
                      lambda: vdb_offset.iso_shell(soup, faces, 0.03, **options)):
             with self.assertRaises(vdb_offset.InvalidResult) as caught:
