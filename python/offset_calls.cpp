@@ -40,7 +40,7 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
   });
   py::list all;
   for (std::size_t i = 0; i < results.size(); ++i)
-    all.append(as_dict(std::move(results[i]), facts_of_run(texts[i], start)));
+    all.append(as_dict(std::move(results[i]), facts_of_run(texts[i], start), source, asked));
   return all;
 }
 
@@ -56,7 +56,7 @@ py::dict fit_arrays(const py::object& vertices, const py::object& faces, const p
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(asked.options);
   OffsetResult result = run([&] { return fit(source.view(), near.view(), room, asked.options); });
-  return as_dict(std::move(result), facts_of_run("fit", start));
+  return as_dict(std::move(result), facts_of_run("fit", start), source, asked);
 }
 
 namespace {
@@ -93,7 +93,7 @@ py::dict refined_arrays(const py::object& vertices, const py::object& faces, con
   run.attach(asked.options);
   RefinedOffset refined = run([&] { return offset_to_tolerance(source.view(), asked.options, within); });
   Refinement& refinement = refined.refinement;
-  py::dict all = as_dict(std::move(refined.result), facts_of_run(text_of(distance), start));
+  py::dict all = as_dict(std::move(refined.result), facts_of_run(text_of(distance), start), source, asked);
   const auto count = static_cast<py::ssize_t>(refinement.parent.size());
   all["faces"] = faces_of(refinement.polygons);
   all["source"] = owning_array(std::move(refinement.polygons.positions));
@@ -104,7 +104,7 @@ py::dict refined_arrays(const py::object& vertices, const py::object& faces, con
 
 namespace {
 
-py::dict check_as_dict(CheckResult result) {
+py::dict check_as_dict(CheckResult result, const Source& source, const AskedOptions& asked) {
   const std::size_t count = result.states.size();
   py::dict all;
   all["statistics"] = from_json(check_json(result, "", ""));
@@ -112,6 +112,7 @@ py::dict check_as_dict(CheckResult result) {
   all["states"] = states_of(result.states);
   all["distances"] = distances_array(result.distances, count);
   all["achieved"] = owning_array(std::move(result.achieved), {static_cast<py::ssize_t>(count)});
+  all["face_errors"] = face_errors_of(std::move(result.face_errors), source, asked);
   return all;
 }
 
@@ -138,10 +139,11 @@ py::dict check_arrays(Input input, const py::object& vertices, const py::object&
   }
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(options);
-  return check_as_dict(run([&] {
+  CheckResult result = run([&] {
     return source.curves() ? check_curves(source.view(), moved.view().positions, options)
                            : check_offset(source.view(), moved.view().positions, options);
-  }));
+  });
+  return check_as_dict(std::move(result), source, asked);
 }
 
 }  // namespace vdb_offset::python

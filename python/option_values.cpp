@@ -211,6 +211,7 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
     if (!given.contains("obstacles")) throw InvalidOption("clearance needs obstacles");
   }
   keywords.read("paths", options.keep_paths);
+  keywords.read("face_errors", options.keep_face_errors);
   options.symmetry = symmetry_of(keywords["symmetry"]);
   if (const py::object only = keywords["only"]; !only.is_none()) options.only = marks_of(only, mesh.face_count());
   if (const py::object obstacles = keywords["obstacles"]; !obstacles.is_none()) {
@@ -241,6 +242,7 @@ CheckOptions check_options(const AskedOptions& asked, const py::object& toleranc
   check.orient = options.orient;
   check.precision = options.precision;
   check.threads = options.threads;
+  check.keep_face_errors = options.keep_face_errors;
   if (!tolerance.is_none()) std::tie(check.tolerance_share, check.tolerance_length) = tolerance_of(tolerance);
   return check;
 }

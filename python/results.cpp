@@ -2,6 +2,7 @@
 #include "results.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "vdb_offset/distance_field.h"
@@ -25,7 +26,14 @@ py::array distances_array(const Distances& distances, std::size_t count) {
   return owning_array(std::move(each), {static_cast<py::ssize_t>(count)});
 }
 
-py::dict as_dict(OffsetResult result, const RunFacts& run) {
+py::object face_errors_of(std::vector<float> errors, const Source& source, const AskedOptions& asked) {
+  if (!asked.options.keep_face_errors) return py::none();
+  const std::size_t count = source.view().face_count();
+  if (errors.empty()) errors.assign(count, std::numeric_limits<float>::quiet_NaN());
+  return owning_array(std::move(errors), {static_cast<py::ssize_t>(count)});
+}
+
+py::dict as_dict(OffsetResult result, const RunFacts& run, const Source& source, const AskedOptions& asked) {
   const std::size_t count = result.positions.size();
   py::dict all;
   all["statistics"] = from_json(report_json(result, run));
@@ -35,6 +43,7 @@ py::dict as_dict(OffsetResult result, const RunFacts& run) {
   py::list paths;
   for (auto& path : result.paths) paths.append(owning_array(std::move(path)));
   all["paths"] = result.paths.empty() ? py::object(py::none()) : py::object(paths);
+  all["face_errors"] = face_errors_of(std::move(result.face_errors), source, asked);
   all["positions"] = owning_array(std::move(result.positions));
   return all;
 }

@@ -10,6 +10,7 @@
 
 #include "arrays.h"
 #include "option_values.h"
+#include "source.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/report.h"
 
@@ -31,8 +32,11 @@ py::object from_json(const std::string& text);
 py::array states_of(const std::vector<VertexState>& states);
 py::array distances_array(const Distances& distances, std::size_t count);
 
+/// How far each face is off as an array, all NaN where nothing is asked of any; None unless that was asked for.
+py::object face_errors_of(std::vector<float> errors, const Source& source, const AskedOptions& asked);
+
 /// What is told of every offset.
-py::dict as_dict(OffsetResult result, const RunFacts& run);
+py::dict as_dict(OffsetResult result, const RunFacts& run, const Source& source, const AskedOptions& asked);
 
 RunFacts facts_of_run(const std::string& distance, Clock::time_point start);
 /// A distance in the words of reports.

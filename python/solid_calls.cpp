@@ -17,7 +17,8 @@
 namespace vdb_offset::python {
 namespace {
 
-py::dict shell_as_dict(Shell shell, OffsetResult result, RunFacts facts) {
+py::dict shell_as_dict(Shell shell, OffsetResult result, RunFacts facts, const Source& source,
+                       const AskedOptions& asked) {
   facts.shell = shell.facts;
   std::vector<std::uint8_t> parts(shell.polygons.face_count());
   std::vector<std::uint32_t> sources(parts.size());
@@ -26,7 +27,7 @@ py::dict shell_as_dict(Shell shell, OffsetResult result, RunFacts facts) {
     sources[f] = shell.source_face(f);
   }
   const auto count = static_cast<py::ssize_t>(parts.size());
-  py::dict all = as_dict(std::move(result), facts);
+  py::dict all = as_dict(std::move(result), facts, source, asked);
   all["faces"] = faces_of(shell.polygons);
   all["parts"] = owning_array(std::move(parts), {count});
   all["source_faces"] = owning_array(std::move(sources), {count});
@@ -70,7 +71,8 @@ py::list shell_arrays(const py::object& vertices, const py::object& faces, const
   });
   py::list all;
   for (std::size_t i = 0; i < made.second.size(); ++i)
-    all.append(shell_as_dict(std::move(made.second[i]), std::move(made.first[i]), facts_of_run(texts[i], start)));
+    all.append(shell_as_dict(std::move(made.second[i]), std::move(made.first[i]), facts_of_run(texts[i], start), source,
+                             asked));
   return all;
 }
 

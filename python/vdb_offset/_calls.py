@@ -79,7 +79,7 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
     return Offset(**_core.offset_curves(points, curves, [distance], *given(offset_curves, options))[0])
 
 
-@takes(_options.OFFSET, without=["paths", "distance_z", "save_vdb"])
+@takes(_options.OFFSET, without=["paths", "face_errors", "distance_z", "save_vdb"])
 def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *,
                         max_faces: int = 0, **options: Any) -> Refined:
     """Offsets a mesh, and splits its faces until they are proven to be at the distance, at every point of them.

@@ -19,8 +19,8 @@ def offset_several(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Offset]: ...
 
 def offset(
@@ -34,8 +34,8 @@ def offset(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def offset_curves_several(
@@ -79,7 +79,7 @@ def fit(
     weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, paths: bool = False, threads: int = 0,
+    voxels_per_distance: Optional[float] = None, paths: bool = False, face_errors: bool = False, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
@@ -94,8 +94,8 @@ def shell_several(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Shell]: ...
 
 def shell(
@@ -109,8 +109,8 @@ def shell(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Shell: ...
 
 def layers(
@@ -204,8 +204,8 @@ def check(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, progress: Progress = None
 ) -> Check: ...
 
 def check_curves(

@@ -79,6 +79,7 @@ OPTIONS: Dict[str, Option] = {
                          "of the grid, world units: the length of the edges of an iso-surface; or"),
     "voxels_per_distance": Option(Optional[float], None, "how many voxels there are to a distance"),
     "paths": Option(bool, False, "whether the result has the vertices' ways"),
+    "face_errors": Option(bool, False, "whether the result has how far each face is off its distance"),
     "save_vdb": Option(Optional[Union[str, os.PathLike]], None,
                        "a file to write: phi and the closest triangles as OpenVDB grids"),
     "threads": Option(int, 0, "0: as many as the machine has"),
@@ -99,7 +100,7 @@ _COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_mem
 OFFSET = [name for name in OPTIONS if name not in ("inner", "close", *_OF_LAYERS, *_OF_ISO)]
 CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths", "save_vdb", *_COMMON]
 ISO = [*_OF_ISO, "weld", "orient", *_COMMON]
-_NOT_OF_LAYERS = ("paths", "collision", "distance_z", "save_vdb")
+_NOT_OF_LAYERS = ("paths", "face_errors", "collision", "distance_z", "save_vdb")
 LAYERS = [*_OF_LAYERS, *(name for name in OFFSET if name not in _NOT_OF_LAYERS)]
 CURVE_LAYERS = [*_HEIGHTS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
 

@@ -48,6 +48,9 @@ class Offset(_Vertices):
     distances: np.ndarray
     #: With `paths=True`, of each vertex the (k, 3) positions on its way; else None.
     paths: Optional[List[np.ndarray]]
+    #: With `face_errors=True`, (m,) of each face of the input how far it is off its distance, as a share of that: NaN
+    #: where nothing is asked. Else None.
+    face_errors: Optional[np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +83,8 @@ class Shell(_Vertices):
     source_faces: np.ndarray
     #: With `paths=True`, of each vertex of the input the (k, 3) positions on its way to the outer skin; else None.
     paths: Optional[List[np.ndarray]]
+    #: With `face_errors=True`, (m,) of each face of the input how far that of the outer skin is off; else None.
+    face_errors: Optional[np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,3 +183,5 @@ class Check(_Vertices):
     valid: bool
     #: (n,) distances that were asked for, or found.
     distances: np.ndarray
+    #: With `face_errors=True`, (m,) of each face how far it is off its distance, as `Offset`'s; else None.
+    face_errors: Optional[np.ndarray]

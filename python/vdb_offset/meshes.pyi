@@ -27,6 +27,6 @@ def offset_mesh(
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Tuple[Any, Offset]: ...

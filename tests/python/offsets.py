@@ -196,6 +196,68 @@ class Offsets(BesideTheCommand):
         self.check_report(found.statistics, run.report(), ["source", "offset"])
         self.assertLess(found.statistics["certified"]["certified"], 1)
 
+    def check_face_errors(self, found, name, faces):
+        """Errors of faces are those that a file has, to the last bit, and some are numbers other than 0."""
+        try:
+            from vtkmodules.util.numpy_support import vtk_to_numpy
+            from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+        except ImportError:
+            self.skipTest("VTK's modules are not installed")
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(self.run_command.path(name))
+        reader.Update()
+        written = vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("face_error"))
+        self.assertEqual((found.dtype, found.shape), (np.float32, (len(faces),)))
+        self.assertEqual(written.dtype, np.float32)
+        np.testing.assert_array_equal(found.view(np.uint32), written.view(np.uint32))
+        self.assertGreater(np.nanmax(found), 0)
+
+    def test_errors_of_faces(self):
+        run = self.run_command
+        vertices, faces = shape_of("torus", run)
+        part = np.arange(0, len(faces), 3)
+        options = {"corners": "miter", "precision": 17, "face_errors": True}
+        run("shape.obj", "made_{i}.obj", "--distance=0.05", "--distance=-4%", "--corners", "miter", "--states", "states_{i}.vtp",
+            "--precision", "17")
+        for i, each in enumerate(vdb_offset.offset_several(vertices, faces, [0.05, "-4%"], **options)):
+            self.check_face_errors(each.face_errors, f"states_00{i + 1}.vtp", faces)
+        run("check", "shape.obj", "made_001.obj", "--distance=0.05", "--corners", "miter", "--states", "states.vtp", "--precision",
+            "17")
+        found = vdb_offset.check(vertices, faces, run.read("made_001.obj")[0], 0.05, **options)
+        self.check_face_errors(found.face_errors, "states.vtp", faces)
+        run("shape.obj", "made.obj", "--shell", "--distance=0.05", "--inner=0.02", "--states", "states.vtp")
+        shell = vdb_offset.shell(vertices, faces, 0.05, inner=0.02, face_errors=True)
+        self.check_face_errors(shell.face_errors, "states.vtp", faces)
+        # Nothing is asked of the other faces.
+        some = vdb_offset.offset(vertices, faces, 0.05, only=part, **options).face_errors
+        self.assertTrue((np.isnan(some) == ~np.isin(np.arange(len(faces)), part)).all())
+
+    def test_errors_of_faces_of_a_fit(self):
+        run = self.run_command
+        near = CUBE * [1, 1, 0.5] + [0, 0, 1.02]
+        run.write("cube.obj", CUBE, QUADS)
+        run.write("near.obj", near, QUADS)
+        run("cube.obj", "made.obj", "--fit", "near.obj", "--clearance", "0.05", "--states", "states.vtp")
+        fit = vdb_offset.fit(CUBE, QUADS, (near, QUADS), 0.05, face_errors=True)
+        self.check_face_errors(fit.face_errors, "states.vtp", QUADS)
+
+    def test_errors_of_faces_that_nobody_asks_for(self):
+        for result in (vdb_offset.offset(CUBE, QUADS, 0.1), vdb_offset.shell(CUBE, QUADS, 0.1, face_errors=False),
+                       vdb_offset.check(CUBE, QUADS, CUBE, 0.1), vdb_offset.offset_to_tolerance(CUBE, QUADS, 0.1, "5%"),
+                       vdb_offset.offset_curves(CUBE[:4], np.array([[0, 1], [1, 3]]), 0.1)):
+            self.assertIsNone(result.face_errors)
+        for result in (vdb_offset.offset(CUBE, QUADS, 0, face_errors=True),
+                       vdb_offset.shell(CUBE, QUADS, 0, inner=0.1, face_errors=True),
+                       vdb_offset.check(CUBE, QUADS, CUBE, 0, face_errors=True)):
+            self.assertTrue(np.isnan(result.face_errors).all())
+            self.assertEqual(result.face_errors.shape, (6,))
+        for function, arguments in ((vdb_offset.layers, (CUBE, QUADS, [0.1])), (vdb_offset.offset_to_tolerance, (CUBE, QUADS, 0.1, 1)),
+                                    (vdb_offset.offset_curves, (CUBE[:4], np.array([[0, 1]]), 0.1))):
+            with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'face_errors'"):
+                function(*arguments, face_errors=True)
+        with self.assertRaisesRegex(vdb_offset.InvalidOption, "face_errors: expected True or False"):
+            vdb_offset.offset(CUBE, QUADS, 0.1, face_errors="all")
+
     def test_clearance_in_percent(self):
         run = self.run_command
         above = CUBE + [0, 0, 1.1]
