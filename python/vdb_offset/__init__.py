@@ -15,7 +15,8 @@ offsets, which rise from 0, and the corners that they divide. Arrays of doubles,
 are contiguous are not copied. For the meshes of trimesh, PyVista, VTK, meshio and Open3D see `offset_mesh()`.
 
 A `distance` is a number in world units, negative inward; an array with one for each vertex; or a text as the command
-takes it: "1%" of the diagonal of the bounding box, or an expression, "0.1 + 0.05*sin(4*pi*z)".
+takes it: "1%" of the diagonal of the bounding box, or an expression, "0.1 + 0.05*sin(4*pi*z)". With `unit`, what the
+numbers of the arrays are, lengths may have one of their own: "0.2mm".
 
 Errors are classes of this module's: `InvalidInput` and `InvalidOption` are ValueErrors, `OutOfBudget` is a MemoryError,
 `InvalidResult`, of an iso-surface that is not valid, is a RuntimeError with the surface's `statistics`, and all of them

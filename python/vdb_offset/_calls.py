@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from . import _core, _options
-from ._options import Distance, Faces, Progress, given, takes
+from ._options import Distance, Faces, Progress, given, length, lengths, takes
 from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shell
 
 
@@ -22,7 +22,8 @@ def offset_several(vertices: np.ndarray, faces: Faces, distances: Sequence[Dista
     :param options: by keyword; `help()` tells of each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
-    results = _core.offset(vertices, faces, list(distances), *given(offset_several, options))
+    wanted = lengths("distances", distances, options.get("unit"))
+    results = _core.offset(vertices, faces, wanted, *given(offset_several, options))
     return [Offset(**result) for result in results]
 
 
@@ -46,7 +47,8 @@ def offset(vertices: np.ndarray, faces: Faces, distance: Distance, **options: An
         ...
     vdb_offset.InvalidInput: faces: expected numbers of vertices, from 0 to 4 - 1, got another one as corner 3
     """
-    return Offset(**_core.offset(vertices, faces, [distance], *given(offset, options))[0])
+    wanted = [length("distance", distance, options.get("unit"))]
+    return Offset(**_core.offset(vertices, faces, wanted, *given(offset, options))[0])
 
 
 @takes(_options.CURVES)
@@ -56,7 +58,8 @@ def offset_curves_several(points: np.ndarray, curves: Faces, distances: Sequence
 
     :param options: by keyword; `help()` tells of each
     """
-    results = _core.offset_curves(points, curves, list(distances), *given(offset_curves_several, options))
+    wanted = lengths("distances", distances, options.get("unit"))
+    results = _core.offset_curves(points, curves, wanted, *given(offset_curves_several, options))
     return [Offset(**result) for result in results]
 
 
@@ -76,7 +79,8 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
     >>> np.ptp(kerf.positions, axis=0).round(9).tolist()
     [90.0, 90.0, 0.0]
     """
-    return Offset(**_core.offset_curves(points, curves, [distance], *given(offset_curves, options))[0])
+    wanted = [length("distance", distance, options.get("unit"))]
+    return Offset(**_core.offset_curves(points, curves, wanted, *given(offset_curves, options))[0])
 
 
 @takes(_options.OFFSET, without=["paths", "face_errors", "distance_z", "save_vdb"])
@@ -98,8 +102,9 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
     """
     if max_faces < 0:
         raise _core.InvalidOption(f"max_faces: expected a whole number, 0 or more, got {max_faces!r}")
-    keywords = given(offset_to_tolerance, options)
-    return Refined(**_core.offset_to_tolerance(vertices, faces, distance, tolerance, max_faces, *keywords))
+    keywords, unit = given(offset_to_tolerance, options), options.get("unit")
+    wanted, within = length("distance", distance, unit), length("tolerance", tolerance, unit)
+    return Refined(**_core.offset_to_tolerance(vertices, faces, wanted, within, max_faces, *keywords))
 
 
 @takes(_options.OFFSET, without=["obstacles", "clearance", "distance_z", "corners", "miter_limit", "collision",
@@ -114,7 +119,8 @@ def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], cle
     :return: `distances` are those that were needed, and `statistics["fit"]` tells the gap that is left
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
-    return Offset(**_core.fit(vertices, faces, tuple(other), clearance, *given(fit, options)))
+    room = length("clearance", clearance, options.get("unit"))
+    return Offset(**_core.fit(vertices, faces, tuple(other), room, *given(fit, options)))
 
 
 _OF_SHELLS = ["inner", *_options.OFFSET]
@@ -134,7 +140,7 @@ def shell_several(vertices: np.ndarray, faces: Faces, distances: Sequence[Distan
 
     :param options: by keyword; `help()` tells of each
     """
-    return _shells(vertices, faces, list(distances), given(shell_several, options))
+    return _shells(vertices, faces, lengths("distances", distances, options.get("unit")), given(shell_several, options))
 
 
 @takes(_OF_SHELLS, without=_NOT_OF_SHELLS)
@@ -152,14 +158,15 @@ def shell(vertices: np.ndarray, faces: Faces, distance: Distance, **options: Any
     >>> np.ptp(shell(square, np.array([[0, 1, 2, 3]]), 0.25, inner=0.125).vertices[:, 2])
     0.375
     """
-    return _shells(vertices, faces, [distance], given(shell, options))[0]
+    return _shells(vertices, faces, [length("distance", distance, options.get("unit"))], given(shell, options))[0]
 
 
 # What the command takes at most.
 _MOST_LAYERS, _MOST_GROWTH = 1000, 10
 
 
-def _heights(evaluate: Callable[..., Any], arrays: Sequence[Any], heights: Any, keywords: Dict[str, Any]) -> List[Any]:
+def _heights(evaluate: Callable[..., Any], arrays: Sequence[Any], heights: Any, keywords: Dict[str, Any],
+             unit: Optional[str]) -> List[Any]:
     """The heights of layers: those that are given, or `count` whose thickness grows by a factor. Takes the keywords
     that say so out of the others."""
     count, first, total = (keywords.pop(name, None) for name in ("count", "first", "total"))
@@ -168,7 +175,7 @@ def _heights(evaluate: Callable[..., Any], arrays: Sequence[Any], heights: Any, 
         for name, value in (("first", first), ("total", total), ("growth", growth)):
             if value is not None:
                 raise _core.InvalidOption(f"{name} and heights exclude each other")
-        each = list(heights)
+        each = lengths("heights", heights, unit)
         if count is not None and count != len(each):
             raise _core.InvalidOption(f"count: expected {len(each)}, as many as there are heights, got {count!r}")
         return each
@@ -202,7 +209,7 @@ def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distan
     ([0.0, 0.1, 0.3, 0.7], [12, 12, 12])
     """
     keywords, progress = given(layers, options)
-    wanted = _heights(_core.evaluate, (vertices, faces), heights, keywords)
+    wanted = _heights(_core.evaluate, (vertices, faces), heights, keywords, options.get("unit"))
     return Layers(**_core.layers(vertices, faces, wanted, keywords, progress))
 
 
@@ -214,7 +221,7 @@ def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[D
     :param options: by keyword; `help()` tells of each
     """
     keywords, progress = given(curve_layers, options)
-    wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords)
+    wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords, options.get("unit"))
     return Layers(**_core.curve_layers(points, curves, wanted, keywords, progress))
 
 
@@ -232,7 +239,8 @@ def iso_surface(vertices: np.ndarray, faces: Faces, distance: Union[float, str],
     >>> iso_surface(triangle, np.array([[0, 1, 2]]), 0.25, voxel_size=0.1).statistics["surface"]["closed"]
     True
     """
-    return Iso(**_core.iso_surface(vertices, faces, distance, *given(iso_surface, options)))
+    wanted = length("distance", distance, options.get("unit"))
+    return Iso(**_core.iso_surface(vertices, faces, wanted, *given(iso_surface, options)))
 
 
 @takes(_options.ISO + ["distance_z"])
@@ -243,7 +251,8 @@ def iso_surface_several(vertices: np.ndarray, faces: Faces, distances: Sequence[
     :param options: by keyword; `help()` tells of each
     """
     keywords, progress = given(iso_surface_several, options)
-    return [Iso(**_core.iso_surface(vertices, faces, distance, keywords, progress)) for distance in distances]
+    wanted = lengths("distances", distances, options.get("unit"))
+    return [Iso(**_core.iso_surface(vertices, faces, distance, keywords, progress)) for distance in wanted]
 
 
 @takes(_options.ISO + ["inner"])
@@ -258,7 +267,8 @@ def iso_shell(vertices: np.ndarray, faces: Faces, distance: Union[float, str], *
     :raises InvalidOption, OutOfBudget, Cancelled:
     """
     keywords, progress = given(iso_shell, options)
-    return IsoShell(**_core.iso_shell(vertices, faces, distance, keywords.pop("inner", None), keywords, progress))
+    wanted = length("distance", distance, options.get("unit"))
+    return IsoShell(**_core.iso_shell(vertices, faces, wanted, keywords.pop("inner", None), keywords, progress))
 
 
 @takes(_options.LAYERS, without=["cells"])
@@ -274,7 +284,7 @@ def structured_layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequ
     [[0.0, 0.0, 0.0], [0.0, 0.0, 0.1], [0.0, 0.0, 0.3]]
     """
     keywords, progress = given(structured_layers, options)
-    wanted = _heights(_core.evaluate, (vertices, faces), heights, keywords)
+    wanted = _heights(_core.evaluate, (vertices, faces), heights, keywords, options.get("unit"))
     return Block(**_core.structured_layers(vertices, faces, wanted, keywords, progress))
 
 
@@ -286,7 +296,7 @@ def structured_curve_layers(points: np.ndarray, curves: Faces, heights: Optional
     :param options: by keyword; `help()` tells of each
     """
     keywords, progress = given(structured_curve_layers, options)
-    wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords)
+    wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords, options.get("unit"))
     return Block(**_core.structured_curve_layers(points, curves, wanted, keywords, progress))
 
 
@@ -304,8 +314,9 @@ def check(vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: O
     :param options: by keyword; `help()` tells of each
     :raises InvalidInput, InvalidOption, Cancelled:
     """
-    keywords, progress = given(check, options)
-    return Check(**_core.check(vertices, faces, positions, distance, tolerance, keywords, progress))
+    keywords, unit = given(check, options), options.get("unit")
+    wanted, within = length("distance", distance, unit), length("tolerance", tolerance, unit)
+    return Check(**_core.check(vertices, faces, positions, wanted, within, *keywords))
 
 
 @takes(_options.CURVES, without=["distance_z", "reserve"])
@@ -315,4 +326,5 @@ def check_curves(points: np.ndarray, curves: Faces, positions: np.ndarray, dista
 
     :param options: by keyword; `help()` tells of each
     """
-    return Check(**_core.check_curves(points, curves, positions, distance, None, *given(check_curves, options)))
+    wanted = length("distance", distance, options.get("unit"))
+    return Check(**_core.check_curves(points, curves, positions, wanted, None, *given(check_curves, options)))

@@ -15,10 +15,11 @@ def offset_several(
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
     face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Offset]: ...
@@ -30,10 +31,11 @@ def offset(
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
     face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
@@ -42,20 +44,20 @@ def offset_curves_several(
     points: np.ndarray, curves: Faces, distances: Sequence[Distance], *, distance_z: Union[float, str, None] = None,
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Offset]: ...
 
 def offset_curves(
     points: np.ndarray, curves: Faces, distance: Distance, *, distance_z: Union[float, str, None] = None,
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def offset_to_tolerance(
@@ -65,10 +67,11 @@ def offset_to_tolerance(
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Refined: ...
 
@@ -76,11 +79,12 @@ def fit(
     vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], clearance: Union[float, str], *,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, paths: bool = False, face_errors: bool = False, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, threads: int = 0, max_memory: Union[int, str, None] = None,
+    reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def shell_several(
@@ -90,10 +94,11 @@ def shell_several(
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
     face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Shell]: ...
@@ -105,10 +110,11 @@ def shell(
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
     face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Shell: ...
@@ -122,10 +128,11 @@ def layers(
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
@@ -133,39 +140,39 @@ def curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
     first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None, close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
 def iso_surface(
     vertices: np.ndarray, faces: Faces, distance: Union[float, str], *,
     inside: Literal['winding', 'never'] = 'winding', adaptivity: Optional[float] = None, keep_specks: bool = False,
-    distance_z: Union[float, str, None] = None, weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    distance_z: Union[float, str, None] = None, weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Iso: ...
 
 def iso_surface_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Union[float, str]], *,
     inside: Literal['winding', 'never'] = 'winding', adaptivity: Optional[float] = None, keep_specks: bool = False,
-    distance_z: Union[float, str, None] = None, weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    distance_z: Union[float, str, None] = None, weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Iso]: ...
 
 def iso_shell(
     vertices: np.ndarray, faces: Faces, distance: Union[float, str], *, inner: Optional[Distance] = None,
     inside: Literal['winding', 'never'] = 'winding', adaptivity: Optional[float] = None, keep_specks: bool = False,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep',
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> IsoShell: ...
 
 def structured_layers(
@@ -176,10 +183,11 @@ def structured_layers(
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, threads: int = 0,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
@@ -187,9 +195,9 @@ def structured_curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
     first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None, close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    reserve: Reserve = None, progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def check(
@@ -200,10 +208,11 @@ def check(
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
-    weld: Union[Literal['auto', 'exact', 'none'], float] = 'auto',
+    weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
     orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Optional[float] = None, voxels_per_distance: Optional[float] = None, paths: bool = False,
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
     face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
     max_memory: Union[int, str, None] = None, progress: Progress = None
 ) -> Check: ...
@@ -212,8 +221,8 @@ def check_curves(
     points: np.ndarray, curves: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
     corners: Literal['round', 'miter'] = 'round', miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Optional[float] = None,
-    voxels_per_distance: Optional[float] = None, paths: bool = False,
-    save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0, max_memory: Union[int, str, None] = None,
-    progress: Progress = None
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, progress: Progress = None
 ) -> Check: ...

@@ -3,10 +3,14 @@
 `help()` tells, the stubs, and what is refused are made of it."""
 
 import inspect
+import math
 import os
+import re
 from typing import Any, Callable, Dict, List, Literal, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
+
+from . import _core
 
 Distance = Union[float, str, np.ndarray]
 Faces = Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]
@@ -21,14 +25,16 @@ class Option(NamedTuple):
     type: Any
     default: Any
     text: str
+    #: Of a length, which may have a unit: what it is handed on as, a text or a number.
+    length: Optional[Callable[[str], Any]] = None
 
 
 OPTIONS: Dict[str, Option] = {
     "inner": Option(Optional[Distance], None,
-                    "how far inward the inner skin lies, not negative; None: on the mesh itself"),
+                    "how far inward the inner skin lies, not negative; None: on the mesh itself", str),
     "count": Option(Optional[int], None, "instead of heights: how many layers, with"),
-    "first": Option(Optional[Distance], None, "the height of the first one, or"),
-    "total": Option(Optional[Distance], None, "that of the last one, and"),
+    "first": Option(Optional[Distance], None, "the height of the first one, or", str),
+    "total": Option(Optional[Distance], None, "that of the last one, and", str),
     "growth": Option(Optional[float], None, "how many times as thick each layer is as the one before; None: 1.2"),
     "walls": Option(Optional[Sequence[str]], None,
                     "(m,) texts: the name of the patch of each face of the wall, which the result has in `patches`;\n"
@@ -42,7 +48,7 @@ OPTIONS: Dict[str, Option] = {
     "keep_specks": Option(bool, False, "whether pieces smaller than a voxel are kept"),
     "distance_z": Option(Optional[Union[float, str]], None,
                          "the distance along z, beside a single one in the plane across it, of its sign; one of both\n"
-                         "may be 0, which is a thousandth of the other"),
+                         "may be 0, which is a thousandth of the other", str),
     "corners": Option(Literal["round", "miter"], "round",
                       '"round": vertices at the distance; "miter": faces at the distance, beside sharp edges as well'),
     "miter_limit": Option(Optional[float], None,
@@ -60,12 +66,12 @@ OPTIONS: Dict[str, Option] = {
     "obstacles": Option(Optional[Tuple[np.ndarray, Faces]], None, "vertices and faces of what is in the way"),
     "clearance": Option(Optional[Union[float, str]], None,
                         'with obstacles: the least distance from these, world units, or "1%" of the diagonal of the\n'
-                        "mesh; None: 0"),
+                        "mesh; None: 0", str),
     "close": Option(bool, False,
                     "whether curves whose ends are near each other, less than a tenth of their length, are closed"),
-    "weld": Option(Union[Literal["auto", "exact", "none"], float], "auto",
+    "weld": Option(Union[Literal["auto", "exact", "none"], float, str], "auto",
                    'which vertices are one: "exact": those at equal positions; "auto": also on borders that are one\n'
-                   'but for rounding; "none"; or a number: those that are no farther apart, world units'),
+                   'but for rounding; "none"; or a number: those that are no farther apart, world units', float),
     "orient": Option(Literal["keep", "fix-direction-only"], "keep",
                      'outward is where faces point; "fix-direction-only": it is out of what closed parts enclose'),
     "solver": Option(Literal["closest", "eikonal"], "closest",
@@ -75,9 +81,11 @@ OPTIONS: Dict[str, Option] = {
                       "or (c, 2) for c corners in all: a vertex has those of its first corner"),
     "precision": Option(Union[Literal["double", "single"], int], "double",
                         "what will be kept of coordinates, on which validity is judged; a number: 1 to 17 digits"),
-    "voxel_size": Option(Optional[float], None,
-                         "of the grid, world units: the length of the edges of an iso-surface; or"),
+    "voxel_size": Option(Optional[Union[float, str]], None,
+                         "of the grid, world units: the length of the edges of an iso-surface; or", float),
     "voxels_per_distance": Option(Optional[float], None, "how many voxels there are to a distance"),
+    "unit": Option(Optional[Literal["um", "mm", "cm", "m", "in", "ft"]], None,
+                   'what the numbers of arrays are; then lengths may be texts with a unit, as in "0.2mm"'),
     "paths": Option(bool, False, "whether the result has the vertices' ways"),
     "face_errors": Option(bool, False, "whether the result has how far each face is off its distance"),
     "save_vdb": Option(Optional[Union[str, os.PathLike]], None,
@@ -95,7 +103,7 @@ OPTIONS: Dict[str, Option] = {
 _HEIGHTS = ["count", "first", "total", "growth"]
 _OF_LAYERS = [*_HEIGHTS, "walls", "cells"]
 _OF_ISO = ["inside", "adaptivity", "keep_specks"]
-_COMMON = ["precision", "voxel_size", "voxels_per_distance", "threads", "max_memory", "reserve", "progress"]
+_COMMON = ["precision", "voxel_size", "voxels_per_distance", "unit", "threads", "max_memory", "reserve", "progress"]
 #: What functions of one kind take.
 OFFSET = [name for name in OPTIONS if name not in ("inner", "close", *_OF_LAYERS, *_OF_ISO)]
 CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths", "save_vdb", *_COMMON]
@@ -139,5 +147,41 @@ def given(function: Callable[..., Any], options: Dict[str, Any]) -> Tuple[Dict[s
     for name in options:
         if name not in names:
             raise TypeError(f"{function.__name__}() got an unexpected keyword argument '{name}'")
-    keywords = {name: value for name, value in options.items() if value is not None and name != "progress"}
+    unit = options.get("unit")
+    keywords = {name: length(name, value, unit, OPTIONS[name].length) for name, value in options.items()
+                if value is not None and name not in ("progress", "unit")}
     return keywords, options.get("progress")
+
+
+#: In micrometres, which are whole numbers: a quotient of two is the nearest one to what is meant, as the command has it.
+_UNITS = {"um": 1.0, "mm": 1e3, "cm": 1e4, "m": 1e6, "in": 25400.0, "ft": 304800.0}
+_LENGTH = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?) *(" + "|".join(_UNITS) + ")?")
+
+
+def length(name: str, value: Any, unit: Optional[str], kind: Optional[Callable[[str], Any]] = str) -> Any:
+    """A length without its unit, in units of the arrays; what has none stays as it is.
+
+    :param name: of the keyword, for messages
+    :param unit: of the arrays' numbers; None: it is not known
+    :param kind: what it is returned as, `str` or `float`; None: the value is no length
+    :raises InvalidOption: for a length with a unit where that of the arrays is not known, and for an unknown one
+    """
+    if unit is not None and not (isinstance(unit, str) and unit in _UNITS):
+        *others, last = map(repr, _UNITS)
+        raise _core.InvalidOption(f"unit: expected {', '.join(others)} or {last}, got {unit!r}")
+    found = _LENGTH.fullmatch(value) if kind is not None and isinstance(value, str) else None
+    if kind is None or found is None or not math.isfinite(float(found[1])):
+        return value
+    if found[2] is None:
+        return kind(value)
+    if unit is None:
+        raise _core.InvalidOption(f"{name}: expected unit as well, which says what the arrays' numbers are, got {value!r}")
+    if found[2] == unit:
+        return kind(found[1])
+    number = repr(float(found[1]) * _UNITS[found[2]] / _UNITS[unit])
+    return kind(number[:-2] if number.endswith(".0") else number)  # in reports as the command's
+
+
+def lengths(name: str, values: Sequence[Any], unit: Optional[str]) -> List[Any]:
+    """Several lengths; see `length()`."""
+    return [length(name, value, unit) for value in values]
