@@ -18,7 +18,7 @@ enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 
 
 /// Where the offset for one distance goes. Names of files that were not asked for are empty.
 struct Destination {
-  std::string mesh, report, states, paths;
+  std::string mesh, report, states, paths, html;
   std::string distance;  ///< The distance as the user gave it.
 };
 

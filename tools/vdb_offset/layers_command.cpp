@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "page/run_pages.h"
 #include "run_files.h"
 #include "summary.h"
 #include "vdb_offset/curve_offset.h"
@@ -30,19 +31,22 @@ struct Grown {
   std::optional<MeasuredCells> cells;
   VolumeMesh on_curves;
   LayerReport report;
+  std::vector<float> scaled_jacobian;  ///< Of the cells, if a page shows them.
 };
 
-void measure_on_curves(CurvesView curves, Grown& grown) {
+void measure_on_curves(CurvesView curves, Grown& grown, bool keep_quality) {
   CurveCells cells = make_curve_cells(curves, grown.layers);
-  grown.report =
-      report_layers(cells.segments.view(), grown.layers, {}, cells.facts, measure_curve_cells(cells, grown.layers));
+  const LayerQuality quality = measure_curve_cells(cells, grown.layers);
+  grown.report = report_layers(cells.segments.view(), grown.layers, {}, cells.facts, quality);
+  if (keep_quality) grown.scaled_jacobian = quality.scaled_jacobian;
   grown.on_curves = std::move(cells.mesh);
 }
 
-void measure(const Source& source, Grown& grown) {
+void measure(const Source& source, Grown& grown, bool keep_quality) {
   if (source.file) grown.names = io::wall_names(*source.file);
   grown.cells.emplace(source.view(), grown.layers);
   grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells->facts(), grown.cells->quality());
+  if (keep_quality) grown.scaled_jacobian = grown.cells->quality().scaled_jacobian;
 }
 
 /// Grows layers. `grown` must not be moved afterwards: its cells refer to its layers.
@@ -56,8 +60,9 @@ void grow(const Job& job, Grown& grown) {
         grow_layers(source.view(), job.distances, job.options, foam ? CellRules::OpenFoam : CellRules::AnySolver);
   }
   const auto start = Clock::now();
-  if (source.curves) measure_on_curves(source.view(), grown);
-  else measure(source, grown);
+  const bool keep_quality = !job.request.html.empty();
+  if (source.curves) measure_on_curves(source.view(), grown, keep_quality);
+  else measure(source, grown, keep_quality);
   grown.layers.statistics.seconds[static_cast<std::size_t>(Stage::Measure)] += seconds_since(start);
 }
 
@@ -124,7 +129,7 @@ bool are_faces_there(const Request& request, const LayersResult& layers) {
 }
 
 void require_names(const Request& request, std::size_t layers) {
-  for (const std::string& path : {request.report, request.states})
+  for (const std::string& path : {request.report, request.states, request.html})
     if (!path.empty()) require_writable(path);
   if (is_volume(request.output)) {
     io::require_volume_writer(request.output);
@@ -132,6 +137,14 @@ void require_names(const Request& request, std::size_t layers) {
     return;
   }
   for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(request.output, k, layers));
+}
+
+void write_report_and_page(const Job& job, const Grown& grown, const Timing& timing) {
+  const Request& request = job.request;
+  if (request.report.empty() && request.html.empty()) return;
+  const std::string report = layers_report(job, grown.layers, grown.report, timing.start);
+  if (!request.report.empty()) write_file(request.report, report);
+  if (!request.html.empty()) write_page(job, grown.layers, grown.names, grown.scaled_jacobian, report);
 }
 
 }  // namespace
@@ -162,7 +175,7 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   const auto writing = Clock::now();
   write_cells(job, grown);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!request.report.empty()) write_layers_report(job, grown.layers, grown.report, timing.start);
+  write_report_and_page(job, grown, timing);
   outputs.commit(ignore_interrupts);
   bar.clear();
   if (!request.quiet) print_layers_summary(job, grown.layers, grown.report, seconds_since(timing.start));

@@ -32,7 +32,7 @@ namespace {
 void require_writable_outputs(const Request& request) {
   if (request.dry_run || request.layers) return;
   for (const Destination& to : destinations(request, request.distances))
-    for (const std::string& path : {to.mesh, to.report, to.states, to.paths})
+    for (const std::string& path : {to.mesh, to.report, to.states, to.paths, to.html})
       if (!path.empty()) require_writable(path);
   if (!request.vdb.empty()) require_writable(request.vdb);
   if (!request.tolerance) return;

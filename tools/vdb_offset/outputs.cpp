@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "messages.h"
+#include "page/run_pages.h"
 #include "vdb_offset/distance_field.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/refined_file.h"
@@ -111,11 +112,16 @@ RunFacts facts_of(const Job& job, const Destination& to, Clock::time_point start
   return facts;
 }
 
-void write_report(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                  Clock::time_point start) {
-  RunFacts facts = facts_of(job, outcome.to, start);
+/// The report, and the page that has it in it.
+void write_report_and_page(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
+                           Clock::time_point start) {
+  const Destination& to = outcome.to;
+  if (to.report.empty() && to.html.empty()) return;
+  RunFacts facts = facts_of(job, to, start);
   facts.shell = shell;
-  write_file(outcome.to.report, report_json(outcome.result, facts));
+  const std::string report = report_json(outcome.result, facts);
+  if (!to.report.empty()) write_file(to.report, report);
+  if (!to.html.empty()) write_page(job, outcome, report);
 }
 
 io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome, const std::optional<Shell>& shell,
@@ -167,8 +173,8 @@ std::vector<Destination> destinations(const Request& request, std::span<const Di
   std::vector<Destination> all;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
-    all.push_back(
-        {named(request.output), named(request.report), named(request.states), named(request.paths), texts[i]});
+    all.push_back({named(request.output), named(request.report), named(request.states), named(request.paths),
+                   named(request.html), texts[i]});
   }
   return all;
 }
@@ -202,12 +208,12 @@ std::string name_of_layer(const std::string& output, std::size_t number, std::si
   return numbered(output, number, of, fmt::format("{}", number));
 }
 
-void write_layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
-                         Clock::time_point start) {
+std::string layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
+                          Clock::time_point start) {
   const Request& request = job.request;
-  RunFacts facts = facts_of(job, {request.output, request.report, request.states, {}, {}}, start);
+  RunFacts facts = facts_of(job, {request.output, request.report, request.states, {}, request.html, {}}, start);
   facts.layers = report;
-  write_file(request.report, report_json(result, facts));
+  return report_json(result, facts);
 }
 
 void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,
@@ -246,7 +252,7 @@ std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, 
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   const io::WriteResult written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!to.report.empty()) write_report(job, outcome, facts, start);
+  write_report_and_page(job, outcome, facts, start);
   tell_losses(request, to.mesh, written);
   return facts;
 }

@@ -47,9 +47,9 @@ void tell_losses(const Request& request, const std::string& path, const io::Writ
 /// Writes the source with the faces that the offset has, and where the added vertices are, as far as that is asked for.
 void write_refinement(const Request& request, const RefinedSource& refined);
 
-/// The report of a run with --layers, to where the command line says.
-void write_layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
-                         Clock::time_point start);
+/// The report of a run with --layers, as JSON.
+std::string layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
+                          Clock::time_point start);
 
 /// The report of a run with --mode iso, to where it goes.
 void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,

@@ -29,7 +29,8 @@ OffsetOptions options_of(const Request& request) {
   options.threads = request.threads;
   options.max_memory = request.max_memory;
   options.keep_field = !request.vdb.empty() && !request.dry_run;
-  options.keep_face_errors = request.states.ends_with(".vtp") && !request.dry_run && !request.tolerance;
+  const bool shows_faces = request.states.ends_with(".vtp") || !request.html.empty();
+  options.keep_face_errors = shows_faces && !request.dry_run && !request.tolerance;
   options.keep_paths = !request.paths.empty() && !request.dry_run;
   return options;
 }

@@ -78,13 +78,15 @@ std::vector<RunFile> written_with_layers(const Request& request, std::size_t lay
       files.push_back({"OUTPUT", (fs::path(request.output) / name).string()});
   add(files, "--report", request.report);
   add(files, "--states", request.states);
+  add(files, "--html", request.html);
   return files;
 }
 
 std::vector<RunFile> written_by(const Request& request, std::vector<Destination> destinations) {
   std::vector<RunFile> files;
   // Without distances on the command line, the scene's one is not known yet, and there is one output.
-  if (destinations.empty()) destinations.push_back({request.output, request.report, request.states, request.paths, {}});
+  if (destinations.empty())
+    destinations.push_back({request.output, request.report, request.states, request.paths, request.html, {}});
   // An output may replace an input mesh. Not a scene, and not one of several outputs, as that is hardly intended.
   const bool may_be_input = destinations.size() == 1 && !scene::is_scene(request.input);
   for (const Destination& to : destinations) {
@@ -92,6 +94,7 @@ std::vector<RunFile> written_by(const Request& request, std::vector<Destination>
     add(files, "--report", to.report);
     add(files, "--states", to.states);
     add(files, "--paths", to.paths);
+    add(files, "--html", to.html);
   }
   add(files, "--save-vdb", request.vdb);
   if (!request.tolerance) return files;

@@ -18,7 +18,7 @@ namespace {
 /// Whether standard output is one of the files that are written.
 bool output_is_taken(const Request& request) {
   const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
-  return is_standard_output(request.output) || is_standard_output(request.report) ||
+  return is_standard_output(request.output) || is_standard_output(request.report) || is_standard_output(request.html) ||
          is_standard_output(tolerance.refined_source) || is_standard_output(tolerance.map);
 }
 

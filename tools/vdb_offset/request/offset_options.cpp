@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "page/run_pages.h"
 #include "request/command_line.h"
 #include "request/offset_options.h"
 #include "request/option_rules.h"
@@ -285,6 +286,8 @@ void declare_files(CommandLine& line, Draft& draft) {
       "Write state, target and achieved distance of every vertex: .csv, or .vtp or .ply to colour by in a viewer",
       request.states);
   line.option("--paths", "FILE", "Write the path of every vertex as a line: .vtp, .obj (or .txt)", request.paths);
+  line.option("--html", "FILE", "Write one page (.html) that shows source and result in a browser, without a network",
+              request.html);
   line.option("--save-vdb", "FILE", "Write phi and the closest triangles as OpenVDB grids", request.vdb);
 }
 
@@ -348,6 +351,7 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   if (!line.parse(argc, argv)) return std::nullopt;
   require_together(line, draft.is_iso);
   complete(line, draft);
+  draft.request.command = as_typed(argc, argv);
   require_sound(draft.request);
   return draft.request;
 }

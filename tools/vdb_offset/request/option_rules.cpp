@@ -10,6 +10,7 @@
 
 #include "request/option_values.h"
 #include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/page_file.h"
 #include "vdb_offset/io/states_file.h"
 #include "vdb_offset/io/volume_file.h"
 
@@ -90,6 +91,9 @@ void require_endings(const Request& request) {
   require(request.paths.empty() || io::is_lines_file(request.paths) ||
               (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg),
           request.paths + ": expected a file of paths that ends in .obj, .txt or .vtp");
+  require(request.html.empty() || request.html == "-" || request.html.ends_with(".html"),
+          request.html + ": expected a page that ends in .html");
+  if (!request.html.empty()) io::require_pages(request.html);
   require(request.vdb != "-", "--save-vdb: expected a file, got '-'");
   for (const std::string& path : request.obstacles)
     require(format_of(path, request).has_value(),
@@ -137,7 +141,7 @@ void require_together(const CommandLine& line, bool is_iso) {
   if (is_iso) require(!layers, "--layers and --mode iso exclude each other");
   require_without(line, is_iso, "--mode iso",
                   {"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--corners",
-                   "--solver", "--states", "--paths", "--save-vdb"});
+                   "--solver", "--states", "--paths", "--html", "--save-vdb"});
   require_with(line, layers, "--layers", {"--first-height", "--total-thickness", "--growth", "--structured"});
   if (layers) {
     require(line.has("--heights") + line.has("--first-height") + line.has("--total-thickness") == 1,

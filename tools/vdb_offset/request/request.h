@@ -98,9 +98,10 @@ struct Request {
   std::vector<std::string> only_texts, symmetry_texts;
   std::string clearance_text, weld_text = "auto", orient_text = "keep";
 
-  std::string report, states, paths, vdb;  ///< Files to write; empty: not asked for.
-  std::optional<io::Format> format;        ///< Of files with an ending that names none.
-  io::WriteOptions write;                  ///< All but its format, which is the output's alone.
+  std::string report, states, paths, html, vdb;  ///< Files to write; empty: not asked for.
+  std::string command;                           ///< As it was typed, for the page.
+  std::optional<io::Format> format;              ///< Of files with an ending that names none.
+  io::WriteOptions write;                        ///< All but its format, which is the output's alone.
   OutputFiles::Sync sync = OutputFiles::Sync::Yes;
   std::optional<double> strict_faces;  ///< Percent.
   bool strict = false, dry_run = false, quiet = false, verbose = false;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/api.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/statistics.h"
+#include "vdb_offset/volume_mesh.h"
+
+namespace vdb_offset::io {
+
+/// A surface that a page shows beside the source, with the source's vertices and faces. Spans of what is not known are
+/// empty.
+struct PageSurface {
+  std::string name;  ///< What the page calls it.
+  std::span<const Vec3d> positions;
+  std::span<const VertexState> states;
+  std::span<const double> achieved;    ///< World units, as is the target.
+  const Distances* target = nullptr;   ///< Negative is inward.
+  std::span<const double> share;       ///< Of what was asked; it is counted from the distances where those are known.
+  std::span<const float> face_errors;  ///< As OffsetResult::face_errors.
+};
+
+/// What a page shows of a run. Refers to what it is made of.
+struct Page {
+  std::string title;    ///< Of the run: the name of its source.
+  std::string command;  ///< As it was typed.
+  std::string report;   ///< JSON text; empty: there is none.
+  PolygonView source;
+  bool are_curves = false;              ///< The "faces" are plane curves, and the surfaces too.
+  bool are_layers = false;              ///< The surfaces lie one on the other, and can be peeled off.
+  std::vector<PageSurface> surfaces;    ///< From the source outward.
+  const WallNames* groups = nullptr;    ///< What the source calls its faces.
+  std::span<const float> cell_quality;  ///< Of cells between the surfaces: scaled Jacobians.
+  std::vector<std::string> remarks;     ///< What the page has to say of what it does not show.
+  /// More triangles than this are shown by fewer, source and surfaces together.
+  std::size_t most_triangles = 600'000;
+};
+
+/// \throw InvalidOption if the library is built without the viewer that pages are made with
+VDB_OFFSET_API void require_pages(const std::string& path);
+
+/// Writes one HTML file that shows a run in a browser, without a network: source and surfaces to be turned, coloured by
+/// what became of them, and the figures. Where there are more triangles than are shown, vertices are clustered; each
+/// that is left is one of the mesh's own, with its number, and of those in one place the one that is farthest from what
+/// was asked. Figures are of all vertices. The bytes do not depend on the number of threads.
+/// \throw WriteError; InvalidOption as require_pages()
+VDB_OFFSET_API void write_page(const std::string& path, const Page& page);
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+# Pages of a run: what they show it with, as it is kept by Debian's package libjs-three, becomes a part of the library.
+
+set(three_dirs share/javascript/three share/nodejs/three)
+find_file(THREE_SCRIPT three.min.js PATH_SUFFIXES ${three_dirs} build REQUIRED)
+find_file(THREE_CONTROLS OrbitControls.js PATH_SUFFIXES share/javascript/three/examples/js/controls REQUIRED)
+find_file(THREE_LICENCE copyright PATHS /usr/share/doc/libjs-three NO_DEFAULT_PATH REQUIRED)
+mark_as_advanced(THREE_SCRIPT THREE_CONTROLS THREE_LICENCE)
+
+vdb_offset_folder(io/page page_arrays page_figures page_file page_parts view_mesh)
+target_link_libraries(vdb_offset_io_objects PRIVATE nlohmann_json::nlohmann_json)
+set(page_folder ${CMAKE_CURRENT_SOURCE_DIR}/src/vdb_offset/io/page)
+# A compiler does not see which files the assembler takes; nor does ccache, which leaves such a source alone.
+set_source_files_properties(src/vdb_offset/io/page/page_parts.cpp PROPERTIES
+  SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
+  OBJECT_DEPENDS "${page_folder}/page.html;${page_folder}/page.css;${page_folder}/view.js;${page_folder}/page.js;${THREE_SCRIPT};${THREE_CONTROLS};${THREE_LICENCE}"
+  COMPILE_DEFINITIONS "VDB_OFFSET_PAGE_FOLDER=\"${page_folder}\";VDB_OFFSET_THREE=\"${THREE_SCRIPT}\";VDB_OFFSET_THREE_CONTROLS=\"${THREE_CONTROLS}\";VDB_OFFSET_THREE_LICENCE=\"${THREE_LICENCE}\"")

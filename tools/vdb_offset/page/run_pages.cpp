@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page of a run shows, for each kind of run.
+#include "page/run_pages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/page_file.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+/// A word as a shell takes it, in quotes where it has other characters than names and numbers.
+std::string shell_word(std::string_view word) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) || c > 127 || std::string_view("._-+=/,:@%").find(static_cast<char>(c)) != std::string::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return std::string(word);
+  std::string quoted = "'";
+  for (const char c : word) {
+    if (c == '\'') quoted += "'\\''";
+    else quoted += c;
+  }
+  return quoted + "'";
+}
+
+io::PageSurface surface_of(const std::string& name, const OffsetResult& result) {
+  io::PageSurface surface;
+  surface.name = name;
+  surface.positions = result.positions;
+  surface.states = result.states;
+  surface.achieved = result.achieved;
+  surface.target = &result.distances;
+  surface.face_errors = result.face_errors;
+  return surface;
+}
+
+/// Says where faults are that are left, of which the library knows the number alone.
+void add_faults(const FaultCounts& left, std::vector<std::string>& remarks) {
+  if (left.total() > 0)
+    remarks.push_back(fmt::format(
+        "{} faults are left in the result; the page does not show where (vdb_offset check counts them)", left.total()));
+}
+
+io::Page page_of(const Job& job, const std::string& report) {
+  io::Page page;
+  page.title = std::filesystem::path(job.request.input).filename().string();
+  page.command = job.request.command;
+  page.report = report;
+  page.source = job.source.view();
+  page.are_curves = job.curves();
+  return page;
+}
+
+}  // namespace
+
+std::string as_typed(int argc, const char* const* argv) {
+  std::string text = "vdb_offset";
+  for (int i = 1; i < argc; ++i) text.append(1, ' ').append(shell_word(argv[i]));
+  return text;
+}
+
+void write_page(const Job& job, const Outcome& outcome, const std::string& report) {
+  io::Page page = page_of(job, report);
+  const WallNames groups = job.source.file ? io::wall_names(*job.source.file) : WallNames{};
+  page.groups = &groups;
+  if (outcome.inner) page.surfaces.push_back(surface_of("inner skin", *outcome.inner));
+  page.surfaces.push_back(surface_of(outcome.inner ? "outer skin" : "offset", outcome.result));
+  if (job.shell)
+    page.remarks.emplace_back(outcome.inner ? "The solid's skins are shown as surfaces, without its rim."
+                                            : "The solid's skins are the source and the offset; its rim is not shown.");
+  add_faults(outcome.result.statistics.limit.left, page.remarks);
+  io::write_page(outcome.to.html, page);
+}
+
+void write_page(const Job& job, const LayersResult& layers, const WallNames& names, std::span<const float> quality,
+                const std::string& report) {
+  io::Page page = page_of(job, report);
+  page.are_layers = true;
+  page.groups = &names;
+  page.cell_quality = quality;
+  std::vector<std::vector<Vec3d>> positions;
+  for (std::size_t k = 1; k <= layers.count(); ++k) positions.push_back(layers.stacks.surface(k));
+  for (std::size_t k = 1; k <= layers.count(); ++k) {
+    io::PageSurface surface;
+    surface.name = fmt::format("layer {}", k);
+    surface.positions = positions[k - 1];
+    surface.states = layers.states;
+    surface.target = &layers.heights[k - 1];
+    surface.share = layers.share;
+    if (k == layers.count()) surface.achieved = layers.achieved;
+    else if (k == 1) surface.achieved = layers.first_achieved;
+    page.surfaces.push_back(surface);
+  }
+  if (layers.count() > 2)
+    page.remarks.emplace_back(
+        "Distances are measured of the first and the outermost surface; of those between them, the share of its "
+        "heights "
+        "that a vertex keeps is shown.");
+  page.remarks.emplace_back("States are those of the outermost surface.");
+  add_faults(layers.statistics.limit.left, page.remarks);
+  io::write_page(job.request.html, page);
+}
+
+}  // namespace vdb_offset::tool
