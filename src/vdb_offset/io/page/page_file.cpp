@@ -170,6 +170,7 @@ void write_page(const std::string& path, const Page& page) {
           {"facts", json},
           {"report", report},
           {"arrays", packed},
+          {"figures", parts.figures},
           {"view", parts.view},
           {"script", parts.script}},
          sink);

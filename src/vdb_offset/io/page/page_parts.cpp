@@ -21,6 +21,7 @@
 
 VDB_OFFSET_EMBED(page, VDB_OFFSET_PAGE_FOLDER "/page.html");
 VDB_OFFSET_EMBED(style, VDB_OFFSET_PAGE_FOLDER "/page.css");
+VDB_OFFSET_EMBED(figures, VDB_OFFSET_PAGE_FOLDER "/figures.js");
 VDB_OFFSET_EMBED(view, VDB_OFFSET_PAGE_FOLDER "/view.js");
 VDB_OFFSET_EMBED(script, VDB_OFFSET_PAGE_FOLDER "/page.js");
 VDB_OFFSET_EMBED(viewer, VDB_OFFSET_THREE);
@@ -35,6 +36,7 @@ PageParts page_parts() {
   };
   return {.page = between(vdb_offset_page_page, vdb_offset_page_end_of_page),
           .style = between(vdb_offset_page_style, vdb_offset_page_end_of_style),
+          .figures = between(vdb_offset_page_figures, vdb_offset_page_end_of_figures),
           .view = between(vdb_offset_page_view, vdb_offset_page_end_of_view),
           .script = between(vdb_offset_page_script, vdb_offset_page_end_of_script),
           .viewer = between(vdb_offset_page_viewer, vdb_offset_page_end_of_viewer),

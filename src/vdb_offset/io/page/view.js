@@ -17,10 +17,16 @@ const VIEW = (function () {
 
   function material(curves, options) {
     if (curves) return new THREE.LineBasicMaterial(options);
-    return new THREE.MeshPhongMaterial(Object.assign({
+    const made = new THREE.MeshPhongMaterial(Object.assign({
       side: THREE.DoubleSide, flatShading: true, shininess: 0, specular: 0x000000,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     }, options));
+    // Inner sides are darker, so that what is cut open can be told from what is in front.
+    made.onBeforeCompile = shader => {
+      shader.fragmentShader = shader.fragmentShader.replace(
+          '#include <color_fragment>', '#include <color_fragment>\n  if (!gl_FrontFacing) diffuseColor.rgb *= 0.5;');
+    };
+    return made;
   }
 
   class View {
@@ -135,13 +141,16 @@ const VIEW = (function () {
       return points;
     }
 
-    // Cuts off what is beyond a share of the box along an axis; axis < 0 shows all.
+    // Cuts off a share of the box along an axis, from the side that was in front when the axis was chosen; axis < 0 shows all.
     cut(axis, share) {
       this.cutting = axis >= 0;
+      if (this.cutting && axis !== this.cutAxis)
+        this.cutSide = Math.sign(this.camera.position.getComponent(axis) - this.controls.target.getComponent(axis)) || 1;
+      this.cutAxis = axis;
       if (this.cutting) {
-        const at = this.box.min.getComponent(axis) + share * (this.box.max.getComponent(axis) - this.box.min.getComponent(axis));
-        this.plane.normal.set(0, 0, 0).setComponent(axis, -1);
-        this.plane.constant = at;
+        const low = this.box.min.getComponent(axis), high = this.box.max.getComponent(axis);
+        this.plane.normal.set(0, 0, 0).setComponent(axis, -this.cutSide);
+        this.plane.constant = this.cutSide > 0 ? high - share * (high - low) : -low - share * (high - low);
       }
       const lines = this.edges.filter(each => each !== null);
       for (const object of [this.source, ...this.surfaces, ...lines, ...this.marks])
@@ -159,11 +168,23 @@ const VIEW = (function () {
       if (flat === 2) this.camera.up.set(0, 1, 0);
     }
 
+    // How far away all corners of the box are in view.
+    distanceToFit() {
+      const {min, max} = this.box, half = Math.tan(FIELD_OF_VIEW / 2 * Math.PI / 180);
+      const right = this.camera.up.clone().cross(this.direction).normalize(), up = this.direction.clone().cross(right);
+      let distance = 0;
+      for (let corner = 0; corner < 8; ++corner) {
+        const at = new THREE.Vector3(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z);
+        at.sub(this.controls.target);
+        const across = Math.max(Math.abs(at.dot(right)) / this.camera.aspect, Math.abs(at.dot(up)));
+        distance = Math.max(distance, across / half + at.dot(this.direction));
+      }
+      return distance || 1;
+    }
+
     showAll() {
-      const radius = this.box.getSize(new THREE.Vector3()).length() / 2 || 1;
-      const half = Math.tan(FIELD_OF_VIEW / 2 * Math.PI / 180), aspect = Math.min(1, this.camera.aspect);
-      const distance = 1.02 * radius / Math.sin(Math.atan(half * aspect));
       this.box.getCenter(this.controls.target);
+      const distance = 1.05 * this.distanceToFit();
       this.camera.position.copy(this.controls.target).addScaledVector(this.direction, distance);
       this.camera.near = distance / 200;
       this.camera.far = distance * 20;
