@@ -239,12 +239,12 @@ const VIEW = (function () {
 
     // What stands at a place of the canvas: the vertex nearest to the point that is seen there, or null.
     pick(x, y) {
-      const {clientWidth, clientHeight} = this.canvas;
+      const {width, height} = this.canvas.getBoundingClientRect();  // clientHeight is rounded
       const caster = new THREE.Raycaster();
       this.camera.updateMatrixWorld();
-      caster.setFromCamera(new THREE.Vector2(2 * x / clientWidth - 1, 1 - 2 * y / clientHeight), this.camera);
+      caster.setFromCamera(new THREE.Vector2(2 * x / width - 1, 1 - 2 * y / height), this.camera);
       const away = this.camera.position.distanceTo(this.controls.target);
-      caster.linePrecision = 2 * LINE_PIXELS * away * Math.tan(FIELD_OF_VIEW / 2 * Math.PI / 180) / clientHeight;
+      caster.linePrecision = 2 * LINE_PIXELS * away * Math.tan(FIELD_OF_VIEW / 2 * Math.PI / 180) / height;
       const seen = this.surfaces.filter(each => each.visible), solid = seen.filter(each => !each.material.transparent);
       if (this.source.visible && (!this.source.material.transparent || seen.length === 0)) solid.push(this.source);
       const hits = caster.intersectObjects(solid.length > 0 ? solid : seen)
@@ -289,7 +289,8 @@ const VIEW = (function () {
     place(surface, vertex) {
       this.camera.updateMatrixWorld();
       const p = this.position(surface, vertex).project(this.camera);
-      return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight};
+      const {width, height} = this.canvas.getBoundingClientRect();
+      return {x: (p.x + 1) / 2 * width, y: (1 - p.y) / 2 * height};
     }
   }
 
