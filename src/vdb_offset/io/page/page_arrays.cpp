@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/io/page/page_arrays.h"
 
+#include <algorithm>
 #include <bit>
+#include <string_view>
 
 #include "vdb_offset/io/base/compression.h"
 
