@@ -80,7 +80,7 @@ struct Moved {
     page.source = mesh.view();
     io::PageSurface surface;
     surface.name = "offset";
-    surface.positions = positions;
+    surface.position = [this](std::size_t v) { return positions[v]; };
     surface.states = states;
     surface.achieved = achieved;
     surface.target = &target;

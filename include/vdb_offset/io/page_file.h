@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,8 +18,8 @@ namespace vdb_offset::io {
 /// A surface that a page shows beside the source, with the source's vertices and faces. Spans of what is not known are
 /// empty.
 struct PageSurface {
-  std::string name;  ///< What the page calls it.
-  std::span<const Vec3d> positions;
+  std::string name;                                   ///< What the page calls it.
+  std::function<Vec3d(std::size_t vertex)> position;  ///< World units; only asked for what is shown.
   std::span<const VertexState> states;
   std::span<const double> achieved;    ///< World units, as is the target.
   const Distances* target = nullptr;   ///< Negative is inward.
@@ -38,7 +39,8 @@ struct Page {
   const WallNames* groups = nullptr;    ///< What the source calls its faces.
   std::span<const float> cell_quality;  ///< Of cells between the surfaces: scaled Jacobians.
   std::vector<std::string> remarks;     ///< What the page has to say of what it does not show.
-  /// More triangles than this are shown by fewer, source and surfaces together.
+  /// More triangles than this are shown by fewer, source and surfaces together. So many take 7 MB, and a second to draw
+  /// on two cores without a graphics card.
   std::size_t most_triangles = 600'000;
 };
 

@@ -32,7 +32,7 @@ std::string shell_word(std::string_view word) {
 io::PageSurface surface_of(const std::string& name, const OffsetResult& result) {
   io::PageSurface surface;
   surface.name = name;
-  surface.positions = result.positions;
+  surface.position = [&result](std::size_t v) { return result.positions[v]; };
   surface.states = result.states;
   surface.achieved = result.achieved;
   surface.target = &result.distances;
@@ -84,12 +84,10 @@ void write_page(const Job& job, const LayersResult& layers, const WallNames& nam
   page.are_layers = true;
   page.groups = &names;
   page.cell_quality = quality;
-  std::vector<std::vector<Vec3d>> positions;
-  for (std::size_t k = 1; k <= layers.count(); ++k) positions.push_back(layers.stacks.surface(k));
   for (std::size_t k = 1; k <= layers.count(); ++k) {
     io::PageSurface surface;
     surface.name = fmt::format("layer {}", k);
-    surface.positions = positions[k - 1];
+    surface.position = [&layers, k](std::size_t v) { return layers.stacks.of(v)[k]; };
     surface.states = layers.states;
     surface.target = &layers.heights[k - 1];
     surface.share = layers.share;

@@ -29,7 +29,8 @@
   async function unpack() {
     const element = byId('arrays'), binary = atob(element.textContent);
     element.remove();
-    const bytes = Uint8Array.from(binary, c => c.charCodeAt(0));
+    const bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
     const buffer = await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
     const types = {float32: Float32Array, uint32: Uint32Array, uint8: Uint8Array}, arrays = {};
     for (const [name, {type, at, count}] of Object.entries(facts.arrays)) arrays[name] = new types[type](buffer, at, count);
@@ -239,7 +240,7 @@
     if (surface >= 0) tellDistances(on, v, row);
     if (element !== undefined) {
       row(facts.curves ? 'curve' : 'face', String(data.face[element]));
-      if (on && on.error) row('its error', `${inDigits(100 * on.error[element])} % of the distance`);
+      if (on && on.error && on.error[element] === on.error[element]) row('its error', `${inDigits(100 * on.error[element])} % of the distance`);
       if (data.group) row('its group', facts.groups[data.group[element]]);
     }
     byId('number').value = number;

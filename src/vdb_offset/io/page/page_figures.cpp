@@ -20,8 +20,8 @@ std::size_t step_of(double number, double step, std::size_t count) {
 
 }  // namespace
 
-std::vector<float> shares_of(const PageSurface& surface) {
-  std::vector<float> shares(surface.positions.size(), std::numeric_limits<float>::quiet_NaN());
+std::vector<float> shares_of(const PageSurface& surface, std::size_t vertices) {
+  std::vector<float> shares(vertices, std::numeric_limits<float>::quiet_NaN());
   const bool is_known = !surface.achieved.empty() && surface.target;
   for (std::size_t v = 0; v < shares.size(); ++v) {
     if (is_known && (*surface.target)[v] != 0)

@@ -10,7 +10,7 @@
 namespace vdb_offset::io {
 
 /// The share of what was asked that each vertex has; NaN where nothing was, or nothing is known.
-std::vector<float> shares_of(const PageSurface& surface);
+std::vector<float> shares_of(const PageSurface& surface, std::size_t vertices);
 
 /// How many vertices have each share: `below`, in equal steps from 0 to 1; `at` it; and `above`, in steps of a quarter
 /// with all that is farther in the last.

@@ -51,12 +51,14 @@ std::vector<Number> taken(std::span<const std::uint32_t> shown, const Of& of) {
 }
 
 /// Positions as seen from a centre: single precision is enough for a view, wherever the mesh stands.
-std::vector<float> seen_from(const Vec3d& centre, std::span<const Vec3d> positions,
+std::vector<float> seen_from(const Vec3d& centre, const std::function<Vec3d(std::size_t)>& position,
                              std::span<const std::uint32_t> shown) {
   std::vector<float> numbers;
   numbers.reserve(3 * shown.size());
-  for (const std::uint32_t v : shown)
-    for (int k = 0; k < 3; ++k) numbers.push_back(static_cast<float>(positions[v][k] - centre[k]));
+  for (const std::uint32_t v : shown) {
+    const Vec3d from_centre = position(v) - centre;
+    for (int k = 0; k < 3; ++k) numbers.push_back(static_cast<float>(from_centre[k]));
+  }
   return numbers;
 }
 
@@ -64,7 +66,7 @@ std::vector<float> seen_from(const Vec3d& centre, std::span<const Vec3d> positio
 nlohmann::json add_surface(const PageSurface& surface, std::span<const float> shares, const std::string& name,
                            const ViewMesh& view, const Vec3d& centre, PageArrays& arrays) {
   nlohmann::json facts = {{"name", surface.name}, {"histogram", histogram_of_shares(shares, surface.states)}};
-  arrays.add(name + ".positions", seen_from(centre, surface.positions, view.vertices));
+  arrays.add(name + ".positions", seen_from(centre, surface.position, view.vertices));
   arrays.add(name + ".share", taken<float>(view.vertices, [&](std::uint32_t v) { return shares[v]; }));
   if (!surface.states.empty()) {
     facts["states"] = counts_of_states(surface.states);
@@ -82,7 +84,7 @@ nlohmann::json add_surface(const PageSurface& surface, std::span<const float> sh
 
 nlohmann::json facts_of(const Page& page, PageArrays& arrays) {
   std::vector<std::vector<float>> shares;
-  for (const PageSurface& surface : page.surfaces) shares.push_back(shares_of(surface));
+  for (const PageSurface& surface : page.surfaces) shares.push_back(shares_of(surface, page.source.positions.size()));
   const std::size_t most = page.most_triangles / (page.surfaces.size() + 1);
   const ViewMesh view = view_of(page.source, page.are_curves, weights_of(page, shares), most);
   const Vec3d centre = centre_of(page.source.positions, view.vertices);
@@ -102,7 +104,8 @@ nlohmann::json facts_of(const Page& page, PageArrays& arrays) {
   arrays.add("corners", view.corners);
   arrays.add("face", view.face);
   arrays.add("edges", view.edges);
-  arrays.add("source.positions", seen_from(centre, page.source.positions, view.vertices));
+  arrays.add("source.positions", seen_from(
+                                     centre, [&](std::size_t v) { return page.source.positions[v]; }, view.vertices));
   if (page.groups && !page.groups->of_face.empty()) {
     facts["groups"] = page.groups->names;
     arrays.add("group", taken<std::uint32_t>(view.face, [&](std::uint32_t f) { return page.groups->of_face[f]; }));
