@@ -58,10 +58,10 @@ void make_folders(const ModelRun& run) {
 
 /// Allows this process as many open files as so many jobs need, as far as the system lets it.
 void allow_files_for(std::size_t jobs) {
-  constexpr rlim_t kOfJob = 2, kMore = 64;  // a pipe and a socket each; what else is open
+  constexpr rlim_t kOfJob = 2, kElse = 64;  // a pipe and a socket each; what else is open
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-  const rlim_t wanted = std::min(limit.rlim_max, kOfJob * jobs + kMore);
+  const rlim_t wanted = std::min(limit.rlim_max, kOfJob * jobs + kElse);
   if (wanted <= limit.rlim_cur) return;
   limit.rlim_cur = wanted;
   ::setrlimit(RLIMIT_NOFILE, &limit);

@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kModel = "{model}", kEnding = "{ending}";
 
 // Options that name a file to write: their patterns are below the folder of outputs.
-constexpr std::string_view kWriting[] = {"--report", "--states", "--paths", "--save-vdb", "--refined-source", "--map"};
+constexpr std::string_view kWriting[] = {"--report",   "--states",         "--paths", "--html",
+                                         "--save-vdb", "--refined-source", "--map"};
 
 /// A pattern with what stands for a model in its place. `stem`: for {model}.
 std::string filled(std::string_view pattern, const std::string& stem, const std::string& ending) {
