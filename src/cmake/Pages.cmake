@@ -1,10 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 # Pages of a run: what they show it with, as it is kept by Debian's package libjs-three, becomes a part of the library.
 
-set(three_dirs share/javascript/three share/nodejs/three)
-find_file(THREE_SCRIPT three.min.js PATH_SUFFIXES ${three_dirs} build REQUIRED)
-find_file(THREE_CONTROLS OrbitControls.js PATH_SUFFIXES share/javascript/three/examples/js/controls REQUIRED)
-find_file(THREE_LICENCE copyright PATHS /usr/share/doc/libjs-three NO_DEFAULT_PATH REQUIRED)
+find_file(THREE_SCRIPT three.min.js PATHS /usr/share/javascript/three /usr/share/nodejs/three/build NO_DEFAULT_PATH)
+find_file(THREE_CONTROLS OrbitControls.js PATHS /usr/share/javascript/three/examples/js/controls NO_DEFAULT_PATH)
+find_file(THREE_LICENCE copyright PATHS /usr/share/doc/libjs-three NO_DEFAULT_PATH)
+if(NOT THREE_SCRIPT OR NOT THREE_CONTROLS OR NOT THREE_LICENCE)
+  message(FATAL_ERROR "Pages (--html) need three.js: Debian's package libjs-three, or THREE_SCRIPT, THREE_CONTROLS and "
+                      "THREE_LICENCE with the paths of three.min.js, OrbitControls.js (r111) and their licence. "
+                      "-DVDB_OFFSET_HTML=OFF does without pages.")
+endif()
+# view.js is written for this revision: names have changed since.
+file(READ ${THREE_SCRIPT} three)
+if(NOT three MATCHES "REVISION=\"111\"")
+  message(FATAL_ERROR "${THREE_SCRIPT}: expected revision 111 of three.js (-DVDB_OFFSET_HTML=OFF does without pages)")
+endif()
 mark_as_advanced(THREE_SCRIPT THREE_CONTROLS THREE_LICENCE)
 
 vdb_offset_folder(io/page page_arrays page_figures page_file page_parts view_mesh)
