@@ -18,7 +18,6 @@
 #include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
-using namespace vdb_offset::test;
 
 namespace {
 

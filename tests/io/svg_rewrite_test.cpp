@@ -8,7 +8,6 @@
 #include "vdb_offset/io/curve_file.h"
 
 using namespace vdb_offset;
-using namespace vdb_offset::test;
 
 // Names of its own, as tests are compiled several files at once.
 namespace svg_rewrite {
