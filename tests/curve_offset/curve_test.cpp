@@ -81,6 +81,36 @@ TEST_CASE("curves: outward is away from what is enclosed, whichever way curves r
   }
 }
 
+TEST_CASE("curves: ends that are apart by rounding alone are one", "[curves]") {
+  // The sine of a whole turn is no zero.
+  constexpr std::size_t kPoints = 41;
+  std::vector<Vec3d> points;
+  for (std::size_t k = 0; k < kPoints; ++k) {
+    const double angle = kTurn * static_cast<double>(k) / (kPoints - 1);
+    points.emplace_back(3 * std::cos(angle), std::sin(angle), 0);
+  }
+  REQUIRE(points.front() != points.back());
+  const Curves nearly = curve_through(points, false);
+  points.pop_back();
+  const Curves exactly = curve_through(points, true);
+  for (const double distance : {0.2, -0.2}) {
+    const Distances asked(distance);
+    const OffsetResult result = offset_curves(nearly.view(), {&asked, 1}, {}).front(),
+                       expected = offset_curves(exactly.view(), {&asked, 1}, {}).front();
+    CHECK(result.statistics.facts.closed_components == 1);
+    CHECK(result.statistics.facts.boundary_edges == 0);
+    for (std::size_t p = 0; p < points.size(); ++p)
+      CHECK((result.positions[p] - expected.positions[p]).length() < 1e-9);
+    CHECK(result.positions.back() == result.positions.front());
+    CHECK(check_curves(nearly.view(), result.positions, {}).valid());
+  }
+  // Ends that are as far apart as a curve may be open are two.
+  Curves open = nearly;
+  open.positions.back()[1] = -1e-6;
+  const Distances asked(0.2);
+  CHECK(offset_curves(open.view(), {&asked, 1}, {}).front().statistics.facts.closed_components == 0);
+}
+
 TEST_CASE("curves: an open curve has its right side outward, and keeps square ends", "[curves]") {
   const Curves line = curve_through({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}}, false);
   const OffsetResult right = offset_of(line, 0.1), left = offset_of(line, -0.1);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/surface/surface.h"
@@ -15,6 +16,9 @@ namespace {
 // How far points may be off their plane, as a share of their extent. Rounding to seven digits puts each coordinate off
 // by up to 5e-7 of itself. Not measured.
 constexpr double kFlat = 1e-6;
+// How far ends of curves may be apart and still count as one, as a share of the extent. Reasoned: what computing a
+// point in two ways leaves in doubt is a hundred thousand times less, and a gap that is meant is more.
+constexpr double kSameEnd = 1e-10;
 
 /// The points that curves use, with the box around them.
 struct UsedPoints {
@@ -197,16 +201,72 @@ PlaneFrame plane_of(CurvesView curves) {
   return frame;
 }
 
-CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points) {
-  CurveChains joined;
-  joined.welded_to = weld_by_position(curves, {});
+namespace {
+
+/// The segments of curves between points that count as one.
+std::vector<Segment> segments_of(CurvesView curves, std::span<const Vec2d> points,
+                                 std::span<const std::uint32_t> welded_to) {
+  std::vector<Segment> segments;
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
     const auto curve = curves.face(c);
     for (std::size_t i = 1; i < curve.size(); ++i) {
-      const Segment segment{joined.welded_to[curve[i - 1]], joined.welded_to[curve[i]]};
-      if (points[segment[0]] != points[segment[1]]) joined.segments.push_back(segment);
+      const Segment segment{welded_to[curve[i - 1]], welded_to[curve[i]]};
+      if (points[segment[0]] != points[segment[1]]) segments.push_back(segment);
     }
   }
+  return segments;
+}
+
+/// The points where one segment ends and no other begins, from left to right; none where a segment is not much longer
+/// than `apart`.
+std::vector<std::uint32_t> ends_of(std::span<const Segment> segments, std::span<const Vec2d> points, double apart) {
+  constexpr double kMuchLonger = 1000;
+  std::vector<std::uint32_t> degree(points.size(), 0), ends;
+  for (const Segment& segment : segments)
+    for (const auto p : segment) ++degree[p];
+  for (const Segment& segment : segments) {
+    if ((points[segment[1]] - points[segment[0]]).length() <= kMuchLonger * apart) continue;
+    for (const auto p : segment)
+      if (degree[p] == 1) ends.push_back(p);
+  }
+  std::sort(ends.begin(), ends.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return points[a][0] != points[b][0] ? points[a][0] < points[b][0] : a < b;
+  });
+  return ends;
+}
+
+/// Lets two ends that are apart by rounding alone count as one, as those of a curve that sines and cosines close. False
+/// if there are none.
+bool weld_near_ends(std::span<const Segment> segments, std::span<const Vec2d> points,
+                    std::vector<std::uint32_t>& welded_to) {
+  double extent = 0;
+  for (const Segment& segment : segments)
+    extent = std::max(extent, (points[segment[0]] - points[segments.front()[0]]).length());
+  const double apart = kSameEnd * extent;
+  const std::vector<std::uint32_t> ends = ends_of(segments, points, apart);
+  std::vector<std::uint32_t> one(points.size());
+  std::iota(one.begin(), one.end(), 0);
+  bool any = false;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = i + 1; j < ends.size() && points[ends[j]][0] - points[ends[i]][0] <= apart; ++j) {
+      const auto [first, second] = std::minmax(ends[i], ends[j]);
+      if (one[first] != first || one[second] != second || (points[first] - points[second]).length() > apart) continue;
+      one[second] = first;
+      any = true;
+    }
+  for (std::uint32_t& p : welded_to)
+    if (p != kNone) p = one[p];
+  return any;
+}
+
+}  // namespace
+
+CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points) {
+  CurveChains joined;
+  joined.welded_to = weld_by_position(curves, {});
+  joined.segments = segments_of(curves, points, joined.welded_to);
+  if (weld_near_ends(joined.segments, points, joined.welded_to))
+    joined.segments = segments_of(curves, points, joined.welded_to);
   ChainWalker walker(joined.segments, points.size());
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     joined.ends += walker.degree(p) == 1;

@@ -30,10 +30,12 @@ using Segment = std::array<std::uint32_t, 2>;
 struct CurveChains {
   std::vector<Segment> segments;  ///< In the order of the chains, between the first points at each position; none
                                   ///< without a length.
-  std::vector<std::uint32_t> welded_to;  ///< For each point the first one at its position; kNone if no curve uses it.
-  std::size_t chains = 0, closed = 0;    ///< Curves from end to end; those among them that are closed.
-  std::size_t ends = 0;                  ///< Points where one segment ends, and no other begins.
-  std::size_t branchings = 0;            ///< Points where more than two segments meet.
+  /// For each point the first one at its position, or, of two ends that are apart by rounding alone, the first of
+  /// these; kNone if no curve uses it.
+  std::vector<std::uint32_t> welded_to;
+  std::size_t chains = 0, closed = 0;  ///< Curves from end to end; those among them that are closed.
+  std::size_t ends = 0;                ///< Points where one segment ends, and no other begins.
+  std::size_t branchings = 0;          ///< Points where more than two segments meet.
 };
 
 /// Joins curves end to end, however they are cut into pieces and whichever way those run, and settles which side is

@@ -39,10 +39,12 @@ struct CurvePoints {
   CurvesView curves;
   std::span<const std::uint32_t> vertex;  ///< Of each point; kNone if it is on no curve.
   const PlaneFrame& frame;
+  std::span<const std::uint32_t> first =
+      {};  ///< Of each vertex: its first point, which gives its place. Empty: each does.
 
   std::span<const Vec3d> positions() const { return curves.positions; }
   std::uint32_t shape_vertex(std::size_t p) const { return vertex[p]; }
-  Vec3d start(std::size_t p) const { return curves.positions[p]; }
+  Vec3d start(std::size_t p) const { return curves.positions[first.empty() ? p : first[vertex[p]]]; }
   /// From the plane to space.
   Vec3d to_input(const Vec3d& displacement) const { return frame.to_space({displacement[0], displacement[1]}); }
 };
@@ -63,7 +65,7 @@ class PreparedCurves {
   const Polyline& line() const { return drawn_.line; }
   /// Where the line's vertices are in the plane.
   const std::vector<Vec2d>& source() const { return drawn_.source; }
-  CurvePoints points() const { return {curves_, drawn_.vertex, plane_.frame}; }
+  CurvePoints points() const { return {curves_, drawn_.vertex, plane_.frame, first_point_}; }
   const CurveQuery& query() const { return *query_; }
   DistanceField& field() { return field_; }
   /// Figures of what has been done so far, which those of each result begin with.
