@@ -139,7 +139,8 @@ TEST_CASE("drawings: arcs that cannot be as given are what SVG makes of them", "
   CHECK(std::atan2(u[0] * v[1] - u[1] * v[0], u.dot(v)) < 0);  // without the flag, angles shrink
 }
 
-TEST_CASE("drawings: random Bezier curves are flattened to within the tolerance, under any transform", "[curves][io]") {
+TEST_CASE("drawings: random Bezier curves are flattened to within the tolerance, under any transform",
+          "[curves][io][long]") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1, 1);
   double nearest_to_tolerance = 0;
