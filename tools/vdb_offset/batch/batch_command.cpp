@@ -163,6 +163,10 @@ void Batch::end(std::size_t model, const Record& record, ProgressLine& progress)
 
 ExitCode Batch::run(const RunMark& mark) {
   const auto begun = Clock::now();
+  if (stop_signal()) {  // not all models have been looked at, and the table of the last time is true still
+    tell("stopped: no model was begun; the table is as it was");
+    return kProcessing;
+  }
   double work = 0;
   for (const std::size_t model : to_do_) work += work_of(model);
   ProgressLine progress(!request_.quiet, to_do_.size(), work, "done");
@@ -170,7 +174,7 @@ ExitCode Batch::run(const RunMark& mark) {
   news.begun = [&] { table_.begin(); };
   news.ended = [&](std::size_t model, const Record& record) { end(model, record, progress); };
   news.waited = [&] { progress.show(); };
-  if (to_do_.empty() || stop_signal()) news.begun();
+  if (to_do_.empty()) news.begun();
   else if (way_of(request_) != Way::Here) run_remotely(request_, models_, to_do_, mark, news);
   else LocalJobs(request_, models_, share_out(request_), mark.name()).run(to_do_, news);
   progress.clear();

@@ -90,8 +90,10 @@ void LocalJobs::run(std::span<const std::size_t> which, const BatchNews& news) {
   news.begun();
   std::size_t next = 0;
   while (!stop_signal() && (next < which.size() || !jobs_.empty())) {
-    while (next < which.size() && !stop_signal() && has_room_for(which[next]))
-      if (!try_to_begin(which[next++], news.ended)) shares_.jobs = jobs_.size(), --next;
+    while (next < which.size() && !stop_signal() && has_room_for(which[next])) {
+      if (try_to_begin(which[next], news.ended)) ++next;
+      else shares_.jobs = jobs_.size();  // more than these the system does not allow
+    }
     hand_out_memory();
     wait_for_news(news.ended);
     news.waited();
@@ -153,7 +155,7 @@ void LocalJobs::refuse(std::size_t model, const char* why, const Ended& ended) {
   ended(model, record);
 }
 
-/// Lets models go on for which there is room, in the order in which they asked. One alone always goes on: whether it
+/// Lets models go on for which there is room, in the order in which they began. One alone always goes on: whether it
 /// fits is for its own limit.
 void LocalJobs::hand_out_memory() {
   std::size_t held = 0;
@@ -176,6 +178,7 @@ void LocalJobs::hand_out_memory() {
     held += job.held;
     any_at_work = true;
     job.waited += seconds_since(job.asked);
+    job.overtaken = 0;  // others may begin again
     job.child.let_go();
     if (first_waiting) ++first_waiting->overtaken;
   }

@@ -59,7 +59,7 @@ class LocalJobs {
     std::size_t held = 0;    // bytes that it may take
     std::size_t wanted = 0;  // bytes that it waits for; 0: it does not
     Clock::time_point asked = {};
-    std::size_t overtaken = 0;  // by how many that asked later
+    std::size_t overtaken = 0;  // by how many that began later, while it waits
     Child child;
   };
 
