@@ -46,16 +46,16 @@ struct Materials {
   std::vector<std::string> libraries;  ///< What the file says of where they are described.
 };
 
-/// The materials of an OBJ file; other files have none.
+/// The materials of an OBJ file, or of one that holds more than a mesh; other files have none.
 VDB_OFFSET_API Materials read_materials(const MeshFile& source);
 
 /// Texture coordinates, one for each vertex: those of the first corner at the vertex that has any, NaNs if none has.
 /// Zero for a vertex that no face uses. \throw InvalidInput if the file holds no texture coordinates at all.
 VDB_OFFSET_API std::vector<Vec2d> vertex_texture(const MeshFile& source);
 
-/// What a file calls its faces. OBJ: by groups, a line's names joined by _; by materials if no face is in a group, and
-/// by objects if none has a material either. ASCII STL: by solids. Names are in the order of their first faces; faces
-/// without one are "wall". None if the file names nothing.
+/// What a file calls its faces. OBJ, and files that hold more than a mesh: by groups, a line's names joined by _; by
+/// materials if no face is in a group, and by objects if none has a material either. ASCII STL: by solids. Names are in
+/// the order of their first faces; faces without one are "wall". None if the file names nothing.
 VDB_OFFSET_API WallNames wall_names(const MeshFile& mesh);
 
 /// Names some faces of a mesh.
@@ -88,8 +88,8 @@ VDB_OFFSET_API std::vector<double> read_vertex_numbers(const std::string& path, 
 VDB_OFFSET_API std::vector<double> parse_vertex_numbers(const std::string& name, std::string_view bytes,
                                                         std::size_t count);
 
-/// The numbers that a PLY file holds for its vertices under that name.
-/// \throw InvalidInput if the file is no PLY, has no such property of single numbers, or holds one that is not finite.
+/// The numbers that a PLY file, or one of VTK's, holds for its vertices under that name.
+/// \throw InvalidInput if it is another file, has no such property of single numbers, or holds one that is not finite.
 VDB_OFFSET_API std::vector<double> vertex_property(const MeshFile& source, const std::string& name);
 
 }  // namespace vdb_offset::io

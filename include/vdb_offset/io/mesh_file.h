@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,12 +18,22 @@
 
 namespace vdb_offset::io {
 
-enum class Format { Obj, Off, Ply, Stl };
+/// Those from ThreeMf on hold more than a mesh: see Document. Assimp stands for all that is read by that library.
+enum class Format { Obj, Off, Ply, Stl, ThreeMf, Gltf, Glb, Vtp, Vtk, Vtu, Assimp };
 
-/// The format that a file name's ending stands for (.obj .off .ply .stl, any case, also before .gz or .zst), if it
-/// does.
+/// The format that a file name's ending stands for (.obj .off .ply .stl .3mf .gltf .glb .vtp .vtk .vtu, and .fbx .dae
+/// .3ds, any case, also before .gz or .zst), if it does.
 VDB_OFFSET_API std::optional<Format> format_of(std::string_view path);
 VDB_OFFSET_API const char* name(Format format);
+/// Whether files of the format can be written: all but those that are read by Assimp.
+VDB_OFFSET_API bool is_written(Format format);
+
+/// The length of the unit of a file's coordinates in micrometres, if the file tells it. Reads no more than that takes.
+/// \throw ReadError, InvalidInput as read_mesh()
+VDB_OFFSET_API std::optional<double> unit_micrometres(const std::string& path, std::optional<Format> format = {});
+
+/// What a format's own reader keeps of a file.
+class Document;
 
 /// How the numbers of an OFF, PLY or STL file are stored.
 enum class Encoding { Ascii, LittleEndian, BigEndian };
@@ -48,13 +59,18 @@ struct VDB_OFFSET_API MeshFile {
   Precision precision;                                ///< What its coordinates can hold.
   /// Lines end with a carriage return alone. `bytes` has a line feed in the place of each.
   bool has_carriage_returns = false;
+  /// Of a format that holds more than a mesh: the rest of the file; `position_at` and `normal_at` are empty then.
+  std::shared_ptr<const Document> document;
+  std::size_t vertex_normals = 0;          ///< With a document: its normals; one for each vertex, or none.
+  std::optional<double> unit_micrometres;  ///< The length of the unit of its coordinates, if the file tells it.
 
+  std::size_t normal_count() const { return document ? vertex_normals : normal_at.size(); }
   std::string_view text() const { return bytes.view(); }
 };
 inline constexpr std::uint32_t kNoNormal = 0xffffffff;
 
-/// Reads .obj, .off, .ply or .stl, by the file's ending or as told; STL gives three vertices a facet. `.gz` and `.zst`
-/// behind that ending are decompressed; "-" is standard input, and needs to be told its format.
+/// Reads a mesh, by the file's ending or as told; STL gives three vertices a facet. `.gz` and `.zst` behind that ending
+/// are decompressed; "-" is standard input, and needs to be told its format. A .gltf may name files beside it.
 /// \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was expected, what was
 /// found) for content that is no mesh. Never allocates more than a small multiple of the file's size.
 VDB_OFFSET_API MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
@@ -80,7 +96,7 @@ struct WriteResult {
 /// output. In the source's own format every byte stays but for the coordinates of vertices that moved and the normals
 /// of faces that moved, which are computed anew from the coordinates as written; binary numbers keep their width. In
 /// another format the file holds positions and faces (STL: triangles) and, as far as the format can, vertex colours,
-/// texture coordinates and normals.
+/// texture coordinates and normals. A .gltf may have files beside it, which are written with it.
 /// \pre one position a vertex. \throw InvalidInput for an unknown ending, WriteError, ReadError if the source's file
 /// was written to meanwhile.
 VDB_OFFSET_API WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,

@@ -186,7 +186,7 @@ Pieces convert(const MeshFile& source, Format target, const IsoResult& iso, cons
   const auto content = std::make_shared<Content>(Content{mesh->view(), precision, {}, {}, {}});
   Attributes& with = content->with;
   with.lost = of_source.lost;
-  if (target != Format::Stl) with.normals = normals_of(iso);
+  if (holds_normals(target)) with.normals = normals_of(iso);
   SourceLookup lookup(iso, from);
   with.has_alpha = of_source.has_alpha;
   if (!of_source.colours.empty()) with.colours = colours_of(lookup, from, of_source, mesh->positions.size());
@@ -202,7 +202,7 @@ Pieces convert(const MeshFile& source, Format target, const IsoResult& iso, cons
 
 Pieces convert(Format target, const IsoResult& iso, const Rounding& precision) {
   const auto content = std::make_shared<Content>(Content{iso.polygons.view(), precision, {}, {}, {}});
-  if (target != Format::Stl) content->with.normals = normals_of(iso);
+  if (holds_normals(target)) content->with.normals = normals_of(iso);
   return encode(target, content);
 }
 

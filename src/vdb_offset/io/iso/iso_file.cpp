@@ -23,9 +23,10 @@ Transported read_transported(const MeshFile& source, const TransportRequest& req
           fmt::format("transport: expected a format that has a place for {}, got .{}", in_words, name(target)));
     if (!wanted) what = {};
   };
-  const bool triangles_only = target == Format::Stl;
-  settle(request.texture, attributes.texture, !attributes.texture.empty(), !triangles_only, "texture coordinates");
-  settle(request.colours, attributes.colours, !attributes.colours.empty(), !triangles_only, "colours of vertices");
+  settle(request.texture, attributes.texture, !attributes.texture.empty(), holds_texture(target),
+         "texture coordinates");
+  settle(request.colours, attributes.colours, !attributes.colours.empty(), holds_colours(target),
+         "colours of vertices");
   settle(request.materials, materials, !materials.of_face.empty(), target == Format::Obj, "materials");
   if (!request.colours) attributes.has_alpha = false;
   attributes.normals = {};
@@ -33,28 +34,28 @@ Transported read_transported(const MeshFile& source, const TransportRequest& req
 }
 
 Precision precision_of_iso(const std::string& path, const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
-  if (format == Format::Stl) return {Rounding::Kind::Single};
-  if (format != Format::Ply && options.digits > 0) return {Rounding::Kind::Digits, options.digits};
+  const Format format = require_written_format(path, options.format);
+  if (is_single(format)) return {Rounding::Kind::Single};
+  if (is_text(format) && options.digits > 0) return {Rounding::Kind::Digits, options.digits};
   return {};
 }
 
 WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
                               const IsoResult& iso, const WriteOptions& options) {
   WriteResult result;
-  const Pieces pieces =
-      convert(source, require_format(path, options.format), iso, transported, precision_of_iso(path, options), result);
+  const Pieces pieces = convert(source, require_written_format(path, options.format), iso, transported,
+                                precision_of_iso(path, options), result);
   write_pieces_of(source.path, source.bytes, path, pieces);
   return result;
 }
 
 void write_iso_surface(const std::string& path, const IsoResult& iso, const WriteOptions& options) {
-  write_pieces(path, convert(require_format(path, options.format), iso, precision_of_iso(path, options)));
+  write_pieces(path, convert(require_written_format(path, options.format), iso, precision_of_iso(path, options)));
 }
 
 WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow, const IsoResult& iso,
                          const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
+  const Format format = require_written_format(path, options.format);
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;
   const Pieces pieces = is_skin ? convert(*source, format, hollow, iso, result) : convert(format, hollow, result);

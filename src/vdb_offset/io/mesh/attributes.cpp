@@ -14,6 +14,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/document.h"
 #include "vdb_offset/io/mesh/face_labels.h"
 #include "vdb_offset/io/mesh/read/off_binary.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
@@ -377,6 +378,10 @@ void read_stl(const MeshFile& source, Attributes& attributes) {
 Attributes read_attributes(const MeshFile& source) {
   Attributes attributes;
   attributes.lost = source.extras;
+  if (source.document) {
+    source.document->read_attributes(source, attributes);
+    return attributes;
+  }
   read_normals(source, attributes);
   switch (source.format) {
     case Format::Obj:
@@ -391,12 +396,18 @@ Attributes read_attributes(const MeshFile& source) {
     case Format::Stl:
       read_stl(source, attributes);
       break;
+    default:
+      break;
   }
   return attributes;
 }
 
 Materials read_materials(const MeshFile& source) {
   Materials materials;
+  if (source.document) {
+    FaceNames names = source.document->face_names();
+    return {std::move(names.materials), std::move(names.material_of), {}};
+  }
   if (source.format != Format::Obj || !has_extra(source, "materials")) return materials;
   std::unordered_map<std::string, std::uint32_t> index_of;
   std::string name;

@@ -60,16 +60,17 @@ bool take_off_partial_faces(PolygonView mesh, CornerValues<Value>& values) {
   return taken;
 }
 
-/// Lists what STL, triangles of single precision, cannot hold.
-void name_losses_of_triangles(const MeshFile& source, std::vector<std::string>& lost) {
-  lost.emplace_back("shared vertices");
+/// Lists what a format of triangles or of single precision cannot hold.
+void name_losses_of_triangles(const MeshFile& source, Format target, std::vector<std::string>& lost) {
+  if (target == Format::Stl) lost.emplace_back("shared vertices");
   const auto& begin = source.polygons.face_begin;
   for (std::size_t f = 0; f + 1 < begin.size(); ++f)
     if (begin[f + 1] - begin[f] > 3) {
       lost.emplace_back("faces of more than three corners (split into triangles)");
       break;
     }
-  lost.emplace_back("digits beyond single precision");
+  if (is_single(target) && source.precision.kind != Precision::Kind::Single)
+    lost.emplace_back("digits beyond single precision");
 }
 
 }  // namespace
@@ -87,22 +88,19 @@ void fit_to_format(Format target, PolygonView mesh, Attributes& attributes) {
     if (!what.empty()) lost.emplace_back(in_words);
     what = {};
   };
-  if (target == Format::Obj) return;
-  if (target == Format::Stl) {
-    drop(colours, "vertex colours");
-    drop(texture, "texture coordinates");
-    drop(normals, "normals of vertices");
-    return;
-  }
+  if (holds_corners(target)) return;
+  if (!holds_colours(target)) drop(colours, "vertex colours");
+  if (!holds_texture(target)) drop(texture, "texture coordinates");
+  if (!holds_normals(target)) drop(normals, "normals of vertices");
   if (!are_bytes(colours)) lost.emplace_back("digits of colours beyond 8 bits");
   if (!make_per_vertex(mesh, normals)) drop(normals, "normals (not one for each vertex)");
   if (make_per_vertex(mesh, texture)) return;
-  if (target == Format::Off) drop(texture, "texture coordinates (not one for each vertex)");
+  if (target != Format::Ply) drop(texture, "texture coordinates (not one for each vertex)");
   else if (take_off_partial_faces(mesh, texture))
     lost.emplace_back("texture coordinates of faces that have them at some corners only");
 }
 
-bool keeps_parts(Format format) { return format == Format::Obj || format == Format::Ply; }
+bool keeps_parts(Format format) { return format != Format::Off && format != Format::Stl; }
 
 Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
                       WriteResult& result) {
@@ -112,7 +110,7 @@ Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_p
     with.lost.emplace_back("normals");
   }
   fit_to_format(target, content->mesh, with);
-  if (target == Format::Stl) name_losses_of_triangles(source, with.lost);
+  if (is_of_triangles(target)) name_losses_of_triangles(source, target, with.lost);
   if (!content->parts.empty() && !keeps_parts(target)) with.lost.emplace_back(kShellParts);
   result.lost = first_names(with.lost);
   return encode(target, content);
@@ -123,7 +121,10 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
   Attributes& with = content->with;
-  if (!with.normals.empty() && normals == Normals::Recompute && target != Format::Stl)
+  if (Materials materials = read_materials(source);
+      source.document && target == Format::Obj && !materials.of_face.empty())
+    content->materials = std::move(materials);
+  if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);
 }

@@ -9,6 +9,7 @@
 
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/documents/documents.h"
 #include "vdb_offset/mesh/triangulate.h"
 
 namespace vdb_offset::io {
@@ -232,6 +233,8 @@ Pieces to_stl(PolygonView mesh) {
 
 }  // namespace
 
+bool is_gltf(Format format) { return format == Format::Gltf || format == Format::Glb; }
+
 bool fits_float(double value) {
   const auto narrow = static_cast<float>(value);
   std::string digits;
@@ -239,6 +242,20 @@ bool fits_float(double value) {
   double back = 0;
   return static_cast<double>(narrow) == value || (parse_double(digits, back) && back == value);
 }
+
+bool is_text(Format format) { return format == Format::Obj || format == Format::Off || format == Format::ThreeMf; }
+
+bool is_single(Format format) { return format == Format::Stl || is_gltf(format); }
+
+bool is_of_triangles(Format format) { return is_single(format) || format == Format::ThreeMf; }
+
+bool holds_colours(Format format) { return format != Format::Stl; }
+
+bool holds_texture(Format format) { return format != Format::Stl && format != Format::ThreeMf; }
+
+bool holds_normals(Format format) { return holds_texture(format); }
+
+bool holds_corners(Format format) { return format == Format::Obj || is_gltf(format); }
 
 std::uint8_t colour_byte(double colour) { return static_cast<std::uint8_t>(std::lround(colour * 255)); }
 
@@ -250,7 +267,18 @@ Pieces encode(Format format, const SharedContent& content) {
       return to_off(content);
     case Format::Ply:
       return to_ply(content);
+    case Format::ThreeMf:
+      return to_3mf(content);
+    case Format::Gltf:
+      return to_gltf(content);
+    case Format::Glb:
+      return to_glb(content);
+    case Format::Vtp:
+    case Format::Vtk:
+    case Format::Vtu:
+      return to_vtk(format, content);
     case Format::Stl:
+    case Format::Assimp:  // is not written
       break;
   }
   return to_stl(content->mesh);

@@ -27,9 +27,23 @@ using SharedContent = std::shared_ptr<const Content>;
 
 /// Encodes the content in a format. PLY: binary, coordinates are doubles. STL: binary, triangles and nothing else.
 /// OBJ: all attributes, parts are groups. \pre in other formats than OBJ normals are those of vertices, and in OFF
-/// texture coordinates as well. PLY: the faces of parts have a property `part`, 0 for the first. The pieces refer to
-/// the mesh.
+/// and those of VTK texture coordinates as well. PLY: the faces of parts have a property `part`, 0 for the first. The
+/// pieces refer to the mesh.
 Pieces encode(Format format, const SharedContent& content);
+
+bool is_gltf(Format format);
+/// Whether a new file of the format has coordinates in decimal digits.
+bool is_text(Format format);
+/// Whether a new file of the format has coordinates in single precision.
+bool is_single(Format format);
+/// Whether a new file of the format has triangles alone.
+bool is_of_triangles(Format format);
+// Whether the format has a place for what vertices, or their corners, have.
+bool holds_colours(Format format);
+bool holds_texture(Format format);
+bool holds_normals(Format format);
+/// Whether corners of one vertex may have different normals and texture coordinates.
+bool holds_corners(Format format);
 
 /// A colour from 0 to 1 as a byte, for formats that store bytes.
 std::uint8_t colour_byte(double colour);

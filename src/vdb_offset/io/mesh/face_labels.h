@@ -6,6 +6,7 @@
 
 #include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/document.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
@@ -16,12 +17,30 @@ inline std::vector<std::string> words_of_line(Scanner scanner) {
   return words;
 }
 
+/// Tells a listener what a document calls its faces; see visit_labels().
+template <class Listener>
+void visit_names(const FaceNames& names, std::size_t faces, Listener& listener) {
+  const auto changes = [](const std::vector<std::uint32_t>& of_face, std::size_t f) {
+    return !of_face.empty() && (f == 0 || of_face[f] != of_face[f - 1]);
+  };
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (changes(names.group_of, f)) {
+      const std::string& group = names.groups[names.group_of[f]];
+      listener.set_groups(group.empty() ? std::vector<std::string>{} : std::vector{group});
+    }
+    if (changes(names.material_of, f)) listener.set_material(names.materials[names.material_of[f]]);
+    listener.add_face();
+  }
+}
+
 /// Tells a listener the names of faces, in the order of the file: set_groups(names), set_object(name) and
-/// set_material(name) hold for the faces after them; add_face() is called for each face. Only OBJ and ASCII STL (in
-/// which solids are groups) have names; for other files nothing is called.
+/// set_material(name) hold for the faces after them; add_face() is called for each face. Only OBJ, ASCII STL (in
+/// which solids are groups) and documents have names; for other files nothing is called.
 template <class Listener>
 void visit_labels(const MeshFile& mesh, Listener& listener) {
-  if (mesh.format == Format::Obj) {
+  if (mesh.document) {
+    visit_names(mesh.document->face_names(), mesh.polygons.face_count(), listener);
+  } else if (mesh.format == Format::Obj) {
     for_each_obj_line(mesh.path, mesh.text(), [&](const ObjLine& line) {
       if (line.is("f")) listener.add_face();
       else if (line.is("g")) listener.set_groups(words_of_line(line.words()));

@@ -2,18 +2,23 @@
 #include "vdb_offset/io/mesh_file.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/base/compression.h"
+#include "vdb_offset/io/base/nearest_names.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/documents/documents.h"
 #include "vdb_offset/io/mesh/convert.h"
+#include "vdb_offset/io/mesh/document.h"
 #include "vdb_offset/io/mesh/encode.h"
 #include "vdb_offset/io/mesh/new_normals.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
+#include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -37,8 +42,40 @@ MeshFile parse(std::string name, Format format, FileBytes bytes) {
     case Format::Stl:
       parse_stl(file);
       break;
+    case Format::ThreeMf:
+      parse_3mf(file);
+      break;
+    case Format::Gltf:
+    case Format::Glb:
+      parse_gltf(file);
+      break;
+    case Format::Vtp:
+    case Format::Vtk:
+    case Format::Vtu:
+      parse_vtk(file);
+      break;
+    case Format::Assimp:
+      parse_by_assimp(file);
+      break;
   }
   return file;
+}
+
+/// A format by the ending of its files; the first of each is its name.
+struct Ending {
+  std::string_view text;
+  Format format;
+};
+constexpr Ending kFormatEndings[] = {{"obj", Format::Obj},   {"off", Format::Off},     {"ply", Format::Ply},
+                                     {"stl", Format::Stl},   {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf},
+                                     {"glb", Format::Glb},   {"vtp", Format::Vtp},     {"vtk", Format::Vtk},
+                                     {"vtu", Format::Vtu},   {"fbx", Format::Assimp},  {"dae", Format::Assimp},
+                                     {"3ds", Format::Assimp}};
+
+/// The source's own document over other positions.
+WrittenDocument rewritten(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
+                          NewNormals normals, const std::string& path) {
+  return source.document->rewrite({source, positions, precision, std::move(normals), path});
 }
 
 }  // namespace
@@ -56,23 +93,36 @@ Format require_format(const std::string& path, const std::optional<Format>& told
   const auto format = told ? told : format_of(path);
   if (!format)
     throw InvalidInput(path +
-                       ": expected a name that ends in .obj, .off, .ply or .stl (or one of these and .gz or .zst)");
+                       ": expected a name that ends in .obj, .off, .ply, .stl, .3mf, .gltf, .glb, .vtp, .vtk or .vtu "
+                       "(or one of these and .gz or .zst)");
   return *format;
+}
+
+Format require_written_format(const std::string& path, const std::optional<Format>& told) {
+  const Format format = require_format(path, told);
+  if (!is_written(format))
+    throw InvalidInput(path +
+                       ": expected a format that can be written, got one that is read only (.glb has a place for "
+                       "what such files hold)");
+  return format;
 }
 
 std::optional<Format> format_of(std::string_view path) {
   path = without_compression(path);
   const std::size_t dot = path.rfind('.');
   if (dot == std::string_view::npos) return std::nullopt;
-  for (const Format format : {Format::Obj, Format::Off, Format::Ply, Format::Stl})
-    if (is_word(path.substr(dot + 1), name(format))) return format;
+  for (const Ending& ending : kFormatEndings)
+    if (is_word(path.substr(dot + 1), ending.text)) return ending.format;
   return std::nullopt;
 }
 
 const char* name(Format format) {
-  constexpr const char* kNames[] = {"obj", "off", "ply", "stl"};
-  return kNames[static_cast<std::size_t>(format)];
+  return std::find_if(std::begin(kFormatEndings), std::end(kFormatEndings),
+                      [&](const Ending& ending) { return ending.format == format; })
+      ->text.data();
 }
+
+bool is_written(Format format) { return format != Format::Assimp; }
 
 MeshFile read_mesh(const std::string& path, std::optional<Format> format) {
   const Format known = require_format(path, format);
@@ -83,12 +133,18 @@ MeshFile parse_mesh(const std::string& name, Format format, std::string bytes) {
   return parse(name, format, FileBytes(std::move(bytes)));
 }
 
+std::optional<double> unit_micrometres(const std::string& path, std::optional<Format> format) {
+  const Format known = require_format(path, format);
+  if (is_gltf(known)) return kMetre;
+  return known == Format::ThreeMf ? unit_of_3mf(path) : std::nullopt;
+}
+
 Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
+  const Format format = require_written_format(path, options.format);
   const bool same = format == source.format;
-  const bool text = same ? source.encoding == Encoding::Ascii : format != Format::Ply;
+  const bool text = same ? source.encoding == Encoding::Ascii : is_text(format);
   Precision precision = same ? source.precision : Precision{};
-  if (format == Format::Stl && !same) precision = {Rounding::Kind::Single};
+  if (is_single(format) && !same) precision = {Rounding::Kind::Single};
   else if (text && options.digits > 0) precision = {Rounding::Kind::Digits, options.digits};
   precision.rounds_all = !same;
   return precision;
@@ -96,28 +152,36 @@ Precision precision_of(const std::string& path, const MeshFile& source, const Wr
 
 WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
                        const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
+  const Format format = require_written_format(path, options.format);
   const Rounding precision = precision_of(path, source, options);
   WriteResult result;
-  Pieces pieces;
+  WrittenDocument made;
   if (format == source.format) {
     NewNormals normals;
     if (options.normals == Normals::Recompute) normals = new_normals(source, positions, precision);
     result.disagreeing_normals = normals.disagreeing;
-    pieces = rewrite_in_place(source, positions, precision, std::move(normals));
+    if (source.document) made = rewritten(source, positions, precision, std::move(normals), path);
+    else made.file = rewrite_in_place(source, positions, precision, std::move(normals));
+    result.lost = first_names(made.lost);
   } else {
-    pieces = convert(source, format, positions, precision, options.normals, result);
+    made.file = convert(source, format, positions, precision, options.normals, result);
   }
-  write_pieces_of(source.path, source.bytes, path, pieces);
+  OutputFiles together;
+  for (const WrittenDocument::Beside& beside : made.beside) write_file(beside.path, beside.bytes);
+  write_pieces_of(source.path, source.bytes, path, made.file);
+  together.commit();
   return result;
 }
 
 std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions) {
-  return join(rewrite_in_place(source, positions, source.precision, new_normals(source, positions, source.precision)));
+  NewNormals normals = new_normals(source, positions, source.precision);
+  if (source.document)
+    return join(rewritten(source, positions, source.precision, std::move(normals), source.path).file);
+  return join(rewrite_in_place(source, positions, source.precision, std::move(normals)));
 }
 
 void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
+  const Format format = require_written_format(path, options.format);
   const Rounding precision = options.digits > 0 ? Rounding{Rounding::Kind::Digits, options.digits} : Rounding{};
   write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})));
 }

@@ -51,7 +51,7 @@ void for_each_user(const MeshFile& source, std::span<const std::uint32_t> faces,
 
 Users find_users(const MeshFile& source, std::span<const std::uint32_t> faces) {
   Users users;
-  users.begin.assign(source.normal_at.size() + 2, 0);
+  users.begin.assign(source.normal_count() + 2, 0);
   for_each_user(source, faces, [&](auto, auto, std::uint32_t n) { ++users.begin[n + 2]; });
   std::partial_sum(users.begin.begin(), users.begin.end(), users.begin.begin());
   users.corners.resize(users.begin.back());
@@ -118,7 +118,7 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
   if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
   const Users users = find_users(source, faces);
   NewNormals normals;
-  normals.value.assign(source.normal_at.size(), Vec3d(0.0));
+  normals.value.assign(source.normal_count(), Vec3d(0.0));
   std::atomic<std::size_t> disagreeing = 0;
   for_each_index(normals.value.size(), [&](std::size_t n) {
     Vec3d sum(0.0);
@@ -139,7 +139,7 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
 
 NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed) {
-  if (source.normal_at.empty()) return {};
+  if (source.normal_count() == 0) return {};
   std::vector<Vec3d> stored(positions.size());
   std::vector<std::uint8_t> moved(positions.size());
   for_each_index(positions.size(), [&](std::size_t v) {

@@ -15,6 +15,7 @@
 #include "vdb_offset/io/base/line_records.h"
 #include "vdb_offset/io/base/nearest_names.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/mesh/document.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 
 namespace vdb_offset::io {
@@ -272,6 +273,7 @@ std::vector<double> read_vertex_numbers(const std::string& path, std::size_t cou
 }
 
 std::vector<double> vertex_property(const MeshFile& source, const std::string& name) {
+  if (source.document) return source.document->vertex_numbers(source, name);
   if (source.format != Format::Ply)
     throw InvalidInput(fmt::format("{}: expected a PLY file, whose vertices can have a property '{}', found {}",
                                    source.path, name, io::name(source.format)));

@@ -9,6 +9,7 @@
 
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh/convert.h"
 #include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
 #include "vdb_offset/io/refine/refine_writers.h"
@@ -78,7 +79,7 @@ Pieces in_own_format(const SharedRefined& content, std::vector<std::string>& los
       return refined_off(content);
     case Format::Ply:
       return refined_ply(content);
-    case Format::Stl:
+    default:
       break;
   }
   return refined_stl(content);
@@ -119,7 +120,14 @@ RefinedFile refine_file(const MeshFile& source, const Refinement& refinement) {
     refined.file = source;
     return refined;
   }
-  if (source.format == Format::Ply && ply::find_strips(ply::read_header(source))) {
+  if (source.document) {
+    // Such a file cannot be given more vertices as it is: what OBJ has a place for comes along.
+    WriteResult as_obj;
+    std::string bytes = join(convert(source, Format::Obj, source.polygons.positions, {}, Normals::Keep, as_obj));
+    if (!as_obj.lost.empty()) refined.lost.push_back(as_obj.lost);
+    refined.file = parse_refined(parse_mesh(source.path, Format::Obj, std::move(bytes)), refinement, refined.lost);
+    source.bytes.require_unchanged(source.path);
+  } else if (source.format == Format::Ply && ply::find_strips(ply::read_header(source))) {
     std::string bytes = ply_without_strips(source, refined.lost);
     refined.file = parse_refined(parse_mesh(source.path, Format::Ply, std::move(bytes)), refinement, refined.lost);
     source.bytes.require_unchanged(source.path);

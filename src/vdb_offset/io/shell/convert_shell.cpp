@@ -80,11 +80,11 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
   else double_up(shell, with.texture.value);
   if (!with.normals.empty()) {
     std::vector<Vec3d> inner = with.normals.value;
-    if (normals == Normals::Recompute && target != Format::Stl) {
+    if (normals == Normals::Recompute && holds_normals(target)) {
       update_normals(skin_normals(source, shell, ShellPart::Outer, precision), with.normals.value, result);
       update_normals(skin_normals(source, shell, ShellPart::Inner, precision), inner, result);
     }
-    add_inner_normals(mesh, shell, target == Format::Obj, inner, with.normals);
+    add_inner_normals(mesh, shell, holds_corners(target), inner, with.normals);
   }
   return encode_fitting(source, target, content, result);
 }

@@ -43,7 +43,7 @@ Pieces in_own_format(const SharedShell& content, std::vector<std::string>& lost)
       return shell_to_off(content, lost);
     case Format::Ply:
       return shell_to_ply(content, lost);
-    case Format::Stl:
+    default:
       break;
   }
   return shell_to_stl(content, lost);
@@ -155,13 +155,13 @@ std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& prec
 
 WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
                         const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
+  const Format format = require_written_format(path, options.format);
   const Rounding precision = precision_of(path, source, options);
   require_same_mesh(source, shell);
   WriteResult result;
   Pieces pieces;
   // The source's rows are kept unless they are strips, which cannot be reversed face by face.
-  if (format == source.format && !has_strips(source)) {
+  if (format == source.format && !source.document && !has_strips(source)) {
     const auto content = std::make_shared<ShellContent>(ShellContent{source, shell, precision, options.normals});
     std::vector<std::string> lost;
     pieces = with_line_ends_of(source, in_own_format(content, lost));
@@ -175,7 +175,7 @@ WriteResult write_shell(const std::string& path, const MeshFile& source, const S
 }
 
 WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options) {
-  const Format format = require_format(path, options.format);
+  const Format format = require_written_format(path, options.format);
   const Rounding precision = options.digits > 0 ? Rounding{Rounding::Kind::Digits, options.digits} : Rounding{};
   WriteResult result;
   write_pieces(path, convert(format, shell, precision, result));

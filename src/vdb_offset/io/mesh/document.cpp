@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/mesh/document.h"
+
+#include <fmt/format.h>
+
+#include "vdb_offset/error.h"
+
+namespace vdb_offset::io {
+
+bool MovedMesh::any_has_moved() const {
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (has_moved(v)) return true;
+  return false;
+}
+
+void Document::read_attributes(const MeshFile&, Attributes&) const {}
+
+FaceNames Document::face_names() const { return {}; }
+
+std::vector<double> Document::vertex_numbers(const MeshFile& source, const std::string& name) const {
+  throw InvalidInput(fmt::format("{}: expected numbers of vertices with the name '{}', got a .{} file, which has none",
+                                 source.path, name, io::name(source.format)));
+}
+
+}  // namespace vdb_offset::io
