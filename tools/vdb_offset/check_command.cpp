@@ -58,7 +58,7 @@ struct CheckRequest {
 /// Declares the options that say how the offset was made.
 void declare_offset(CommandLine& line, CheckRequest& request, std::string& distance_xy, std::string& distance_z) {
   Request& made = request.made;
-  line.add_unit(made.unit);
+  line.add_unit(made.unit, made.input);
   line.option("-d,--distance", "D",
               "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
               "expression [the median of what is found]",
@@ -66,7 +66,8 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", distance_xy);
   line.option("--distance-z", "B", "The distance along z, with --distance-xy", distance_z);
   line.option("--distance-from", "FILE",
-              "Instead: a number for each vertex, as text or .npy, or 'ply:NAME', a vertex property of SOURCE",
+              "Instead: a number for each vertex, as text or .npy, 'ply:NAME', a vertex "
+              "property of SOURCE, or 'vtk:NAME', an array of its points",
               request.distance_from);
   line.repeated("--only", "PART",
                 "The part that was offset: 'group=NAME', 'material=NAME' or 'faces=FILE'; may be repeated",
@@ -116,7 +117,9 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   made.border = Border::Slide;
   std::string distance_xy, distance_z;
   CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help");
-  line.file("SOURCE", "Mesh before (.obj .ply .stl .off), or curves (.dat .txt .xy .svg .obj)", made.input);
+  line.file("SOURCE",
+            "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), or curves (.dat .txt .xy .svg .obj)",
+            made.input);
   line.file("OFFSET", "Mesh or curves after", made.output);
   declare_offset(line, request, distance_xy, distance_z);
   line.option("--threads", "N", "Threads; 0 takes all [0]",

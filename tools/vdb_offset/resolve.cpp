@@ -92,8 +92,13 @@ void settle_surroundings(Job& job) {
 }
 
 Distances read_distances(const Source& source, const std::string& from) {
-  constexpr std::string_view kProperty = "ply:";
-  if (from.starts_with(kProperty)) return Distances(io::vertex_property(*source.file, from.substr(kProperty.size())));
+  if (names_property(from)) {
+    const std::size_t kind = from.find(':') + 1;  // one is for PLY, the other for files that hold more than a mesh
+    if (source.file->document.operator bool() != from.starts_with("vtk:"))
+      throw InvalidInput(fmt::format("{}: expected 'ply:NAME' for a PLY file and 'vtk:NAME' for one of VTK's, got '{}'",
+                                     source.file->path, from));
+    return Distances(io::vertex_property(*source.file, from.substr(kind)));
+  }
   return Distances(io::read_vertex_numbers(from, source.view().positions.size()));
 }
 

@@ -11,6 +11,7 @@
 
 #include "messages.h"
 #include "outputs.h"
+#include "request/option_values.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"
@@ -61,7 +62,7 @@ void add(std::vector<RunFile>& files, const std::string& option, const std::stri
 
 /// Adds the file that a distance is read from, if there is one.
 void add_source_of(std::vector<RunFile>& files, const std::string& option, const DistanceRequest& request) {
-  if (!request.from.starts_with("ply:")) add(files, option, request.from);
+  if (!names_property(request.from)) add(files, option, request.from);
 }
 
 /// The files that are written with --layers. `layers` is the number of surfaces, if the output is no volume mesh.

@@ -14,6 +14,8 @@
 #include "request/option_values.h"
 #include "request/request.h"
 #include "request/units.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -132,11 +134,12 @@ std::vector<std::string> CommandLine::words_of_config() const {
   return words;
 }
 
-void CommandLine::add_unit(std::string& unit) {
+void CommandLine::add_unit(std::string& unit, const std::string& input) {
   unit_ = &unit;
+  measured_ = &input;
   option("--unit", "UNIT",
          "What the numbers of the file are: 'um', 'mm', 'cm', 'm', 'in' or 'ft'; then distances and other lengths may "
-         "have a unit, as in 0.2mm",
+         "have a unit, as in 0.2mm [the file's own, if it tells one]",
          [&unit](const std::string& text) {
            require(micrometres_of(text).has_value(),
                    "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft', got '" + text + "'");
@@ -144,10 +147,26 @@ void CommandLine::add_unit(std::string& unit) {
          });
 }
 
+namespace {
+
+/// The unit that a file tells of its numbers, if it does. One that is not there, or is none of a known format, is for
+/// the reader to tell of.
+std::optional<double> unit_of_file(const std::string& path) {
+  if (!io::format_of(path)) return std::nullopt;
+  try {
+    return io::unit_micrometres(path);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
 std::string CommandLine::text_of(const CLI::Option& option, const std::string& given) const {
   const std::string& name = option.get_lnames().front();
   const bool is_length = std::find(std::begin(kLengths), std::end(kLengths), name) != std::end(kLengths);
-  return unit_ && is_length ? in_file_units("--" + name, given, *unit_) : given;
+  const auto file_unit = [this] { return unit_->empty() ? unit_of_file(*measured_) : micrometres_of(*unit_); };
+  return unit_ && is_length ? in_file_units("--" + name, given, file_unit) : given;
 }
 
 bool CommandLine::parse(int argc, const char* const* argv) {

@@ -39,8 +39,9 @@ class CommandLine {
   /// --config, a file with values of options that the line does not have. One of `alternatives` on the line counts
   /// instead of all of them in the file. Names that are `passed_over` are options of other commands.
   void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {});
-  /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name.
-  void add_unit(std::string& unit);
+  /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
+  /// where it is not given, the file `input`, which other options name, may tell its own.
+  void add_unit(std::string& unit, const std::string& input);
   /// What is declared from here on is not listed in --help.
   void hide_what_follows() { hidden_ = true; }
   /// A file that the command cannot do without, by its position.
@@ -81,7 +82,7 @@ class CommandLine {
   const char* help_;
   std::string config_;
   std::vector<std::string> alternatives_, passed_over_;
-  const std::string* unit_ = nullptr;
+  const std::string *unit_ = nullptr, *measured_ = nullptr;
   bool hidden_ = false;
   std::vector<const CLI::Option*> hidden_options_;
   std::deque<Value> values_;  // CLI11 keeps references to their texts

@@ -21,9 +21,10 @@ constexpr const char* kAbout =
     "texture coordinates, groups and materials; only positions (and normals) change.";
 
 constexpr const char* kMore = R"(
-INPUT and OUTPUT end in .obj, .ply, .stl or .off, compressed with .gz or .zst behind it, or are '-' (standard input and
-output, with --format); INPUT may also be a scene (.json), which brings its distance. The same format in and out keeps
-every byte but coordinates and normals of what moved. Plane curves are files that end in .dat, .txt, .xy or .svg, or an
+INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
+behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, or a scene
+(.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
+of what moved. Plane curves are files that end in .dat, .txt, .xy or .svg, or an
 .obj with line elements and no face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
 below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which tells each vertex its
@@ -62,7 +63,7 @@ constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
 /// Declares the options that say how far the offset goes, and what kind of offset it is.
 void declare_distances(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
-  line.add_unit(request.unit);
+  line.add_unit(request.unit, request.input);
   line.repeated(
       "-d,--distance", "D",
       "Distance: world units, percent of the diagonal as in 1.5%, or an expression; negative is inward; given "
@@ -107,8 +108,9 @@ void declare_distances(CommandLine& line, Draft& draft) {
                 draft.iso.transport = parse_transport(text);
               });
   line.option("--distance-from", "FILE",
-              "Each vertex's distance, world units: a file of numbers (text or .npy), or 'ply:NAME', a vertex "
-              "property of INPUT; elsewhere '@FILE' and 'ply:NAME' say the same",
+              "Each vertex's distance, world units: a file of numbers (text or .npy), 'ply:NAME', a vertex "
+              "property of INPUT, or 'vtk:NAME', an array of its points; elsewhere '@FILE', 'ply:NAME' and 'vtk:NAME' "
+              "say the same",
               [&request](const std::string& text) {
                 request.distances.push_back(parse_distance_from(text, request));
                 request.distance_option = "--distance-from";
@@ -263,7 +265,9 @@ void declare_method(CommandLine& line, Draft& draft) {
 /// Declares the options for the files that are written, and for threads and memory.
 void declare_files(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
-  line.option("--format", "NAME", "Format of '-' and of files with another ending: 'obj', 'ply', 'stl' or 'off'",
+  line.option("--format", "NAME",
+              "Format of '-' and of files with another ending: 'obj', 'ply', 'stl', 'off', "
+              "'3mf', 'glb', 'gltf', 'vtp', 'vtk' or 'vtu'",
               [&request](const std::string& text) { request.format = parse_format(text); });
   line.option(
       "--normals", "MODE", "Normals of the file where faces moved: 'recompute' or 'keep' them as they are [recompute]",

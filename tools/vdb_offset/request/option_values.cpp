@@ -62,8 +62,10 @@ int parse_count(const char* option, const std::string& text, int least, int most
   return *value;
 }
 
+bool names_property(const std::string& text) { return text.starts_with("ply:") || text.starts_with("vtk:"); }
+
 DistanceRequest parse_distance_request(const std::string& text) {
-  if (text.starts_with("ply:")) return {text, {}, text};
+  if (names_property(text)) return {text, {}, text};
   if (text.starts_with('@')) {
     if (text.size() == 1) throw InvalidOption("expected a file's name behind the '@'");
     return {text.substr(1), {}, text.substr(1)};
@@ -74,7 +76,7 @@ DistanceRequest parse_distance_request(const std::string& text) {
 DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request) {
   try {
     DistanceRequest distance = parse_distance_request(text);
-    require(!distance.from.starts_with("ply:") || !scene::is_scene(request.input),
+    require(!names_property(distance.from) || !scene::is_scene(request.input),
             fmt::format("{}: expected a file, as a scene has no properties", option));
     return distance;
   } catch (const InvalidOption& error) {
@@ -83,7 +85,7 @@ DistanceRequest parse_distance_of(const char* option, const std::string& text, c
 }
 
 DistanceRequest parse_distance_from(const std::string& text, const Request& request) {
-  return parse_distance_of("--distance-from", text.starts_with("ply:") ? text : "@" + text, request);
+  return parse_distance_of("--distance-from", names_property(text) ? text : "@" + text, request);
 }
 
 DistanceRequest parse_inner(const std::string& text, const Request& request) {
@@ -95,8 +97,10 @@ DistanceRequest parse_inner(const std::string& text, const Request& request) {
 
 io::Format parse_format(const std::string& text) {
   const auto format = io::format_of("." + text);
-  require(format && text.find('.') == std::string::npos,
-          fmt::format("--format: expected 'obj', 'ply', 'stl' or 'off', got '{}'", text));
+  require(format && io::is_written(*format) && text.find('.') == std::string::npos,
+          fmt::format(
+              "--format: expected 'obj', 'ply', 'stl', 'off', '3mf', 'glb', 'gltf', 'vtp', 'vtk' or 'vtu', got '{}'",
+              text));
   return *format;
 }
 

@@ -37,11 +37,13 @@ int parse_count(const char* option, const std::string& text, int least, int most
 /// Bytes with an optional suffix K, M, G or T (binary), as in "4G" or "1.5 GiB".
 std::size_t parse_size(const std::string& text);
 
-/// A distance, an expression, @FILE or ply:NAME. \throw InvalidOption
+/// Whether a text is ply:NAME or vtk:NAME.
+bool names_property(const std::string& text);
+/// A distance, an expression, @FILE, ply:NAME or vtk:NAME. \throw InvalidOption
 DistanceRequest parse_distance_request(const std::string& text);
-/// A distance, an expression, @FILE or ply:NAME that an option of this request was given.
+/// A distance, an expression, @FILE, ply:NAME or vtk:NAME that an option of this request was given.
 DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request);
-/// The file, or ply:NAME, that --distance-from was given.
+/// The file, ply:NAME or vtk:NAME that --distance-from was given.
 DistanceRequest parse_distance_from(const std::string& text, const Request& request);
 /// The distance of an inner skin, above 0 if it is one for all vertices.
 DistanceRequest parse_inner(const std::string& text, const Request& request);

@@ -26,7 +26,7 @@ struct UsageError : Error {
 struct DistanceRequest {
   std::string text;
   scene::Distance distance;
-  std::string from;  ///< Then each vertex's own: a file of numbers, or ply:NAME, a property of the input.
+  std::string from;  ///< Then each vertex's own: a file of numbers, or ply:NAME or vtk:NAME, a property of the input.
 };
 
 /// Distances in the plane of x and y and along z, of one sign.

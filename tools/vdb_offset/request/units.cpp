@@ -25,7 +25,8 @@ std::optional<double> micrometres_of(const std::string& unit) {
   return std::nullopt;
 }
 
-std::string in_file_units(const std::string& option, const std::string& text, const std::string& file_unit) {
+std::string in_file_units(const std::string& option, const std::string& text,
+                          const std::function<std::optional<double>()>& file_unit) {
   // The longest name counts: 0.2mm is no number of metres with an m behind it.
   const std::size_t letters = text.find_last_not_of("umcintf") + 1;
   const std::optional<double> given = micrometres_of(text.substr(letters));
@@ -33,10 +34,10 @@ std::string in_file_units(const std::string& option, const std::string& text, co
   while (number.ends_with(' ')) number.pop_back();
   const auto value = decimal<double>(number);
   if (!given || !value) return text;
-  require(!file_unit.empty(),
+  const std::optional<double> of_file = file_unit();
+  require(of_file.has_value(),
           fmt::format("{}: expected --unit as well, which says what the file's numbers are, got '{}'", option, text));
-  const double of_file = *micrometres_of(file_unit);
-  return *given == of_file ? number : fmt::format("{}", *value * *given / of_file);
+  return *given == *of_file ? number : fmt::format("{}", *value * *given / *of_file);
 }
 
 }  // namespace vdb_offset::tool

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -10,8 +11,9 @@ namespace vdb_offset::tool {
 std::optional<double> micrometres_of(const std::string& unit);
 
 /// A text of an option without the unit behind its number, in units of the file: "0.2mm" is 0.2 where these are
-/// millimetres, and 0.0002 where they are metres. Texts without a unit stay as they are. `file_unit` is empty if it is
-/// not known. \throw UsageError for a unit where it is not
-std::string in_file_units(const std::string& option, const std::string& text, const std::string& file_unit);
+/// millimetres, and 0.0002 where they are metres. Texts without a unit stay as they are. `file_unit` is asked for that
+/// of the file, in micrometres, if there is a text with one. \throw UsageError for a unit where it is not known
+std::string in_file_units(const std::string& option, const std::string& text,
+                          const std::function<std::optional<double>()>& file_unit);
 
 }  // namespace vdb_offset::tool
