@@ -22,7 +22,7 @@ macro(vdb_offset_find_dependencies component)
   if(${component} STREQUAL core)
     # What volume needs: here, before OpenVDB, whose module for TBB makes targets that VTK's own would trip over.
     if("volume" IN_LIST vdb_offset_wanted AND VDB_OFFSET_VTK AND NOT vdb_offset_shared)
-      find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel CommonMisc IOXML ${vdb_offset_vtk_for_tests})
+      find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel CommonMisc IOLegacy IOXML ${vdb_offset_vtk_for_tests})
     endif()
     find_package(TBB 2021 REQUIRED)
     # Debian keeps OpenVDB's find module beside its other files, not on CMake's module path.

@@ -1,14 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-# Modules that the command opens when a file of theirs is asked for, so that it does not load VTK and CGNS in every run.
+# Modules that are opened when a file of theirs is asked for, so that not every run loads VTK, CGNS and Assimp.
 
-file(RELATIVE_PATH VDB_OFFSET_MODULES ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/vdb_offset)
+file(RELATIVE_PATH from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/vdb_offset)
+set_source_files_properties(src/vdb_offset/io/base/open_module.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_DEFINITIONS
+  "VDB_OFFSET_MODULES_FROM_COMMAND=\"${from_command}\";VDB_OFFSET_MODULES=\"${CMAKE_INSTALL_FULL_LIBDIR}/vdb_offset\"")
+target_link_libraries(vdb_offset_io_objects PRIVATE ${CMAKE_DL_LIBS})
+# What uses a module, and the tests, need all of them.
+add_custom_target(vdb_offset_modules)
 
-# vdb_offset_module(NAME NEEDS SOURCES...): the objects of NAME, and copies of what they need of the library. No archive: its one
-# object would come whole.
+# vdb_offset_module(NAME NEEDS SOURCES...): copies of what it needs of the library are among the sources. No archive: its
+# one object would come whole.
 function(vdb_offset_module name needs)
   list(TRANSFORM ARGN PREPEND src/vdb_offset/)
   list(TRANSFORM ARGN APPEND .cpp)
-  vdb_offset_objects(${name} objects)
+  set(objects "")
+  if(TARGET vdb_offset_${name}_objects)
+    vdb_offset_objects(${name} objects)
+  endif()
   add_library(vdb_offset_${name}_module MODULE ${objects} ${ARGN})
   target_compile_features(vdb_offset_${name}_module PRIVATE cxx_std_20)
   target_include_directories(vdb_offset_${name}_module PRIVATE include src)
@@ -16,11 +24,33 @@ function(vdb_offset_module name needs)
   target_link_options(vdb_offset_${name}_module PRIVATE -Wl,--as-needed -Wl,-Bsymbolic-functions)
   set_target_properties(vdb_offset_${name}_module PROPERTIES OUTPUT_NAME vdb_offset_${name} PREFIX "" SUFFIX .so UNITY_BUILD OFF
     LINKER_LANGUAGE CXX CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  add_dependencies(vdb_offset_command vdb_offset_${name}_module)
+  target_precompile_headers(vdb_offset_${name}_module REUSE_FROM vdb_offset_core_objects)
+  add_dependencies(vdb_offset_modules vdb_offset_${name}_module)
   install(TARGETS vdb_offset_${name}_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/vdb_offset)
 endfunction()
 
-vdb_offset_folder(io/volume/modules open_module)
+# Readers: the component io opens them, in whatever program it is.
+vdb_offset_folder(io/base open_module)
+if(VDB_OFFSET_VTK)
+  vdb_offset_folder(io/documents/vtk parse_vtk)
+  vdb_offset_module(vtk_meshes "VTK::IOXML;VTK::IOLegacy" io/documents/vtk_module/module io/documents/vtk_module/read_vtk
+    io/documents/vtk_module/rewrite_legacy io/documents/vtk_module/vtk_cells io/documents/vtk_module/vtk_complaint io/documents/vtk_module/vtk_document
+    io/documents/vtk_module/vtk_header io/documents/trial io/mesh/document io/base/nearest_names base/rounding)
+else()
+  vdb_offset_folder(io/documents/vtk without_vtk)
+endif()
+if(VDB_OFFSET_ASSIMP)
+  vdb_offset_folder(io/documents/assimp parse_by_assimp)
+  vdb_offset_module(assimp "assimp::assimp" io/documents/assimp_module/module io/documents/assimp_module/read_scene
+    io/documents/trial io/mesh/document base/rounding)
+else()
+  vdb_offset_folder(io/documents/assimp without_assimp)
+endif()
+
+# Writers: the command opens them, and other programs are linked to what they need.
+if(NOT loaders)
+  return()
+endif()
 if(VDB_OFFSET_VTK)
   vdb_offset_folder(io/volume/modules load_vtk)
   vdb_offset_module(vtk "${vtk_needs}" io/volume/modules/vtk_module io/volume/patch_words)
@@ -35,5 +65,3 @@ add_library(vdb_offset_volume_by_modules INTERFACE)
 vdb_offset_objects(volume objects)
 vdb_offset_objects(modules loader_objects)
 target_sources(vdb_offset_volume_by_modules INTERFACE ${objects} ${loader_objects})
-target_link_libraries(vdb_offset_volume_by_modules INTERFACE ${CMAKE_DL_LIBS})
-target_compile_definitions(vdb_offset_modules_objects PRIVATE VDB_OFFSET_MODULES="${VDB_OFFSET_MODULES}")

@@ -42,7 +42,8 @@ void require_none(const char* as, std::initializer_list<std::pair<const char*, b
                                    std::string(as) == "a mesh" ? "curves" : "meshes"));
 }
 
-constexpr const char* kMeshEndings = ".obj, .ply, .stl or .off (or these and .gz or .zst)";
+constexpr const char* kMeshEndings =
+    ".obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu (or these and .gz or .zst)";
 
 void require_structured(const Request& request) {
   require(!request.layers || request.layers->structured == io::structured_format_of(request.output).has_value(),
@@ -74,13 +75,16 @@ void require_for_curves(const Request& request) {
 
 void require_for_mesh(const Request& request) {
   require_none("curves", {{"--close", request.close}, {"--flatten", request.flatten.has_value()}});
-  require(scene::is_scene(request.input) || format_of(request.input, request),
-          request.input +
-              ": expected an input that ends in .obj, .ply, .stl, .off (or these and .gz or .zst) or "
-              ".json, or --format");
+  require(
+      scene::is_scene(request.input) || format_of(request.input, request),
+      request.input +
+          ": expected an input that ends in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .fbx, .dae, "
+          ".3ds (or these and .gz or .zst) or .json, or --format");
   const bool volume =
       io::volume_format_of(request.output).has_value() || io::structured_format_of(request.output).has_value();
-  require(!volume || request.layers, request.output + ": expected a mesh, as this is for --layers");
+  // A .vtu is a mesh of cells with --layers, and one of faces without.
+  require(!volume || request.layers || format_of(request.output, request),
+          request.output + ": expected a mesh, as this is for --layers");
   require_structured(request);
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));

@@ -18,8 +18,8 @@ void Document::read_attributes(const MeshFile&, Attributes&) const {}
 FaceNames Document::face_names() const { return {}; }
 
 std::vector<double> Document::vertex_numbers(const MeshFile& source, const std::string& name) const {
-  throw InvalidInput(fmt::format("{}: expected numbers of vertices with the name '{}', got a .{} file, which has none",
-                                 source.path, name, io::name(source.format)));
+  throw InvalidInput(
+      fmt::format("{}: expected numbers of vertices under the name '{}', got a format without any", source.path, name));
 }
 
 }  // namespace vdb_offset::io

@@ -136,6 +136,7 @@ MeshFile parse_mesh(const std::string& name, Format format, std::string bytes) {
 std::optional<double> unit_micrometres(const std::string& path, std::optional<Format> format) {
   const Format known = require_format(path, format);
   if (is_gltf(known)) return kMetre;
+  if (known == Format::Assimp) return read_mesh(path, known).unit_micrometres;
   return known == Format::ThreeMf ? unit_of_3mf(path) : std::nullopt;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/base/open_module.h"
 #include "vdb_offset/io/volume/modules/writer_modules.h"
 
 // Stands in for the writer that uses CGNS where it is a module.
@@ -6,7 +7,7 @@ namespace vdb_offset::io {
 namespace {
 
 const CgnsModule& cgns(const std::string& path) {
-  static const auto& module = *static_cast<const CgnsModule*>(open_module(path, "vdb_offset_cgns"));
+  static const auto& module = *static_cast<const CgnsModule*>(open_module(path, "vdb_offset_cgns", ModuleUse::Write));
   return module;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/base/open_module.h"
 #include "vdb_offset/io/volume/modules/writer_modules.h"
 
 // Stands in for the writers that use VTK where they are a module.
@@ -6,7 +7,7 @@ namespace vdb_offset::io {
 namespace {
 
 const VtkModule& vtk(const std::string& path) {
-  static const auto& module = *static_cast<const VtkModule*>(open_module(path, "vdb_offset_vtk"));
+  static const auto& module = *static_cast<const VtkModule*>(open_module(path, "vdb_offset_vtk", ModuleUse::Write));
   return module;
 }
 

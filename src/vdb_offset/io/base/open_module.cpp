@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/base/open_module.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/version.h"
+
+namespace vdb_offset::io {
+namespace {
+
+/// The module's file. Never a relative path, which could name a stranger's file.
+std::filesystem::path find_module(const std::string& file) {
+  if (const char* const told = std::getenv("VDB_OFFSET_MODULES"); told && std::filesystem::path(told).is_absolute())
+    return std::filesystem::path(told) / file;
+  std::error_code failed;
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", failed).parent_path();
+  if (folder.is_absolute()) {
+    const auto installed = (folder / VDB_OFFSET_MODULES_FROM_COMMAND / file).lexically_normal();
+    for (const auto& found_at : {folder / file, installed})
+      if (std::filesystem::exists(found_at, failed)) return found_at;
+  }
+  return std::filesystem::path(VDB_OFFSET_MODULES) / file;
+}
+
+}  // namespace
+
+const void* open_module(const std::string& path, const std::string& name, ModuleUse use) {
+  const std::string file = name + ".so";
+  const auto fail = [&](const std::string& what) {
+    const bool reads = use == ModuleUse::Read;
+    const std::string message = path + ": expected the module " + file + ", which " + (reads ? "reads" : "writes") +
+                                " it, got: " + what + " (install the whole package, or " +
+                                (reads ? "convert it first" : "write another format") + ")";
+    if (reads) throw ReadError(message);
+    throw WriteError(message);
+  };
+  // Never closed: what it has loaded has threads and exit handlers of its own.
+  void* const module = ::dlopen(find_module(file).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!module) fail(::dlerror());
+  const void* const shown = ::dlsym(module, name.c_str());
+  if (!shown) fail(::dlerror());
+  const std::string found = *static_cast<const char* const*>(shown);
+  if (found != VDB_OFFSET_VERSION) fail("version " + found + " for a program of version " VDB_OFFSET_VERSION);
+  return shown;
+}
+
+}  // namespace vdb_offset::io
