@@ -25,13 +25,24 @@ constexpr std::uint64_t kMostThings = 1100;
                                  found.substr(0, std::min<std::size_t>(found.size(), 60))));
 }
 
-/// The value of an attribute of the first element that has it, or nothing. \pre it is part of `text`
-std::string_view attribute(std::string_view text, std::string_view name) {
-  const std::string start = " " + std::string(name) + "=\"";
-  const std::size_t at = text.find(start);
-  if (at == std::string_view::npos) return {};
-  const std::size_t first = at + start.size(), end = text.find('"', first);
-  return end == std::string_view::npos ? std::string_view() : text.substr(first, end - first);
+/// The value in quotes, of either kind, behind the first `=` from `at` on; nothing if there is none.
+std::string_view quoted(std::string_view text, std::size_t at) {
+  const std::size_t quote = text.find_first_of("\"'", text.find('=', at));
+  if (quote == std::string_view::npos) return {};
+  const std::size_t end = text.find(text[quote], quote + 1);
+  return end == std::string_view::npos ? std::string_view() : text.substr(quote + 1, end - quote - 1);
+}
+
+/// The value of an attribute of an element, or nothing.
+std::string_view attribute(std::string_view element, const std::string& name) {
+  const std::size_t at = element.find(" " + name + "=");
+  return at == std::string_view::npos ? std::string_view() : quoted(element, at);
+}
+
+/// Whether an array of the text is stored so.
+bool has_arrays(std::string_view text, const std::string& format) {
+  return text.find(" format=\"" + format + "\"") != std::string_view::npos ||
+         text.find(" format='" + format + "'") != std::string_view::npos;
 }
 
 std::string_view line_at(std::string_view text, std::size_t at) {
@@ -41,10 +52,7 @@ std::string_view line_at(std::string_view text, std::size_t at) {
 /// Refuses attributes whose names begin so, and that are no numbers up to `most`.
 void require_counts(const MeshFile& file, std::string_view text, std::string_view start, std::uint64_t most) {
   for (std::size_t at = text.find(start); at != std::string_view::npos; at = text.find(start, at + 1)) {
-    const std::size_t quote = text.find('"', at);
-    if (quote == std::string_view::npos) return;
-    const std::string_view name = text.substr(at + 1, text.find('=', at) - at - 1),
-                           value = text.substr(quote + 1, text.find('"', quote + 1) - quote - 1);
+    const std::string_view name = text.substr(at + 1, text.find('=', at) - at - 1), value = quoted(text, at);
     const auto count = decimal<std::uint64_t>(value);
     if (!count || *count > most)
       fail(file, at, fmt::format("a {} that the file has bytes for", name.substr(0, name.find_last_not_of(' ') + 1)),
@@ -74,10 +82,9 @@ VtkHeader read_xml_header(const MeshFile& file, std::size_t start) {
   header.compressor = attribute(element, "compressor");
   header.wide_counts = attribute(element, "header_type") == "UInt64";
   header.big_endian = attribute(element, "byte_order") == "BigEndian";
-  header.ascii = text.find("format=\"appended\"") == std::string_view::npos &&
-                 text.find("format=\"binary\"") == std::string_view::npos;
-  header.appended = text.find("format=\"appended\"") != std::string_view::npos;
-  header.base64 = header.appended && all.substr(text.size(), 100).find("\"base64\"") != std::string_view::npos;
+  header.appended = has_arrays(text, "appended");
+  header.ascii = !header.appended && !has_arrays(text, "binary");
+  header.base64 = header.appended && attribute(line_at(all, text.size()), "encoding") == "base64";
   require_counts_of_xml(file, text, header);
   return header;
 }
