@@ -117,9 +117,10 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   made.border = Border::Slide;
   std::string distance_xy, distance_z;
   CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help");
-  line.file("SOURCE",
-            "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), or curves (.dat .txt .xy .svg .obj)",
-            made.input);
+  line.file(
+      "SOURCE",
+      "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), or curves (.dat .txt .xy .svg .dxf .obj)",
+      made.input);
   line.file("OFFSET", "Mesh or curves after", made.output);
   declare_offset(line, request, distance_xy, distance_z);
   line.option("--threads", "N", "Threads; 0 takes all [0]",

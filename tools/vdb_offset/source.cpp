@@ -86,6 +86,7 @@ Source read_source(const Request& request, bool curves) {
   Source source;
   if (curves) {
     source.curves = io::read_curves(request.input, curve_reading(request));
+    if (!request.quiet) tell_remarks(source.curves->file);
     if (request.close) close_curves(request, source);
     return source;
   }

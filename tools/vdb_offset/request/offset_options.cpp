@@ -24,8 +24,8 @@ constexpr const char* kMore = R"(
 INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
 behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, or a scene
 (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
-of what moved. Plane curves are files that end in .dat, .txt, .xy or .svg, or an
-.obj with line elements and no face.
+of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
+face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
 below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which tells each vertex its
 own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
@@ -216,10 +216,11 @@ void declare_products(CommandLine& line, Draft& draft) {
             "Of curves: close those with ends near each other, by a straight segment, as over the base of a "
             "blunt trailing edge",
             request.close);
-  line.option("--flatten", "TOL",
-              "Of SVG drawings: replace curved segments by straight ones, no farther than this from them: world units, "
-              "or percent of the drawing's diagonal [0.001%]",
-              [&request](const std::string& text) { request.flatten = parse_flatten(text); });
+  line.option(
+      "--flatten", "TOL",
+      "Of SVG and DXF drawings: replace curved segments by straight ones, no farther than this from them: world "
+      "units, or percent of the drawing's diagonal [0.001%]",
+      [&request](const std::string& text) { request.flatten = parse_flatten(text); });
 }
 
 /// Declares the options that say how the offset is computed.

@@ -57,7 +57,7 @@ void require_for_curves(const Request& request) {
       volume == io::VolumeFormat::Vtu || volume == io::VolumeFormat::Su2 || io::structured_format_of(request.output);
   require(io::curve_format_of(request.output).has_value() || (request.layers && cells),
           request.output +
-              ": expected an output that ends in .dat, .txt, .xy, .svg or .obj, or with --layers in "
+              ": expected an output that ends in .dat, .txt, .xy, .svg, .dxf or .obj, or with --layers in "
               ".vtu, .su2, .vts or .xyz, as the input holds curves");
   require_structured(request);
   require_none("a mesh", {{"--only", !request.only.empty()},
@@ -93,7 +93,8 @@ void require_for_mesh(const Request& request) {
 void require_endings(const Request& request) {
   require_states_file(request);
   require(request.paths.empty() || io::is_lines_file(request.paths) ||
-              (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg),
+              (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg &&
+               io::curve_format_of(request.paths) != io::CurveFormat::Dxf),
           request.paths + ": expected a file of paths that ends in .obj, .txt or .vtp");
   require(request.html.empty() || request.html == "-" || request.html.ends_with(".html"),
           request.html + ": expected a page that ends in .html");

@@ -16,6 +16,7 @@
 #include "vdb_offset/io/base/compression.h"
 #include "vdb_offset/io/base/obj_lines.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/curve/dxf/dxf.h"
 #include "vdb_offset/io/curve/svg.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 #include "vdb_offset/io/mesh/rewrite_in_place.h"
@@ -204,6 +205,9 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
       break;
     case CurveFormat::Svg:
       parse_svg(curves, how);
+      break;
+    case CurveFormat::Dxf:
+      parse_dxf(curves, how);
   }
   const Curves& read = curves.file.polygons;
   if (read.face_count() == 0) throw InvalidInput(name + ": expected an element 'l', got none");
@@ -250,13 +254,14 @@ std::string as_text(CurvesView curves, const Rounding& precision) {
 std::string as_file(CurveFormat format, CurvesView curves, const Rounding& precision) {
   return format == CurveFormat::Obj   ? as_obj(curves, precision)
          : format == CurveFormat::Svg ? as_svg(curves, precision)
+         : format == CurveFormat::Dxf ? as_dxf(curves, precision)
                                       : as_text(curves, precision);
 }
 
 /// The format of a file of curves. \throw InvalidInput for an unknown ending
 CurveFormat format_of_curves(const std::string& path) {
   const auto format = curve_format_of(path);
-  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy, .svg or .obj");
+  if (!format) throw InvalidInput(path + ": expected a name that ends in .dat, .txt, .xy, .svg, .dxf or .obj");
   return *format;
 }
 
@@ -269,6 +274,7 @@ std::optional<CurveFormat> curve_format_of(std::string_view path) {
   const std::string_view ending = path.substr(dot + 1);
   if (is_word(ending, "obj")) return CurveFormat::Obj;
   if (is_word(ending, "svg")) return CurveFormat::Svg;
+  if (is_word(ending, "dxf")) return CurveFormat::Dxf;
   for (const char* const text : {"dat", "txt", "xy"})
     if (is_word(ending, text)) return CurveFormat::Text;
   return std::nullopt;
@@ -288,6 +294,15 @@ bool holds_curves(const std::string& path) {
   };
   // The end of the file is searched: that is where a mesh has its faces.
   return !has_line("f ") && !has_line("f\t") && (has_line("l ") || has_line("l\t"));
+}
+
+std::optional<double> unit_of_curves(const std::string& path) {
+  if (curve_format_of(path) != CurveFormat::Dxf) return std::nullopt;
+  MeshFile file;
+  file.path = path;
+  file.bytes = FileBytes::open(path);
+  use_line_feeds(file);
+  return unit_of_dxf(DxfText(file.path, file.text()));
 }
 
 CurveFile read_curves(const std::string& path, const CurveReading& how) {
@@ -318,6 +333,8 @@ void write_curves(const std::string& path, const CurveFile& source, std::span<co
       format != source.format ? in_sections(as_file(format, moved, precision), {})
       : format == CurveFormat::Svg
           ? in_sections(rewrite_svg(source.file.text(), *source.svg, read.view(), positions, precision), {})
+      : format == CurveFormat::Dxf
+          ? with_line_ends_of(source.file, in_sections(rewrite_dxf(source, positions, precision), {}))
           : rewrite_in_place(source.file, positions, precision);
   write_pieces_of(source.file.path, source.file.bytes, path, pieces);
 }

@@ -55,6 +55,8 @@ class SvgBox {
   void add(const Vec2d& p);
   void add(const SvgCurve& curve);
   double diagonal() const;
+  const Vec2d& lower() const { return lower_; }
+  const Vec2d& upper() const { return upper_; }
 
  private:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
