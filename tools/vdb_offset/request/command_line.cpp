@@ -15,6 +15,7 @@
 #include "request/request.h"
 #include "request/units.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::tool {
@@ -152,9 +153,8 @@ namespace {
 /// The unit that a file tells of its numbers, if it does. One that is not there, or is none of a known format, is for
 /// the reader to tell of.
 std::optional<double> unit_of_file(const std::string& path) {
-  if (!io::format_of(path)) return std::nullopt;
   try {
-    return io::unit_micrometres(path);
+    return io::format_of(path) ? io::unit_micrometres(path) : io::unit_of_curves(path);
   } catch (const Error&) {
     return std::nullopt;
   }
