@@ -86,6 +86,59 @@ SVG = {
     'zeros': (bytes(1000), WHERE, 'XML', ''),
     'bytes that are no text': (svg('<g id="\xff"/>').encode('latin-1'), WHERE, 'XML', 'invalid token'),
 }
+
+
+def dxf(entities, blocks='', header=''):
+    """A DXF file of words: a code and a value by turns."""
+    def section(name, inside):
+        return f'0 SECTION 2 {name} {inside} 0 ENDSEC ' if inside else ''
+    words = section('HEADER', header) + section('BLOCKS', blocks) + f'0 SECTION 2 ENTITIES {entities} 0 ENDSEC 0 EOF'
+    return '\n'.join(words.split()) + '\n'
+
+
+def inserts(depth, each, inside='0 LINE 11 1'):
+    """Blocks, each of which shows the one before several times."""
+    return f'0 BLOCK 2 b0 {inside} 0 ENDBLK ' + ''.join(
+        f'0 BLOCK 2 b{k + 1} ' + f'0 INSERT 2 b{k} ' * each + '0 ENDBLK ' for k in range(depth))
+
+
+LINE = '0 LINE 8 a 10 0 20 0 11 1 21 1 '
+SPLINE = '0 SPLINE 71 1 40 0 40 0 40 1 40 1 10 0 20 0 10 1 20 1'
+BLOCK = '0 BLOCK 2 b 0 ENDBLK'
+DXF = {
+    'as it is': (dxf(LINE), 2),
+    'empty': ('', 'byte 0', 'curves', 'an empty file'),
+    'cut in a section': (dxf(LINE)[:30], r'line \d+', "'ENDSEC'", 'the end of the file'),
+    'cut before the last section ends': (dxf(LINE)[:-15], r'line \d+', "'ENDSEC'", 'the end of the file'),
+    'a code alone': (dxf(LINE)[:-14], r'line \d+', 'a value behind a group code', 'the end of the file'),
+    'no entities': (dxf('0 TEXT 1 a'), r'line \d+', 'a curve', 'none in the drawing'),
+    'zeros': (bytes(1000), 'line 1', 'a group code', ''),
+    'binary': ('AutoCAD Binary DXF\r\n\x1a\0' + '\0' * 100, 'line 1', 'a DXF file in ASCII', 'a binary one'),
+    'UTF-16': (dxf(LINE).encode('utf-16'), 'line 1', 'a group code', ''),
+    'a code of 1 MiB': ('0' * (1 << 20) + '\nSECTION\n', 'line 3', 'the name of a section', 'the end of the file'),
+    **{f'coordinate {x}': (dxf(f'0 LINE 10 {x}'), 'line 8', 'a number behind the group code 10', '')
+       for x in ('nan', 'inf', '1e999', '1\0', '0x10')},
+    **{f'flags {x}': (dxf(f'0 POLYLINE 70 {x}'), 'line 8', 'a (whole )?number', '') for x in ('nan', '1.5', '1e300')},
+    'coordinates to the ends of all numbers': (dxf('0 LINE 10 -1e308 20 0 11 1e308 21 1e308'), None, 'expected'),
+    'a circle larger than any number': (dxf('0 CIRCLE 10 1e308 20 0 40 1e308'), 'line 5', 'coordinates that are numbers', 'larger'),
+    'numbers of 1e300': (dxf(SPLINE.replace('40 1', '40 1e300').replace('20 1', '20 1e300')), None, ''),
+    'an arc of 1e300 degrees': (dxf('0 ARC 10 0 20 0 40 1 50 0 51 1e300'), 418),
+    'a bulge of 1e300': (dxf('0 LWPOLYLINE 10 0 20 0 42 1e300 10 1 20 0'), None, ''),
+    'a count of 2^31 vertices': (dxf('0 LWPOLYLINE 90 2147483648 10 0 20 0 10 1 20 0'), 2),
+    'counts of a spline': (dxf(SPLINE.replace('71 1', '71 1 72 2147483647 73 2147483647')), 2),
+    'a spline of degree 1e9': (dxf(SPLINE.replace('71 1', '71 1000000000')), 'line 5', 'a degree from 1 to 25', ''),
+    'a spline of huge weights': (dxf(SPLINE + ' 41 1e-300 41 1e300'), 2),
+    'an INSERT of itself': (dxf('0 INSERT 2 b', '0 BLOCK 2 b 0 INSERT 2 b 0 ENDBLK'), r'line \d+', 'something else than it is part of', 'a circle'),
+    'an INSERT of nothing': (dxf('0 INSERT 2 c', BLOCK), r'line \d+', "a block 'c'", 'none'),
+    'INSERT of INSERT of INSERT': (dxf('0 INSERT 2 b12', inserts(12, 10)), r'line \d+', 'INSERT of 1000000 entities at most', 'more'),
+    'INSERT of nothing in INSERT': (dxf('0 INSERT 2 b12', inserts(12, 10, '')), r'line \d+', 'INSERT of 1000000 entities at most', 'more'),
+    'a chain of 100,000 INSERT': (dxf('0 INSERT 2 b100000', inserts(100000, 1)), r'line \d+', '100 deep', 'more'),
+    'rows and columns without end': (dxf('0 INSERT 2 b 70 1000000000 71 1000000000', BLOCK), r'line \d+', 'INSERT of 1000000 entities at most', 'more'),
+    'a scale of 0': (dxf('0 INSERT 2 b 41 0', BLOCK), r'line \d+', 'scales that are not 0', '0'),
+    'aside': (dxf('0 CIRCLE 40 1 210 1 220 1 230 0'), 'line 5', 'an extrusion direction', r'\(1, 1, 0\)'),
+    '100,000 lines in one place': (dxf(LINE * 100000), 200000),
+}
 attack_files(__name__, 'text', 'txt', TEXT)
 attack_files(__name__, 'elements', 'obj', OBJ)
 attack_files(__name__, 'drawing', 'svg', SVG)
+attack_files(__name__, 'entities of a drawing', 'dxf', DXF)

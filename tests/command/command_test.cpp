@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "command/shell_command.h"
+#include "support/dxf_text.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene.h"
@@ -794,6 +795,28 @@ TEST_CASE("command: curved shapes of a drawing are flattened alike by an offset 
                 "--flatten: expected a number of world units or percent");
   check_failure(shell, "sphere.obj no.obj -d 0.1 --flatten 1", 1, "--flatten: expected curves");
   check_failure(shell, "check sphere.obj sphere.obj --flatten 1", 1, "--flatten: expected curves");
+}
+
+TEST_CASE("command: a DXF drawing has its own unit, and keeps what is no curve", "[command][curves][dxf]") {
+  const ShellCommand shell;
+  const std::string text = dxf_text::file(
+      "0|LINE 8|a 10|0 20|0 11|10 21|0 0|ARC 8|a 10|5 20|0 40|5 50|0 51|180 0|TEXT 8|a 1|x", "9|$INSUNITS 70|5");
+  std::ofstream(shell.file("half.dxf")) << text;
+  const Run run = shell("half.dxf cut.dxf -d 2mm");
+  REQUIRE(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("at 0.2: 100.000 % reached") && Catch::Contains("1 curved shape flattened"));
+  CHECK_THAT(run.err, Catch::Contains("half.dxf: what is no curve stays as it is: 1 TEXT"));
+  CHECK(shell("check half.dxf cut.dxf -d 2mm --strict").code == 0);
+  CHECK(shell("half.dxf other.dxf -d 2mm --unit mm").code == 0);
+  CHECK(shell.slurp(shell.file("other.dxf")) != shell.slurp(shell.file("cut.dxf")));
+  CHECK(shell("half.dxf half.svg -d 0.2 -q").code == 0);
+  CHECK(shell("half.svg back.dxf -d 0 -q").code == 0);
+  CHECK(shell("half.dxf same.dxf -d 0 -q").code == 0);
+  CHECK(shell.slurp(shell.file("same.dxf")) == text);
+  std::ofstream(shell.file("cut_off.dxf")) << text.substr(0, text.size() / 2);
+  check_failure(shell, "cut_off.dxf no.dxf -d 2mm", 2, "expected 'ENDSEC', got the end of the file");
+  std::ofstream(shell.file("none.dxf")) << dxf_text::file("0|LINE 11|1");
+  check_failure(shell, "none.dxf no.dxf -d 2mm", 1, "expected --unit as well");
 }
 
 TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][curves][layers]") {

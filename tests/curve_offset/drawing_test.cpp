@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "support/bytes.h"
+#include "support/dxf_text.h"
 #include "support/folder.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/io/curve_file.h"
@@ -161,4 +162,31 @@ TEST_CASE("drawings: the ways in which programs write them", "[curves][io]") {
   REQUIRE(glued.file.polygons.face_count() == 2);
   CHECK(std::abs(area_of(glued.file.polygons.view(), 0)) == Approx(kPi * 25).epsilon(1e-3));
   CHECK(glued.file.polygons.positions.back() == Vec3d(41, 10, 0));
+}
+
+TEST_CASE("drawings: the kerf of a plate of separate lines and arcs, some of them the other way round",
+          "[curves][dxf]") {
+  using namespace drawings;
+  // The four corners are a millionth off their sides. All pieces are one curve, which has an inner and an outer side.
+  const double kerf = 0.1, tolerance = 1e-4;
+  const io::CurveFile plate = io::parse_curves(
+      "t.dxf", io::CurveFormat::Dxf,
+      dxf_text::file(
+          "0|LINE 10|3 20|0 11|17 21|0 0|ARC 10|17.000001 20|3 40|3 50|270 51|360 0|LINE 10|20 20|7 11|20 21|3 "
+          "0|ARC 10|17 20|7 40|3.000001 50|0 51|90 0|LINE 10|3 20|10 11|17 21|10 0|ARC 10|3 20|7 40|3 "
+          "50|90.000002 51|180 0|LINE 10|0 20|7 11|0 21|3 0|ARC 10|3 20|3 40|3 50|180 51|270 "
+          "0|CIRCLE 10|10 20|5 40|2"),
+      {0, tolerance});
+  CHECK(open_curves(plate.file.polygons.view()).empty());
+  OffsetOptions options;
+  options.corners = Corners::Miter;
+  const OffsetResult result = offset_of(plate, kerf, options);
+  for (std::size_t c = 0; c < 9; ++c)
+    for (const auto p : moved(plate, result).face(c)) {
+      const double x = std::min(result.positions[p][0], 20 - result.positions[p][0]),
+                   y = std::min(result.positions[p][1], 10 - result.positions[p][1]);
+      if (c == 8) CHECK(std::hypot(x - 10, y - 5) == Approx(1.9).margin(tolerance));
+      else if (x < 3 && y < 3) CHECK(std::hypot(x - 3, y - 3) == Approx(3.1).margin(tolerance + 2e-6));
+      else CHECK(std::min(x, y) == Approx(-0.1).margin(tolerance + 2e-6));
+    }
 }

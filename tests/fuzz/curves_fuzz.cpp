@@ -14,6 +14,7 @@
 
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/curve/dxf/dxf.h"
 #include "vdb_offset/io/curve/svg.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -52,18 +53,56 @@ void check_curves(const io::CurveFile& file) {
       require(std::isfinite(p[k]) && (k < 2 || !file.planar || p[k] == 0), "points are finite");
 }
 
+std::optional<std::string> rewritten(const io::CurveFile& file, const std::vector<Vec3d>& positions) {
+  try {
+    return io::rewrite_dxf(file, positions, {});
+  } catch (const InvalidInput&) {
+    return std::nullopt;  // an INSERT shows something else as well
+  }
+}
+
+/// Ends that have come near each other are one when they are read again. So points need not be those that were written
+/// to the last bit.
+void check_dxf(const io::CurveFile& file) {
+  std::vector<Vec3d> positions = file.file.polygons.positions;
+  require(rewritten(file, positions) == std::string(file.file.text()), "curves that stay keep every byte");
+  for (Vec3d& p : positions) p = Vec3d(p[1] / 4, -p[0] / 4, p[2]);
+  const std::optional<std::string> moved = rewritten(file, positions);
+  if (!moved) return;
+  const std::optional<io::CurveFile> back = parsed(io::CurveFormat::Dxf, *moved, {kCoarse, 0});
+  require(back.has_value(), "what was written can be read");
+  check_curves(*back);
+  require(back->file.polygons.positions.size() == positions.size(), "points stay");
+  require(back->file.polygons.corners == file.file.polygons.corners, "curves stay");
+  Vec3d lower = positions.front(), upper = lower;
+  for (const Vec3d& p : positions) {
+    lower = openvdb::math::minComponent(lower, p);
+    upper = openvdb::math::maxComponent(upper, p);
+  }
+  const double apart = 2e-6 * std::hypot(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]);
+  for (std::size_t p = 0; p < positions.size(); ++p) {
+    const Vec3d off = back->file.polygons.positions[p] - positions[p];
+    require(std::hypot(off[0], off[1], off[2]) <= apart, "points are those that were written");
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   if (size == 0) return 0;
-  constexpr io::CurveFormat kFormats[] = {io::CurveFormat::Text, io::CurveFormat::Obj, io::CurveFormat::Svg};
-  const io::CurveFormat format = kFormats[data[0] % 3];
+  constexpr io::CurveFormat kFormats[] = {io::CurveFormat::Obj, io::CurveFormat::Svg, io::CurveFormat::Text,
+                                          io::CurveFormat::Dxf};
+  const io::CurveFormat format = kFormats[data[0] % 4];
   const std::string bytes(reinterpret_cast<const char*>(data + 1), size - 1);
   // Coarse, so that hostile curves are as quick as others.
   const std::optional<io::CurveFile> file = parsed(format, bytes, {kCoarse, 0});
   if (!file) return 0;
   check_curves(*file);
+  if (format == io::CurveFormat::Dxf) {
+    check_dxf(*file);
+    return 0;
+  }
   std::vector<Vec3d> positions = file->file.polygons.positions;
   const auto patched = [&] {
     if (format != io::CurveFormat::Svg) return io::patched_bytes(file->file, positions);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "support/bytes.h"
+#include "support/dxf_text.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -251,6 +252,21 @@ void curves_seeds() {
       "<rect width='2' height='1' rx='.2'/></symbol></defs><use href='#g' id='u'/><use href='#s' width='4' height='4'/>"
       "<ellipse rx='2' ry='1' transform='skewX(9)'/><line x2='5'/>"
       "<path d='m1,2c1,1,2,1,3,0s2-1 3 0q1 1 2 0t2 0a1 2 30 01-1 1z'/></svg>");
+  write("entities.curves",
+        "C" + dxf_text::file("0|LINE 5|A 8|cut 10|0 20|0 11|4 21|1 0|LWPOLYLINE 8|a 90|3 70|1 38|1 10|0 20|0 42|.5 "
+                             "10|4 20|0 10|4 20|3 0|POLYLINE "
+                             "8|a 66|1 70|0 0|VERTEX 10|0 20|0 42|1 0|VERTEX 10|2 20|1 0|SEQEND 0|ARC 10|1 20|1 40|2 "
+                             "50|30 51|200 230|-1 0|CIRCLE "
+                             "10|0 20|0 40|1 0|ELLIPSE 10|0 20|0 11|2 21|1 40|.5 41|0 42|3 0|TEXT 1|a",
+                             "9|$ACADVER 1|AC1015 9|$HANDSEED 5|F"));
+  write("blocks.curves",
+        "C" + dxf_text::file("0|INSERT 8|cut 2|b 10|1 20|2 41|2 42|3 50|30 70|2 71|2 44|5 45|6 0|INSERT 2|c 62|5 "
+                             "0|SPLINE 71|2 40|0 40|0 40|0 40|1 "
+                             "40|2 40|2 40|2 10|0 20|0 41|1 10|1 20|2 41|2 10|3 20|0 41|1 10|5 20|5 41|1 1001|X 1040|1",
+                             "9|$INSUNITS 70|4",
+                             "0|BLOCK 2|b 10|1 20|1 0|LINE 8|0 62|0 11|1 0|ENDBLK 0|BLOCK 2|c 0|INSERT 2|b 10|7 "
+                             "0|CIRCLE 40|1 0|ENDBLK",
+                             "0|TABLE 2|LAYER 0|LAYER 2|cut 70|0 62|-7 0|ENDTAB"));
   write("plain.curves", "A<svg><path d=\"M0 0L1 0L1 1Z m2 2 3 3\"/><text>a</text></svg>");
 }
 
