@@ -173,7 +173,7 @@ Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, cons
 }
 
 Pieces convert(Format target, const Hollow& hollow, WriteResult& result) {
-  if (!keeps_parts(target)) result.lost = kShellParts;
+  if (!keeps_parts(target, {})) result.lost = kShellParts;
   return encode(target, std::make_shared<Content>(Content{hollow.polygons.view(), {}, {}, parts_of(hollow), {}}));
 }
 

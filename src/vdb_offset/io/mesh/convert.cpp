@@ -69,6 +69,11 @@ void name_losses_of_triangles(const MeshFile& source, Format target, std::vector
       lost.emplace_back("faces of more than three corners (split into triangles)");
       break;
     }
+  if (target == Format::ThreeMf && std::any_of(begin.begin(), begin.end() - 1, [&](const std::uint32_t& first) {
+        const auto face = source.polygons.view().face(static_cast<std::size_t>(&first - begin.data()));
+        return face.size() == 3 && (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]);
+      }))
+    lost.emplace_back("triangles that have a vertex twice");
   if (is_single(target) && source.precision.kind != Precision::Kind::Single)
     lost.emplace_back("digits beyond single precision");
 }
@@ -100,18 +105,23 @@ void fit_to_format(Format target, PolygonView mesh, Attributes& attributes) {
     lost.emplace_back("texture coordinates of faces that have them at some corners only");
 }
 
-bool keeps_parts(Format format) { return format != Format::Off && format != Format::Stl; }
+bool keeps_parts(Format format, const Attributes& with) {
+  // A triangle of 3MF has a colour or a material, by which a part is told.
+  if (format == Format::ThreeMf) return with.colours.empty();
+  return format != Format::Off && format != Format::Stl;
+}
 
 Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
                       WriteResult& result) {
   Attributes& with = content->with;
+  content->unit_micrometres = source.unit_micrometres;
   if (!std::all_of(with.normals.value.begin(), with.normals.value.end(), [](const Vec3d& n) { return n.isFinite(); })) {
     with.normals = {};
     with.lost.emplace_back("normals");
   }
   fit_to_format(target, content->mesh, with);
   if (is_of_triangles(target)) name_losses_of_triangles(source, target, with.lost);
-  if (!content->parts.empty() && !keeps_parts(target)) with.lost.emplace_back(kShellParts);
+  if (!content->parts.empty() && !keeps_parts(target, with)) with.lost.emplace_back(kShellParts);
   result.lost = first_names(with.lost);
   return encode(target, content);
 }
@@ -121,9 +131,9 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
   Attributes& with = content->with;
-  if (Materials materials = read_materials(source);
-      source.document && target == Format::Obj && !materials.of_face.empty())
-    content->materials = std::move(materials);
+  if (target == Format::ThreeMf || (source.document && target == Format::Obj))
+    if (Materials materials = read_materials(source); !materials.of_face.empty())
+      content->materials = std::move(materials);
   if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);

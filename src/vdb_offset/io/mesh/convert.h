@@ -31,8 +31,8 @@ void fit_to_format(Format target, PolygonView mesh, Attributes& attributes);
 Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_ptr<Content>& content,
                       WriteResult& result);
 
-/// Whether a format has names or properties of faces, for the parts of a solid.
-bool keeps_parts(Format format);
+/// Whether a format has names or properties of faces, for the parts of a solid that has these attributes.
+bool keeps_parts(Format format, const Attributes& with);
 
 /// The name of what formats without names for parts lose.
 inline constexpr const char* kShellParts = "the parts of the shell (outer, inner and rim follow each other)";

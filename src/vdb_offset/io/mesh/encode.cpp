@@ -163,7 +163,7 @@ struct TextureLists {
 };
 
 std::string ply_header(const Content& content, const TextureLists& lists) {
-  const auto& [mesh, precision, with, parts, materials] = content;
+  const auto& [mesh, precision, with, parts, materials, unit] = content;
   std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.size());
   const auto add = [&](const char* type, std::initializer_list<const char*> names) {
     for (const char* name : names) header += fmt::format("property {} {}\n", type, name);

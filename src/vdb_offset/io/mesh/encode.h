@@ -20,8 +20,9 @@ struct Content {
   PolygonView mesh;
   Rounding precision;  ///< Precision of coordinates in a text.
   Attributes with;
-  std::vector<Part> parts;  ///< Of all faces, in their order; or empty.
-  Materials materials;      ///< Kept in OBJ.
+  std::vector<Part> parts;                      ///< Of all faces, in their order; or empty.
+  Materials materials;                          ///< Kept in OBJ and 3MF.
+  std::optional<double> unit_micrometres = {};  ///< Of the coordinates, if known; kept in 3MF.
 };
 using SharedContent = std::shared_ptr<const Content>;
 

@@ -90,7 +90,7 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
 }
 
 Pieces convert(Format target, const Shell& shell, const Rounding& precision, WriteResult& result) {
-  if (!keeps_parts(target)) result.lost = kShellParts;
+  if (!keeps_parts(target, {})) result.lost = kShellParts;
   return encode(target, std::make_shared<Content>(Content{shell.polygons.view(), precision, {}, parts_of(shell), {}}));
 }
 
