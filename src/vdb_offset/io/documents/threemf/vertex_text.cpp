@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/documents/threemf/vertex_text.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "vdb_offset/io/base/append_number.h"
+
+namespace vdb_offset::io {
+namespace {
+
+constexpr std::size_t kVerticesAtOnce = 1 << 15;  // about two MiB of text; not measured beside other numbers
+
+bool is_xml_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// Appends the tag that begins at `at`, with other values in its attributes x, y and z; returns its end. expat has
+/// checked the tag's form.
+std::size_t append_vertex_tag(std::string& to, std::string_view text, std::size_t at, const Vec3d& position,
+                              const Rounding& precision) {
+  std::size_t copied = at;
+  while (!is_xml_space(text[at])) ++at;
+  for (;;) {
+    while (is_xml_space(text[at])) ++at;
+    if (text[at] == '>' || text[at] == '/') break;
+    const std::size_t name = at;
+    while (text[at] != '=' && !is_xml_space(text[at])) ++at;
+    const std::string_view word = text.substr(name, at - name);
+    while (text[at] != '"' && text[at] != '\'') ++at;
+    const std::size_t value = at + 1, end = text.find(text[at], value);
+    at = end + 1;
+    if (word.size() != 1 || word[0] < 'x' || word[0] > 'z') continue;
+    to.append(text, copied, value - copied);
+    append_number(to, position[word[0] - 'x'], precision);
+    copied = end;
+  }
+  to.append(text, copied, at - copied);
+  return at;
+}
+
+class VertexText {
+ public:
+  VertexText(std::string_view text, const std::vector<std::uint64_t>& vertex_at, std::vector<PlacedMesh> meshes,
+             const MovedMesh& moved)
+      : text_(text), vertex_at_(vertex_at), meshes_(std::move(meshes)), moved_(moved) {
+    std::erase_if(meshes_, [](const PlacedMesh& mesh) { return mesh.vertices == 0; });
+    std::sort(meshes_.begin(), meshes_.end(),
+              [](const PlacedMesh& a, const PlacedMesh& b) { return a.first_in_part < b.first_in_part; });
+  }
+
+  std::size_t pieces() const { return (vertex_at_.size() + kVerticesAtOnce - 1) / kVerticesAtOnce; }
+
+  std::string make(std::size_t piece) const {
+    const std::size_t first = piece * kVerticesAtOnce, last = std::min(first + kVerticesAtOnce, vertex_at_.size());
+    std::size_t copied = piece == 0 ? 0 : vertex_at_[first];
+    const std::size_t end = last == vertex_at_.size() ? text_.size() : vertex_at_[last];
+    std::string bytes;
+    bytes.reserve((end - copied) + (last - first) * 16);
+    for (const PlacedMesh& mesh : meshes_) {
+      const std::size_t mesh_end = mesh.first_in_part + mesh.vertices;
+      for (std::size_t v = std::max(first, mesh.first_in_part); v < std::min(last, mesh_end); ++v) {
+        const std::size_t of_scene = mesh.first_vertex + (v - mesh.first_in_part);
+        if (!moved_.has_moved(of_scene)) continue;
+        bytes.append(text_, copied, vertex_at_[v] - copied);
+        const Vec3d kept = moved_.precision(moved_.positions[of_scene]);
+        copied = append_vertex_tag(bytes, text_, vertex_at_[v], mesh.transform.source_of(kept), moved_.precision);
+      }
+    }
+    return bytes.append(text_, copied, end - copied);
+  }
+
+ private:
+  std::string_view text_;
+  const std::vector<std::uint64_t>& vertex_at_;
+  std::vector<PlacedMesh> meshes_;  // in the order of the part
+  const MovedMesh& moved_;
+};
+
+}  // namespace
+
+Pieces with_moved_vertices(std::string_view text, const std::vector<std::uint64_t>& vertex_at,
+                           std::vector<PlacedMesh> meshes, const MovedMesh& moved) {
+  const auto made = std::make_shared<const VertexText>(text, vertex_at, std::move(meshes), moved);
+  return {made->pieces(), [made](std::size_t piece) { return made->make(piece); }};
+}
+
+}  // namespace vdb_offset::io
