@@ -31,7 +31,7 @@ struct VDB_OFFSET_API CheckOptions {
   /// How far faces may be off at any point of them, as a share of the distance or in world units; then it is proven of
   /// as many as possible. One of them is above 0, or nothing is proven. Not with a metric.
   double tolerance_share = 0, tolerance_length = 0;
-  bool keep_face_errors = false;  ///< Hand out how far each face is off its distance.
+  bool keep_face_errors = false;  ///< Hand out how far each face is off its distance, and its faults.
   int threads = 0;                ///< 0: as many as the machine has.
   ProgressCallback progress;      ///< See run.h; all of a check is Stage::Measure. May cancel.
 };
@@ -53,6 +53,7 @@ struct CheckResult {
   bool more_source_crossings = false;  ///< There are more source crossings than these; faces near them are not judged.
   FaceError faces;
   std::vector<float> face_errors;           ///< Only with keep_face_errors: as OffsetResult's.
+  std::vector<FaceFault> face_faults;       ///< Only with keep_face_errors: of each face; empty if there are none.
   std::optional<CertifiedFaces> certified;  ///< If there is a tolerance, and a distance other than 0.
   std::optional<ObstacleFacts> obstacles;   ///< If there are obstacles.
 

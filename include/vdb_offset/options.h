@@ -72,11 +72,12 @@ struct VDB_OFFSET_API OffsetOptions {
   /// Bytes for the whole run, by the plan; 0: no limit. What is read, and lists that may grow to anything, keep to that
   /// of the process (set_memory_limit in run.h).
   std::size_t max_memory = 0;
-  bool keep_field = false;        ///< Hand the distance field out with the result.
-  bool keep_paths = false;        ///< Hand the vertices' paths out with the result; not for layers.
-  bool keep_face_errors = false;  ///< Hand out how far each face is off its distance; not for layers and curves.
-  ProgressCallback progress;      ///< See run.h; may cancel.
-  ReserveCallback reserve;        ///< See run.h; may wait, and cancel.
+  bool keep_field = false;  ///< Hand the distance field out with the result.
+  bool keep_paths = false;  ///< Hand the vertices' paths out with the result; not for layers.
+  bool keep_face_errors =
+      false;  ///< Hand out how far each face is off its distance, and its faults; not for layers and curves.
+  ProgressCallback progress;  ///< See run.h; may cancel.
+  ReserveCallback reserve;    ///< See run.h; may wait, and cancel.
 };
 
 }  // namespace vdb_offset

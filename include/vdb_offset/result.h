@@ -27,6 +27,9 @@ struct OffsetResult {
   /// Only with keep_face_errors and a distance other than 0: of each input face the mean error of points of it, as a
   /// share of the distance asked there. NaN for faces that nothing is asked of, or that have no area.
   std::vector<float> face_errors;
+  /// Only with keep_face_errors and Collision::Limit: the faults that are left, one for each input face. Empty if there
+  /// are none.
+  std::vector<FaceFault> face_faults;
 };
 
 }  // namespace vdb_offset

@@ -47,6 +47,12 @@ struct FaultCounts {
   std::size_t total() const { return inverted + collapsed + crowded + crossings; }
 };
 
+/// What is wrong with a face. Of several faults the first of these counts; crossings are those of its triangles.
+enum class FaceFault : std::uint8_t { None, Inverted, Collapsed, Crowded, Crossing };
+inline constexpr std::size_t kFaceFaultCount = 5;
+
+VDB_OFFSET_API const char* name(FaceFault fault);
+
 /// What limit() found and did.
 struct LimitStatistics {
   FaultCounts before;                     ///< In what propagate() made; of curves, with points in order.

@@ -136,3 +136,34 @@ TEST_CASE("states: each face's error is that of the report, face by face", "[sta
   for (std::size_t f = 0; f < mesh.face_count(); ++f) CHECK(std::isnan(part.face_errors[f]) == (f != 4));
   CHECK(offset_of(mesh, 0).face_errors.empty());
 }
+
+TEST_CASE("states: faults are told face by face", "[states][vtk]") {
+  // One corner of a cube goes through the opposite side.
+  const Polygons mesh = scene::box({1, 1, 1}, 2, true);
+  std::vector<Vec3d> positions = mesh.positions;
+  positions[0] = positions[0] * -3.0;
+  CheckOptions check;
+  check.distance = 0.1;
+  check.keep_face_errors = true;
+  const CheckResult found = check_offset(mesh.view(), positions, check);
+  REQUIRE(found.face_faults.size() == mesh.face_count());
+  std::size_t inverted = 0, crossing = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    const bool has_moved = std::find(face.begin(), face.end(), 0u) != face.end();
+    if (found.face_faults[f] == FaceFault::Inverted) CHECK(has_moved);
+    inverted += found.face_faults[f] == FaceFault::Inverted ? 1 : 0;
+    crossing += found.face_faults[f] == FaceFault::Crossing && !has_moved ? 1 : 0;
+  }
+  CHECK(inverted == found.faults.inverted);
+  CHECK(inverted > 0);
+  CHECK(crossing > 0);  // those that it goes through
+  CHECK(check_offset(mesh.view(), offset_of(mesh, 0.1).positions, check).face_faults.empty());
+  const Folder folder;
+  io::write_states(folder.file("states.vtp"), mesh.view(), {found.states, found.achieved, found.distances},
+                   {.fault = found.face_faults});
+  const auto read = read_vtp(folder.file("states.vtp"));
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    CHECK(value(read->GetCellData(), "fault", f) == static_cast<double>(found.face_faults[f]));
+  check_words(read, "fault_words", {"none", "inverted", "collapsed", "crowded", "crossing"});
+}

@@ -76,7 +76,8 @@ struct SpreadPoints {
 };
 SpreadPoints spread_points(const RefinedOffset& refined, int count, const std::vector<std::uint8_t>& only = {}) {
   const PolygonView mesh = refined.refinement.polygons.view();
-  const auto& [positions, states, achieved, distances, turned, statistics, field, paths, errors] = refined.result;
+  const auto& [positions, states, achieved, distances, turned, statistics, field, paths, errors, faults] =
+      refined.result;
   const auto gets_there = [&, &all = states](std::uint32_t v) {
     return all[v] == VertexState::Reached || all[v] == VertexState::Mitred;
   };

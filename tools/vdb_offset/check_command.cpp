@@ -13,6 +13,7 @@
 
 #include "job.h"
 #include "messages.h"
+#include "page/run_pages.h"
 #include "request/command_line.h"
 #include "request/option_rules.h"
 #include "request/option_values.h"
@@ -130,6 +131,8 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
               "Write state, target and achieved distance of every vertex, as found: .csv, or .vtp or .ply to colour by "
               "in a viewer",
               made.states);
+  line.option("--html", "FILE", "Write one page (.html) that shows SOURCE and OFFSET in a browser, faults marked",
+              made.html);
   line.flag("--json", "Print JSON, not text", request.json);
   line.flag("--strict",
             "Exit with 3 if a vertex in use is not at the distance, or not all of the area proven to be within "
@@ -140,6 +143,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   if (!line.parse(argc, argv)) return std::nullopt;
   require_miters(made);
   require_states_file(made);
+  require_page(made);
   require(!line.has("--clearance") || line.has("--obstacle"), "--clearance needs --obstacle");
   require(!line.has("--distance") || !line.has("--distance-from"), "--distance-from and --distance exclude each other");
   request.axes = parse_axes(distance_xy, distance_z);
@@ -166,6 +170,7 @@ void require_outputs_apart(const CheckRequest& request) {
   read.push_back({"OFFSET", made.output});
   if (!made.report.empty()) written.push_back({"--report", made.report});
   if (!made.states.empty()) written.push_back({"--states", made.states});
+  if (!made.html.empty()) written.push_back({"--html", made.html});
   require_apart(read, written);
   for (const RunFile& file : written)
     if (request.json && is_standard_output(file.path))
@@ -246,10 +251,13 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
   fmt::print(out, "{}\n", result.valid() ? "valid" : "not valid");
 }
 
-/// Writes what was found of each vertex, if that is asked for.
-void write_states(const Request& made, PolygonView offset, const CheckResult& result, const io::ResultFaces& faces) {
+/// Writes what was found of each vertex and face, as far as that is asked for.
+void write_findings(const Request& made, PolygonView source, std::span<const Vec3d> positions,
+                    const CheckResult& result, const io::ResultFaces& faces) {
   if (!made.states.empty())
-    io::write_states(made.states, offset, {result.states, result.achieved, result.distances}, faces);
+    io::write_states(made.states, {positions, source.corners, source.face_begin},
+                     {result.states, result.achieved, result.distances}, faces);
+  if (!made.html.empty()) write_page(made, source, positions, result, faces);
 }
 
 CheckResult measure_curves(const CheckRequest& request) {
@@ -274,8 +282,7 @@ CheckResult measure_curves(const CheckRequest& request) {
   options.miter_limit = made.miter_limit.value_or(options.miter_limit);
   if (const auto distance = parse_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
   CheckResult result = check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
-  const Curves& curves = source.file.polygons;
-  write_states(made, {offset.file.polygons.positions, curves.corners, curves.face_begin}, result, {{}, nullptr, true});
+  write_findings(made, source.file.polygons.view(), offset.file.polygons.positions, result, {{}, nullptr, true});
   return result;
 }
 
@@ -311,11 +318,10 @@ CheckResult measure_meshes(const CheckRequest& request) {
     options.metric = metric;
     options.distance = distance;
   }
-  options.keep_face_errors = made.states.ends_with(".vtp");
+  options.keep_face_errors = made.states.ends_with(".vtp") || !made.html.empty();
   CheckResult result = check_offset(source.view(), positions, options);
   const WallNames groups = io::wall_names(*source.file);
-  write_states(made, {positions, source.view().corners, source.view().face_begin}, result,
-               {result.face_errors, &groups, false});
+  write_findings(made, source.view(), positions, result, {result.face_errors, &groups, false, result.face_faults});
   return result;
 }
 
@@ -326,6 +332,7 @@ bool is_check(int argc, const char* const* argv) { return argc > 1 && std::strin
 int run_check(int argc, const char* const* argv) {
   auto request = parse_check(argc - 1, argv + 1);
   if (!request) return kDone;
+  request->made.command = as_typed(argc, argv);
   const Request& made = request->made;
   tell_of_lost_input(made.input);
   const bool curves = holds_curves(made.input);
@@ -335,7 +342,8 @@ int run_check(int argc, const char* const* argv) {
   const CheckResult result = curves ? measure_curves(*request) : measure_meshes(*request);
   const std::string json = check_json(result, made.input, made.output);
   if (!made.report.empty()) write_file(made.report, json);
-  const Printout out(is_standard_output(made.report) || is_standard_output(made.states));
+  const Printout out(is_standard_output(made.report) || is_standard_output(made.states) ||
+                     is_standard_output(made.html));
   if (request->json) fmt::print(out, "{}", json);
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;

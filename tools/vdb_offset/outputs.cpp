@@ -246,7 +246,7 @@ std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, 
   if (!to.states.empty()) {
     const WallNames groups = job.source.file ? io::wall_names(*job.source.file) : WallNames{};
     io::write_states(to.states, {result.positions, mesh.corners, mesh.face_begin}, states,
-                     {result.face_errors, &groups, job.curves()});
+                     {result.face_errors, &groups, job.curves(), result.face_faults});
   }
   if (io::is_lines_file(to.paths)) io::write_path_lines(to.paths, result.paths, states);
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);

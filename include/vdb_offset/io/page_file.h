@@ -25,6 +25,7 @@ struct PageSurface {
   const Distances* target = nullptr;   ///< Negative is inward.
   std::span<const double> share;       ///< Of what was asked; it is counted from the distances where those are known.
   std::span<const float> face_errors;  ///< As OffsetResult::face_errors.
+  std::span<const FaceFault> face_faults;  ///< As OffsetResult::face_faults.
 };
 
 /// What a page shows of a run. Refers to what it is made of.

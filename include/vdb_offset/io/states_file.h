@@ -25,6 +25,7 @@ struct ResultFaces {
   std::span<const float> error;       ///< As OffsetResult::face_errors; may be empty.
   const WallNames* groups = nullptr;  ///< What the source calls its faces.
   bool are_curves = false;            ///< The "faces" are plane curves.
+  std::span<const FaceFault> fault;   ///< As OffsetResult::face_faults; may be empty.
 };
 
 /// True of the endings that write_states() knows: .csv, .ply and .vtp.
@@ -32,9 +33,9 @@ VDB_OFFSET_API bool is_states_file(const std::string& path);
 
 /// Writes one line or one vertex for each of the mesh's: CSV `vertex,state,target,achieved`; or the mesh itself, which
 /// a viewer can colour: PLY (binary, vertex properties state, in the order of VertexState, target and achieved), or
-/// VTK's .vtp (point data share, state, achieved and target, cell data face_error and group, as far as they are known;
-/// words for states and groups as field data state_words and group_words). share is achieved by target, NaN where the
-/// target is 0. \throw WriteError
+/// VTK's .vtp (point data share, state, achieved and target, cell data face_error, fault and group, as far as they are
+/// known; words for states, faults and groups as field data state_words, fault_words and group_words). share is
+/// achieved by target, NaN where the target is 0. \throw WriteError
 VDB_OFFSET_API void write_states(const std::string& path, PolygonView mesh, const VertexStates& states,
                                  const ResultFaces& faces = {});
 

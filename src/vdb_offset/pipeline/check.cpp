@@ -219,7 +219,10 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
     if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];
   const MeasuredFaces faces{constrained, in_offset, distances, source, states};
   result.faces = measure_faces(faces);
-  if (options.keep_face_errors) result.face_errors = measure_each_face(faces, mesh.face_count());
+  if (options.keep_face_errors) {
+    result.face_errors = measure_each_face(faces, mesh.face_count());
+    result.face_faults = finder.of_faces(mesh.face_count());
+  }
   progress.advance(in_offset.size());
   result.certified = prove_faces(parts, query, source, in_offset, distances, states, options, progress);
 }

@@ -75,8 +75,9 @@ class ResultMaker {
     const Distances& distances;
     PreparedMesh::Marched& marched;
     OffsetStatistics statistics;
-    std::optional<FaultFinder> faults;  // from look_for_faults() to make_valid(), if the result has to be valid
-    WarmStart warm_start;               // for the results that begin with this one
+    std::optional<FaultFinder> faults;   // from look_for_faults() to make_valid(), if the result has to be valid
+    WarmStart warm_start;                // for the results that begin with this one
+    std::vector<FaceFault> face_faults;  // that are left, if they are asked for
   };
 
   bool has_to_be_valid() const { return options_.collision == Collision::Limit; }
@@ -163,6 +164,7 @@ class ResultMaker {
         *draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths, &draft.marched.mitred},
         progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
+    if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());
     draft.faults.reset();
   }
 
@@ -193,6 +195,7 @@ class ResultMaker {
       result.statistics.faces = measure_faces(faces);
       if (options_.keep_face_errors) result.face_errors = measure_each_face(faces, mesh_.mesh().face_count());
     }
+    result.face_faults = draft.face_faults;
     return result;
   }
 

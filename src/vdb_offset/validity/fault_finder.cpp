@@ -192,6 +192,29 @@ FaultCounts FaultFinder::count() const {
   return counts;
 }
 
+const char* name(FaceFault fault) {
+  constexpr const char* kNames[kFaceFaultCount] = {"none", "inverted", "collapsed", "crowded", "crossing"};
+  return kNames[static_cast<std::size_t>(fault)];
+}
+
+std::vector<FaceFault> FaultFinder::of_faces(std::size_t count) const {
+  constexpr FaceFault kOfFace[] = {FaceFault::None, FaceFault::Inverted, FaceFault::Collapsed, FaceFault::Crowded};
+  std::vector<FaceFault> faults(count, FaceFault::None);
+  bool is_any = false;
+  const auto mark = [&](std::uint32_t triangle, FaceFault fault) {
+    const std::uint32_t face = parts_->surface.face[triangle];
+    if (face >= count) return;  // of an obstacle
+    if (faults[face] == FaceFault::None || fault < faults[face]) faults[face] = fault;
+    is_any = true;
+  };
+  for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+    if (s == t) return mark(t, kOfFace[static_cast<std::size_t>(parts_->faces[t])]);
+    mark(s, FaceFault::Crossing);
+    mark(t, FaceFault::Crossing);
+  });
+  return is_any ? faults : std::vector<FaceFault>{};
+}
+
 Indices FaultFinder::faulty_vertices() {
   IndexGatherer& gathered = parts_->vertices;
   for (const auto v : parts_->misplaced) gathered.add(v);

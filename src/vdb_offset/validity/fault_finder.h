@@ -90,6 +90,8 @@ class FaultFinder {
     for (const auto t : parts_->faces.faulty()) visit(t, t);
     for (const auto& [s, t] : parts_->pairs.faulty()) visit(s, t);
   }
+  /// What is wrong with each of the input's `count` faces; empty if nothing is. What a rim meets does not count.
+  std::vector<FaceFault> of_faces(std::size_t count) const;
   /// Folded vertices (see is_folded()) whose faces meet the source around them: that only ends if they stay on it.
   Indices caught() { return parts_->faces.caught(); }
   /// Misplaced vertices, and corners of all faults.

@@ -11,6 +11,7 @@
 
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/page_file.h"
+#include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -37,10 +38,11 @@ io::PageSurface surface_of(const std::string& name, const OffsetResult& result) 
   surface.achieved = result.achieved;
   surface.target = &result.distances;
   surface.face_errors = result.face_errors;
+  surface.face_faults = result.face_faults;
   return surface;
 }
 
-/// Says where faults are that are left, of which the library knows the number alone.
+/// Says that faults are left, of which the library knows the number alone: between layers, of curves, and of rims.
 void add_faults(const FaultCounts& left, std::vector<std::string>& remarks) {
   if (left.total() > 0)
     remarks.push_back(fmt::format(
@@ -74,8 +76,30 @@ void write_page(const Job& job, const Outcome& outcome, const std::string& repor
   if (job.shell)
     page.remarks.emplace_back(outcome.inner ? "The solid's skins are shown as surfaces, without its rim."
                                             : "The solid's skins are the source and the offset; its rim is not shown.");
-  add_faults(outcome.result.statistics.limit.left, page.remarks);
+  if (outcome.result.face_faults.empty()) add_faults(outcome.result.statistics.limit.left, page.remarks);
   io::write_page(outcome.to.html, page);
+}
+
+void write_page(const Request& made, PolygonView source, std::span<const Vec3d> positions, const CheckResult& result,
+                const io::ResultFaces& faces) {
+  io::Page page;
+  page.title = std::filesystem::path(made.output).filename().string();
+  page.command = made.command;
+  page.report = check_json(result, made.input, made.output);
+  page.source = source;
+  page.are_curves = faces.are_curves;
+  page.groups = faces.groups;
+  io::PageSurface surface;
+  surface.name = "offset";
+  surface.position = [positions](std::size_t v) { return positions[v]; };
+  surface.states = result.states;
+  surface.achieved = result.achieved;
+  surface.target = &result.distances;
+  surface.face_errors = result.face_errors;
+  surface.face_faults = result.face_faults;
+  page.surfaces.push_back(surface);
+  if (result.face_faults.empty()) add_faults(result.faults, page.remarks);
+  io::write_page(made.html, page);
 }
 
 void write_page(const Job& job, const LayersResult& layers, const WallNames& names, std::span<const float> quality,

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "outputs.h"
+#include "vdb_offset/check.h"
+#include "vdb_offset/io/states_file.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/volume_mesh.h"
 
@@ -20,5 +22,9 @@ void write_page(const Job& job, const Outcome& outcome, const std::string& repor
 /// \param quality scaled Jacobians of the cells, if they are known
 void write_page(const Job& job, const LayersResult& layers, const WallNames& names, std::span<const float> quality,
                 const std::string& report);
+
+/// Writes the page of an offset that was measured, of a mesh or of curves.
+void write_page(const Request& made, PolygonView source, std::span<const Vec3d> positions, const CheckResult& result,
+                const io::ResultFaces& faces);
 
 }  // namespace vdb_offset::tool

@@ -96,9 +96,7 @@ void require_endings(const Request& request) {
               (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg &&
                io::curve_format_of(request.paths) != io::CurveFormat::Dxf),
           request.paths + ": expected a file of paths that ends in .obj, .txt or .vtp");
-  require(request.html.empty() || request.html == "-" || request.html.ends_with(".html"),
-          request.html + ": expected a page that ends in .html");
-  if (!request.html.empty()) io::require_pages(request.html);
+  require_page(request);
   require(request.vdb != "-", "--save-vdb: expected a file, got '-'");
   for (const std::string& path : request.obstacles)
     require(format_of(path, request).has_value(),
@@ -177,6 +175,12 @@ void require_together(const CommandLine& line, bool is_iso) {
 void require_states_file(const Request& request) {
   require(request.states.empty() || io::is_states_file(request.states),
           request.states + ": expected a file of states that ends in .csv, .ply or .vtp");
+}
+
+void require_page(const Request& request) {
+  require(request.html.empty() || request.html == "-" || request.html.ends_with(".html"),
+          request.html + ": expected a page that ends in .html");
+  if (!request.html.empty()) io::require_pages(request.html);
 }
 
 void require_miters(const Request& request) {

@@ -15,6 +15,9 @@ void require_together(const CommandLine& line, bool is_iso);
 void require_sound(const Request& request);
 /// Requires an ending that files of states have; check's rule as well. \throw UsageError
 void require_states_file(const Request& request);
+
+/// \throw UsageError unless --html names a page, InvalidOption if this build has none
+void require_page(const Request& request);
 /// Requires miters where there is a limit of them; check's rule as well. \throw UsageError
 void require_miters(const Request& request);
 

@@ -43,6 +43,7 @@
       return {
         name: surface.name, positions: of('positions'), share: of('share'), state: of('state'), achieved: of('achieved'),
         error: of('error'), target: v => target ? target[v] : surface.target,
+        fault: of('fault'), faultFace: of('fault_face'), faultAt: of('fault_at'),
       };
     });
     return {
@@ -171,6 +172,41 @@
     }
   }
 
+  const FAULT_COLOUR = 0xe0007a;
+  // In words, what each fault means.
+  const WRONG = {
+    inverted: 'It faces the wrong way.',
+    collapsed: 'Next to nothing of its area is left.',
+    crowded: 'It is nearer to an obstacle than may be, or goes through the source.',
+    crossing: 'It crosses another face, which it did not before.',
+  };
+
+  // Faces that something is wrong with, as points in their middles.
+  function addFaults() {
+    const count = facts.surfaces.reduce((sum, each) => sum + (each.faults || 0), 0);
+    if (count === 0) return;
+    const label = make('label', byId('controls'), undefined, {class: 'wide'});
+    const box = make('input', label, undefined, {type: 'checkbox', id: 'faults'});
+    label.append(` mark faulty faces (${inWords(count)})`);
+    box.checked = true;
+    box.addEventListener('change', update);
+    data.surfaces.forEach((surface, i) => {
+      if (!surface.fault) return;
+      const colours = new Uint8Array(3 * surface.fault.length);
+      for (let k = 0; k < colours.length; ++k) colours[k] = FAULT_COLOUR >> [16, 8, 0][k % 3] & 255;
+      marks.push({points: view.addPoints(surface.faultAt, colours), surface: i, box});
+    });
+    const first = data.surfaces.find(each => each.fault);
+    make('li', byId('remarks'), `Faulty: ${[...first.faultFace.slice(0, 12)].map((f, k) =>
+        `face ${f} (${facts.faults[first.fault[k]]})`).join(', ')}${count > 12 ? ', …' : ''}`);
+  }
+
+  // What is wrong with a face of a surface, if anything is.
+  function faultOf(surface, face) {
+    const at = surface && surface.faultFace ? surface.faultFace.indexOf(face) : -1;
+    return at < 0 ? null : facts.faults[surface.fault[at]];
+  }
+
   function addChoice(title, name, options) {
     make('label', byId('controls'), title, {for: name});
     const select = make('select', byId('controls'), undefined, {id: name});
@@ -214,6 +250,7 @@
     const share = addRange('cut off', {id: 'cutAt', min: 0, max: 1, step: 0.005, value: looks.cutAt}, value => { looks.cutAt = value; });
     share.disabled = true;
     if (!facts.curves) addBox('edges', false, checked => { looks.edges = checked; });
+    addFaults();
     addMarks(SHORT, 'vertices that fall short');
     addMarks(FAR, 'mitred and cut vertices');
   }
@@ -241,6 +278,8 @@
     if (element !== undefined) {
       row(facts.curves ? 'curve' : 'face', String(data.face[element]));
       if (on && on.error && on.error[element] === on.error[element]) row('its error', `${inDigits(100 * on.error[element])} % of the distance`);
+      const fault = faultOf(on, data.face[element]);
+      if (fault) row('its fault', `${fault}: ${WRONG[fault]}`);
       if (data.group) row('its group', facts.groups[data.group[element]]);
     }
     byId('number').value = number;

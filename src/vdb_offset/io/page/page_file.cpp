@@ -62,6 +62,31 @@ std::vector<float> seen_from(const Vec3d& centre, const std::function<Vec3d(std:
   return numbers;
 }
 
+/// Faults of so many faces are marked at most; far more are seen without marks.
+constexpr std::size_t kMostMarkedFaults = 100'000;
+
+/// Puts the faults of a surface into the arrays: where the faces' centres are, their numbers, and what is wrong.
+/// Returns how many there are.
+std::size_t add_faults(const Page& page, const PageSurface& surface, const std::string& name, const Vec3d& centre,
+                       PageArrays& arrays) {
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t f = 0; f < surface.face_faults.size(); ++f)
+    if (surface.face_faults[f] != FaceFault::None) faces.push_back(f);
+  const std::size_t count = faces.size();
+  if (count == 0) return 0;
+  faces.resize(std::min(count, kMostMarkedFaults));
+  const auto middle = [&](std::size_t f) {
+    const auto face = page.source.face(f);
+    Vec3d sum(0.0);
+    for (const std::uint32_t v : face) sum += surface.position(v);
+    return sum / static_cast<double>(face.size());
+  };
+  arrays.add(name + ".fault_at", seen_from(centre, middle, faces));
+  arrays.add(name + ".fault", taken<std::uint8_t>(faces, [&](std::uint32_t f) { return surface.face_faults[f]; }));
+  arrays.add(name + ".fault_face", faces);
+  return count;
+}
+
 /// Puts what is known of a surface into the arrays, and returns what the page says of it.
 nlohmann::json add_surface(const PageSurface& surface, std::span<const float> shares, const std::string& name,
                            const ViewMesh& view, const Vec3d& centre, PageArrays& arrays) {
@@ -90,12 +115,15 @@ nlohmann::json facts_of(const Page& page, PageArrays& arrays) {
   const Vec3d centre = centre_of(page.source.positions, view.vertices);
   std::vector<std::string> states;
   for (std::size_t s = 0; s < kVertexStateCount; ++s) states.emplace_back(name(static_cast<VertexState>(s)));
+  std::vector<std::string> fault_words;
+  for (std::size_t f = 0; f < kFaceFaultCount; ++f) fault_words.emplace_back(name(static_cast<FaceFault>(f)));
   nlohmann::json facts = {{"title", page.title},
                           {"command", page.command},
                           {"curves", page.are_curves},
                           {"layers", page.are_layers},
                           {"centre", {centre[0], centre[1], centre[2]}},
                           {"states", states},
+                          {"faults", fault_words},
                           {"vertices", page.source.positions.size()},
                           {"shown", {{"elements", view.element_count()}, {"of", view.elements_of_mesh}}},
                           {"remarks", page.remarks},
@@ -110,9 +138,12 @@ nlohmann::json facts_of(const Page& page, PageArrays& arrays) {
     facts["groups"] = page.groups->names;
     arrays.add("group", taken<std::uint32_t>(view.face, [&](std::uint32_t f) { return page.groups->of_face[f]; }));
   }
-  for (std::size_t s = 0; s < page.surfaces.size(); ++s)
-    facts["surfaces"].push_back(
-        add_surface(page.surfaces[s], shares[s], fmt::format("surface{}", s), view, centre, arrays));
+  for (std::size_t s = 0; s < page.surfaces.size(); ++s) {
+    const std::string name = fmt::format("surface{}", s);
+    nlohmann::json surface = add_surface(page.surfaces[s], shares[s], name, view, centre, arrays);
+    if (const std::size_t faults = add_faults(page, page.surfaces[s], name, centre, arrays)) surface["faults"] = faults;
+    facts["surfaces"].push_back(std::move(surface));
+  }
   if (!page.cell_quality.empty()) facts["quality"] = histogram_of_quality(page.cell_quality);
   facts["arrays"] = arrays.directory();
   return facts;

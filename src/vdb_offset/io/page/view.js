@@ -129,9 +129,12 @@ const VIEW = (function () {
 
     // Points at vertices, in one colour each.
     addMarks(index, vertices, colours) {
-      const positions = this.data.surfaces[index].positions;
+      return this.addPoints(spread(this.data.surfaces[index].positions, 3, vertices), colours);
+    }
+
+    addPoints(positions, colours) {
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(spread(positions, 3, vertices), 3));
+      geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3, true));
       const points = new THREE.Points(
           geometry, new THREE.PointsMaterial({vertexColors: THREE.VertexColors, size: MARK_PIXELS, sizeAttenuation: false}));

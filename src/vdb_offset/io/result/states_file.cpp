@@ -65,10 +65,17 @@ std::string as_ply(PolygonView mesh, const VertexStates& states) {
   return bytes;
 }
 
-/// States as numbers of a file. A view: the states outlive it.
-std::span<const std::uint8_t> as_numbers(std::span<const VertexState> states) {
-  static_assert(sizeof(VertexState) == 1);
-  return {reinterpret_cast<const std::uint8_t*>(states.data()), states.size()};
+/// States or faults as numbers of a file. A view: these outlive it.
+template <class Word>
+std::span<const std::uint8_t> as_numbers(std::span<const Word> words) {
+  static_assert(sizeof(Word) == 1);
+  return {reinterpret_cast<const std::uint8_t*>(words.data()), words.size()};
+}
+
+std::vector<std::string> fault_words() {
+  std::vector<std::string> words;
+  for (std::size_t f = 0; f < kFaceFaultCount; ++f) words.emplace_back(name(static_cast<FaceFault>(f)));
+  return words;
 }
 
 void write_states_vtp(const std::string& path, PolygonView mesh, const VertexStates& states, const ResultFaces& faces) {
@@ -89,6 +96,10 @@ void write_states_vtp(const std::string& path, PolygonView mesh, const VertexSta
                .of_cells = {},
                .words = {{"state_words", state_words()}}};
   if (!faces.error.empty()) data.of_cells.push_back({"face_error", faces.error});
+  if (!faces.fault.empty()) {
+    data.of_cells.push_back({"fault", as_numbers(faces.fault)});
+    data.words.push_back({"fault_words", fault_words()});
+  }
   if (faces.groups && !faces.groups->of_face.empty()) {
     data.of_cells.push_back({"group", std::span<const std::uint32_t>(faces.groups->of_face)});
     data.words.push_back({"group_words", faces.groups->names});
