@@ -9,6 +9,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -20,6 +21,9 @@ using openvdb::math::Vec3d;
 /// The number of no vertex, face or other thing.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+/// The frames of its own in which a file has its vertices.
+class FileFrames;
+
 /// What a file keeps of a coordinate. Validity is judged on what is kept.
 struct Precision {
   enum class Kind { Double, Single, Digits };
@@ -30,6 +34,8 @@ struct Precision {
   Vec3d scale{1.0};
   /// Vertices that have not moved are written anew as well, as in a file of another format; else they keep their bytes.
   bool rounds_all = false;
+  /// The file has vertices in other frames than the mesh's, and the numbers that it keeps are those. \pre scale is 1
+  std::shared_ptr<const FileFrames> frames{};
 };
 
 /// The number that a text is as a whole, in decimal digits as files have them: a sign if it has one, a point and an

@@ -118,7 +118,8 @@ void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const
     const std::uint32_t w = surface.welded[v];
     if (w == kNone) continue;
     const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
-                 tolerance = kReachedTolerance * target + epsilon * finder.positions()[w].length();
+                 tolerance = kReachedTolerance * target + std::max(epsilon * finder.positions()[w].length(),
+                                                                   precision.most_off(finder.positions()[w]));
     result.achieved[v] = finder.distance_of(w);
     const Miter* const miter = find_miter(miters.of_vertex, w);
     const bool is_mitred = miter && (finder.positions()[w] - source[w] - miter->displacement).length() <= tolerance;

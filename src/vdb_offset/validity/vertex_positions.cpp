@@ -203,9 +203,7 @@ void VertexPositions::put_back(std::uint32_t v, const Standing& standing) {
 }
 
 double VertexPositions::rounding(std::uint32_t v) const {
-  double size = 0;
-  for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(position_[v][k]));
-  return size * precision_.epsilon();
+  return precision_.most_off(position_[v]);
 }
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
