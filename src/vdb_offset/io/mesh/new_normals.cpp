@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <unordered_map>
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
+#include "vdb_offset/io/attributes.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -31,31 +34,71 @@ struct Users {
   }
 };
 
-std::uint32_t normal_of(const MeshFile& source, std::size_t corner) {
-  if (source.format != Format::Obj)
-    return source.polygons.corners[corner];  // these formats have one normal for each vertex
-  return source.corner_normal.empty() ? kNoNormal : source.corner_normal[corner];
-}
+/// A position and the normal of the vertex there.
+struct PlacedNormal {
+  Vec3d position, normal;
+  bool operator==(const PlacedNormal& other) const { return position == other.position && normal == other.normal; }
+};
+
+struct HashOfNormal {
+  std::size_t operator()(const PlacedNormal& n) const {
+    std::size_t hash = 0;
+    for (const Vec3d& v : {n.position, n.normal})
+      for (int k = 0; k < 3; ++k) hash = hash * 31 + std::hash<double>()(v[k]);
+    return hash;
+  }
+};
+
+/// Which normal each corner names.
+class CornerNormals {
+ public:
+  explicit CornerNormals(const MeshFile& source) : source_(source) {
+    if (source.document) join_split_vertices();
+  }
+
+  std::uint32_t operator()(std::size_t corner) const {
+    if (source_.format == Format::Obj) return source_.corner_normal.empty() ? kNoNormal : source_.corner_normal[corner];
+    return of_vertex(source_.polygons.corners[corner]);
+  }
+  /// The normal that a vertex shares, in formats that have one for each.
+  std::uint32_t of_vertex(std::uint32_t v) const { return shared_.empty() ? v : shared_[v]; }
+
+ private:
+  /// Vertices that a seam of the texture splits have the same position and normal. They share the new one too, else the
+  /// seam would be seen.
+  void join_split_vertices() {
+    const std::vector<Vec3d> normals = read_attributes(source_).normals.value;
+    if (normals.size() != source_.polygons.positions.size()) return;
+    std::unordered_map<PlacedNormal, std::uint32_t, HashOfNormal> first;
+    shared_.resize(normals.size());
+    for (std::uint32_t v = 0; v < normals.size(); ++v)
+      shared_[v] = first.try_emplace({source_.polygons.positions[v], normals[v]}, v).first->second;
+  }
+
+  const MeshFile& source_;
+  std::vector<std::uint32_t> shared_;
+};
 
 /// Calls visit(face, corner, normal) for the corners that name a normal, in the file's order.
 template <class Visit>
-void for_each_user(const MeshFile& source, std::span<const std::uint32_t> faces, Visit&& visit) {
+void for_each_user(const MeshFile& source, const CornerNormals& normal_of, std::span<const std::uint32_t> faces,
+                   Visit&& visit) {
   const PolygonView mesh = source.polygons.view();
   const std::size_t count = faces.empty() ? mesh.face_count() : faces.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t f = faces.empty() ? static_cast<std::uint32_t>(i) : faces[i];
     for (std::uint32_t c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
-      if (const std::uint32_t n = normal_of(source, c); n != kNoNormal) visit(f, c, n);
+      if (const std::uint32_t n = normal_of(c); n != kNoNormal) visit(f, c, n);
   }
 }
 
-Users find_users(const MeshFile& source, std::span<const std::uint32_t> faces) {
+Users find_users(const MeshFile& source, const CornerNormals& normal_of, std::span<const std::uint32_t> faces) {
   Users users;
   users.begin.assign(source.normal_count() + 2, 0);
-  for_each_user(source, faces, [&](auto, auto, std::uint32_t n) { ++users.begin[n + 2]; });
+  for_each_user(source, normal_of, faces, [&](auto, auto, std::uint32_t n) { ++users.begin[n + 2]; });
   std::partial_sum(users.begin.begin(), users.begin.end(), users.begin.begin());
   users.corners.resize(users.begin.back());
-  for_each_user(source, faces, [&](std::uint32_t f, std::uint32_t c, std::uint32_t n) {
+  for_each_user(source, normal_of, faces, [&](std::uint32_t f, std::uint32_t c, std::uint32_t n) {
     users.corners[users.begin[n + 1]++] = {f, c};
   });
   users.begin.pop_back();
@@ -116,7 +159,8 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
                             const std::vector<std::uint8_t>& moved) {
   const std::span<const Vec3d> positions = mesh.positions;
   if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
-  const Users users = find_users(source, faces);
+  const CornerNormals normal_of(source);
+  const Users users = find_users(source, normal_of, faces);
   NewNormals normals;
   normals.value.assign(source.normal_count(), Vec3d(0.0));
   std::atomic<std::size_t> disagreeing = 0;
@@ -132,6 +176,8 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
     if (source.format == Format::Obj && disagree(mesh, positions, users.of(n), normals.value[n])) ++disagreeing;
   });
   normals.disagreeing = disagreeing;
+  if (source.document)
+    for (std::uint32_t v = 0; v < normals.value.size(); ++v) normals.value[v] = normals.value[normal_of.of_vertex(v)];
   return normals;
 }
 
@@ -145,7 +191,7 @@ NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions,
   for_each_index(positions.size(), [&](std::size_t v) {
     const Vec3d& before = source.polygons.positions[placed.origin.empty() ? v : placed.origin[v]];
     moved[v] = has_moved(before, positions[v], precision);
-    stored[v] = moved[v] ? precision(positions[v]) : before;
+    stored[v] = moved[v] ? precision(before, positions[v]) : before;
   });
   const std::span<const std::uint32_t> corners =
       placed.corners.empty() ? std::span(source.polygons.corners) : placed.corners;

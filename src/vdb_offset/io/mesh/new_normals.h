@@ -17,7 +17,7 @@ struct NewNormals {
 
 /// Whether a position differs from the source's at the file's precision.
 inline bool has_moved(const Vec3d& before, const Vec3d& after, const Rounding& precision) {
-  return !(after == before) && !(precision(after) == before);
+  return !(after == before) && !(precision(before, after) == before);
 }
 
 /// Faces of a file over other vertices than its own, as in a skin of a shell. Empty spans: all faces, over the file's
@@ -29,7 +29,8 @@ struct PlacedFaces {
 };
 
 /// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners
-/// that name a normal, of the corner's face normal times its angle. Computed from positions as they are written.
+/// that name a normal, of the corner's face normal times its angle. Vertices of a document that had the same position and
+/// the same normal name the same. Computed from positions as they are written.
 NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed = {});
 
