@@ -209,7 +209,10 @@ Precision precision_of(const Job& job) {
   if (cells || !(job.curves() || job.source.file)) return {};
   const std::string path = request.layers ? name_of_layer(request.output, 1, job.distances.size()) : request.output;
   const io::WriteOptions writing = write_options(request, path);
-  return job.curves() ? io::precision_of_curves(writing) : io::precision_of(path, *job.source.file, writing);
+  if (job.curves()) return io::precision_of_curves(writing);
+  const bool makes_anew = job.shell || request.tolerance;
+  return makes_anew ? io::precision_of_new(path, *job.source.file, writing)
+                    : io::precision_of(path, *job.source.file, writing);
 }
 
 }  // namespace

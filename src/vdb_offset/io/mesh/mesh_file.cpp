@@ -2,6 +2,7 @@
 #include "vdb_offset/io/mesh_file.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -140,15 +141,27 @@ std::optional<double> unit_micrometres(const std::string& path, std::optional<Fo
   return known == Format::ThreeMf ? unit_of_3mf(path) : std::nullopt;
 }
 
-Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  const bool same = format == source.format;
+namespace {
+
+Precision precision_of_file(Format format, bool same, const MeshFile& source, const WriteOptions& options) {
   const bool text = same ? source.encoding == Encoding::Ascii : is_text(format);
   Precision precision = same ? source.precision : Precision{};
   if (is_single(format) && !same) precision = {Rounding::Kind::Single};
   else if (text && options.digits > 0) precision = {Rounding::Kind::Digits, options.digits};
   precision.rounds_all = !same;
   return precision;
+}
+
+}  // namespace
+
+Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options) {
+  const Format format = require_written_format(path, options.format);
+  return precision_of_file(format, format == source.format, source, options);
+}
+
+Precision precision_of_new(const std::string& path, const MeshFile& source, const WriteOptions& options) {
+  const Format format = require_written_format(path, options.format);
+  return precision_of_file(format, format == source.format && !source.document, source, options);
 }
 
 WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
@@ -168,7 +181,10 @@ WriteResult write_mesh(const std::string& path, const MeshFile& source, std::spa
     made.file = convert(source, format, positions, precision, options.normals, result);
   }
   OutputFiles together;
-  for (const WrittenDocument::Beside& beside : made.beside) write_file(beside.path, beside.bytes);
+  for (const WrittenDocument::Beside& beside : made.beside) {
+    together.add_folders(std::filesystem::path(beside.path).parent_path());
+    write_file(beside.path, beside.bytes);
+  }
   write_pieces_of(source.path, source.bytes, path, made.file);
   together.commit();
   return result;

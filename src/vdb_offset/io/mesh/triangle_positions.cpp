@@ -27,7 +27,7 @@ class TrianglePlaces {
   std::optional<std::vector<Vec3d>> find() {
     std::size_t count = 0;
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) count += mesh_.face(f).size() - 2;
-    if (count != triangles_.face_count() || 3 * count != triangles_.positions.size()) return std::nullopt;
+    if (count != triangles_.face_count()) return std::nullopt;
     for (const bool large : {false, true}) {
       std::size_t first = 0;
       for (std::size_t f = 0; f < mesh_.face_count(); ++f) {

@@ -156,7 +156,7 @@ std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& prec
 WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
                         const WriteOptions& options) {
   const Format format = require_written_format(path, options.format);
-  const Rounding precision = precision_of(path, source, options);
+  const Rounding precision = precision_of_new(path, source, options);
   require_same_mesh(source, shell);
   WriteResult result;
   Pieces pieces;
