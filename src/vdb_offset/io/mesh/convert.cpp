@@ -36,13 +36,6 @@ bool make_per_vertex(PolygonView mesh, CornerValues<Value>& values) {
   return true;
 }
 
-/// Whether all colours are bytes, as far as three decimal digits can tell.
-bool are_bytes(const std::vector<std::array<double, 4>>& colours) {
-  const auto is_byte = [](double colour) { return std::abs(colour - colour_byte(colour) / 255.0) <= 0.0005; };
-  return std::all_of(colours.begin(), colours.end(),
-                     [&](const auto& colour) { return std::all_of(colour.begin(), colour.end(), is_byte); });
-}
-
 /// Removes the values of faces that have them only at some corners. Returns whether there were such faces.
 template <class Value>
 bool take_off_partial_faces(PolygonView mesh, CornerValues<Value>& values) {
@@ -134,6 +127,9 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   if (target == Format::ThreeMf || (source.document && target == Format::Obj))
     if (Materials materials = read_materials(source); !materials.of_face.empty())
       content->materials = std::move(materials);
+  if (Materials materials = read_materials(source);
+      (is_gltf(target) || (source.document && target == Format::Obj)) && !materials.of_face.empty())
+    content->materials = std::move(materials);
   if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);

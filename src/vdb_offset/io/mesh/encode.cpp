@@ -257,6 +257,12 @@ bool holds_normals(Format format) { return holds_texture(format); }
 
 bool holds_corners(Format format) { return format == Format::Obj || is_gltf(format); }
 
+bool are_bytes(const std::vector<std::array<double, 4>>& colours) {
+  const auto is_byte = [](double colour) { return std::abs(colour - colour_byte(colour) / 255.0) <= 0.0005; };
+  return std::all_of(colours.begin(), colours.end(),
+                     [&](const auto& colour) { return std::all_of(colour.begin(), colour.end(), is_byte); });
+}
+
 std::uint8_t colour_byte(double colour) { return static_cast<std::uint8_t>(std::lround(colour * 255)); }
 
 Pieces encode(Format format, const SharedContent& content) {

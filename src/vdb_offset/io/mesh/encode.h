@@ -23,6 +23,8 @@ struct Content {
   std::vector<Part> parts;                      ///< Of all faces, in their order; or empty.
   Materials materials;                          ///< Kept in OBJ and 3MF.
   std::optional<double> unit_micrometres = {};  ///< Of the coordinates, if known; kept in 3MF.
+  std::vector<Part> parts;  ///< Of all faces, in their order; or empty.
+  Materials materials;      ///< Kept in OBJ and glTF.
 };
 using SharedContent = std::shared_ptr<const Content>;
 
@@ -48,6 +50,9 @@ bool holds_corners(Format format);
 
 /// A colour from 0 to 1 as a byte, for formats that store bytes.
 std::uint8_t colour_byte(double colour);
+
+/// Whether all colours are bytes, as far as three decimal digits can tell.
+bool are_bytes(const std::vector<std::array<double, 4>>& colours);
 
 /// Whether a float is enough for a number: both have the same shortest decimal form.
 bool fits_float(double value);
