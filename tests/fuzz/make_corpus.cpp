@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, and numbers of three vertices
-// to FOLDER/numbers, and curves to FOLDER/curves: what fuzzing starts from.
+// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, gltf, glb, and numbers of three
+// vertices to FOLDER/numbers, and curves to FOLDER/curves: what fuzzing starts from.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,7 @@
 #include <string>
 
 #include "support/bytes.h"
-#include "support/dxf_text.h"
+#include "support/dxf_text.h" "support/gltf_model.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -59,10 +59,46 @@ Polygons two_faces() {
 /// The project's own writers.
 void plain_seeds() {
   const Polygons mesh = two_faces();
-  for (const char* format : {"obj", "off", "ply", "stl"}) {
+  for (const char* format : {"obj", "off", "ply", "stl", "gltf", "glb"}) {
     fs::create_directories(folder / format);
     io::write_mesh((folder / format / (std::string("plain.") + format)).string(), mesh.view());
   }
+}
+
+/// Cubes: placed, with normals, tangents, colours, strips, bones and morph targets.
+void gltf_seeds() {
+  using Json = test::GltfModel::Json;
+  const test::HardCube cube;
+  test::GltfModel model;
+  const std::size_t position = model.add_points(cube.points, true), normal = model.add_points(cube.normals);
+  std::string tangents, uv;
+  for (const Vec3d& n : cube.normals) {
+    for (const double number : {n[1], n[2], n[0], 1.0}) tangents += raw(static_cast<float>(number));
+    uv += raw(0.25f) + raw(0.75f);
+  }
+  Json attributes = {{"POSITION", position}, {"NORMAL", normal}};
+  attributes["TANGENT"] = model.add(tangents, 5126, 24, "VEC4");
+  attributes["TEXCOORD_0"] = model.add(uv, 5126, 24, "VEC2");
+  attributes["COLOR_0"] = model.add(std::string(96, 'c'), 5121, 24, "VEC4");
+  model.json["accessors"].back()["normalized"] = true;
+  const std::size_t indices = model.add_indices(cube.indices);
+  model.json["materials"] = {{{"name", "red"}}, {{"name", "blue"}}};
+  model.add_mesh({{"attributes", attributes}, {"indices", indices}, {"material", 0}},
+                 {{"name", "a"}, {"scale", {1, 2, 1}}});
+  const auto seed_both = [&](const std::string& name) {
+    seed(name + ".glb", model.glb());
+    seed(name + ".gltf", model.gltf());
+  };
+  seed_both("cube");
+  model.json["nodes"][0]["children"] = {1};
+  model.add_mesh({{"attributes", {{"POSITION", model.add_points(cube.points)}}}, {"mode", 5}},
+                 {{"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
+  model.json["scenes"] = {{{"nodes", {0}}}};
+  seed_both("placed");
+  model.json["meshes"][1]["primitives"][0]["targets"] = {{{"POSITION", model.add_points(cube.points)}}};
+  model.json["nodes"][1]["skin"] = 0;
+  model.json["skins"] = {{{"joints", {0}}}};
+  seed_both("skinned");
 }
 
 void obj_seeds() {
@@ -281,6 +317,7 @@ int main(int count, char** arguments) {
   try {
     plain_seeds();
     obj_seeds();
+    gltf_seeds();
     off_seeds();
     binary_off_seeds();
     ply_text_seeds();
