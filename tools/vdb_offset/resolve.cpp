@@ -224,6 +224,7 @@ Job resolve_options(const Request& request, const Source& source) {
           .shell = request.shell,
           .asked = request.distances};
   if (source.scene) settle_scene(job);
+  if (source.file && source.file->has_touching_objects && request.weld_text == "auto") job.options.weld.enabled = false;
   if (request.solver) job.options.solver = *request.solver;
   if (request.collision) job.options.collision = *request.collision;
   if (request.corners) job.options.corners = *request.corners;

@@ -63,6 +63,8 @@ struct VDB_OFFSET_API MeshFile {
   std::shared_ptr<const Document> document;
   std::size_t vertex_normals = 0;          ///< With a document: its normals; one for each vertex, or none.
   std::optional<double> unit_micrometres;  ///< The length of the unit of its coordinates, if the file tells it.
+  /// Vertices at equal positions are of objects that touch, and no two of one object are: not to be welded.
+  bool has_touching_objects = false;
 
   std::size_t normal_count() const { return document ? vertex_normals : normal_at.size(); }
   std::string_view text() const { return bytes.view(); }
