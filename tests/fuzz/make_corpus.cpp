@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, gltf, glb, and numbers of three
 // vertices to FOLDER/numbers, and curves to FOLDER/curves: what fuzzing starts from.
+// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, and numbers of three vertices
+// to FOLDER/numbers, curves to FOLDER/curves, and 3MF's model parts to FOLDER/threemf: what fuzzing starts from.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +13,7 @@
 #include <string>
 
 #include "support/bytes.h"
-#include "support/dxf_text.h" "support/gltf_model.h"
+#include "support/dxf_text.h" "support/gltf_model.h" "support/threemf_packages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -306,6 +308,35 @@ void curves_seeds() {
   write("plain.curves", "A<svg><path d=\"M0 0L1 0L1 1Z m2 2 3 3\"/><text>a</text></svg>");
 }
 
+/// The first byte says how the others are made into a package; see threemf_fuzz.cpp.
+void threemf_seeds() {
+  const std::string tetrahedron = "<object id=\"1\" name=\"a\">" + kTetrahedron + "</object>";
+  const auto model_seed = [](const std::string& name, char how, const std::string& model) {
+    io::parse_mesh(name, io::Format::ThreeMf, package_of(model));
+    write(name + ".threemf", how + model);
+  };
+  model_seed("plain", 0, model_of(tetrahedron, "<item objectid=\"1\"/>", "unit=\"inch\""));
+  model_seed("placed", 1,
+             model_of(tetrahedron + "<object id=\"2\"><components><component objectid=\"1\" "
+                                    "transform=\"0 2 0 -2 0 0 0 0 -2 1 2 3\"/></components></object>",
+                      "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 10 .5 0\"/><item objectid=\"1\"/>"));
+  model_seed(
+      "coloured", 2,
+      model_of("<m:colorgroup id=\"5\"><m:color color=\"#102030\"/></m:colorgroup><basematerials id=\"6\"><base "
+               "name=\"b\" displaycolor=\"#00f\"/></basematerials><object id=\"1\" pid=\"5\" pindex=\"0\">" +
+                   kTetrahedron + "</object><object id=\"2\" pid=\"6\" pindex=\"0\">" + kTetrahedron + "</object>",
+               "<item objectid=\"1\"/><item objectid=\"2\"/>",
+               "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\""));
+  write("parts.threemf",
+        '\5' + model_of(tetrahedron + "<object id=\"2\"><components><component p:path=\"/3D/o.model\" objectid=\"1\"/>"
+                                      "</components></object>",
+                        "<item objectid=\"2\"/><item objectid=\"1\" p:path=\"/3D/o.model\"/>",
+                        "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\""));
+  const std::string archive = package_of(model_of(tetrahedron, "<item objectid=\"1\"/>"));
+  io::parse_mesh("archive", io::Format::ThreeMf, archive);
+  write("archive.threemf", '\10' + archive);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -329,6 +360,7 @@ int main(int count, char** arguments) {
     stl_seeds();
     numbers_seeds();
     curves_seeds();
+    threemf_seeds();
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 4;

@@ -198,17 +198,31 @@ TEST_CASE("3mf: what is printed moves, all else stays and is told", "[3mf][io]")
       "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"4\"/>"
       "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 20 0 0\"/>")));
   CHECK(file.polygons.positions.size() == 8);
-  REQUIRE(file.remarks.size() == 4);
+  CHECK(file.has_touching_objects);
+  REQUIRE(file.remarks.size() == 3);
   CHECK_THAT(file.remarks[0], Catch::Contains("twice"));
   CHECK_THAT(file.remarks[1], Catch::Contains("placed nowhere"));
   CHECK_THAT(file.remarks[2], Catch::Contains("support"));
-  CHECK_THAT(file.remarks[3], Catch::Contains("--weld none"));
   const std::string model = entry_of(moved(file, {1, 1, 1}), "3D/3dmodel.model");
   const auto stays = [&](int id) {
     return model.find(object(id, id == 2 ? "type=\"support\"" : "")) != std::string::npos;
   };
   CHECK(stays(2));
   CHECK(stays(3));
+}
+
+TEST_CASE("3mf: objects that touch are kept apart, unless they need to be welded themselves", "[3mf][io]") {
+  const auto two = [](const std::string& mesh, const char* x) {
+    return parsed(package_of(model_of(
+        "<object id=\"1\">" + mesh + "</object><object id=\"2\">" + kTetrahedron + "</object>",
+        fmt::format("<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 {} 0 0\"/>", x))));
+  };
+  CHECK(two(kTetrahedron, "4").has_touching_objects);
+  CHECK_FALSE(two(kTetrahedron, "5").has_touching_objects);
+  const std::string torn = replaced(
+      replaced(kTetrahedron, "</vertices>", "<vertex x=\"4\" y=\"0\" z=\"0\"/></vertices>"), "v1=\"1\"", "v1=\"4\"");
+  CHECK_FALSE(two(torn, "4").has_touching_objects);
+  CHECK_THAT(two(torn, "4").remarks.at(0), Catch::Contains("--weld none"));
 }
 
 TEST_CASE("3mf: units are told, also without reading the whole file", "[3mf][io][units]") {
@@ -271,6 +285,43 @@ TEST_CASE("3mf: names of objects and materials choose faces, colours of vertices
   const io::Attributes others = io::read_attributes(coloured("p1=\"1\""));
   CHECK(others.colours.empty());
   CHECK(std::find(others.lost.begin(), others.lost.end(), "colours of triangles") != others.lost.end());
+}
+
+TEST_CASE("3mf: slicers' own names choose faces", "[3mf][io]") {
+  const auto groups = [](const std::string& model, const std::string& settings, const std::string& text) {
+    const io::MeshFile file =
+        parsed(zip_file({{"_rels/.rels", kRelationships}, {"3D/3dmodel.model", model}, {settings, text}}));
+    std::string named;
+    const WallNames names = io::wall_names(file);
+    for (std::size_t f = 0; f < names.of_face.size(); ++f) named += names.names[names.of_face[f]] + " ";
+    return file.remarks.empty() ? named : file.remarks[0];
+  };
+  const std::string one = model_of("<object id=\"3\">" + kTetrahedron + "</object>", "<item objectid=\"3\"/>"),
+                    prusa = "Metadata/Slic3r_PE_model.config", bambu = "Metadata/model_settings.config";
+  const auto volume = [](int first, int last, const std::string& name) {
+    return fmt::format(
+        "<volume firstid=\"{}\" lastid=\"{}\"><metadata type=\"volume\" key=\"name\" value=\"{}\"/>"
+        "<metadata type=\"volume\" key=\"matrix\" value=\"1\"/></volume>",
+        first, last, name);
+  };
+  const std::string
+      head =
+          "<config><object id=\"3\" instances_count=\"1\"><metadata type=\"object\" key=\"name\" value=\"gear.stl\"/>",
+      tail = "</object></config>";
+  CHECK(groups(one, prusa, head + volume(0, 3, "v") + tail) == "gear.stl gear.stl gear.stl gear.stl ");
+  CHECK(groups(one, prusa, head + volume(0, 1, "a") + volume(2, 2, "b") + tail) == "a a b gear.stl ");
+  CHECK(groups(one, prusa, head + volume(0, 1, "a") + volume(2, 9, "b") + tail) == "a a gear.stl gear.stl ");
+  CHECK_THAT(groups(one, prusa, head + volume(2, 1, "a") + tail),
+             Catch::Contains("names of objects are not known: a.3mf: " + prusa));
+  const std::string two =
+      model_of("<object id=\"1\">" + kTetrahedron + "</object><object id=\"2\">" + kTetrahedron +
+                   "</object><object id=\"8\"><components><component objectid=\"1\"/>"
+                   "<component objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\"/></components></object>",
+               "<item objectid=\"8\"/>");
+  CHECK(groups(two, bambu,
+               "<config><object id=\"8\"><metadata key=\"name\" value=\"all\"/><part id=\"1\" "
+               "subtype=\"normal_part\"><metadata key=\"name\" value=\"lid\"/></part></object></config>") ==
+        "lid lid lid lid all all all all ");
 }
 
 TEST_CASE("3mf: a new package holds the mesh, its colours or materials, and is the same each time", "[3mf][io]") {

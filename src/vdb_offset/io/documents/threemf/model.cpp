@@ -148,6 +148,7 @@ class ModelReader : public XmlElements {
   }
 
   void add_object(const XmlAttributes& attributes) {
+    objects_.add();
     ThreeMfObject added;
     added.at = here();
     added.id = integer(required(attributes, "id"), "a resource's id");
@@ -285,7 +286,8 @@ class ModelReader : public XmlElements {
   std::vector<Context> open_;
   std::uint32_t group_ = 0;
   // A triangle takes three numbers, and its property four; a vertex less.
-  MemoryWatch held_{label(), sizeof(Vec3d) + sizeof(std::uint64_t)}, placed_{label(), sizeof(ThreeMfPlacement)};
+  MemoryWatch held_{label(), sizeof(Vec3d) + sizeof(std::uint64_t)}, placed_{label(), sizeof(ThreeMfPlacement)},
+      objects_{label(), sizeof(ThreeMfObject)};
 };
 
 class RelationReader : public XmlElements {

@@ -8,6 +8,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/io/documents/threemf/slicer_names.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -32,12 +33,16 @@ const ZipEntry* find_part(const ZipArchive& archive, std::string_view name) {
 
 class SceneReader {
  public:
-  SceneReader(const std::string& path, const ZipArchive& archive) : path_(path), archive_(archive) {}
+  SceneReader(const std::string& path, const ZipArchive& archive)
+      : path_(path), archive_(archive), names_(read_slicer_names(path, archive, scene_.remarks)) {}
 
   ThreeMfScene read() {
     load(first_part(path_, archive_));
     // Items are copied: other parts are loaded meanwhile.
-    for (const ThreeMfPlacement& item : std::vector(scene_.parts[0].model.items)) place(0, item, {}, {}, 0);
+    for (const ThreeMfPlacement& item : std::vector(scene_.parts[0].model.items)) {
+      item_ = item.object;
+      place(0, item, {}, {}, 0);
+    }
     for (std::size_t p = 0; p < scene_.parts.size(); ++p)
       for (std::size_t o = 0; o < states_[p].size(); ++o)
         scene_.unplaced += states_[p][o] == State::New && scene_.parts[p].model.objects[o].is_mesh;
@@ -48,8 +53,8 @@ class SceneReader {
   enum class State : std::uint8_t { New, Open, Done };
 
   std::size_t load(const ZipEntry& entry) {
-    for (std::size_t p = 0; p < scene_.parts.size(); ++p)
-      if (scene_.parts[p].entry == &entry) return p;
+    const auto [known, is_new] = part_of_.try_emplace(&entry, scene_.parts.size());
+    if (!is_new) return known->second;
     ThreeMfPart part{&entry, fmt::format("{}: {}", path_, in_short(entry.name, 80)), archive_.read(entry), {}};
     part.model = read_model(part.label, part.text);
     if (!scene_.parts.empty() && part.model.unit_micrometres != scene_.parts[0].model.unit_micrometres)
@@ -90,14 +95,23 @@ class SceneReader {
     } else if (state == State::Done) {
       ++scene_.repeated;
     } else {
-      enter(part, found->second, placement, outer, object.name.empty() ? name : object.name, depth);
+      enter(part, found->second, placement, outer, name_of(object, name, depth), depth);
     }
   }
 
+  /// An object's own name, or what a slicer calls it, or the name of what it is in.
+  std::string name_of(const ThreeMfObject& object, std::string_view outer, std::size_t depth) const {
+    if (!object.name.empty()) return object.name;
+    if (const auto part = names_.of_part.find({item_, object.id}); depth > 0 && part != names_.of_part.end())
+      return part->second;
+    if (const auto known = names_.of_object.find(item_); depth == 0 && known != names_.of_object.end())
+      return known->second;
+    return std::string(outer);
+  }
+
   void enter(std::size_t part, std::size_t number, const ThreeMfPlacement& placement, const ThreeMfTransform& outer,
-             std::string_view outer_name, std::size_t depth) {
-    // A copy, as the list grows when other parts are loaded.
-    const std::string name(outer_name);
+             const std::string& name, std::size_t depth) {
+    // Looked up each time, as the list grows when other parts are loaded.
     const auto object = [&]() -> const ThreeMfObject& { return scene_.parts[part].model.objects[number]; };
     const ThreeMfTransform transform = placement.transform.then(outer);
     if (!object().other.empty() && !object().is_mesh && object().components.empty())
@@ -132,21 +146,39 @@ class SceneReader {
       mesh.first_face = before.first_face + before.faces;
     }
     scene_.meshes.push_back(mesh);
+    if (const auto volumes = names_.volumes.find(object.id); part == 0 && volumes != names_.volumes.end())
+      add_volumes(mesh, volumes->second);
+  }
+
+  /// Names the volumes of an object that is made of several.
+  void add_volumes(const PlacedMesh& mesh, const std::vector<SlicerNames::Volume>& volumes) {
+    if (volumes.size() < 2) return;
+    for (const SlicerNames::Volume& volume : volumes)
+      if (volume.last < mesh.faces && !volume.name.empty())
+        scene_.volumes.push_back(
+            {mesh.first_face + volume.first, volume.last - volume.first + 1, group_named(volume.name)});
   }
 
   std::uint32_t group_of(const std::string& name, std::size_t part, std::uint32_t id) {
     std::string words = name;
     if (words.empty() && part == 0) words = fmt::format("object {}", id);
     if (words.empty()) words = fmt::format("object {} of {}", id, scene_.parts[part].entry->name);
-    const auto [known, is_new] = groups_.try_emplace(words, static_cast<std::uint32_t>(groups_.size()));
-    if (is_new) scene_.groups.push_back(words);
+    return group_named(words);
+  }
+
+  std::uint32_t group_named(const std::string& name) {
+    const auto [known, is_new] = groups_.try_emplace(name, static_cast<std::uint32_t>(groups_.size()));
+    if (is_new) scene_.groups.push_back(name);
     return known->second;
   }
 
   const std::string& path_;
   const ZipArchive& archive_;
   ThreeMfScene scene_;
+  SlicerNames names_;
+  std::uint32_t item_ = 0;                  // the object that is placed
   std::vector<std::vector<State>> states_;  // of each part's objects
+  std::map<const ZipEntry*, std::size_t> part_of_;
   std::map<std::string, std::uint32_t> groups_;
 };
 

@@ -31,11 +31,19 @@ struct PlacedMesh {
   bool is_mirrored() const { return transform.determinant() < 0; }
 };
 
+/// Faces of the scene that have another name than the mesh that they are in.
+struct NamedFaces {
+  std::size_t first, count;
+  std::uint32_t group;
+};
+
 /// All that a package places, as it is to be printed.
 struct ThreeMfScene {
   std::vector<ThreeMfPart> parts;  ///< The first is that which the package begins with.
   std::vector<PlacedMesh> meshes;
   std::vector<std::string> groups;  ///< Names of objects.
+  std::vector<NamedFaces> volumes;
+  std::vector<std::string> remarks;
   std::size_t repeated = 0, unplaced = 0, left = 0, sliced = 0;
 };
 

@@ -34,11 +34,7 @@ class ThreeMfDocument : public Document {
     file.unit_micrometres = scene.parts[0].model.unit_micrometres;
     name_extras(scene, file);
     place_meshes(scene, file.polygons);
-    if (const std::size_t touching = count_touching(scene, file.polygons); touching > 0)
-      file.remarks.push_back(
-          fmt::format("objects touch: {} vertices are where one of another object is, and move as one (--weld none "
-                      "keeps them apart)",
-                      touching));
+    find_touching(scene, file);
     if (file.polygons.face_count() == 0)
       throw InvalidInput(scene.parts[0].label +
                          ": expected an item in 'build' that places a mesh of triangles, got none");
@@ -47,6 +43,7 @@ class ThreeMfDocument : public Document {
                         !part.model.materials.empty(), !part.model.colours.empty()});
     meshes_ = std::move(scene.meshes);
     groups_ = std::move(scene.groups);
+    volumes_ = std::move(scene.volumes);
   }
 
   WrittenDocument rewrite(const MovedMesh& moved) const override;
@@ -63,7 +60,7 @@ class ThreeMfDocument : public Document {
 
   void name_extras(const ThreeMfScene& scene, MeshFile& file) const;
   static void place_meshes(const ThreeMfScene& scene, Polygons& polygons);
-  static std::size_t count_touching(const ThreeMfScene& scene, const Polygons& polygons);
+  static void find_touching(const ThreeMfScene& scene, MeshFile& file);
   /// Calls visit(mesh, model) for all meshes of the parts for which wanted(part) holds; the models have properties.
   template <class Wanted, class Visit>
   void visit_properties(Wanted&& wanted, Visit&& visit) const;
@@ -74,6 +71,7 @@ class ThreeMfDocument : public Document {
   std::vector<Part> parts_;
   std::vector<PlacedMesh> meshes_;
   std::vector<std::string> groups_;
+  std::vector<NamedFaces> volumes_;
 };
 
 /// A corner of a face is one of a triangle's: those of a mirrored mesh are in the other order.
@@ -106,23 +104,28 @@ void ThreeMfDocument::place_meshes(const ThreeMfScene& scene, Polygons& polygons
   }
 }
 
-/// Vertices at the position of one of another object.
-std::size_t ThreeMfDocument::count_touching(const ThreeMfScene& scene, const Polygons& polygons) {
-  if (scene.meshes.size() < 2) return 0;
-  std::vector<std::uint32_t> mesh_of, order(polygons.positions.size());
+/// Looks for vertices at the position of one of another object, or of their own.
+void ThreeMfDocument::find_touching(const ThreeMfScene& scene, MeshFile& file) {
+  if (scene.meshes.size() < 2) return;
+  const std::vector<Vec3d>& at = file.polygons.positions;
+  std::vector<std::uint32_t> mesh_of, order(at.size());
   mesh_of.reserve(order.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
     mesh_of.resize(mesh_of.size() + scene.meshes[m].vertices, static_cast<std::uint32_t>(m));
   std::iota(order.begin(), order.end(), 0U);
-  const auto& at = polygons.positions;
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return at[a] == at[b] ? mesh_of[a] < mesh_of[b] : at[a] < at[b]; });
-  std::size_t touching = 0;
-  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
-    while (last < order.size() && at[order[last]] == at[order[first]]) ++last;
-    if (mesh_of[order[first]] != mesh_of[order[last - 1]]) touching += last - first;
+  std::size_t touching = 0, of_one_object = 0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (at[order[i]] != at[order[i - 1]]) continue;
+    ++(mesh_of[order[i]] == mesh_of[order[i - 1]] ? of_one_object : touching);
   }
-  return touching;
+  file.has_touching_objects = touching > 0 && of_one_object == 0;
+  if (touching > 0 && of_one_object > 0)
+    file.remarks.push_back(
+        fmt::format("objects touch at {} vertices and move as one there, as {} vertices of one object are one but for "
+                    "their numbers (--weld none keeps all apart)",
+                    touching, of_one_object));
 }
 
 void ThreeMfDocument::name_extras(const ThreeMfScene& scene, MeshFile& file) const {
@@ -144,6 +147,7 @@ void ThreeMfDocument::name_extras(const ThreeMfScene& scene, MeshFile& file) con
       others.push_back(in_short(entry.name, 80));
   if (!others.empty()) file.extras.push_back(fmt::format("the package's other parts ({})", first_names(others)));
 
+  file.remarks.insert(file.remarks.end(), scene.remarks.begin(), scene.remarks.end());
   const auto remark = [&](std::size_t count, const char* one, const char* several) {
     if (count > 0) file.remarks.push_back(count == 1 ? std::string(one) : fmt::format("{} {}", count, several));
   };
@@ -191,6 +195,8 @@ FaceNames ThreeMfDocument::face_names() const {
   FaceNames names;
   names.groups = groups_;
   for (const PlacedMesh& mesh : meshes_) names.group_of.resize(names.group_of.size() + mesh.faces, mesh.group);
+  for (const NamedFaces& volume : volumes_)
+    std::fill_n(names.group_of.begin() + static_cast<std::ptrdiff_t>(volume.first), volume.count, volume.group);
   std::map<std::string, std::uint32_t> known{{"", 0}};
   const auto index_of = [&](const std::string& name) {
     return known.try_emplace(name, static_cast<std::uint32_t>(known.size())).first->second;

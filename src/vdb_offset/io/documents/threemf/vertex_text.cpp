@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/base/append_number.h"
 
 namespace vdb_offset::io {
@@ -63,7 +64,10 @@ class VertexText {
         if (!moved_.has_moved(of_scene)) continue;
         bytes.append(text_, copied, vertex_at_[v] - copied);
         const Vec3d kept = moved_.precision(moved_.positions[of_scene]);
-        copied = append_vertex_tag(bytes, text_, vertex_at_[v], mesh.transform.source_of(kept), moved_.precision);
+        const Vec3d position = mesh.transform.source_of(kept);
+        if (!position.isFinite())
+          throw InvalidInput(moved_.source.path + ": expected transforms that lead back to finite numbers, got others");
+        copied = append_vertex_tag(bytes, text_, vertex_at_[v], position, moved_.precision);
       }
     }
     return bytes.append(text_, copied, end - copied);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <memory>
+#include <iterator>
 
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/error.h"
@@ -25,9 +25,10 @@ constexpr std::uint16_t kEncrypted = 1, kDescribedBehind = 8;  // flags
 // Deflate makes at most so many bytes of one (zlib, "Technical Details").
 constexpr std::uint64_t kMostRatio = 1032;
 
-bool is_same_name(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+std::string in_lower_case(std::string_view name) {
+  std::string lower(name);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
 }
 
 }  // namespace
@@ -112,6 +113,7 @@ std::uint64_t ZipArchive::read_entry(std::uint64_t at, std::uint64_t end) {
   entry.size = number(entry.size_field);
   entry.header_at = number(entry.offset_field);
   read_local_header(entry);
+  by_name_.emplace(in_lower_case(entry.name), entries_.size());
   entries_.push_back(entry);
   return extra_at + extra + comment;
 }
@@ -179,13 +181,11 @@ void ZipArchive::require_apart() const {
 }
 
 const ZipEntry* ZipArchive::find(std::string_view name) const {
-  const ZipEntry* found = nullptr;
-  for (const ZipEntry& entry : entries_) {
-    if (!is_same_name(entry.name, name)) continue;
-    if (found) fail(entry.directory_at, fmt::format("one part '{}'", in_short(name, 80)), "two");
-    found = &entry;
-  }
-  return found;
+  const auto [first, last] = by_name_.equal_range(in_lower_case(name));
+  if (first == last) return nullptr;
+  const ZipEntry& entry = entries_[first->second];
+  if (std::next(first) != last) fail(entry.directory_at, fmt::format("one part '{}'", in_short(name, 80)), "two");
+  return &entry;
 }
 
 std::string ZipArchive::label(const ZipEntry& entry) const {

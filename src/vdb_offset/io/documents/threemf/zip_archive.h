@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "vdb_offset/io/base/chunked_output.h"
@@ -72,7 +73,8 @@ class ZipArchive {
 
   const std::string& path_;
   std::string_view bytes_;
-  std::vector<ZipEntry> entries_;  // in the directory's order
+  std::vector<ZipEntry> entries_;                              // in the directory's order
+  std::unordered_multimap<std::string, std::size_t> by_name_;  // in lower case
   std::uint64_t directory_at_ = 0, wide_end_at_ = 0;
   // Where these are told; at 0 if they are not.
   ZipField directory_field_, narrow_directory_field_, wide_end_field_;
