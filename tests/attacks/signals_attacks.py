@@ -74,7 +74,7 @@ def killed_at_any_moment(place, kind):
     names = place.names()
     place.check(all(name in names for name in outputs), f'expected {outputs}, got {names}')
     chance = random.Random(' '.join(arguments))
-    for i in range(4 if place.sanitized else KILLS):
+    for i in range(2 if place.sanitized else KILLS):
         by = [signal.SIGTERM, signal.SIGINT, signal.SIGKILL, signal.SIGHUP, signal.SIGKILL][i % 5]
         put_old(place, outputs)
         before = set(place.names())  # also what SIGKILL has left

@@ -61,7 +61,7 @@ def points_on_one_line(place, slope):
     """Each place is on a third of the segments. What has fewer crossings than are counted has them listed, which takes
     longer than that, so that a fifth of the points would be no less work: sanitized, there are few."""
     numbers = random.Random(1)
-    at = [numbers.random() for _ in range(400 if place.sanitized else 6250)]
+    at = [numbers.random() for _ in range(250 if place.sanitized else 6250)]
     place.file('line.txt', ''.join(f'{x!r} {slope * x!r}\n' for x in at))
     place.ended_well(place.run('line.txt', 'out.txt', '-d', '1%'), 0)
 

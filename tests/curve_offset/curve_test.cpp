@@ -173,7 +173,8 @@ TEST_CASE("curves: nothing crosses that did not before, in slits, stars and curv
     for (const double d : {0.01, -0.01, 0.08, -0.08, 0.3}) require_honest(shape, offset_of(shape, d));
 }
 
-TEST_CASE("curves: where two curves share a piece of the front, what is judged is what comes out", "[curves]") {
+TEST_CASE("curves: where two curves share a piece of the front, what is judged is what comes out",
+          "[curves][no_races]") {
   struct Oval {
     double x, y, radius;
   };
@@ -472,7 +473,7 @@ TEST_CASE("curve files: real curves at four distances", "[.curve_files]") {
   CHECK(files >= 9);
 }
 
-TEST_CASE("curves: crossings of the source are counted up to a bound", "[curve]") {
+TEST_CASE("curves: crossings of the source are counted up to a bound", "[curve][no_races]") {
   // A zigzag whose teeth are out of order: each segment crosses a third of the others.
   const auto zigzag = [](std::size_t count) {
     Curves curves;

@@ -80,7 +80,7 @@ TEST_CASE("drawings: a circle has the fewest points in four like quarters that k
   }
 }
 
-TEST_CASE("drawings: ellipses keep to the tolerance after their transform", "[curves][io]") {
+TEST_CASE("drawings: ellipses keep to the tolerance after their transform", "[curves][io][no_races]") {
   const std::string ellipse = "<ellipse cx='1' cy='2' rx='3' ry='0.5' transform='matrix(2 1 -7 4 5 6)'/>";
   for (const double tolerance : {1.0, 0.01}) {
     const std::vector<Vec2d> line = points_of(drawn(ellipse, tolerance));

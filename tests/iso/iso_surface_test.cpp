@@ -339,7 +339,7 @@ TEST_CASE("capture: a sheet gets a tube around it", "[capture]") {
   CHECK(captured(sheet, -0.1, 0.04).polygons.positions == tube.polygons.positions);
 }
 
-TEST_CASE("capture: solids that overlap or lie in each other are one, cavities are none", "[capture]") {
+TEST_CASE("capture: solids that overlap or lie in each other are one, cavities are none", "[capture][no_races]") {
   const Polygons box = scene::box({1, 1, 1}, 2, true);
   Polygons overlapping = box;
   add(overlapping, box, {0.6, 0.3, 0.2});

@@ -286,7 +286,7 @@ TEST_CASE("limit: single precision is checked as it will be stored", "[limit]") 
   CHECK(crossings(mesh, stored) == 0);
 }
 
-TEST_CASE("limit: what is written of a thin wall is what is judged", "[limit]") {
+TEST_CASE("limit: what is written of a thin wall is what is judged", "[limit][no_races]") {
   // Farther than half way through: faces lie on the middle sheet, and digits decide which side of the wall is nearer.
   const openvdb::math::Quat<double> turn(Vec3d(0.4, -0.3, 0.8).unit(), 1.1);
   for (const double thickness : {0.1, 0.05}) {
@@ -301,7 +301,7 @@ TEST_CASE("limit: what is written of a thin wall is what is judged", "[limit]") 
   }
 }
 
-TEST_CASE("limit: points as near to two sides are judged by both", "[limit]") {
+TEST_CASE("limit: points as near to two sides are judged by both", "[limit][no_races]") {
   // Symmetric to the last bit.
   for (const double share : {0.5, 0.6, 0.8}) {
     check_agreement(scene::box(Vec3d(1, 0.125, 1), 8, true), -share * 0.125, {});
@@ -309,7 +309,7 @@ TEST_CASE("limit: points as near to two sides are judged by both", "[limit]") {
   }
 }
 
-TEST_CASE("limit: solids that close on each other stop before they touch", "[limit]") {
+TEST_CASE("limit: solids that close on each other stop before they touch", "[limit][no_races]") {
   Polygons spheres = scene::icosphere(0.5, 4);
   const Polygons one = spheres;
   const auto base = static_cast<std::uint32_t>(one.positions.size());
@@ -371,7 +371,7 @@ TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limi
   }
 }
 
-TEST_CASE("limit: a tiny notch holds back nothing but itself", "[limit]") {
+TEST_CASE("limit: a tiny notch holds back nothing but itself", "[limit][no_races]") {
   for (const double notch : {0.002, 0.02})
     for (const double distance : {2.6, 5.2, 13.0}) {
       const Polygons mesh = notched_plate(notch);

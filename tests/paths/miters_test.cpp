@@ -126,7 +126,7 @@ void require_valid(PolygonView source, const OffsetResult& result, const OffsetO
 
 }  // namespace
 
-TEST_CASE("miter: all faces of polyhedra are at the distance, on both sides", "[miter]") {
+TEST_CASE("miter: all faces of polyhedra are at the distance, on both sides", "[miter][no_races]") {
   const std::vector<std::pair<const char*, Polygons>> kShapes = {
       {"cube", prism(kSquare, 1)},          {"bracket", prism(kBracket, 0.5)},      {"wedge", prism(kWedge, 1)},
       {"prism of 8", prism(regular(8), 1)}, {"prism of 40", prism(regular(40), 1)}, {"tetrahedron", tetrahedron()},
@@ -423,7 +423,7 @@ TEST_CASE("miter: a limit of 1 cuts all of them, and says so", "[miter]") {
   CHECK(result.statistics.faces.corners == Approx(1));
 }
 
-TEST_CASE("miter: what has no room costs no distance that round corners have", "[miter]") {
+TEST_CASE("miter: what has no room costs no distance that round corners have", "[miter][no_races]") {
   const Polygons gear = scene::gear(12, 0.8, 1, 0.3, 0.3, 4);
   for (const double distance : {0.1, 0.2}) {
     OffsetOptions options = mitred(distance);

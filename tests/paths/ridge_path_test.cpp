@@ -192,7 +192,7 @@ TEST_CASE("ridges: where the distance rises no further ways end, whatever the gr
   }
 }
 
-TEST_CASE("ridges: what is told of solids with plane faces is so, however they lie", "[ridges][property]") {
+TEST_CASE("ridges: what is told of solids with plane faces is so, however they lie", "[ridges][property][no_races]") {
   const Polygons solids[] = {
       scene::hollow_box(1, 0.15, 8), scene::gear(7, 0.3, 0.5, 0.1, 0.2, 3), scene::box(Vec3d(1, 0.4, 0.2), 9, true),
       scene::box(Vec3d(0.3, 0.7, 1.1), 7, false),

@@ -78,7 +78,7 @@ TEST_CASE("offset: sphere of the paper's size, both ways, three voxel sizes", "[
     }
 }
 
-TEST_CASE("offset: the paper's cube, inward", "[offset]") {
+TEST_CASE("offset: the paper's cube, inward", "[offset][no_races]") {
   const Polygons cube = scene::box(Vec3d(0.5), 83, true);
   for (const double h : {0.05, 0.025, 0.0125}) {
     const OffsetResult result = offset(cube.view(), merged(by(-0.1, h)));

@@ -224,7 +224,7 @@ TEST_CASE("part: a border that is fixed stays, one that is free goes with the pa
   }
 }
 
-TEST_CASE("part: what stays is in the way", "[part]") {
+TEST_CASE("part: what stays is in the way", "[part][no_races]") {
   // The lower of two plates' upper side, farther than to the other plate.
   const Polygons plates = scene::plates(1, 0.1, 0.2, 12);
   OffsetOptions options;
