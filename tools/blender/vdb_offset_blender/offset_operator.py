@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The operator: what it asks for, and what it tells."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+
+from . import arrays, distances
+
+
+class MESH_OT_vdb_offset(bpy.types.Operator):
+    """Offset the mesh by a distance. Vertices, faces, UVs, materials and groups stay as they are"""
+
+    bl_idname = "mesh.vdb_offset"
+    bl_label = "Offset (VDB)"
+    bl_options = {"REGISTER", "UNDO"}
+
+    distance: FloatProperty(name="Distance", description="How far outward; below 0 inward", default=0.1, unit="LENGTH",
+                            soft_min=-10, soft_max=10, precision=4)
+    result: EnumProperty(name="Result", default="KEY", items=[
+        ("KEY", "Shape Key", "A new shape key of this mesh, in full effect"),
+        ("OBJECT", "New Object", "A copy of the object, with its vertices moved")])
+    vertex_group: StringProperty(name="Vertex Group", description="Its weights tell the distance of each vertex: at weight 1 "
+                                 "Distance, at weight 0 the other one, and between these in proportion")
+    distance_at_zero: FloatProperty(name="At Weight 0", description="How far vertices go that have weight 0, or are not in the group",
+                                    default=0, unit="LENGTH", soft_min=-10, soft_max=10, precision=4)
+    corners: EnumProperty(name="Corners", default="round", items=[
+        ("round", "Round", "Vertices are at the distance; flat faces beside sharp edges are nearer"),
+        ("miter", "Mitred", "Faces are at the distance; vertices on sharp edges are farther away")])
+    miter_limit: FloatProperty(name="Miter Limit", description="No vertex goes farther than so many distances", default=4, min=1,
+                               soft_max=10)
+    collision: EnumProperty(name="Narrow Places", default="limit", items=[
+        ("limit", "Stay Valid", "Vertices are held back where faces would fold or cross"),
+        ("merge", "Merge", "Each vertex goes as far as the distance grows; faces may fold or cross")])
+    only_selected: BoolProperty(name="Selected Faces Only", description="The other faces stay, and are in the way", default=False)
+
+    @classmethod
+    def poll(cls, context):
+        if context.object is not None and context.object.type == "MESH":
+            return True
+        cls.poll_message_set("The active object is no mesh")
+        return False
+
+    def execute(self, context):
+        thing, was_edited = context.object, context.object.mode == "EDIT"
+        if was_edited:  # what is edited is a copy, which would be written over the mesh at the end
+            bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            words, is_whole = self.offset(context, thing)
+        except distances.Refused as refused:
+            self.report({"ERROR"}, str(refused))
+            return {"CANCELLED"}
+        finally:
+            if was_edited and context.object == thing:
+                bpy.ops.object.mode_set(mode="EDIT")
+        self.report({"INFO"} if is_whole else {"WARNING"}, words)
+        return {"FINISHED"}
+
+    def offset(self, context, thing):
+        mesh = thing.data
+        if self.result == "KEY" and (mesh.library or mesh.override_library):
+            raise distances.Refused("The mesh is of another file: take a new object as the result")
+        options = {"corners": self.corners, "collision": self.collision}
+        if self.corners == "miter":
+            options["miter_limit"] = self.miter_limit
+        if self.only_selected:
+            options["only"] = arrays.selected_faces(mesh)
+        window = context.window_manager
+        window.progress_begin(0, 100)
+        try:
+            moved, result = distances.offset(thing, self.distance_of(context, thing),
+                                             progress=lambda _, share: window.progress_update(100 * share), **options)
+        finally:
+            window.progress_end()
+        if self.result == "KEY":
+            arrays.add_shape_key(thing, moved)
+        else:
+            arrays.add_object(context, thing, moved)
+        return distances.told(result)
+
+    def distance_of(self, context, thing):
+        """A number, or an array with one for each vertex."""
+        if not self.vertex_group:
+            return self.distance
+        if self.vertex_group not in thing.vertex_groups:
+            raise distances.Refused(f"The object has no vertex group '{self.vertex_group}'")
+        weights = arrays.weights(context, thing.data, self.vertex_group).astype(float)
+        return self.distance_at_zero + weights * (self.distance - self.distance_at_zero)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "distance")
+        layout.prop(self, "result")
+        layout.prop_search(self, "vertex_group", context.object, "vertex_groups")
+        if self.vertex_group:
+            layout.prop(self, "distance_at_zero")
+        layout.prop(self, "corners")
+        if self.corners == "miter":
+            layout.prop(self, "miter_limit")
+        layout.prop(self, "collision")
+        layout.prop(self, "only_selected")
