@@ -58,8 +58,8 @@ class InsertResolver {
     bool is_hidden = false;
     text_.for_each_own(entity.begin, entity.body_end, [&](const DxfGroup& group) {
       if (group.code == 8) layer = group.value;
-      else if (group.code == 60) is_hidden = is_hidden || text_.integer(group) == 1;
-      else if (group.code == 67 && shown_by == DxfDrawing::kNone) is_hidden = is_hidden || text_.integer(group) == 1;
+      else if (group.code == 60 || (group.code == 67 && shown_by == DxfDrawing::kNone))
+        is_hidden = is_hidden || text_.integer(group) == 1;
     });
     if (is_hidden) return Sight::Hidden;
     if (layer == "0" && shown_by != DxfDrawing::kNone) return outer;

@@ -188,10 +188,10 @@ class DxfFlattener : public DxfPen {
 
 /// Draws one of a drawing's curves. Returns whether its entity keeps its form with other points.
 bool draw_shape(const DxfText& text, const DxfDrawing& drawing, const DxfDrawing::Shape& shape, DxfPen& pen) {
-  static const DxfPlacement in_place;
+  static const DxfPlacement kInPlace;
   const bool is_shown = shape.insert != DxfDrawing::kNone;
   return draw_dxf(text, drawing.document.entities[shape.entity],
-                  is_shown ? drawing.inserts[shape.insert].placement : in_place, pen);
+                  is_shown ? drawing.inserts[shape.insert].placement : kInPlace, pen);
 }
 
 /// A millionth of the diagonal: a thousandth of a millimetre on a sheet of a metre. Programs write coordinates and
