@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, gltf, glb, and numbers of three
-// vertices to FOLDER/numbers, and curves to FOLDER/curves: what fuzzing starts from.
-// Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, and numbers of three vertices
-// to FOLDER/numbers, curves to FOLDER/curves, and 3MF's model parts to FOLDER/threemf: what fuzzing starts from.
+// vertices to FOLDER/numbers, curves to FOLDER/curves, and 3MF's model parts to FOLDER/threemf: what fuzzing starts
+// from.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +12,9 @@
 #include <string>
 
 #include "support/bytes.h"
-#include "support/dxf_text.h" "support/gltf_model.h" "support/threemf_packages.h"
+#include "support/dxf_text.h"
+#include "support/gltf_model.h"
+#include "support/threemf_packages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"

@@ -294,7 +294,7 @@ TEST_CASE("limit: what is written of a thin wall is what is judged", "[limit][no
     for (Vec3d& p : wall.positions)
       p = Vec3d(openvdb::Vec3s(turn.rotateVector(p + Vec3d(0, 0.1 * p[0] * p[1], 0)) + Vec3d(0.3, -0.7, 1.1)));
     for (const Precision& precision : {Precision{}, Precision{Precision::Kind::Single},
-                                      Precision{Precision::Kind::Digits, 5}, Precision{Precision::Kind::Digits, 7}}) {
+                                       Precision{Precision::Kind::Digits, 5}, Precision{Precision::Kind::Digits, 7}}) {
       INFO("thickness " << thickness << " digits " << precision.digits);
       check_agreement(wall, -0.6 * thickness, precision);
     }

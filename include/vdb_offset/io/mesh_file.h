@@ -111,8 +111,8 @@ VDB_OFFSET_API std::string patched_bytes(const MeshFile& source, std::span<const
 VDB_OFFSET_API Precision precision_of(const std::string& path, const MeshFile& source,
                                       const WriteOptions& options = {});
 
-/// The precision of coordinates in a file that is made anew of the source where that is a document: of a shell of it, or
-/// of its faces split.
+/// The precision of coordinates in a file that is made anew of the source where that is a document: of a shell of it,
+/// or of its faces split.
 VDB_OFFSET_API Precision precision_of_new(const std::string& path, const MeshFile& source,
                                           const WriteOptions& options = {});
 
@@ -120,8 +120,8 @@ VDB_OFFSET_API Precision precision_of_new(const std::string& path, const MeshFil
 VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
 
 /// Where a mesh's vertices stand in a file of its triangles alone, face by face, as STL is written of it, with three
-/// vertices for each, and glTF, where a vertex may be several. Vertices of no face are where they are in the mesh. None if these are not its triangles, or if the
-/// corners of a vertex are apart.
+/// vertices for each, and glTF, where a vertex may be several. Vertices of no face are where they are in the mesh. None
+/// if these are not its triangles, or if the corners of a vertex are apart.
 VDB_OFFSET_API std::optional<std::vector<Vec3d>> positions_in_triangles(PolygonView mesh, PolygonView triangles);
 
 }  // namespace vdb_offset::io

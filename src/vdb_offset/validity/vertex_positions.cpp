@@ -202,9 +202,7 @@ void VertexPositions::put_back(std::uint32_t v, const Standing& standing) {
   nearness_[v] = standing.nearness;
 }
 
-double VertexPositions::rounding(std::uint32_t v) const {
-  return precision_.most_off(position_[v]);
-}
+double VertexPositions::rounding(std::uint32_t v) const { return precision_.most_off(position_[v]); }
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
   const double farther = constrained_.farther.empty() ? 0 : constrained_.farther[v];

@@ -124,12 +124,9 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
   Attributes& with = content->with;
-  if (target == Format::ThreeMf || (source.document && target == Format::Obj))
+  if (target == Format::ThreeMf || is_gltf(target) || (source.document && target == Format::Obj))
     if (Materials materials = read_materials(source); !materials.of_face.empty())
       content->materials = std::move(materials);
-  if (Materials materials = read_materials(source);
-      (is_gltf(target) || (source.document && target == Format::Obj)) && !materials.of_face.empty())
-    content->materials = std::move(materials);
   if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);

@@ -21,10 +21,8 @@ struct Content {
   Rounding precision;  ///< Precision of coordinates in a text.
   Attributes with;
   std::vector<Part> parts;                      ///< Of all faces, in their order; or empty.
-  Materials materials;                          ///< Kept in OBJ and 3MF.
+  Materials materials;                          ///< Kept in OBJ, glTF and 3MF.
   std::optional<double> unit_micrometres = {};  ///< Of the coordinates, if known; kept in 3MF.
-  std::vector<Part> parts;  ///< Of all faces, in their order; or empty.
-  Materials materials;      ///< Kept in OBJ and glTF.
 };
 using SharedContent = std::shared_ptr<const Content>;
 
