@@ -150,14 +150,10 @@ void CommandLine::add_unit(std::string& unit, const std::string& input) {
 
 namespace {
 
-/// The unit that a file tells of its numbers, if it does. One that is not there, or is none of a known format, is for
-/// the reader to tell of.
+/// The unit that a file tells of its numbers, if it does. \throw ReadError, InvalidInput as its reader
 std::optional<double> unit_of_file(const std::string& path) {
-  try {
-    return io::format_of(path) ? io::unit_micrometres(path) : io::unit_of_curves(path);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
+  if (io::format_of(path)) return io::unit_micrometres(path);
+  return io::curve_format_of(path) ? io::unit_of_curves(path) : std::nullopt;
 }
 
 }  // namespace
