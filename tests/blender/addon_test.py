@@ -3,6 +3,7 @@
 import os
 import sys
 import unittest
+import unittest.mock
 
 import bpy
 import numpy as np
@@ -246,6 +247,20 @@ class Addon(unittest.TestCase):
             self.refused("install python3-vdb-offset")
         finally:
             sys.modules["vdb_offset"] = kept
+
+    def test_all_that_can_be_chosen_is_shown(self):
+        self.made("cube")
+        shown = unittest.mock.MagicMock(vertex_group="it's ü", corners="miter")
+        operator = vdb_offset_blender.offset_operator.MESH_OT_vdb_offset
+        operator.draw(shown, bpy.context)
+        calls = [*shown.layout.prop.call_args_list, *shown.layout.prop_search.call_args_list]
+        self.assertEqual({each.args[1] for each in calls}, set(operator.__annotations__))
+
+        for draw in (vdb_offset_blender.panel.VIEW3D_PT_vdb_offset.draw, vdb_offset_blender.panel.menu_entry):
+            place = unittest.mock.MagicMock()
+            draw(place, bpy.context)
+            layout = place.layout.column() if place.layout.column.called else place.layout
+            self.assertIn("mesh.vdb_offset", [each.args[0] for each in layout.operator.call_args_list])
 
     def test_undo(self):
         self.made("cube")

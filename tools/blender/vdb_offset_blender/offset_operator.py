@@ -67,7 +67,7 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
         window = context.window_manager
         window.progress_begin(0, 100)
         try:
-            moved, result = distances.offset(thing, self.distance_of(context, thing),
+            moved, result = distances.offset(thing, self.distance_of(thing),
                                              progress=lambda _, share: window.progress_update(100 * share), **options)
         finally:
             window.progress_end()
@@ -77,13 +77,13 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
             arrays.add_object(context, thing, moved)
         return distances.told(result)
 
-    def distance_of(self, context, thing):
+    def distance_of(self, thing):
         """A number, or an array with one for each vertex."""
         if not self.vertex_group:
             return self.distance
         if self.vertex_group not in thing.vertex_groups:
             raise distances.Refused(f"The object has no vertex group '{self.vertex_group}'")
-        weights = arrays.weights(context, thing.data, self.vertex_group).astype(float)
+        weights = arrays.weights(thing.data, thing.vertex_groups[self.vertex_group].index)
         return self.distance_at_zero + weights * (self.distance - self.distance_at_zero)
 
     def draw(self, context):
