@@ -2,6 +2,7 @@
 """The add-on beside the Python package, run by Blender: see `run`."""
 import os
 import sys
+import tempfile
 import unittest
 import unittest.mock
 
@@ -231,6 +232,26 @@ class Addon(unittest.TestCase):
         bpy.context.scene.collection.objects.link(empty)
         bpy.context.view_layer.objects.active = empty
         self.refused("expected")
+
+    def test_meshes_that_are_not_there_to_be_changed(self):
+        self.made("cube")
+        bpy.ops.object.mode_set(mode="SCULPT")
+        bpy.ops.sculpt.dynamic_topology_toggle()
+        self.refused("dynamic topology")
+        self.assertEqual(bpy.context.mode, "SCULPT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "other.blend")
+            bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)
+            bpy.ops.wm.read_factory_settings(use_empty=True)
+            with bpy.data.libraries.load(path, link=True) as (there, here):
+                here.objects = there.objects
+            [thing] = here.objects
+            bpy.context.scene.collection.objects.link(thing)
+            bpy.context.view_layer.objects.active = thing
+            self.refused("of another file")
+            self.assertEqual(offset(distance=0.1, result="OBJECT"), {"FINISHED"})
+            self.assertIsNone(bpy.context.object.data.library)
 
     def test_without_a_mesh_it_is_not_offered(self):
         bpy.ops.object.light_add()

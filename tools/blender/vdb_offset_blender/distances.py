@@ -64,7 +64,7 @@ class Frame:
         return "single" if self.is_own else "double"
 
 
-def offset(thing, distance, only=None, progress=None, **options):
+def offset(thing, distance, only=None, **options):
     """(n, 3) floats, the object's vertices moved, and the result of vdb_offset.
 
     :param distance: in units of the scene, a number or one for each vertex
@@ -78,7 +78,7 @@ def offset(thing, distance, only=None, progress=None, **options):
     vertices, faces = frame.mesh(arrays.positions(thing.data), arrays.faces(thing.data))
     try:
         result = library.offset(vertices, faces, frame.length(distance), only=only, precision=frame.precision,
-                                progress=progress, **options)
+                                **options)
     except library.Error as error:
         raise Refused(str(error)) from None
     if result.reached == 0 and np.any(result.distances != 0):
@@ -95,5 +95,5 @@ def told(result):
     parts += [f"{count[state]} {words}" for state, words in said.items() if count.get(state)]
     error = (result.statistics.get("faces") or {}).get("mean_error")
     if error is not None:
-        parts.append(f"faces {100 * error:.2g} % off on average")
+        parts.append(f"faces {round(100 * error, 2):g} % off on average")
     return ", ".join(parts), result.reached == 1

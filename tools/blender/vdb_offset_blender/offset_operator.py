@@ -57,20 +57,24 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
 
     def offset(self, context, thing):
         mesh = thing.data
-        if self.result == "KEY" and (mesh.library or mesh.override_library):
+        if thing.use_dynamic_topology_sculpting:
+            raise distances.Refused("What is sculpted with dynamic topology is no mesh yet: leave sculpt mode")
+        if self.result == "KEY" and (thing.library or mesh.library or mesh.override_library):
             raise distances.Refused("The mesh is of another file: take a new object as the result")
         options = {"corners": self.corners, "collision": self.collision}
         if self.corners == "miter":
             options["miter_limit"] = self.miter_limit
         if self.only_selected:
             options["only"] = arrays.selected_faces(mesh)
-        window = context.window_manager
-        window.progress_begin(0, 100)
+        # No progress: the package tells it on a thread of its own, where Blender must not draw.
+        window = context.window
+        if window:
+            window.cursor_modal_set("WAIT")
         try:
-            moved, result = distances.offset(thing, self.distance_of(thing),
-                                             progress=lambda _, share: window.progress_update(100 * share), **options)
+            moved, result = distances.offset(thing, self.distance_of(thing), **options)
         finally:
-            window.progress_end()
+            if window:
+                window.cursor_modal_restore()
         if self.result == "KEY":
             arrays.add_shape_key(thing, moved)
         else:
