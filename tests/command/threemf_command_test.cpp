@@ -10,8 +10,8 @@ TEST_CASE("3mf: parts that touch give way to each other", "[3mf][command]") {
   const ShellCommand shell;
   // Two of the tetrahedra, joined at the face that looks along -z: one is mirrored.
   const std::string bytes =
-      package_of(model_of("<object id=\"1\" name=\"up\">" + kTetrahedron + "</object><object id=\"2\" name=\"down\">" +
-                              kTetrahedron + "</object>",
+      package_of(model_of("<object id=\"1\" name=\"up\">" + kTetrahedronXml +
+                              "</object><object id=\"2\" name=\"down\">" + kTetrahedronXml + "</object>",
                           "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 -1 0 0 0\"/>"));
   std::ofstream(shell.file("two.3mf"), std::ios::binary) << bytes;
   CHECK(shell("two.3mf same.3mf --distance 0").code == 0);

@@ -311,7 +311,7 @@ void curves_seeds() {
 
 /// The first byte says how the others are made into a package; see threemf_fuzz.cpp.
 void threemf_seeds() {
-  const std::string tetrahedron = "<object id=\"1\" name=\"a\">" + kTetrahedron + "</object>";
+  const std::string tetrahedron = "<object id=\"1\" name=\"a\">" + kTetrahedronXml + "</object>";
   const auto model_seed = [](const std::string& name, char how, const std::string& model) {
     io::parse_mesh(name, io::Format::ThreeMf, package_of(model));
     write(name + ".threemf", how + model);
@@ -321,13 +321,13 @@ void threemf_seeds() {
              model_of(tetrahedron + "<object id=\"2\"><components><component objectid=\"1\" "
                                     "transform=\"0 2 0 -2 0 0 0 0 -2 1 2 3\"/></components></object>",
                       "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 10 .5 0\"/><item objectid=\"1\"/>"));
-  model_seed(
-      "coloured", 2,
-      model_of("<m:colorgroup id=\"5\"><m:color color=\"#102030\"/></m:colorgroup><basematerials id=\"6\"><base "
-               "name=\"b\" displaycolor=\"#00f\"/></basematerials><object id=\"1\" pid=\"5\" pindex=\"0\">" +
-                   kTetrahedron + "</object><object id=\"2\" pid=\"6\" pindex=\"0\">" + kTetrahedron + "</object>",
-               "<item objectid=\"1\"/><item objectid=\"2\"/>",
-               "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\""));
+  model_seed("coloured", 2,
+             model_of("<m:colorgroup id=\"5\"><m:color color=\"#102030\"/></m:colorgroup><basematerials id=\"6\"><base "
+                      "name=\"b\" displaycolor=\"#00f\"/></basematerials><object id=\"1\" pid=\"5\" pindex=\"0\">" +
+                          kTetrahedronXml + "</object><object id=\"2\" pid=\"6\" pindex=\"0\">" + kTetrahedronXml +
+                          "</object>",
+                      "<item objectid=\"1\"/><item objectid=\"2\"/>",
+                      "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\""));
   write("parts.threemf",
         '\5' + model_of(tetrahedron + "<object id=\"2\"><components><component p:path=\"/3D/o.model\" objectid=\"1\"/>"
                                       "</components></object>",

@@ -120,7 +120,7 @@ TEST_CASE("3mf: lib3mf reads a new package as it was meant", "[3mf][io]") {
 TEST_CASE("3mf: lib3mf reads a package of which a part was written anew", "[3mf][io]") {
   const Folder folder;
   const std::string model = model_of(
-      "<object id=\"1\" name=\"one\">" + kTetrahedron + "</object><object id=\"2\" name=\"two\">" + kTetrahedron +
+      "<object id=\"1\" name=\"one\">" + kTetrahedronXml + "</object><object id=\"2\" name=\"two\">" + kTetrahedronXml +
           "</object>",
       "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 20 0 0\"/>", "unit=\"centimeter\"");
   std::vector<ZipItem> items{{"[Content_Types].xml", kContentTypes},

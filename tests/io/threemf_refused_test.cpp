@@ -37,7 +37,7 @@ std::string in_object(const std::string& inside) {
 }
 
 std::string with(const std::string& from, const std::string& to) {
-  std::string mesh = kTetrahedron;
+  std::string mesh = kTetrahedronXml;
   REQUIRE(mesh.find(from) != std::string::npos);
   return in_object(mesh.replace(mesh.find(from), from.size(), to));
 }
@@ -63,7 +63,7 @@ TEST_CASE("3mf: models that are none are refused, with the line", "[3mf][io]") {
       "<a:model xmlns:a=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><a:build></a:model>",
       "mismatched tag");
   check_model_refused("\xff\xfe<\0m\0", "expected XML in UTF-8, got UTF-16");
-  check_model_refused("<!DOCTYPE a [<!ENTITY b \"c\">]>\n" + in_object(kTetrahedron),
+  check_model_refused("<!DOCTYPE a [<!ENTITY b \"c\">]>\n" + in_object(kTetrahedronXml),
                       "expected XML without a document type, got 'a'");
   check_model_refused(model_of("", "", "unit=\"parsec\""),
                       "line 2: expected a unit micron, millimeter, centimeter, inch, foot or meter, got 'parsec'");
@@ -76,10 +76,10 @@ TEST_CASE("3mf: models that are none are refused, with the line", "[3mf][io]") {
   check_model_refused(with("v3=\"1\"", "v3=\"-1\""), "expected the index of a vertex, from 0 to 2147483647, got '-1'");
   check_model_refused(with("v3=\"1\"", ""), "expected a corner 'v3' of a triangle, got none");
   check_model_refused(with("x=\"4\"", "x=\"4\" x=\"4\""), "duplicate attribute");
-  check_model_refused(in_object(kTetrahedron + kTetrahedron), "expected one mesh in an object, got two");
+  check_model_refused(in_object(kTetrahedronXml + kTetrahedronXml), "expected one mesh in an object, got two");
   check_model_refused(in_object(""), "expected an item in 'build' that places a mesh of triangles, got none");
-  check_model_refused(model_of("<object id=\"1\">" + kTetrahedron + "</object>", ""), "expected an item in 'build'");
-  check_model_refused(model_of("<object id=\"1\">" + kTetrahedron + "</object>", "<item objectid=\"2\"/>"),
+  check_model_refused(model_of("<object id=\"1\">" + kTetrahedronXml + "</object>", ""), "expected an item in 'build'");
+  check_model_refused(model_of("<object id=\"1\">" + kTetrahedronXml + "</object>", "<item objectid=\"2\"/>"),
                       "line 4: expected an object 2 in this file, got none");
   check_model_refused(model_of("<object id=\"1\"/><object id=\"1\"/>", ""),
                       "expected an id that no object before has, got 1");
@@ -89,7 +89,7 @@ TEST_CASE("3mf: models that are none are refused, with the line", "[3mf][io]") {
   check_model_refused(
       model_of("<object id=\"1\" xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\" "
                "s:meshresolution=\"lowres\">" +
-                   kTetrahedron + "</object>",
+                   kTetrahedronXml + "</object>",
                "<item objectid=\"1\"/>"),
       "whose slices are");
   std::string deep;
@@ -99,7 +99,7 @@ TEST_CASE("3mf: models that are none are refused, with the line", "[3mf][io]") {
 
 TEST_CASE("3mf: placements that lead nowhere are refused", "[3mf][io]") {
   const auto placed = [](const std::string& transform) {
-    return model_of("<object id=\"1\">" + kTetrahedron + "</object>",
+    return model_of("<object id=\"1\">" + kTetrahedronXml + "</object>",
                     "<item objectid=\"1\" transform=\"" + transform + "\"/>");
   };
   check_model_refused(placed("1 0 0 0 1 0 0 0 1 0 0"), "expected a transform of 12 numbers, got 11");
@@ -119,12 +119,12 @@ TEST_CASE("3mf: placements that lead nowhere are refused", "[3mf][io]") {
               "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" p:path=\"/3D/o.model\""),
           "<item objectid=\"1\"/>"),
       "expected a part '/3D/o.model', got none");
-  std::string chain = "<object id=\"1\">" + kTetrahedron + "</object>";
+  std::string chain = "<object id=\"1\">" + kTetrahedronXml + "</object>";
   for (int i = 2; i < 100; ++i) chain += component(i, i - 1);
   check_model_refused(model_of(chain, "<item objectid=\"99\"/>"),
                       "expected components at most 64 deep, got deeper ones");
   // Each object twice inside the next: 2^60 places, of which the first counts.
-  std::string doubled = "<object id=\"1\">" + kTetrahedron + "</object>";
+  std::string doubled = "<object id=\"1\">" + kTetrahedronXml + "</object>";
   for (int i = 2; i < 60; ++i)
     doubled += fmt::format(
         "<object id=\"{}\"><components><component objectid=\"{}\"/><component objectid=\"{}\"/></components></object>",
@@ -135,7 +135,7 @@ TEST_CASE("3mf: placements that lead nowhere are refused", "[3mf][io]") {
 }
 
 TEST_CASE("3mf: archives that are damaged are refused", "[3mf][io]") {
-  const std::string model = in_object(kTetrahedron);
+  const std::string model = in_object(kTetrahedronXml);
   const std::vector<ZipItem> good{
       {"[Content_Types].xml", kContentTypes}, {"_rels/.rels", kRelationships}, {"3D/3dmodel.model", model}};
   const auto changed = [&](std::size_t item, auto&& change) {
@@ -184,7 +184,7 @@ TEST_CASE("3mf: a bomb takes no memory before it is refused", "[3mf][io]") {
 TEST_CASE("3mf: whatever is cut off or changed, nothing but a refusal comes of it", "[3mf][io]") {
   const std::string bytes = zip_file({{"[Content_Types].xml", "<Types/>"},
                                       {"_rels/.rels", kRelationships, true, true},
-                                      {"3D/3dmodel.model", in_object(kTetrahedron), true, false, true}});
+                                      {"3D/3dmodel.model", in_object(kTetrahedronXml), true, false, true}});
   for (std::size_t size = 0; size < bytes.size(); ++size) try_to_read(bytes.substr(0, size));
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     std::string changed = bytes;

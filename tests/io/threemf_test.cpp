@@ -13,11 +13,14 @@
 #include <cmath>
 
 #include "support/folder.h"
+#include "support/splitter.h"
 #include "support/threemf_packages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/documents/threemf/zip_archive.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/refined_file.h"
+#include "vdb_offset/io/shell_file.h"
 
 using namespace vdb_offset;
 using io::Format;
@@ -126,8 +129,8 @@ TEST_CASE("3mf: the production extension's parts are read, and only those that m
       "requiredextensions=\"p\"";
   const auto part = [&](int id) {
     return model_of(
-        fmt::format("<object id=\"{}\" p:UUID=\"0001000{}-81cb\" type=\"model\">{}</object>", id, id, kTetrahedron), "",
-        production);
+        fmt::format("<object id=\"{}\" p:UUID=\"0001000{}-81cb\" type=\"model\">{}</object>", id, id, kTetrahedronXml),
+        "", production);
   };
   const std::string root = model_of(
       "<object id=\"8\" p:UUID=\"00000001-61cb\" type=\"model\"><components>"
@@ -155,7 +158,7 @@ TEST_CASE("3mf: the production extension's parts are read, and only those that m
 
 TEST_CASE("3mf: components are placed by all their transforms, mirrored ones turned round", "[3mf][io]") {
   // A quarter turn, then a mirror, then twice the size.
-  const std::string bytes = package_of(model_of("<object id=\"1\" name=\"tet\">" + kTetrahedron +
+  const std::string bytes = package_of(model_of("<object id=\"1\" name=\"tet\">" + kTetrahedronXml +
                                                     "</object>"
                                                     "<object id=\"2\"><components><component objectid=\"1\" "
                                                     "transform=\"0 1 0 -1 0 0 0 0 1 1 0 0\"/></components></object>"
@@ -174,7 +177,7 @@ TEST_CASE("3mf: components are placed by all their transforms, mirrored ones tur
 TEST_CASE("3mf: turned objects come back to their places but for rounding", "[3mf][io]") {
   const double c = std::cos(0.7), s = std::sin(0.7);
   const io::MeshFile file = parsed(package_of(
-      model_of("<object id=\"1\">" + kTetrahedron + "</object>",
+      model_of("<object id=\"1\">" + kTetrahedronXml + "</object>",
                fmt::format("<item objectid=\"1\" transform=\"{} {} 0 {} {} 0 0 0 1.1 125 105.3 10\"/>", c, s, -s, c))));
   const std::vector<Vec3d> wanted = shifted(file.polygons.positions, {0.1, 0.2, 1.0 / 3});
   const io::MeshFile back = parsed(io::patched_bytes(file, wanted));
@@ -183,7 +186,7 @@ TEST_CASE("3mf: turned objects come back to their places but for rounding", "[3m
     CHECK((back.polygons.positions[v] - wanted[v]).length() <= 4 * 0x1p-46);
   // Those of objects that are only moved come back to the bit.
   const io::MeshFile plain =
-      parsed(package_of(model_of("<object id=\"1\">" + kTetrahedron + "</object>",
+      parsed(package_of(model_of("<object id=\"1\">" + kTetrahedronXml + "</object>",
                                  "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 125 105.3 10\"/>")));
   const std::vector<Vec3d> there = shifted(plain.polygons.positions, {0.1, 0.2, 1.0 / 3});
   CHECK(parsed(io::patched_bytes(plain, there)).polygons.positions == there);
@@ -191,7 +194,7 @@ TEST_CASE("3mf: turned objects come back to their places but for rounding", "[3m
 
 TEST_CASE("3mf: what is printed moves, all else stays and is told", "[3mf][io]") {
   const auto object = [](int id, const std::string& more) {
-    return fmt::format("<object id=\"{}\" {}>{}</object>", id, more, kTetrahedron);
+    return fmt::format("<object id=\"{}\" {}>{}</object>", id, more, kTetrahedronXml);
   };
   const io::MeshFile file = parsed(package_of(model_of(
       object(1, "name=\"twice\"") + object(2, "type=\"support\"") + object(3, "") + object(4, "type=\"surface\""),
@@ -214,13 +217,13 @@ TEST_CASE("3mf: what is printed moves, all else stays and is told", "[3mf][io]")
 TEST_CASE("3mf: objects that touch are kept apart, unless they need to be welded themselves", "[3mf][io]") {
   const auto two = [](const std::string& mesh, const char* x) {
     return parsed(package_of(model_of(
-        "<object id=\"1\">" + mesh + "</object><object id=\"2\">" + kTetrahedron + "</object>",
+        "<object id=\"1\">" + mesh + "</object><object id=\"2\">" + kTetrahedronXml + "</object>",
         fmt::format("<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 {} 0 0\"/>", x))));
   };
-  CHECK(two(kTetrahedron, "4").has_touching_objects);
-  CHECK_FALSE(two(kTetrahedron, "5").has_touching_objects);
+  CHECK(two(kTetrahedronXml, "4").has_touching_objects);
+  CHECK_FALSE(two(kTetrahedronXml, "5").has_touching_objects);
   const std::string torn = replaced(
-      replaced(kTetrahedron, "</vertices>", "<vertex x=\"4\" y=\"0\" z=\"0\"/></vertices>"), "v1=\"1\"", "v1=\"4\"");
+      replaced(kTetrahedronXml, "</vertices>", "<vertex x=\"4\" y=\"0\" z=\"0\"/></vertices>"), "v1=\"1\"", "v1=\"4\"");
   CHECK_FALSE(two(torn, "4").has_touching_objects);
   CHECK_THAT(two(torn, "4").remarks.at(0), Catch::Contains("--weld none"));
 }
@@ -232,7 +235,7 @@ TEST_CASE("3mf: units are told, also without reading the whole file", "[3mf][io]
                                                           {"unit=\"foot\"", 304800},    {"unit=\"meter\"", 1e6}};
   for (const auto& [attribute, micrometres] : units) {
     const std::string bytes =
-        package_of(model_of("<object id=\"1\">" + kTetrahedron + "</object>", "<item objectid=\"1\"/>", attribute));
+        package_of(model_of("<object id=\"1\">" + kTetrahedronXml + "</object>", "<item objectid=\"1\"/>", attribute));
     CHECK(parsed(bytes).unit_micrometres == micrometres);
     CHECK(io::unit_micrometres(folder.write("u.3mf", bytes)) == micrometres);
     // A new file of the mesh has them, too.
@@ -245,9 +248,10 @@ TEST_CASE("3mf: units are told, also without reading the whole file", "[3mf][io]
 }
 
 TEST_CASE("3mf: names of objects and materials choose faces, colours of vertices go into other formats", "[3mf][io]") {
-  const std::string triangles = replaced(replaced(replaced(kTetrahedron, "v3=\"1\"/>", "v3=\"1\" pid=\"5\" p1=\"1\"/>"),
-                                                  "v3=\"3\"/>", "v3=\"3\" p1=\"0\"/>"),
-                                         "v3=\"3\"/>", "v3=\"3\" pid=\"9\" p1=\"0\"/>");
+  const std::string triangles =
+      replaced(replaced(replaced(kTetrahedronXml, "v3=\"1\"/>", "v3=\"1\" pid=\"5\" p1=\"1\"/>"), "v3=\"3\"/>",
+                        "v3=\"3\" p1=\"0\"/>"),
+               "v3=\"3\"/>", "v3=\"3\" pid=\"9\" p1=\"0\"/>");
   const io::MeshFile named = parsed(package_of(
       model_of("<basematerials id=\"5\"><base name=\"red\" displaycolor=\"#f00\"/><base name=\"blue &quot;2&quot;\" "
                "displaycolor=\"#00f\"/></basematerials><object id=\"1\" name=\"&lt;part&gt;\" pid=\"5\" pindex=\"0\">" +
@@ -262,7 +266,7 @@ TEST_CASE("3mf: names of objects and materials choose faces, colours of vertices
 
   const std::string mirrored = "<item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>";
   const auto coloured = [&](const std::string& last) {
-    std::string mesh = replaced(kTetrahedron, "v1=\"0\" v2=\"2\" v3=\"1\"",
+    std::string mesh = replaced(kTetrahedronXml, "v1=\"0\" v2=\"2\" v3=\"1\"",
                                 "v1=\"0\" v2=\"2\" v3=\"1\" pid=\"7\" p1=\"0\" p2=\"2\" p3=\"1\"");
     mesh =
         replaced(mesh, "v1=\"0\" v2=\"1\" v3=\"3\"", "v1=\"0\" v2=\"1\" v3=\"3\" pid=\"7\" p1=\"0\" p2=\"1\" p3=\"2\"");
@@ -287,6 +291,24 @@ TEST_CASE("3mf: names of objects and materials choose faces, colours of vertices
   CHECK(std::find(others.lost.begin(), others.lost.end(), "colours of triangles") != others.lost.end());
 }
 
+TEST_CASE("3mf: shells, iso-surfaces and refined meshes keep the unit", "[3mf][io][units]") {
+  const Folder folder;
+  const std::string path =
+      folder.write("i.3mf", package_of(model_of("<object id=\"1\">" + kTetrahedronXml + "</object>",
+                                                "<item objectid=\"1\"/>", "unit=\"inch\"")));
+  const io::MeshFile file = io::read_mesh(path);
+  const Shell shell =
+      make_shell(file.polygons.view(), shifted(file.polygons.positions, {0, 0, 1}), file.polygons.positions, {}, {});
+  io::write_shell(folder.file("s.3mf"), file, shell);
+  const io::MeshFile back = io::read_mesh(folder.file("s.3mf"));
+  CHECK(back.unit_micrometres == 25400.0);
+  CHECK(io::read_materials(back).names == std::vector<std::string>{"", "outer", "inner"});
+  const Refinement refinement = Splitter(file).edge(0, 1).run();
+  const io::RefinedFile refined = io::refine_file(file, refinement);
+  io::write_mesh(folder.file("r.3mf"), refined.file, refined.file.polygons.positions);
+  CHECK(io::read_mesh(folder.file("r.3mf")).unit_micrometres == 25400.0);
+}
+
 TEST_CASE("3mf: slicers' own names choose faces", "[3mf][io]") {
   const auto groups = [](const std::string& model, const std::string& settings, const std::string& text) {
     const io::MeshFile file =
@@ -296,7 +318,7 @@ TEST_CASE("3mf: slicers' own names choose faces", "[3mf][io]") {
     for (std::size_t f = 0; f < names.of_face.size(); ++f) named += names.names[names.of_face[f]] + " ";
     return file.remarks.empty() ? named : file.remarks[0];
   };
-  const std::string one = model_of("<object id=\"3\">" + kTetrahedron + "</object>", "<item objectid=\"3\"/>"),
+  const std::string one = model_of("<object id=\"3\">" + kTetrahedronXml + "</object>", "<item objectid=\"3\"/>"),
                     prusa = "Metadata/Slic3r_PE_model.config", bambu = "Metadata/model_settings.config";
   const auto volume = [](int first, int last, const std::string& name) {
     return fmt::format(
@@ -314,7 +336,7 @@ TEST_CASE("3mf: slicers' own names choose faces", "[3mf][io]") {
   CHECK_THAT(groups(one, prusa, head + volume(2, 1, "a") + tail),
              Catch::Contains("names of objects are not known: a.3mf: " + prusa));
   const std::string two =
-      model_of("<object id=\"1\">" + kTetrahedron + "</object><object id=\"2\">" + kTetrahedron +
+      model_of("<object id=\"1\">" + kTetrahedronXml + "</object><object id=\"2\">" + kTetrahedronXml +
                    "</object><object id=\"8\"><components><component objectid=\"1\"/>"
                    "<component objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\"/></components></object>",
                "<item objectid=\"8\"/>");
@@ -349,7 +371,7 @@ TEST_CASE("3mf: a new package holds the mesh, its colours or materials, and is t
 
   const io::MeshFile plain = io::parse_mesh(
       "a.obj", Format::Obj, "mtllib a.mtl\nv 0.1 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nusemtl a&\"b\"\nf 3 2 1\n");
-  io::write_mesh(folder.file("p.3mf"), plain, plain.polygons.positions);
+  CHECK(io::write_mesh(folder.file("p.3mf"), plain, plain.polygons.positions).lost == "colours of materials");
   const io::Materials materials = io::read_materials(io::read_mesh(folder.file("p.3mf")));
   CHECK(materials.names == std::vector<std::string>{"", "a&\"b\""});
   CHECK(materials.of_face == std::vector<std::uint32_t>{0, 1});

@@ -23,7 +23,7 @@ inline const std::string kRelationships =
 inline const std::string kCoreSpace = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
 
 /// A tetrahedron with corners at 0 and on the axes.
-inline const std::string kTetrahedron =
+inline const std::string kTetrahedronXml =
     "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"4\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"4\" "
     "z=\"0\"/>"
     "<vertex x=\"0\" y=\"0\" z=\"4\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/>"

@@ -184,6 +184,7 @@ Pieces convert(const MeshFile& source, Format target, const IsoResult& iso, cons
   // The triangles are sorted, and so are a copy, which must live as long as the pieces.
   const auto mesh = std::make_shared<Polygons>(iso.polygons);
   const auto content = std::make_shared<Content>(Content{mesh->view(), precision, {}, {}, {}});
+  content->unit_micrometres = source.unit_micrometres;
   Attributes& with = content->with;
   with.lost = of_source.lost;
   if (holds_normals(target)) with.normals = normals_of(iso);

@@ -125,8 +125,12 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
   Attributes& with = content->with;
   if (target == Format::ThreeMf || is_gltf(target) || (source.document && target == Format::Obj))
-    if (Materials materials = read_materials(source); !materials.of_face.empty())
+    if (Materials materials = read_materials(source); !materials.of_face.empty()) {
       content->materials = std::move(materials);
+      // 3MF has their names alone, unless vertices have colours: a triangle has either.
+      if (target == Format::ThreeMf && with.colours.empty())
+        std::replace(with.lost.begin(), with.lost.end(), std::string("materials"), std::string("colours of materials"));
+    }
   if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);

@@ -126,6 +126,7 @@ RefinedFile refine_file(const MeshFile& source, const Refinement& refinement) {
     std::string bytes = join(convert(source, Format::Obj, source.polygons.positions, {}, Normals::Keep, as_obj));
     if (!as_obj.lost.empty()) refined.lost.push_back(as_obj.lost);
     refined.file = parse_refined(parse_mesh(source.path, Format::Obj, std::move(bytes)), refinement, refined.lost);
+    refined.file.unit_micrometres = source.unit_micrometres;
     source.bytes.require_unchanged(source.path);
   } else if (source.format == Format::Ply && ply::find_strips(ply::read_header(source))) {
     std::string bytes = ply_without_strips(source, refined.lost);
