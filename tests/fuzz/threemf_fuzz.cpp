@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A libFuzzer target for 3MF: the first byte says whether the others are an archive or, made into a package in one of
-// several ways, a model part, which other parts are the same as. Whatever they are, they are refused with InvalidInput
-// or are a mesh that keeps the promises of io/mesh_file.h. What else is thrown ends the process.
+// several ways, a model part, which another and a slicer's settings are the same as. Whatever they are, they are
+// refused with InvalidInput or are a mesh that keeps the promises of io/mesh_file.h. What else is thrown ends the
+// process.
 
 #include <tbb/global_control.h>
 
@@ -87,7 +88,7 @@ std::string as_package(std::uint8_t how, const std::string& model) {
                              {"_rels/.rels", kRelationships},
                              {"3D/3dmodel.model", model},
                              {"3D/o.model", model},
-                             {"Metadata/a.config", "a"}};
+                             {"Metadata/model_settings.config", model}};
   for (ZipItem& item : items) {
     item.deflated = how & 1;
     item.described_behind = how & 2;

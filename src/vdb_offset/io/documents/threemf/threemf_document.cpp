@@ -260,6 +260,7 @@ void parse_3mf(MeshFile& file) {
 }
 
 std::optional<double> unit_of_3mf(const std::string& path) {
+  if (path == "-") return std::nullopt;  // standard input can be read once
   const FileBytes bytes = FileBytes::open(path);
   const ZipArchive archive(path, bytes.view());
   const ZipEntry& entry = first_part(path, archive);

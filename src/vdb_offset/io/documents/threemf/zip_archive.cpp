@@ -12,6 +12,7 @@
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/scanner.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -205,6 +206,11 @@ void ZipArchive::require_readable(const ZipEntry& entry) const {
           fmt::format("{}", entry.packed));
   require(entry.size / kMostRatio <= entry.packed, "a size that deflated bytes can have",
           fmt::format("{} bytes made of {}", entry.size, entry.packed));
+  constexpr std::uint64_t kLarge = std::uint64_t{1} << 26;  // bytes; less is not worth asking the system about
+  if (entry.size <= kLarge) return;
+  if (const std::size_t most = available_memory() / 2; entry.size > most)
+    throw InvalidInput(fmt::format("{}: expected at most {} MiB when unpacked, half of what is free, got {}",
+                                   label(entry), most >> 20, entry.size >> 20));
 }
 
 std::string ZipArchive::read(const ZipEntry& entry) const {
