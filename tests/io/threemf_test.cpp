@@ -109,6 +109,25 @@ TEST_CASE("3mf: a slicer's package keeps every byte but the coordinates of what 
         std::string::npos);
 }
 
+TEST_CASE("3mf: a long model part is written in pieces that are cut nowhere inside of a tag", "[3mf][io]") {
+  // Tags of several lengths around each MiB, and much between meshes.
+  std::string mesh = "<mesh><vertices>", after = mesh;
+  for (int v = 0; v < 30000; ++v) {
+    const std::string plain =
+        fmt::format("\" y='{}' z=\"0\" a=\">\" {}/>", v % 7, std::string(static_cast<std::size_t>(v % 13), ' '));
+    mesh += fmt::format("<vertex x=\"{}", v) + plain;
+    after += fmt::format("<vertex x=\"{}", v + 1) + plain;
+  }
+  const std::string rest = "</vertices><!--" + std::string(std::size_t{3} << 19, '+') +
+                           "--><triangles><triangle v1=\"0\" v2=\"1\" v3=\"9\"/></triangles></mesh>";
+  const auto model = [&](const std::string& vertices) {
+    return model_of(
+        "<object id=\"1\">" + vertices + rest + "</object><object id=\"2\">" + vertices + rest + "</object>",
+        "<item objectid=\"2\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 9 0\"/>");
+  };
+  CHECK(entry_of(moved(parsed(package_of(model(mesh))), {1, 0, 0}), "3D/3dmodel.model") == model(after));
+}
+
 TEST_CASE("3mf: entries that are deflated, or described behind their bytes, are packed again", "[3mf][io]") {
   std::vector<ZipItem> items = slicer_package("2.5");
   for (ZipItem& item : items) item.deflated = item.described_behind = true;

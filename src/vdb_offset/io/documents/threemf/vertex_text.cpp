@@ -11,7 +11,7 @@
 namespace vdb_offset::io {
 namespace {
 
-constexpr std::size_t kVerticesAtOnce = 1 << 15;  // about two MiB of text; not measured beside other numbers
+constexpr std::size_t kBytesAtOnce = 1 << 20;  // of the text, in a piece; not measured beside other numbers
 
 bool is_xml_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -39,6 +39,15 @@ std::size_t append_vertex_tag(std::string& to, std::string_view text, std::size_
   return at;
 }
 
+/// Behind the tag that begins at `at`.
+std::size_t tag_end(std::string_view text, std::size_t at) {
+  for (char quote = 0; quote || text[at] != '>'; ++at) {
+    if (text[at] == quote) quote = 0;
+    else if (!quote && (text[at] == '"' || text[at] == '\'')) quote = text[at];
+  }
+  return at + 1;
+}
+
 class VertexText {
  public:
   VertexText(std::string_view text, const std::vector<std::uint64_t>& vertex_at, std::vector<PlacedMesh> meshes,
@@ -49,12 +58,11 @@ class VertexText {
               [](const PlacedMesh& a, const PlacedMesh& b) { return a.first_in_part < b.first_in_part; });
   }
 
-  std::size_t pieces() const { return (vertex_at_.size() + kVerticesAtOnce - 1) / kVerticesAtOnce; }
+  std::size_t pieces() const { return (text_.size() + kBytesAtOnce - 1) / kBytesAtOnce; }
 
   std::string make(std::size_t piece) const {
-    const std::size_t first = piece * kVerticesAtOnce, last = std::min(first + kVerticesAtOnce, vertex_at_.size());
-    std::size_t copied = piece == 0 ? 0 : vertex_at_[first];
-    const std::size_t end = last == vertex_at_.size() ? text_.size() : vertex_at_[last];
+    std::size_t copied = cut(piece);
+    const std::size_t end = cut(piece + 1), first = first_from(copied), last = first_from(end);
     std::string bytes;
     bytes.reserve((end - copied) + (last - first) * 16);
     for (const PlacedMesh& mesh : meshes_) {
@@ -74,6 +82,16 @@ class VertexText {
   }
 
  private:
+  /// Where a piece begins: at no place inside of a vertex' tag.
+  std::size_t cut(std::size_t piece) const {
+    const std::size_t at = std::min(piece * kBytesAtOnce, text_.size()), next = first_from(at);
+    return next == 0 ? at : std::max(at, tag_end(text_, vertex_at_[next - 1]));
+  }
+  /// The first vertex whose tag begins at a byte or behind it.
+  std::size_t first_from(std::size_t at) const {
+    return static_cast<std::size_t>(std::lower_bound(vertex_at_.begin(), vertex_at_.end(), at) - vertex_at_.begin());
+  }
+
   std::string_view text_;
   const std::vector<std::uint64_t>& vertex_at_;
   std::vector<PlacedMesh> meshes_;  // in the order of the part
