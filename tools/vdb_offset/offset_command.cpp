@@ -143,7 +143,8 @@ OffsetResult of_copies(const OffsetResult& result, std::span<const std::uint32_t
 /// Carries out a job with --tolerance. From where the faces are split, the refined source stands for the one read.
 ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar) {
   Tolerance tolerance = job.request.tolerance->tolerance;
-  if (job.source.file) tolerance.precision = job.source.file->precision;
+  // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
+  if (job.source.file && !job.source.file->document) tolerance.precision = job.source.file->precision;
   OffsetOptions options = job.options;
   options.distance = job.distances.front();
   RefinedOffset made = offset_to_tolerance(job.source.view(), options, tolerance);

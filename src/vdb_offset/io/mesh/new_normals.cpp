@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/io/mesh/new_normals.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <unordered_map>
 
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
@@ -34,20 +36,15 @@ struct Users {
   }
 };
 
-/// A position and the normal of the vertex there.
-struct PlacedNormal {
-  Vec3d position, normal;
-  bool operator==(const PlacedNormal& other) const { return position == other.position && normal == other.normal; }
-};
-
-struct HashOfNormal {
-  std::size_t operator()(const PlacedNormal& n) const {
-    std::size_t hash = 0;
-    for (const Vec3d& v : {n.position, n.normal})
-      for (int k = 0; k < 3; ++k) hash = hash * 31 + std::hash<double>()(v[k]);
-    return hash;
+/// A position and the normal of the vertex there, by their bits: normals may be no numbers.
+std::array<std::uint64_t, 6> bits_of(const Vec3d& position, const Vec3d& normal) {
+  std::array<std::uint64_t, 6> bits;
+  for (int k = 0; k < 3; ++k) {
+    bits[k] = std::bit_cast<std::uint64_t>(position[k] + 0.0);  // of both zeros the same
+    bits[k + 3] = std::bit_cast<std::uint64_t>(normal[k] + 0.0);
   }
-};
+  return bits;
+}
 
 /// Which normal each corner names.
 class CornerNormals {
@@ -69,10 +66,17 @@ class CornerNormals {
   void join_split_vertices() {
     const std::vector<Vec3d> normals = read_attributes(source_).normals.value;
     if (normals.size() != source_.polygons.positions.size()) return;
-    std::unordered_map<PlacedNormal, std::uint32_t, HashOfNormal> first;
+    const std::vector<Vec3d>& positions = source_.polygons.positions;
+    std::vector<std::uint32_t> order(normals.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t v) { return bits_of(positions[v], normals[v]); };
+    tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto of_a = key(a), of_b = key(b);
+      return of_a != of_b ? of_a < of_b : a < b;
+    });
     shared_.resize(normals.size());
-    for (std::uint32_t v = 0; v < normals.size(); ++v)
-      shared_[v] = first.try_emplace({source_.polygons.positions[v], normals[v]}, v).first->second;
+    for (std::size_t i = 0; i < order.size(); ++i)
+      shared_[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? shared_[order[i - 1]] : order[i];
   }
 
   const MeshFile& source_;
@@ -159,10 +163,11 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
                             const std::vector<std::uint8_t>& moved) {
   const std::span<const Vec3d> positions = mesh.positions;
   if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
-  const CornerNormals normal_of(source);
-  const Users users = find_users(source, normal_of, faces);
   NewNormals normals;
   normals.value.assign(source.normal_count(), Vec3d(0.0));
+  if (std::none_of(moved.begin(), moved.end(), [](auto each) { return each != 0; })) return normals;
+  const CornerNormals normal_of(source);
+  const Users users = find_users(source, normal_of, faces);
   std::atomic<std::size_t> disagreeing = 0;
   for_each_index(normals.value.size(), [&](std::size_t n) {
     Vec3d sum(0.0);

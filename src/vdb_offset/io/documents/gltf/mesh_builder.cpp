@@ -159,7 +159,7 @@ std::optional<std::size_t> MeshBuilder::block_of(const JsonValue& attributes, co
   if (vertices_ > kNone - 2)
     position->fail(fmt::format("at most {} vertices in all", kNone - 2), std::to_string(vertices_));
   block_by_accessor_.emplace(accessor, contents_.blocks.size());
-  contents_.blocks.push_back(std::move(block));
+  contents_.blocks.push_back(block);
   return contents_.blocks.size() - 1;
 }
 
