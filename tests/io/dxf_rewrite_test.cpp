@@ -18,7 +18,7 @@
 
 using namespace vdb_offset;
 
-// Names of its own, as tests are compiled several files at once.
+// Names of its own, and tests among them, as tests are compiled several files at once.
 namespace dxf_rewrite {
 namespace {
 
@@ -59,8 +59,6 @@ std::string moved_entities(const std::string& brief, const std::string& header =
 const std::string kR12 = "9|$ACADVER 1|AC1009";
 
 }  // namespace
-}  // namespace dxf_rewrite
-using namespace dxf_rewrite;
 
 TEST_CASE("dxf: entities with straight segments keep all but their coordinates", "[curves][io][dxf]") {
   CHECK(moved_entities("0|LINE 5|A 8|cut 62|1 10|1.50 20|2.00 30|0.0 11|4 21|5.0 31|0.0 1001|X 1040|7") ==
@@ -78,6 +76,16 @@ TEST_CASE("dxf: entities with straight segments keep all but their coordinates",
   // Seen from below, x runs to the left.
   CHECK(moved_entities("0|LWPOLYLINE 8|cut 90|2 70|0 10|3 20|0 10|4 20|0 230|-1") ==
         dxf_text::groups("0|LWPOLYLINE 8|cut 90|2 70|0 10|2 20|0 10|3 20|0 230|-1"));
+  // Of ends that were one but for rounding, those that move are so afterwards; those that stay keep their digits.
+  const std::string joined = "0|LINE 10|0 20|0 11|100 21|0 0|LINE 10|100.000001 20|0.000001 11|100 21|50";
+  CHECK(moved_entities(joined) == dxf_text::groups("0|LINE 10|1 20|0 11|101 21|0 0|LINE 10|101 20|0 11|101 21|50"));
+  CHECK_THAT(moved(dxf_text::file("0|LINE 11|9 21|9 " + joined), Vec3d(0, 0, 1), 0),
+             Catch::Contains("10\n100.000001\n"));
+  // What applications keep in an entity, and what stands behind the last vertex, are no coordinates.
+  CHECK(moved_entities("0|LINE 102|{X 10|7 102|} 10|1 20|2 11|4 21|5") ==
+        dxf_text::groups("0|LINE 102|{X 10|7 102|} 10|2 20|2 11|5 21|5"));
+  CHECK(moved_entities("0|POLYLINE 66|1 0|VERTEX 10|1 20|2 0|VERTEX 10|4 20|5 0|SEQEND 10|7") ==
+        dxf_text::groups("0|POLYLINE 66|1 0|VERTEX 10|2 20|2 0|VERTEX 10|5 20|5 0|SEQEND 10|7"));
   // A line that leaves z = 0, of which it has no groups, gets some; a flat polyline that does becomes one in space.
   CHECK_THAT(moved(dxf_text::file("0|LINE 10|1 20|2 11|4 21|5"), Vec3d(0, 0, 3)),
              Catch::Contains("20\n2\n 30\n3\n11\n4\n21\n5\n 31\n3\n"));
@@ -240,3 +248,5 @@ TEST_CASE("dxf: curves of other files become the least that readers take", "[cur
   io::write_curves(folder.file("c.svg"), circle, circle.file.polygons.positions);
   CHECK(io::read_curves(folder.file("c.svg")).file.polygons.positions == circle.file.polygons.positions);
 }
+
+}  // namespace dxf_rewrite

@@ -14,7 +14,7 @@
 
 using namespace vdb_offset;
 
-// Names of its own, as tests are compiled several files at once.
+// Names of its own, and tests among them, as tests are compiled several files at once.
 namespace dxf_shapes {
 namespace {
 
@@ -74,8 +74,6 @@ double basis(const std::vector<double>& u, std::size_t i, std::size_t degree, do
 }
 
 }  // namespace
-}  // namespace dxf_shapes
-using namespace dxf_shapes;
 
 TEST_CASE("dxf: straight entities are their points", "[curves][io][dxf]") {
   CHECK(drawn("0|LINE 8|0 10|1 20|2 30|3 11|4 21|5 31|3") == std::vector<Vec3d>{{1, 2, 3}, {4, 5, 3}});
@@ -362,3 +360,5 @@ TEST_CASE("dxf: what cannot be read is refused by its line", "[curves][io][dxf]"
   // Without the last line, all is there.
   CHECK(refusal(whole.substr(0, whole.size() - 6)).empty());
 }
+
+}  // namespace dxf_shapes

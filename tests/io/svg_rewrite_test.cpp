@@ -9,7 +9,7 @@
 
 using namespace vdb_offset;
 
-// Names of its own, as tests are compiled several files at once.
+// Names of its own, and tests among them, as tests are compiled several files at once.
 namespace svg_rewrite {
 namespace {
 
@@ -34,8 +34,6 @@ std::string moved(const std::string& inside, const Vec3d& by, std::size_t only =
 }
 
 }  // namespace
-}  // namespace svg_rewrite
-using namespace svg_rewrite;
 
 TEST_CASE("drawings: shapes become paths in their places and keep all other attributes", "[curves][io]") {
   const Vec3d by(1, 0, 0);
@@ -199,3 +197,5 @@ TEST_CASE("drawings: what is only referred to is not drawn", "[curves][io]") {
   CHECK(file.file.polygons.face_count() == 2);
   CHECK(file.flattened_shapes == 1);
 }
+
+}  // namespace svg_rewrite

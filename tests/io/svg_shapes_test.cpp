@@ -12,7 +12,7 @@
 
 using namespace vdb_offset;
 
-// Names of its own, as tests are compiled several files at once.
+// Names of its own, and tests among them, as tests are compiled several files at once.
 namespace svg_shapes {
 namespace {
 
@@ -59,8 +59,6 @@ double length_of(const std::vector<Vec2d>& line) {
 }
 
 }  // namespace
-}  // namespace svg_shapes
-using namespace svg_shapes;
 
 TEST_CASE("drawings: a circle has the fewest points in four like quarters that keep to the tolerance", "[curves][io]") {
   for (const double tolerance : {3.0, 0.5, 0.1, 1e-3, 1e-6}) {
@@ -231,3 +229,5 @@ TEST_CASE("drawings: without being told, the tolerance is a share of the diagona
   CHECK(tolerance_of("<path d='M-1 0C-1 1e200 1 1e200 1 0'/>", {1, 0}) == Approx(0.75e200).epsilon(1e-12));
   CHECK(tolerance_of("<path d='M0 0A1 1 0 0 1 2 0'/>", {1, 0}) == Approx(std::hypot(2, 1)).epsilon(1e-12));
 }
+
+}  // namespace svg_shapes

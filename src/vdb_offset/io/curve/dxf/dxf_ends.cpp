@@ -23,25 +23,24 @@ class EndPlaces {
     double least = gap_;
     const Cell cell = cell_of(end);
     for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z) {
-          const auto [from, to] = places_.equal_range(key_of({cell[0] + x, cell[1] + y, cell[2] + z}));
-          for (auto each = from; each != to; ++each) {
-            const Place& place = each->second;
-            const double away = (place.at - end).length();
-            if (away > least || (place.curve == curve && !may_meet_itself)) continue;
-            // Of places as near the first one counts, whatever the order of the table.
-            if (nearest && away == least && place.number > nearest->number) continue;
-            nearest = &place, least = away;
-          }
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        const auto [from, to] = places_.equal_range(key_of({cell[0] + x, cell[1] + y}));
+        for (auto each = from; each != to; ++each) {
+          const Place& place = each->second;
+          const double away = (place.at - end).length();
+          if (away > least || place.at[2] != end[2] || (place.curve == curve && !may_meet_itself)) continue;
+          // Of places as near the first one counts, whatever the order of the table.
+          if (nearest && away == least && place.number > nearest->number) continue;
+          nearest = &place, least = away;
         }
+      }
     if (nearest) return nearest->at;
     places_.emplace(key_of(cell), Place{end, curve, places_.size()});
     return end;
   }
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
+  using Cell = std::array<std::int64_t, 2>;
   struct Place {
     Vec3d at;
     std::size_t curve, number;
@@ -56,8 +55,7 @@ class EndPlaces {
   static std::uint64_t key_of(const Cell& cell) {
     // Primes without a pattern; cells that share a key cost time alone.
     return static_cast<std::uint64_t>(cell[0]) * 0x9e3779b97f4a7c15U ^
-           static_cast<std::uint64_t>(cell[1]) * 0xc2b2ae3d27d4eb4fU ^
-           static_cast<std::uint64_t>(cell[2]) * 0x165667b19e3779f9U;
+           static_cast<std::uint64_t>(cell[1]) * 0xc2b2ae3d27d4eb4fU;
   }
 
   double gap_;

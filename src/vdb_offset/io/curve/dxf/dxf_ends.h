@@ -17,8 +17,9 @@ struct DxfEnds {
   double shift = 0;      ///< How far its ends have been moved, the farther one.
 };
 
-/// Moves ends of open curves that are no farther than `gap` from one before to that one. The two ends of one curve, if
-/// this is much longer, are joined as well; a curve that is hardly longer than the gap stays as it is.
+/// Moves ends of open curves that are no farther than `gap` from one before, at the same height, to that one. The two
+/// ends of one curve, if this is much longer, are joined as well; a curve that is hardly longer than the gap stays as
+/// it is.
 void join_near_ends(std::vector<DxfEnds>& curves, double gap);
 
 }  // namespace vdb_offset::io

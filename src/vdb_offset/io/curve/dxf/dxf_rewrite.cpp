@@ -140,15 +140,18 @@ class DxfRewriter {
     }
     const double mirrored = !in_space && is_mirrored(text_, entity) ? -1 : 1;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const Vec3d &from = source_.positions[points[k]], to = written(points[k]);
-      for (int axis = 0; axis < 3; ++axis)
-        if (to[axis] != from[axis]) edit_number(groups[k], axis, axis == 0 ? mirrored * to[0] : to[axis]);
+      if (!has_moved(points[k])) continue;
+      const Vec3d to = written(points[k]);
+      for (int axis = 0; axis < (in_space ? 3 : 2); ++axis)
+        edit_number(groups[k], axis, axis == 0 ? mirrored * to[0] : to[axis]);
     }
     return true;
   }
 
+  /// What the file has is compared, as ends that have been joined may be elsewhere.
   void edit_number(const PointGroups& groups, int axis, double value) {
     const auto k = static_cast<std::size_t>(axis);
+    if (value == (groups.has[k] ? text_.number(groups.at[k]) : 0)) return;
     std::string number;
     append_number(number, value);
     if (groups.has[k]) {
@@ -164,19 +167,27 @@ class DxfRewriter {
 
   /// Where the points of an entity stand, in order.
   std::vector<PointGroups> groups_of(const DxfEntity& entity) const {
+    if (entity.kind == DxfKind::Polyline) return groups_of_vertices(entity);
+    const bool is_line = entity.kind == DxfKind::Line;
+    std::vector<PointGroups> groups(is_line ? 2 : 0);
+    text_.for_each_own(entity.begin, entity.body_end, [&](const DxfGroup& group) {
+      const int axis = group.code / 10 - 1, point = group.code % 10;
+      if (!is_line && group.code == 10) groups.emplace_back();
+      if (axis < 0 || axis > (is_line ? 2 : 1) || point > (is_line ? 1 : 0) || groups.empty()) return;
+      (is_line ? groups[static_cast<std::size_t>(point)] : groups.back()).take(axis, group);
+    });
+    return groups;
+  }
+
+  std::vector<PointGroups> groups_of_vertices(const DxfEntity& polyline) const {
     std::vector<PointGroups> groups;
-    const bool is_line = entity.kind == DxfKind::Line, is_light = entity.kind == DxfKind::LwPolyline;
-    if (is_line) groups.resize(2);
-    const bool in_body = is_line || is_light;
-    text_.for_each_own(in_body ? entity.begin : entity.body_end, in_body ? entity.body_end : entity.end,
-                       [&](const DxfGroup& group) {
-                         const int axis = group.code / 10 - 1;
-                         if (is_light ? group.code == 10 : group.is(0, "VERTEX")) groups.emplace_back();
-                         if (axis < 0 || axis > (is_light ? 1 : 2) || groups.empty()) return;
-                         if (is_line && group.code % 10 <= 1)
-                           groups[static_cast<std::size_t>(group.code % 10)].take(axis, group);
-                         else if (!is_line && group.code % 10 == 0) groups.back().take(axis, group);
-                       });
+    bool in_vertex = false;  // else at its end, SEQEND, which may have anything
+    text_.for_each_own(polyline.body_end, polyline.end, [&](const DxfGroup& group) {
+      if (group.code == 0) in_vertex = group.value == "VERTEX";
+      if (group.code == 0 && in_vertex) groups.emplace_back();
+      const bool is_coordinate = group.code == 10 || group.code == 20 || group.code == 30;
+      if (in_vertex && is_coordinate) groups.back().take(group.code / 10 - 1, group);
+    });
     return groups;
   }
 
