@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files are built here as other programs write them. These were looked at; all but trimesh's were run through the command:
+// Files are built here as other programs write them. These were looked at; all but trimesh's were run through the
+// command:
 // - Khronos' samples (glTF-Sample-Models: BoxVertexColors, SimpleSkin, SimpleMorph, SimpleMeshes,
 // SimpleSparseAccessor):
 //   text with blanks around colons, data in base64, one view with a stride for all attributes, a mesh placed twice.
