@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are read and 
 
 constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2;  // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
-constexpr std::size_t kHeader = 12, kChunkHead = 8;
+constexpr std::size_t kGlbHeader = 12, kChunkHead = 8;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
@@ -41,18 +41,18 @@ Container::Span chunk_at(const MeshFile& file, std::size_t at, std::size_t end) 
 
 Container read_glb(const MeshFile& file) {
   const std::string_view bytes = file.text();
-  if (bytes.size() < kHeader + kChunkHead)
+  if (bytes.size() < kGlbHeader + kChunkHead)
     fail_at(file.path, bytes.size(), "the header of a .glb and of its first chunk, 20 bytes", "the end of the file");
   if (word_at(bytes, 0) != kMagic) fail_at(file.path, 0, "\"glTF\", as a .glb begins", "other bytes");
   if (word_at(bytes, 4) != kVersion) fail_at(file.path, 4, "version 2", std::to_string(word_at(bytes, 4)));
   const std::size_t length = word_at(bytes, 8);
-  if (length > bytes.size() || length < kHeader + kChunkHead)
+  if (length > bytes.size() || length < kGlbHeader + kChunkHead)
     fail_at(file.path, 8, fmt::format("a length from 20 to {}, that of the file", bytes.size()),
             std::to_string(length));
-  if (word_at(bytes, kHeader + 4) != kJsonChunk) fail_at(file.path, kHeader + 4, "a chunk of JSON", "another");
+  if (word_at(bytes, kGlbHeader + 4) != kJsonChunk) fail_at(file.path, kGlbHeader + 4, "a chunk of JSON", "another");
   Container container;
   container.is_binary = true;
-  container.json = container.json_chunk = chunk_at(file, kHeader, length);
+  container.json = container.json_chunk = chunk_at(file, kGlbHeader, length);
   // Blanks fill the chunk up; some programs take zeros.
   while (container.json.size > 0 && (bytes[container.json.begin + container.json.size - 1] == ' ' ||
                                      bytes[container.json.begin + container.json.size - 1] == '\0'))
@@ -105,7 +105,7 @@ std::string glb_head(const std::string& path, const Container& container, std::s
 std::string glb_head(std::string json, std::size_t binary_bytes) {
   json.append(padding(json.size()), ' ');
   std::string bytes;
-  append_head(bytes, std::uint64_t{kHeader} + 2 * kChunkHead + json.size() + binary_bytes, json.size());
+  append_head(bytes, std::uint64_t{kGlbHeader} + 2 * kChunkHead + json.size() + binary_bytes, json.size());
   bytes += json;
   append_binary(bytes, static_cast<std::uint32_t>(binary_bytes));
   append_binary(bytes, kBinChunk);

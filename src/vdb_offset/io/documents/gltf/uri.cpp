@@ -8,7 +8,7 @@
 namespace vdb_offset::io::gltf {
 namespace {
 
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr std::string_view kBase64Digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr std::string_view kHexadecimal = "0123456789ABCDEF";
 constexpr std::string_view kData = "data:", kBase64 = ";base64,";
 
@@ -18,8 +18,8 @@ std::optional<std::string> from_base64(std::string_view text) {
   static const std::array<std::int8_t, 256> value = [] {
     std::array<std::int8_t, 256> table;
     table.fill(-1);
-    for (std::size_t i = 0; i < kDigits.size(); ++i)
-      table[static_cast<std::uint8_t>(kDigits[i])] = static_cast<std::int8_t>(i);
+    for (std::size_t i = 0; i < kBase64Digits.size(); ++i)
+      table[static_cast<std::uint8_t>(kBase64Digits[i])] = static_cast<std::int8_t>(i);
     return table;
   }();
   if (text.size() % 4 == 1) return std::nullopt;
@@ -92,7 +92,7 @@ std::string base64(std::string_view bytes, bool padded) {
     std::uint32_t bits = 0;
     for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; ++k)
-      if (k <= count) text += kDigits[bits >> (18 - 6 * k) & 63];
+      if (k <= count) text += kBase64Digits[bits >> (18 - 6 * k) & 63];
       else if (padded) text += '=';
   }
   return text;
