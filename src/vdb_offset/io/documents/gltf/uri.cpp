@@ -15,11 +15,11 @@ constexpr std::string_view kData = "data:", kBase64 = ";base64,";
 bool is_letter_or_digit(char c) { return (c >= '0' && c <= '9') || ((c | 32) >= 'a' && (c | 32) <= 'z'); }
 
 std::optional<std::string> from_base64(std::string_view text) {
-  static const std::array<std::int8_t, 256> value = [] {
-    std::array<std::int8_t, 256> table;
+  static const std::array<int, 256> kValue = [] {
+    std::array<int, 256> table;
     table.fill(-1);
     for (std::size_t i = 0; i < kBase64Digits.size(); ++i)
-      table[static_cast<std::uint8_t>(kBase64Digits[i])] = static_cast<std::int8_t>(i);
+      table[static_cast<std::uint8_t>(kBase64Digits[i])] = static_cast<int>(i);
     return table;
   }();
   if (text.size() % 4 == 1) return std::nullopt;
@@ -28,7 +28,7 @@ std::optional<std::string> from_base64(std::string_view text) {
   std::uint32_t bits = 0;
   int count = 0;
   for (const char c : text) {
-    const int digit = value[static_cast<std::uint8_t>(c)];
+    const int digit = kValue[static_cast<std::uint8_t>(c)];
     if (digit < 0) return std::nullopt;
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
     count += 6;
