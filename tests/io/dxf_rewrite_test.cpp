@@ -100,7 +100,7 @@ TEST_CASE("dxf: entities with straight segments keep all but their coordinates",
 TEST_CASE("dxf: curved entities become polylines and keep what they have beside their form", "[curves][io][dxf]") {
   const std::string made = moved(
       dxf_text::file("0|CIRCLE 5|2F 102|{ACAD_REACTORS 330|1C 102|} 330|1F 100|AcDbEntity 8|holes 6|DASHED 62|3 370|25 "
-                     "100|AcDbCircle 10|2 20|3 30|1.5 40|1 1001|ACAD 1070|7",
+                     "100|AcDbCircle 39|0.5 10|2 20|3 30|1.5 40|1 1001|ACAD 1070|7",
                      "9|$ACADVER 1|AC1015"),
       Vec3d(1, 0, 0));
   const dxf_text::Entity polyline = dxf_text::entities(made).front();
@@ -110,7 +110,7 @@ TEST_CASE("dxf: curved entities become polylines and keep what they have beside 
   CHECK(
       brief ==
       " 5|2F 102|{ACAD_REACTORS 330|1C 102|} 330|1F 100|AcDbEntity 8|holes 6|DASHED 62|3 370|25 100|AcDbPolyline 90|4 "
-      "70|1 38|1.5 10|4 20|3 10|3 20|4 10|2 20|3 10|3 20|2 1001|ACAD 1070|7");
+      "70|1 38|1.5 39|0.5 10|4 20|3 10|3 20|4 10|2 20|3 10|3 20|2 1001|ACAD 1070|7");
 }
 
 TEST_CASE("dxf: kinds of curves become the polyline that the version has", "[curves][io][dxf]") {

@@ -42,15 +42,15 @@ void DxfCopies::append(std::string& made, const DxfDrawing::Shape& shape, std::s
     made += common.extended;
   } else if (is_light) {
     if (common.is_modern) writer.group(100, "AcDbPolyline");
-    append_light(writer, shape, points, closed);
+    append_light(writer, shape, common, points, closed);
     made += common.extended;
   } else {
     append_heavy(writer, shape, common, points, closed);
   }
 }
 
-void DxfCopies::append_light(DxfWriter& writer, const DxfDrawing::Shape& shape, std::span<const Vec3d> points,
-                             bool closed) const {
+void DxfCopies::append_light(DxfWriter& writer, const DxfDrawing::Shape& shape, const Common& common,
+                             std::span<const Vec3d> points, bool closed) const {
   writer.group(90, fmt::format("{:9}", points.size()));
   writer.flags(70, (closed ? 1 : 0) | line_type_flag(shape));
   const bool is_own = shape.insert == DxfDrawing::kNone;
@@ -58,6 +58,7 @@ void DxfCopies::append_light(DxfWriter& writer, const DxfDrawing::Shape& shape, 
       is_own && !width.empty() && drawing_.document.entities[shape.entity].kind == DxfKind::LwPolyline)
     writer.group(43, width);
   if (points.front()[2] != 0) writer.group(38, points.front()[2]);
+  writer.verbatim(common.height);
   for (const Vec3d& p : points) {
     writer.group(10, p[0]);
     writer.group(20, p[1]);
@@ -71,6 +72,7 @@ void DxfCopies::append_heavy(DxfWriter& writer, const DxfDrawing::Shape& shape, 
   else writer.group(66, "     1");
   writer.point(10, {0, 0, in_space ? 0 : points.front()[2]});
   writer.flags(70, (closed ? 1 : 0) | (in_space ? kInSpaceFlag : 0) | line_type_flag(shape));
+  writer.verbatim(common.height);
   writer.verbatim(common.extended);
   for (const Vec3d& p : points) {
     append_part(writer, "VERTEX", common);
@@ -114,12 +116,9 @@ void DxfCopies::add_own(Common& common, const DxfEntity& entity) const {
     if (group.code == 102) in_braces = opens;
   });
   if (thickness == 0) return;
-  std::string height;
   const bool points_down =
       entity.kind != DxfKind::Ellipse && entity.kind != DxfKind::Spline && is_mirrored(text_, entity);
-  DxfWriter(height, line_end_).group(39, points_down ? -thickness : thickness);
-  // Behind the class that says where the form begins, which is written next: extended data come last.
-  common.extended.insert(0, height);
+  DxfWriter(common.height, line_end_).group(39, points_down ? -thickness : thickness);
 }
 
 /// Adds what an entity of a block has where an INSERT shows it: what it leaves to the block is that of the INSERT.

@@ -29,6 +29,7 @@ class DxfCopies {
   /// What an entity has beside its form, as groups.
   struct Common {
     std::string before, extended;  ///< In front of what its form is told by, and behind it.
+    std::string height;            ///< Its thickness, if it has one.
     std::string layer;
     bool is_modern = false;  ///< Says what classes it is made of, as entities do from R13 on.
   };
@@ -36,8 +37,8 @@ class DxfCopies {
   Common common_of(const DxfDrawing::Shape& shape);
   void add_own(Common& common, const DxfEntity& entity) const;
   void add_copied(Common& common, const DxfDrawing::Shape& shape);
-  void append_light(DxfWriter& writer, const DxfDrawing::Shape& shape, std::span<const Vec3d> points,
-                    bool closed) const;
+  void append_light(DxfWriter& writer, const DxfDrawing::Shape& shape, const Common& common,
+                    std::span<const Vec3d> points, bool closed) const;
   void append_heavy(DxfWriter& writer, const DxfDrawing::Shape& shape, const Common& common,
                     std::span<const Vec3d> points, bool closed);
   void append_part(DxfWriter& writer, std::string_view type, const Common& common);
