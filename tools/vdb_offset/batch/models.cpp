@@ -16,9 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of meshes and curves. Not .txt and .json: most such files in a folder of models are notes and reports.
-constexpr std::string_view kEndings[] = {".obj", ".ply", ".stl", ".off", ".3mf", ".glb", ".gltf", ".vtp", ".vtk",
-                                         ".vtu", ".fbx", ".dae", ".3ds", ".svg", ".dxf", ".dat",  ".xy"};
+// Of meshes and curves. Not .txt and .json: most such files in a folder of models are notes and reports;
+// nor what cannot be written, as outputs have the endings of models by default.
+constexpr std::string_view kEndings[] = {".obj", ".ply", ".stl", ".off", ".3mf", ".glb", ".gltf",
+                                         ".vtp", ".vtk", ".vtu", ".svg", ".dxf", ".dat", ".xy"};
 
 std::string lower(std::string text) {
   for (char& c : text)
