@@ -25,8 +25,8 @@ written goes below OUT. Of what is read, {model} stands for the path with DIR: -
 Some are for the batch as a whole: --max-memory holds for all models at once, by their estimates (with --sshlogin of each
 machine, with --slurm of each job); --dry-run prints which models would be done; --verbose prints the row of each model as it ends; --quiet prints nothing but errors.
 
-Models are files that end in .obj, .ply, .stl, .off, .svg, .dxf, .dat or .xy, compressed with .gz or .zst behind it;
-others (.txt, scenes in .json) are taken where --models names them.
+Models are files that end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .svg, .dxf, .dat or .xy, compressed
+with .gz or .zst behind it; others (.txt, scenes in .json, .fbx) are taken where --models names them.
 
 Examples:
   vdb_offset batch models bigger --distance 1%
