@@ -33,7 +33,8 @@ std::size_t index_in(const Indices& sorted, std::uint32_t member) {
 }  // namespace
 
 FaultFinder::Parts::Parts(const ConstrainedSurface& constrained_surface, std::span<const Vec3d> source,
-                          const Distances& distances, Rounding precision, std::optional<SelfCrossings> source_crossings)
+                          const Distances& distances, const Rounding& precision,
+                          std::optional<SelfCrossings> source_crossings)
     : constrained(constrained_surface),
       surface(constrained.surface),
       rewritten(rewrite(constrained, source, precision)),
@@ -76,7 +77,8 @@ void FaultFinder::Parts::find_rim_crossings(const Indices& moved, const Indices&
 }
 
 FaultFinder::FaultFinder(const ConstrainedSurface& constrained, std::span<const Vec3d> source,
-                         const Distances& distances, Rounding precision, std::optional<SelfCrossings> source_crossings)
+                         const Distances& distances, const Rounding& precision,
+                         std::optional<SelfCrossings> source_crossings)
     : source_(source) {
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
   VDB_OFFSET_ASSERT(constrained.fits());

@@ -49,7 +49,7 @@ class FaultFinder {
   /// \param precision that positions are rounded to
   /// \param source_crossings of the source, if they are known; else they are found
   FaultFinder(const ConstrainedSurface& constrained, std::span<const Vec3d> source, const Distances& distances,
-              Rounding precision, std::optional<SelfCrossings> source_crossings = {});
+              const Rounding& precision, std::optional<SelfCrossings> source_crossings = {});
 
   /// Moves some vertices, and finds the faults around them. `ends`, if they are given, are paths at whose ends vertices
   /// stand: what is known of the ends need not be found again. \pre `moved` is sorted, each once; no trial is open
@@ -119,7 +119,7 @@ class FaultFinder {
   /// The parts refer to each other, and stay where they are when the finder is moved.
   struct Parts {
     Parts(const ConstrainedSurface& constrained_surface, std::span<const Vec3d> source, const Distances& distances,
-          Rounding precision, std::optional<SelfCrossings> source_crossings);
+          const Rounding& precision, std::optional<SelfCrossings> source_crossings);
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
 

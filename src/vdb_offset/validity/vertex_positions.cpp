@@ -55,7 +55,7 @@ VertexPositions::VertexPositions(const ConstrainedSurface& constrained, std::spa
       source_(source),
       distances_(distances),
       near_(kNear * distances.scale()),
-      precision_(precision),
+      precision_(std::move(precision)),
       position_(source.begin(), source.end()),
       away_(source.size()),
       distance_(source.size()),

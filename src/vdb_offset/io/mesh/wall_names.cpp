@@ -11,7 +11,7 @@ namespace vdb_offset::io {
 namespace {
 
 /// The faces of each group, or of each object or material.
-class NamedFaces {
+class NamedWalls {
  public:
   void set(std::string name) { name_ = std::move(name), current_ = kUnknown; }
   void add_face() {
@@ -37,13 +37,13 @@ class NamedFaces {
 };
 
 struct Collector {
-  NamedFaces groups, materials, objects;
+  NamedWalls groups, materials, objects;
 
   void set_groups(const std::vector<std::string>& names) { groups.set(fmt::format("{}", fmt::join(names, "_"))); }
   void set_object(std::string name) { objects.set(std::move(name)); }
   void set_material(std::string name) { materials.set(std::move(name)); }
   void add_face() {
-    for (NamedFaces* kind : {&groups, &materials, &objects}) kind->add_face();
+    for (NamedWalls* kind : {&groups, &materials, &objects}) kind->add_face();
   }
 };
 
@@ -52,7 +52,7 @@ struct Collector {
 WallNames wall_names(const MeshFile& mesh) {
   Collector collector;
   visit_labels(mesh, collector);
-  for (NamedFaces* kind : {&collector.groups, &collector.materials, &collector.objects})
+  for (NamedWalls* kind : {&collector.groups, &collector.materials, &collector.objects})
     if (kind->any()) return kind->take();
   return {};
 }
