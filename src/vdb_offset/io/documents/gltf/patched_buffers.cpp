@@ -10,7 +10,7 @@
 
 namespace vdb_offset::io::gltf {
 
-PatchedBuffers::PatchedBuffers(const Contents& contents, const MovedMesh& moved) : contents_(contents) {
+PatchedBuffers::PatchedBuffers(const Contents& contents, const MovedMesh& moved) {
   for (const Block& block : contents.blocks) put_block(block, moved);
 }
 

@@ -27,7 +27,6 @@ class PatchedBuffers {
   void put(const Accessor& accessor, std::uint64_t i, const Vec3d& value);
   std::vector<float> bounds_of(const Accessor& accessor, bool most) const;
 
-  const Contents& contents_;
   std::map<std::size_t, std::shared_ptr<std::string>> buffers_;
   std::vector<Accessor> changed_;
 };
