@@ -7,6 +7,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/iso/convert_iso.h"
+#include "vdb_offset/io/mesh/encode.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
 
 namespace vdb_offset::io {
