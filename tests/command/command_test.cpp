@@ -644,7 +644,7 @@ TEST_CASE("command: heights of layers for each vertex from a file", "[command][l
 TEST_CASE("command: options of layers that do not go together", "[command][layers]") {
   const ShellCommand shell;
   for (const auto& [arguments, message] :
-       {std::pair{"out.vtu --distance 1", "--layers"},
+       {std::pair{"out.cgns --distance 1", "--layers"},
         {"out.obj --distance 1 --growth 1.2", "--growth needs --layers"},
         {"out.vtu --layers 3", "needs one of --first-height"},
         {"out.vtu --layers 3 --first-height 1 --total-thickness 2", "needs one of"},

@@ -178,12 +178,17 @@ void require_outputs_apart(const CheckRequest& request) {
                                    file.option, file.path));
 }
 
-/// The positions of the source's vertices in the offset, which has the same faces or, as an STL file, their triangles.
-std::vector<Vec3d> positions_in_offset(const Request& made, const Polygons& source, const Polygons& offset) {
+/// The positions of the source's vertices in the offset, which has the same faces or, in another format, as STL and
+/// glTF, their triangles.
+std::vector<Vec3d> positions_in_offset(const Request& made, const io::MeshFile& source_file,
+                                       const io::MeshFile& offset_file) {
+  const Polygons &source = source_file.polygons, &offset = offset_file.polygons;
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
     return offset.positions;
-  if (auto positions = io::positions_in_triangles(source.view(), offset.view())) return std::move(*positions);
+  const bool may_be_triangles = offset_file.format != source_file.format || offset_file.format == io::Format::Stl;
+  if (may_be_triangles)
+    if (auto positions = io::positions_in_triangles(source.view(), offset.view())) return std::move(*positions);
   throw InvalidInput(
       fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
@@ -294,7 +299,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
   tell_remarks(offset);
-  const std::vector<Vec3d> positions = positions_in_offset(made, source.file->polygons, offset.polygons);
+  const std::vector<Vec3d> positions = positions_in_offset(made, *source.file, offset);
   const Job job = resolve_options(made, source);
   CheckOptions options;
   options.only = job.options.only;

@@ -40,7 +40,7 @@ bool has_floats(vtkDataArray& array) { return array.GetDataType() == VTK_FLOAT |
 /// A copy of an array with other values at the vertices for which there is one.
 template <class ValueOf>
 vtkSmartPointer<vtkDataArray> with_values(vtkDataArray& array, ValueOf&& value_of) {
-  const auto copy = vtkSmartPointer<vtkDataArray>::Take(array.NewInstance());
+  auto copy = vtkSmartPointer<vtkDataArray>::Take(array.NewInstance());
   copy->DeepCopy(&array);
   for (vtkIdType v = 0; v < copy->GetNumberOfTuples(); ++v)
     if (const std::optional<Vec3d> value = value_of(static_cast<std::size_t>(v)))
