@@ -32,11 +32,13 @@ TEST_CASE("command: VTK and CGNS are loaded by runs that write their files, and 
   const ShellCommand shell;
   const std::string layers = " --layers 2 --first-height 0.01";
   for (const std::string& arguments :
-       {std::string("--version"), std::string("sphere.obj out.obj --distance 0.1"), "sphere.obj out.msh" + layers}) {
+       {std::string("--version"), std::string("sphere.obj out.glb --distance 0.1"),
+        std::string("sphere.obj in.vtp --distance 0.1"), "sphere.obj out.msh" + layers}) {
     INFO(arguments);
-    CHECK_THAT(loaded_by(shell, arguments),
-               Contains("libopenvdb") && !Contains("libvtk") && !Contains("libcgns") && !Contains("libhdf5"));
+    CHECK_THAT(loaded_by(shell, arguments), Contains("libopenvdb") && !Contains("libvtk") && !Contains("libcgns") &&
+                                                !Contains("libhdf5") && !Contains("libassimp"));
   }
+  CHECK_THAT(loaded_by(shell, "in.vtp out.obj --distance 0.1"), Contains("libvtkIOXML") && !Contains("libassimp"));
   CHECK_THAT(loaded_by(shell, "sphere.obj out.vtu" + layers), Contains("libvtkIOXML") && !Contains("libcgns"));
   CHECK_THAT(loaded_by(shell, "sphere.obj out.cgns" + layers), Contains("libcgns") && !Contains("libvtk"));
   CHECK(shell.has("out.vtu"));
@@ -49,9 +51,10 @@ TEST_CASE("command: a missing module is told before the work, in one line", "[co
   std::filesystem::copy_file(COMMAND, alone);
   for (const char* ending : {"vtu", "cgns"}) {
     const std::string out = shell.file("out." + std::string(ending)), text = shell.file("text");
-    const int status = std::system(("cd / && '" + alone + "' '" + shell.file("sphere.obj") + "' '" + out +
-                                    "' --layers 2 --first-height 0.01 --quiet 2>'" + text + "' </dev/null")
-                                       .c_str());
+    const int status =
+        std::system(("cd / && env -u VDB_OFFSET_MODULES '" + alone + "' '" + shell.file("sphere.obj") + "' '" + out +
+                     "' --layers 2 --first-height 0.01 --quiet 2>'" + text + "' </dev/null")
+                        .c_str());
     CHECK(WEXITSTATUS(status) == 4);
     const std::string err = shell.slurp(text);
     CHECK_THAT(err, Catch::Contains("out." + std::string(ending) + ": expected the module vdb_offset_") &&
