@@ -78,7 +78,7 @@ TEST_CASE("gltf: files beside go along, and those of the source are never replac
     io::write_mesh(folder.file("out.gltf"), other, scaled(other, 2));
     CHECK(slurp(folder.file("out.bin")) == before);
     CHECK(io::read_mesh(folder.file("out.gltf")).polygons.positions == scaled(other, 2));
-    CHECK(fs::exists(folder.file("out_1.bin")));
+    CHECK(fs::exists(folder.file("out.gltf_1.bin")));
   }
   SECTION("in another folder, files that stay are copied") {
     fs::create_directories(folder.path / "out");
@@ -99,7 +99,7 @@ TEST_CASE("gltf: a mesh of another format becomes a new file", "[gltf]") {
   const io::MeshFile obj = io::parse_mesh("in.obj", io::Format::Obj, kPaintedSeam);
   for (const char* name : {"out.glb", "out.gltf"}) {
     const io::WriteResult result = io::write_mesh(folder.file(name), obj, obj.polygons.positions);
-    CHECK(result.lost == "materials, digits beyond single precision");  // of which names are kept
+    CHECK(result.lost == "what materials are made of, digits beyond single precision");
     const io::MeshFile back = io::read_mesh(folder.file(name));
     // Vertices 2 and 3 have two pairs of texture coordinates each: copies behind the others.
     REQUIRE(back.polygons.positions.size() == 6);

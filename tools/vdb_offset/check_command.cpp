@@ -310,7 +310,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   options.miter_limit = job.options.miter_limit;
   options.weld = job.options.weld;
   options.orient = job.options.orient;
-  options.precision = io::precision_of(made.output, offset, made.write);
+  if (io::is_written(offset.format)) options.precision = io::precision_of(made.output, offset, made.write);
   options.precision.rounds_all = source.file->format != offset.format;
   options.threads = made.threads;
   if (made.tolerance) {

@@ -13,6 +13,7 @@
 #include "outputs.h"
 #include "request/option_values.h"
 #include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"
 
@@ -92,6 +93,9 @@ std::vector<RunFile> written_by(const Request& request, std::vector<Destination>
   const bool may_be_input = destinations.size() == 1 && !scene::is_scene(request.input);
   for (const Destination& to : destinations) {
     files.push_back({"OUTPUT", to.mesh, may_be_input});
+    // Where its numbers go, if those of the source are in a file of their own.
+    if (io::format_of(to.mesh) == io::Format::Gltf)
+      files.push_back({"OUTPUT", fs::path(to.mesh).replace_extension(".bin").string(), may_be_input});
     add(files, "--report", to.report);
     add(files, "--states", to.states);
     add(files, "--paths", to.paths);

@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "messages.h"
+#include "request/units.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/refined_file.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {
+
+constexpr double kMicrometresInMm = 1000;
 
 /// Appends a mesh to another one.
 void add(Polygons& to, const Polygons& from) {
@@ -81,6 +84,18 @@ void tell_remarks(const io::MeshFile& file) {
   for (const std::string& remark : file.remarks) tell(fmt::format("{}: {}", file.path, remark));
 }
 
+namespace {
+
+/// Refuses a mesh beside the source whose file says that its numbers are something else.
+void require_same_unit(const Source& source, const std::string& option, const io::MeshFile& file) {
+  const std::optional<double> own = source.file ? source.file->unit_micrometres : std::nullopt;
+  if (own && file.unit_micrometres && *own != *file.unit_micrometres)
+    throw InvalidInput(fmt::format("{}: {}: expected the unit of INPUT ({:g} mm), got another one ({:g} mm)", file.path,
+                                   option, *own / kMicrometresInMm, *file.unit_micrometres / kMicrometresInMm));
+}
+
+}  // namespace
+
 Source read_source(const Request& request, bool curves) {
   set_memory_limit(request.max_memory);
   Source source;
@@ -93,14 +108,18 @@ Source read_source(const Request& request, bool curves) {
   if (scene::is_scene(request.input)) source.scene = scene::read_scene(request.input);
   if (!source.scene) source.file = io::read_mesh(request.input, format_of(request.input, request));
   else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
+  // What the user says counts more than what the file does.
+  if (source.file && !request.unit.empty()) source.file->unit_micrometres = micrometres_of(request.unit);
   if (source.file && !request.quiet) tell_remarks(*source.file);
   for (const std::string& path : request.obstacles) {
     const io::MeshFile obstacle = io::read_mesh(path, format_of(path, request));
+    require_same_unit(source, "--obstacle", obstacle);
     if (!request.quiet) tell_remarks(obstacle);
     add(source.obstacles, obstacle.polygons);
   }
   if (!request.fit.empty()) {
     const io::MeshFile to_fit = io::read_mesh(request.fit, format_of(request.fit, request));
+    require_same_unit(source, "--fit", to_fit);
     if (!request.quiet) tell_remarks(to_fit);
     source.to_fit = to_fit.polygons;
   }

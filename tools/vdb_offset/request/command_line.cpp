@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -150,9 +151,17 @@ void CommandLine::add_unit(std::string& unit, const std::string& input) {
 
 namespace {
 
-/// The unit that a file tells of its numbers, if it does. \throw ReadError, InvalidInput as its reader
-std::optional<double> unit_of_file(const std::string& path) {
-  if (io::format_of(path)) return io::unit_micrometres(path);
+/// The unit that a file tells of its numbers, if it does. `format` is that of files with other endings; may be empty.
+/// \throw ReadError, InvalidInput as its reader
+std::optional<double> unit_of_file(const std::string& path, const std::string& format) {
+  std::error_code unknown;
+  // Of a folder of models, each is asked when its turn comes.
+  if (path.empty() || std::filesystem::is_directory(path, unknown)) return micrometres_of("mm");
+  const auto known = io::format_of(path) ? io::format_of(path) : io::format_of("." + format);
+  if (known == io::Format::Glb || known == io::Format::Gltf) return io::unit_micrometres(path, known);
+  // What is no file can be read once.
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)) return std::nullopt;
+  if (known) return path == "-" ? std::nullopt : io::unit_micrometres(path, known);
   return io::curve_format_of(path) ? io::unit_of_curves(path) : std::nullopt;
 }
 
@@ -161,7 +170,11 @@ std::optional<double> unit_of_file(const std::string& path) {
 std::string CommandLine::text_of(const CLI::Option& option, const std::string& given) const {
   const std::string& name = option.get_lnames().front();
   const bool is_length = std::find(std::begin(kLengths), std::end(kLengths), name) != std::end(kLengths);
-  const auto file_unit = [this] { return unit_->empty() ? unit_of_file(*measured_) : micrometres_of(*unit_); };
+  const auto file_unit = [this] {
+    if (!unit_->empty()) return micrometres_of(*unit_);
+    const CLI::Option* const format = app_->get_option_no_throw("--format");
+    return unit_of_file(*measured_, format && format->count() > 0 ? format->results().front() : std::string());
+  };
   return unit_ && is_length ? in_file_units("--" + name, given, file_unit) : given;
 }
 

@@ -172,9 +172,10 @@ Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, cons
   return encode_fitting(source, target, content, result);
 }
 
-Pieces convert(Format target, const Hollow& hollow, WriteResult& result) {
+Pieces convert(Format target, const Hollow& hollow, std::optional<double> unit_micrometres, WriteResult& result) {
   if (!keeps_parts(target, {})) result.lost = kShellParts;
-  return encode(target, std::make_shared<Content>(Content{hollow.polygons.view(), {}, {}, parts_of(hollow), {}}));
+  return encode(target, std::make_shared<Content>(
+                            Content{hollow.polygons.view(), {}, {}, parts_of(hollow), {}, unit_micrometres}));
 }
 
 Pieces convert(const MeshFile& source, Format target, const IsoResult& iso, const Transported& transported,

@@ -22,6 +22,6 @@ Pieces convert(Format target, const IsoResult& iso, const Rounding& precision);
 Pieces convert(const MeshFile& source, Format target, const Hollow& hollow, const IsoResult& iso, WriteResult& result);
 
 /// A hollow solid of plain polygons.
-Pieces convert(Format target, const Hollow& hollow, WriteResult& result);
+Pieces convert(Format target, const Hollow& hollow, std::optional<double> unit_micrometres, WriteResult& result);
 
 }  // namespace vdb_offset::io

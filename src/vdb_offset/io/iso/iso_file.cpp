@@ -59,7 +59,8 @@ WriteResult write_hollow(const std::string& path, const MeshFile* source, const 
   const Format format = require_written_format(path, options.format);
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;
-  const Pieces pieces = is_skin ? convert(*source, format, hollow, iso, result) : convert(format, hollow, result);
+  const Pieces pieces = is_skin ? convert(*source, format, hollow, iso, result)
+                                : convert(format, hollow, source ? source->unit_micrometres : std::nullopt, result);
   if (source) write_pieces_of(source->path, source->bytes, path, pieces);
   else write_pieces(path, pieces);
   return result;

@@ -127,9 +127,10 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
   if (target == Format::ThreeMf || is_gltf(target) || (source.document && target == Format::Obj))
     if (Materials materials = read_materials(source); !materials.of_face.empty()) {
       content->materials = std::move(materials);
-      // 3MF has their names alone, unless vertices have colours: a triangle has either.
-      if (target == Format::ThreeMf && with.colours.empty())
-        std::replace(with.lost.begin(), with.lost.end(), std::string("materials"), std::string("colours of materials"));
+      // Their names alone; and in 3MF not these either where vertices have colours: a triangle has either.
+      if (target != Format::ThreeMf || with.colours.empty())
+        std::replace(with.lost.begin(), with.lost.end(), std::string("materials"),
+                     std::string(target == Format::ThreeMf ? "colours of materials" : "what materials are made of"));
     }
   if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);

@@ -39,11 +39,26 @@ void append_values(std::string& bytes, const Point& p, bool single) {
     else append_binary(bytes, p[k]);
 }
 
+/// A name as a line of OBJ can hold it: other formats' names may end the line, go on in the next one, or begin a
+/// comment.
+std::string obj_name(std::string name) {
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+    if (c == '#') c = '_';
+  }
+  while (name.ends_with('\\') || name.ends_with(' ')) name.pop_back();
+  name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
+  return name;
+}
+
 /// Appends a `usemtl` line if the face's material differs from that of the face before.
 void append_material(std::string& text, const Materials& materials, std::size_t f) {
   if (materials.of_face.empty()) return;
   const std::uint32_t material = materials.of_face[f], before = f > 0 ? materials.of_face[f - 1] : kNoNormal;
-  if (material != before && !materials.names[material].empty()) text += "usemtl " + materials.names[material] + "\n";
+  if (material == before) return;
+  if (const std::string name = obj_name(materials.names[material]); !name.empty()) text += "usemtl " + name + "\n";
+  // A material holds until another one follows: this is the name for none.
+  else if (f > 0) text += "usemtl none\n";
 }
 
 void append_obj_face(std::string& text, const Content& content, std::size_t f) {

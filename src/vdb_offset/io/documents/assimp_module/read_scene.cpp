@@ -18,9 +18,11 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/documents/assimp/assimp_meshes.h"
+#include "vdb_offset/io/documents/documents.h"
 #include "vdb_offset/io/documents/trial.h"
 #include "vdb_offset/io/mesh/document.h"
 #include "vdb_offset/io/mesh/read/mesh_readers.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -46,6 +48,29 @@ class AssimpDocument : public Document {
   FaceNames names_;
 };
 
+/// The ending of a file's name, which says how it is read.
+std::string hint_of(std::string path) {
+  for (const char* const packed : {".gz", ".zst"})
+    if (path.ends_with(packed)) path.resize(path.rfind('.'));
+  std::string ending = path.substr(path.rfind('.') + 1);
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending;
+}
+
+/// The unit of a Collada file in metres, which Assimp makes of all coordinates: what the file says, or one metre. None
+/// for other files.
+std::optional<double> collada_unit(const MeshFile& file) {
+  if (hint_of(file.path) != "dae") return std::nullopt;
+  const std::string_view text = file.text();
+  const std::size_t unit = text.find("<unit"), end = text.find('>', unit), at = text.find("meter", unit);
+  if (unit == std::string_view::npos || at >= end) return 1.0;
+  const std::size_t quote = text.find_first_of("\"'", at);
+  if (quote >= end) return 1.0;
+  const auto metres = decimal<double>(text.substr(quote + 1, text.find(text[quote], quote + 1) - quote - 1));
+  return metres && *metres > 0 ? metres : 1.0;
+}
+
 /// The meshes of a scene, each where the nodes place it.
 class SceneReader {
  public:
@@ -61,7 +86,14 @@ class SceneReader {
       has_bones_ = has_bones_ || mesh.HasBones();
       has_morphs_ = has_morphs_ || mesh.mNumAnimMeshes > 0;
     }
-    add(*scene_.mRootNode, aiMatrix4x4());
+    aiMatrix4x4 own_unit;
+    if (const std::optional<double> metres = collada_unit(file_)) {
+      aiMatrix4x4::Scaling(aiVector3D(static_cast<float>(1 / *metres)), own_unit);
+      file_.unit_micrometres = *metres * kMetre;
+    } else {
+      file_.unit_micrometres = unit();
+    }
+    add(*scene_.mRootNode, own_unit);
     if (file_.polygons.face_count() == 0)
       throw InvalidInput(file_.path + ": expected a mesh of at least one face, got none");
     if (others_ > 0) extra(fmt::format("{} points and lines", others_));
@@ -73,7 +105,6 @@ class SceneReader {
     if (scene_.mNumCameras + scene_.mNumLights > 0) extra("cameras and lights");
     file_.encoding = Encoding::LittleEndian;
     if (has_normals_) file_.vertex_normals = file_.polygons.positions.size();
-    file_.unit_micrometres = unit();
     attributes_.has_alpha = has_colours_;
     file_.document = std::make_shared<AssimpDocument>(std::move(attributes_), std::move(names_));
   }
@@ -168,16 +199,11 @@ class SceneReader {
   bool has_normals_ = true, has_colours_ = true, has_texture_ = true, has_bones_ = false, has_morphs_ = false;
 };
 
-/// The ending of a file's name, which says how it is read.
-std::string hint_of(std::string path) {
-  for (const char* const packed : {".gz", ".zst"})
-    if (path.ends_with(packed)) path.resize(path.rfind('.'));
-  return path.substr(path.rfind('.') + 1);
-}
-
 const aiScene* import(Assimp::Importer& importer, const MeshFile& file) {
   // Corners that are the same in everything become one vertex; FBX's pivots become part of the nodes' placements.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  // Coordinates are the file's own; see collada_unit().
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const std::string_view bytes = file.text();
   return importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_JoinIdenticalVertices,
                                      hint_of(file.path).c_str());

@@ -51,14 +51,25 @@ std::string FilesBeside::add_changed(const Buffer& buffer, std::string bytes, Wr
     written.beside.push_back({buffer.path, std::move(bytes)});
     return buffer.uri;
   }
-  const std::string stem = fs::path(without_compression(target_)).stem().string();
-  for (std::size_t number = 0;; ++number) {
-    const std::string name = number == 0 ? stem + ".bin" : fmt::format("{}_{}.bin", stem, number);
+  // out.bin for out.gltf; what follows has the whole name in its own, so that no other output's is the same.
+  const std::string whole = fs::path(target_).filename().string();
+  const bool is_packed = without_compression(target_) != target_;
+  for (std::size_t number = is_packed ? 1 : 0;; ++number) {
+    const std::string name =
+        number == 0 ? fs::path(target_).stem().string() + ".bin" : fmt::format("{}_{}.bin", whole, number);
     const fs::path path = fs::path(target_).parent_path() / name;
-    if (!taken_.insert(whole_path(path)).second) continue;
+    if (!taken_.insert(whole_path(path)).second || is_of_another(path)) continue;
     written.beside.push_back({path.string(), std::move(bytes)});
     return as_uri(name);
   }
+}
+
+bool FilesBeside::is_of_another(const fs::path& path) const {
+  std::error_code error;
+  if (!fs::exists(path, error)) return false;
+  if (!fs::is_regular_file(target_, error)) return true;
+  // What the target was before names it, as a file that this program wrote would.
+  return FileBytes::open(target_).view().find('"' + as_uri(path.filename().string()) + '"') == std::string_view::npos;
 }
 
 void FilesBeside::add_copy(const std::string& uri, WrittenDocument& written) {

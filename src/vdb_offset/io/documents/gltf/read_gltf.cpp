@@ -48,6 +48,12 @@ void require_plain_geometry(const JsonValue& root) {
         required[i].fail("geometry as plain floats", fmt::format("{}, which is not supported", name));
 }
 
+/// Files of numbers that lie beside it.
+void list_files_beside(const Contents& contents, MeshFile& file) {
+  for (const Buffer& buffer : contents.buffers)
+    if (buffer.in == Buffer::In::File) file.files_beside.push_back(buffer.path);
+}
+
 void list_extras(const JsonValue& root, const MeshBuilder& builder, MeshFile& file) {
   constexpr std::pair<const char*, const char*> kLists[] = {
       {"materials", "materials"},   {"textures", "textures"}, {"skins", "skins"},
@@ -98,6 +104,7 @@ void parse_gltf(MeshFile& file) {
   MeshBuilder builder(file, root, contents);
   builder.build(read_placements(root));
   list_extras(root, builder, file);
+  list_files_beside(contents, file);
   set_precision(contents, file);
   file.encoding = Encoding::LittleEndian;
   file.unit_micrometres = kMetre;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
@@ -48,6 +49,9 @@ class FilesBeside {
   bool in_same_folder() const { return same_folder_; }
 
  private:
+  /// Whether a file is there that is not the target's own from before.
+  bool is_of_another(const std::filesystem::path& path) const;
+
   std::string source_, target_;
   bool in_place_, same_folder_;
   std::set<std::string> taken_;  ///< Absolute paths of files that the source is made of, or that are written.

@@ -108,6 +108,8 @@ class Walk {
   void place(const JsonValue& node, const Transform& transform) {
     const auto mesh = node.find("mesh");
     if (!mesh) return;
+    if (const auto extensions = node.find("extensions"); extensions && extensions->find("EXT_mesh_gpu_instancing"))
+      node.fail("nodes that place a mesh by themselves", "EXT_mesh_gpu_instancing, which is not supported");
     Placement& placement = placements_[meshes_.index_of(*mesh)];
     if (placement.nodes++ > 0) return;
     placement.node_name = node.text_of("name");

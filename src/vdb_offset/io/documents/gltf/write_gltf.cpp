@@ -34,7 +34,8 @@ class NewModel {
         wide_(split_->origin.size() > kMostShort) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "vdb_offset"}};
     json_["scene"] = 0;
-    json_["scenes"] = {{{"nodes", Json::array()}}};
+    // (Not from lists within lists, which compilers take for different things.)
+    json_["scenes"][0]["nodes"] = Json::array();
     for (const char* key : {"nodes", "meshes"}) json_[key] = Json::array();
     add_materials();
     for (const char* key : {"accessors", "bufferViews"}) json_[key] = Json::array();
@@ -51,7 +52,8 @@ class NewModel {
   std::string json(const std::string& uri = {}) {
     Json buffer = {{"byteLength", bytes_}};
     if (!uri.empty()) buffer["uri"] = uri;
-    json_["buffers"] = {buffer};
+    json_["buffers"] = Json::array();
+    json_["buffers"].push_back(std::move(buffer));
     return json_.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
   Pieces binary(const std::string& head) { return in_sections(head, sections_); }

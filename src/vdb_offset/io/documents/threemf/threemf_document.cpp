@@ -35,6 +35,10 @@ class ThreeMfDocument : public Document {
     name_extras(scene, file);
     place_meshes(scene, file.polygons);
     find_touching(scene, file);
+    // Where an object is placed, digits of the numbers in its frame are not those of the scene, on which validity is
+    // judged: such a file gets as many as there are.
+    for (const PlacedMesh& mesh : scene.meshes)
+      if (!mesh.transform.is_identity()) file.encoding = Encoding::LittleEndian;
     if (file.polygons.face_count() == 0)
       throw InvalidInput(scene.parts[0].label +
                          ": expected an item in 'build' that places a mesh of triangles, got none");

@@ -41,6 +41,35 @@ std::uint32_t packed_colour(const std::array<double, 4>& colour) {
 }
 
 /// A text in which the characters that XML reserves are written as it wants them.
+/// Whether a text is UTF-8 (RFC 3629).
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    const unsigned first = byte(at);
+    const std::size_t more = first < 0x80                    ? 0
+                             : first >= 0xc2 && first < 0xe0 ? 1
+                             : first >= 0xe0 && first < 0xf0 ? 2
+                             : first >= 0xf0 && first < 0xf5 ? 3
+                                                             : 4;
+    if (more == 4) return false;
+    for (std::size_t k = 1; k <= more; ++k)
+      if ((byte(at + k) & 0xc0u) != 0x80) return false;
+    const unsigned second = byte(at + 1);
+    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
+        (first == 0xf4 && second > 0x8f))
+      return false;
+    at += more + 1;
+  }
+  return true;
+}
+
+/// A text in some other encoding, in which ASCII stays as it is.
+std::string as_ascii(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) >= 0x80) c = '?';
+  return text;
+}
+
 std::string in_xml(std::string_view text) {
   std::string made;
   for (const char c : text) {
@@ -50,7 +79,7 @@ std::string in_xml(std::string_view text) {
     else if (static_cast<unsigned char>(c) < ' ') made += ' ';
     else made += c;
   }
-  return made;
+  return is_utf8(made) ? made : as_ascii(std::move(made));
 }
 
 /// The mesh, and what its triangles have: colours, or else the materials or the parts of its faces.

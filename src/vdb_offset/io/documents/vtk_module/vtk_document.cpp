@@ -9,9 +9,11 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkPolyDataWriter.h>
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -70,6 +72,18 @@ std::string xml_of(vtkXMLWriter& writer, vtkPointSet& data, const VtkHeader& hea
         path + ": cannot be written: " +
         (complaint.empty() ? vtkErrorCode::GetStringFromErrorCode(writer.GetErrorCode()) : complaint.in_short()));
   return writer.GetOutputString();
+}
+
+template <class Writer>
+std::string legacy_of(vtkPointSet& data, const std::string& path) {
+  const VtkComplaint complaint;
+  const auto writer = vtkSmartPointer<Writer>::New();
+  writer->SetInputData(&data);
+  writer->SetFileTypeToBinary();
+  writer->WriteToOutputStringOn();
+  if (writer->Write() == 0 || !complaint.empty())
+    throw WriteError(path + ": cannot be written: " + complaint.in_short());
+  return writer->GetOutputStdString();
 }
 
 /// The colours of points: bytes, three or four for each, under a name that programs have for them.
@@ -158,10 +172,13 @@ WrittenDocument VtkDocument::rewrite(const MovedMesh& moved) const {
     copy->GetPointData()->AddArray(turned);
   }
   if (header_.legacy) {
-    auto bytes = rewrite_legacy(moved.source, header_.ascii, *data_, *copy, normals(), turned);
-    if (!bytes)
-      throw InvalidInput(moved.source.path + ": expected its points and normals where VTK read them, found others");
-    return {whole(*std::move(bytes)), {}, {}};
+    if (auto bytes = rewrite_legacy(moved.source, header_.ascii, *data_, *copy, normals(), turned))
+      return {whole(*std::move(bytes)), {}, {}};
+    // A layout in which the numbers are not found: a new file of VTK's, binary, as its texts have too few digits.
+    return {whole(header_.grid ? legacy_of<vtkUnstructuredGridWriter>(*copy, moved.path)
+                               : legacy_of<vtkPolyDataWriter>(*copy, moved.path)),
+            {},
+            {"the layout of the text"}};
   }
   if (header_.grid)
     return {whole(xml_of(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), *copy, header_, moved.path)), {}, {}};

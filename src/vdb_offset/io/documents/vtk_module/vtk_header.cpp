@@ -35,8 +35,9 @@ std::string_view quoted(std::string_view text, std::size_t at) {
 
 /// The value of an attribute of an element, or nothing.
 std::string_view attribute(std::string_view element, const std::string& name) {
-  const std::size_t at = element.find(" " + name + "=");
-  return at == std::string_view::npos ? std::string_view() : quoted(element, at);
+  for (std::size_t at = element.find(name + "="); at != std::string_view::npos; at = element.find(name + "=", at + 1))
+    if (at > 0 && static_cast<unsigned char>(element[at - 1]) <= ' ') return quoted(element, at);
+  return {};
 }
 
 /// Whether an array of the text is stored so.
