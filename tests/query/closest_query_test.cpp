@@ -37,6 +37,24 @@ double worst_difference(const Polygons& mesh, int points, double margin) {
 
 }  // namespace
 
+TEST_CASE("closest: points beyond all that floats can square have an answer", "[query]") {
+  const Polygons box = scene::box({1, 1, 1}, 1, true);  // of 12 triangles, in lowest boxes of 8
+  Surface surface = build_surface(box.view(), {});
+  to_local_frame(surface, surface.facts.diagonal / 50);
+  const ClosestQuery query(surface);
+  for (const double far : {1e12, 1e18, 1e25, 1e100}) {
+    const std::vector<Vec3d> points(3, Vec3d(far, 0.25, 0.25) - surface.origin);
+    const std::vector<std::uint32_t> hints(points.size(), 0);
+    std::vector<Closest> answers(points.size());
+    query.answer_together(points, hints, answers);
+    answers.push_back(query(points.front(), 0));
+    for (const Closest& closest : answers) {
+      CHECK(closest.triangle < surface.triangles.size());
+      CHECK(closest.distance == Approx(far));
+    }
+  }
+}
+
 TEST_CASE("closest: equals brute force", "[closest]") {
   // 1e-12 of the diagonal: rounding of coordinates of size 1 and a few operations on them.
   CHECK(worst_difference(scene::bumpy_sphere(1, 0.3, 1.5, 3, 4), 400, 0.5) < 4e-12);

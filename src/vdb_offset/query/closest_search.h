@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -118,7 +119,8 @@ class ClosestQuery::Search {
   void tighten() {
     const double distance = std::sqrt(best_.squared_distance), tie = query_.farthest_tie(distance);
     const float reach = (static_cast<float>(distance * query_.scale_) + rounding_) * 1.000001f;
-    limit_ = reach * reach;
+    // Not infinite, as boxes that are unused are that far away.
+    limit_ = std::min(reach * reach, std::numeric_limits<float>::max());
     tie_ = tie * tie;
   }
 
@@ -129,6 +131,7 @@ class ClosestQuery::Search {
   }
 
   void compare(std::uint32_t other) {
+    if (other >= surface_.triangles.size()) return;  // an unused lane, which is nearer than what is far beyond all else
     const TrianglePoint candidate = surface_.closest_on(other, x_);
     if (candidate.squared_distance >= best_.squared_distance) {
       tied_ = tied_ || (candidate.squared_distance <= tie_ && are_apart(candidate, best_));

@@ -41,24 +41,36 @@ std::uint32_t packed_colour(const std::array<double, 4>& colour) {
 }
 
 /// A text in which the characters that XML reserves are written as it wants them.
-/// Whether a text is UTF-8 (RFC 3629).
+/// How many bytes a character of UTF-8 has that begins so; 0: none does.
+std::size_t utf8_length(unsigned char first) {
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first < 0xe0) return 2;
+  if (first >= 0xe0 && first < 0xf0) return 3;
+  return first >= 0xf0 && first < 0xf5 ? 4 : 0;
+}
+
+/// Whether these bytes are one character of UTF-8 (RFC 3629, section 4).
+bool is_utf8_character(std::string_view bytes) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(bytes[k]); };
+  for (std::size_t k = 1; k < bytes.size(); ++k)
+    if ((byte(k) & 0xc0) != 0x80) return false;
+  if (bytes.size() < 3) return true;
+  // Neither longer than need be, nor a half of a pair, nor beyond the last character.
+  const unsigned first = byte(0), second = byte(1);
+  const unsigned least = first == 0xe0   ? 0xa0
+                         : first == 0xf0 ? 0x90
+                                         : 0x80,
+                 most = first == 0xed   ? 0x9f
+                        : first == 0xf4 ? 0x8f
+                                        : 0xbf;
+  return second >= least && second <= most;
+}
+
 bool is_utf8(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-    const unsigned first = byte(at);
-    const std::size_t more = first < 0x80                    ? 0
-                             : first >= 0xc2 && first < 0xe0 ? 1
-                             : first >= 0xe0 && first < 0xf0 ? 2
-                             : first >= 0xf0 && first < 0xf5 ? 3
-                                                             : 4;
-    if (more == 4) return false;
-    for (std::size_t k = 1; k <= more; ++k)
-      if ((byte(at + k) & 0xc0u) != 0x80) return false;
-    const unsigned second = byte(at + 1);
-    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
-        (first == 0xf4 && second > 0x8f))
-      return false;
-    at += more + 1;
+    const std::size_t length = utf8_length(static_cast<unsigned char>(text[at]));
+    if (length == 0 || length > text.size() - at || !is_utf8_character(text.substr(at, length))) return false;
+    at += length;
   }
   return true;
 }
