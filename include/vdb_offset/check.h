@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
+#include "vdb_offset/exact_surface.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/run.h"
 
@@ -17,13 +18,14 @@ struct VDB_OFFSET_API CheckOptions {
   /// The distance that was asked for, world units, negative inward, one for all vertices or one for each; empty: the
   /// median of the distances found, with the sign of most of them.
   std::optional<Distances> distance;
-  /// Marks of the faces that were offset. This and the next five are as they were for the offset (see OffsetOptions).
+  /// Marks of the faces that were offset. This and the next six are as they were for the offset (see OffsetOptions).
   std::vector<std::uint8_t> only;
   Border border = Border::Slide;
   PolygonView obstacles;
   double clearance = 0;
   Corners corners = Corners::Round;
   double miter_limit = 4;
+  const ExactSurface* exact = nullptr;
   WeldOptions weld = WeldOptions::automatic();
   Metric metric;  ///< Of the space in which distances are measured.
   Orient orient = Orient::Keep;

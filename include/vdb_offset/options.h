@@ -7,6 +7,7 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/exact_surface.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
@@ -65,6 +66,11 @@ struct VDB_OFFSET_API OffsetOptions {
   /// The longest that a miter may be, in distances, >= 1; one that would be longer is cut, unless its end is at the
   /// distance itself.
   double miter_limit = 4;
+  /// The surface that the mesh is a tessellation of, which outlives the call; nullptr: the mesh is all that is known.
+  /// Where it is known, vertices go along its normals, and those on its sharp edges have the miters of its faces; a
+  /// vertex is Reached that is at the distance from it, though its faces may be nearer by the deflection. Has
+  /// no effect where axes count differently.
+  const ExactSurface* exact = nullptr;
   Precision precision;  ///< What the file that the result is for keeps; validity is checked on that.
   WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;

@@ -48,6 +48,8 @@ void write_paths(LimitState& state, std::vector<std::uint8_t>& mended) {
     const Vec3d displacement = state.displacement_of(v);
     const bool stayed = paths.displacement[v] == displacement;
     paths.displacement[v] = displacement;
+    const bool is_exact = stayed && !state.constrained.nearer.empty() && state.constrained.nearer[v] > 0;
+    if (is_exact) continue;  // what it has achieved is its distance from the exact surface
     const double distance = state.faults.distance_of(v), before = std::exchange(paths.achieved[v], distance);
     if (stayed) continue;
     if (!mended.empty()) mended[v] = 1;

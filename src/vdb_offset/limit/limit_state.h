@@ -46,7 +46,9 @@ struct LimitState {
 
   /// Whether a vertex is nearer to the surface than its distance.
   bool is_short(std::uint32_t v) const {
-    return faults.distance_of(v) < std::abs(distances[v]) * (1 - kReachedTolerance) - faults.rounding(v);
+    const double nearer = constrained.nearer.empty() ? 0 : constrained.nearer[v];
+    return faults.distance_of(v) <
+           (nearer > 0 ? nearer : std::abs(distances[v])) * (1 - kReachedTolerance) - faults.rounding(v);
   }
   /// Whether a vertex may slide at its distance. A collided one may slide to where there is room; a vertex that stays,
   /// or is bound to its path, may not.

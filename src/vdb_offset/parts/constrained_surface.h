@@ -53,6 +53,9 @@ struct ConstrainedSurface {
   /// Of each vertex: how far from the moving part it may be, if that is farther than its distance. Empty: no vertex
   /// may.
   std::span<const double> farther;
+  /// Of each vertex: how near to the triangles of the moving part it may be and yet be at its distance from the exact
+  /// surface; 0 if it has to be as far as asked. Empty: all have.
+  std::span<const double> nearer;
 
   const FileFrame* file = nullptr;  ///< If distances are measured in the space of a metric.
 
@@ -94,7 +97,7 @@ struct ConstrainedSurface {
     return surface.origin == moving_part.surface().origin && fits(part_vertex, surface.vertices.size()) &&
            fits(off_part, surface.triangles.size()) && fits(bound, surface.vertices.size()) &&
            fits(other_skin, surface.vertices.size()) && fits(farther, surface.vertices.size()) &&
-           part_vertex.empty() == off_part.empty() &&
+           fits(nearer, surface.vertices.size()) && part_vertex.empty() == off_part.empty() &&
            (!obstacles || obstacles->query.surface().origin == surface.origin);
   }
 };

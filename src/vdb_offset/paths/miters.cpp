@@ -41,14 +41,14 @@ double area_of(const Polyline& line, std::uint32_t segment) {
 
 /// The normals of the planes around a vertex, each once: of the largest of the faces on it, which tells best.
 template <class Shape>
-std::vector<Vec3d> planes_around(const Shape& shape, std::uint32_t vertex) {
+std::vector<Vec3d> planes_around(const Shape& shape, std::uint32_t vertex, const ExactCorners* exact) {
   std::vector<std::pair<double, std::uint32_t>> faces;
   for (const auto t : shape.triangles_around(vertex))
     if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-area_of(shape, t), t);
   std::sort(faces.begin(), faces.end());
   std::vector<Vec3d> planes;
   for (const auto& [area, t] : faces) {
-    const Vec3d& normal = shape.triangle_normals[t];
+    const Vec3d& normal = exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
     if (std::none_of(planes.begin(), planes.end(),
                      [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine; }))
       planes.push_back(normal);
@@ -95,10 +95,10 @@ bool holds_foot(const Polyline& line, std::uint32_t segment, std::uint32_t verte
 /// Whether the end of a miter on one side is at a distance of 1 from the faces around the vertex, if these went on for
 /// ever: as it is on all of their planes that are moved by 1, or beyond, whether it is above a face that it is on.
 template <class Shape>
-bool is_above_face(const Shape& shape, std::uint32_t vertex, const Vec3d& end, int side) {
+bool is_above_face(const Shape& shape, std::uint32_t vertex, const Vec3d& end, int side, const ExactCorners* exact) {
   const auto around = shape.triangles_around(vertex);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
-    const Vec3d& normal = shape.triangle_normals[t];
+    const Vec3d& normal = exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
     const double height = normal.dot(end);
     return std::abs(height - 1) <= kReachedTolerance && holds_foot(shape, t, vertex, (end - normal * height) * side);
   });
@@ -124,33 +124,40 @@ bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
 
 template <class Query>
 MiterFinder<Query>::MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
-                                std::span<const MiterWalls> walls)
-    : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles) {
+                                std::span<const MiterWalls> walls, const ExactCorners* exact)
+    : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles), exact_(exact) {
   VDB_OFFSET_ASSERT(longest >= 1);
-  const auto& shape = query.surface();
-  std::vector<std::uint8_t> on_crease = vertices_on_creases(shape);
+  std::vector<std::uint8_t> on_crease = vertices_on_creases(query.surface());
   for (const MiterWalls& each : walls) on_crease[each.vertex] = 1;
   for (std::uint32_t v = 0; v < on_crease.size(); ++v)
-    if (on_crease[v]) miters_.push_back({v, Vec3d(0.0), 0, {}});
+    if (on_crease[v] || (exact && exact->knows(v))) miters_.push_back({v, Vec3d(0.0), 0, {}, on_crease[v] != 0, false});
   for_each_index(
-      miters_.size(),
-      [&](std::size_t i) {
-        UnitMiter& miter = miters_[i];
-        std::vector<Vec3d> planes = planes_around(shape, miter.vertex);
-        const auto own_walls =
-            std::lower_bound(walls.begin(), walls.end(), miter.vertex,
-                             [](const MiterWalls& each, std::uint32_t vertex) { return each.vertex < vertex; });
-        if (own_walls != walls.end() && own_walls->vertex == miter.vertex) keep_to_walls(own_walls->normals, planes);
-        else
-          for (Vec3d& plane : planes) plane = shape.along_border(miter.vertex, plane);
-        const auto point = miter_point(planes);
-        if (!point || point->excess > kMostExcess) return;
-        miter.end = point->position;
-        miter.excess = point->excess;
-        for (const int side : {-1, 1})
-          miter.is_above_face[side > 0] = is_above_face(shape, miter.vertex, point->position, side);
-      },
+      miters_.size(), [&](std::size_t i) { miters_[i] = unit_miter(miters_[i].vertex, miters_[i].on_crease, walls); },
       kMitersTogether);
+}
+
+/// The miter of a vertex for a distance of 1.
+template <class Query>
+typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::unit_miter(std::uint32_t vertex, bool on_crease,
+                                                                      std::span<const MiterWalls> walls) const {
+  const auto& shape = query_.surface();
+  const auto own_walls =
+      std::lower_bound(walls.begin(), walls.end(), vertex,
+                       [](const MiterWalls& each, std::uint32_t other) { return each.vertex < other; });
+  const bool has_walls = own_walls != walls.end() && own_walls->vertex == vertex;
+  UnitMiter miter{vertex, Vec3d(0.0), 0, {}, on_crease, exact_ && exact_->knows(vertex) && !has_walls};
+  const ExactCorners* const exact = miter.is_exact ? exact_ : nullptr;
+  std::vector<Vec3d> planes = planes_around(shape, vertex, exact);
+  if (has_walls) keep_to_walls(own_walls->normals, planes);
+  else
+    for (Vec3d& plane : planes) plane = shape.along_border(vertex, plane);
+  const auto point = miter_point(planes);
+  if (!point || point->excess > kMostExcess) return miter;
+  miter.end = point->position;
+  miter.excess = point->excess;
+  for (const int side : {-1, 1})
+    miter.is_above_face[side > 0] = is_above_face(shape, vertex, point->position, side, exact);
+  return miter;
 }
 
 template <class Query>
@@ -163,15 +170,41 @@ std::pair<Vec3d, bool> MiterFinder<Query>::end_of(const UnitMiter& miter, double
 }
 
 template <class Query>
-bool MiterFinder<Query>::is_proven(const Miter& miter, const Vec3d& end, const Closest& closest,
+bool MiterFinder<Query>::is_proven(const Miter& miter, bool is_exact, const Vec3d& end, const Closest& closest,
                                    double distance) const {
   const auto& shape = query_.surface();
   const Vec3d& start = shape.vertices[miter.vertex];
   const double asked = std::abs(distance);
+  // Nearer as triangles are flat, where the surface is not.
+  if (is_exact && closest.distance < asked * (1 - kReachedTolerance))
+    return closest.distance >= asked - exact_->deflection() &&
+           exact_->is_own(miter.vertex, end, distance, closest.triangle, closest.point) &&
+           (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
   const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
                       (closest.point - start).length() <= kDetail * asked || goes_on(shape, miter.vertex, closest);
   return is_own && closest.distance >= asked * (1 - kReachedTolerance) &&
          (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
+}
+
+/// Moves the ends of those miters of which the exact surface is known to where they are at the distance from it.
+template <class Query>
+void MiterFinder<Query>::bring_to_exact(const Distances& distances, std::span<Miter> miters) const {
+  if (!exact_) return;
+  const auto& shape = query_.surface();
+  std::vector<std::size_t> some;
+  std::vector<std::uint32_t> vertices;
+  std::vector<double> asked;
+  std::vector<Vec3d> points;
+  for (std::size_t i = 0; i < miters.size(); ++i) {
+    if (!miters_[i].is_exact || miters[i].displacement == Vec3d(0.0) || miters[i].state == VertexState::Cut) continue;
+    some.push_back(i);
+    vertices.push_back(miters[i].vertex);
+    asked.push_back(distances[miters[i].vertex]);
+    points.push_back(shape.vertices[miters[i].vertex] + miters[i].displacement);
+  }
+  exact_->bring_to_distances(vertices, asked, points);
+  for (std::size_t i = 0; i < some.size(); ++i)
+    miters[some[i]].displacement = round_displacement(points[i] - shape.vertices[vertices[i]], std::abs(asked[i]));
 }
 
 template <class Query>
@@ -181,24 +214,25 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances&
   std::vector<Vec3d> ends;
   std::vector<std::uint32_t> hints;
   for (std::size_t i = 0; i < some.size(); ++i) {
-    const double distance = distances[some[i].vertex];
-    const auto [end, is_cut] = end_of(some[i], distance);
-    const Vec3d displacement = distance == 0 ? Vec3d(0.0) : round_displacement(end * distance, std::abs(distance));
-    miters[i] = {some[i].vertex, displacement, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitred, some[i].excess};
-    ends.push_back((shape.vertices[some[i].vertex] + shape.origin) + displacement - shape.origin);
+    ends.push_back((shape.vertices[some[i].vertex] + shape.origin) + miters[i].displacement - shape.origin);
     hints.push_back(shape.triangles_around(some[i].vertex).front());
   }
   std::vector<Closest> closest(ends.size());
   query_.answer_together(ends, hints, closest);
   for (std::size_t i = 0; i < some.size(); ++i) {
-    const double distance = distances[some[i].vertex];
-    miters[i].distance = closest[i].distance;
-    miters[i].closest = closest[i].triangle;
-    if (miters[i].state != VertexState::Cut &&
-        std::abs(miters[i].distance - std::abs(distance)) <= kReachedTolerance * std::abs(distance))
-      miters[i].state = VertexState::Reached;
-    proven[i] = miters[i].displacement != Vec3d(0.0) && is_proven(miters[i], ends[i], closest[i], distance) &&
-                (corners_ == Corners::Miter || miters[i].state == VertexState::Reached);
+    const double distance = distances[some[i].vertex], asked = std::abs(distance);
+    Miter& miter = miters[i];
+    miter.distance = closest[i].distance;
+    miter.closest = closest[i].triangle;
+    const bool is_proven_now =
+        miter.displacement != Vec3d(0.0) && is_proven(miter, some[i].is_exact, ends[i], closest[i], distance);
+    if (some[i].is_exact && is_proven_now && miter.distance < asked) {
+      if (miter.distance < asked * (1 - kReachedTolerance)) miter.nearer = miter.distance;
+      miter.distance = asked;
+    }
+    if (miter.state != VertexState::Cut && std::abs(miter.distance - asked) <= kReachedTolerance * asked)
+      miter.state = VertexState::Reached;
+    proven[i] = is_proven_now && (corners_ == Corners::Miter || miter.state == VertexState::Reached);
   }
 }
 
@@ -206,6 +240,14 @@ template <class Query>
 std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(const Distances& distances) const {
   std::vector<Miter> miters(miters_.size());
   std::vector<std::uint8_t> proven(miters_.size(), 0);
+  for (std::size_t i = 0; i < miters.size(); ++i) {
+    const double distance = distances[miters_[i].vertex];
+    const auto [end, is_cut] = end_of(miters_[i], distance);
+    const Vec3d displacement = distance == 0 ? Vec3d(0.0) : round_displacement(end * distance, std::abs(distance));
+    miters[i] = {miters_[i].vertex, displacement, 0, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitred,
+                 miters_[i].excess};
+  }
+  bring_to_exact(distances, miters);
   for_each_index((miters_.size() + kMitersTogether - 1) / kMitersTogether,
                  [&](std::size_t block) {
                    const std::size_t begin = block * kMitersTogether,
@@ -233,9 +275,9 @@ std::vector<Miter> MiterFinder<Query>::operator()(const Distances& distances, Mi
   std::vector<Miter> kept;
   for (std::size_t i = 0; i < miters.size(); ++i) {
     if (distances[miters[i].vertex] == 0) continue;
-    ++facts.on_creases;
+    facts.on_creases += miters_[i].on_crease;
     if (!proven[i]) {
-      ++facts.unproven;
+      facts.unproven += miters_[i].on_crease;
       continue;
     }
     kept.push_back(miters[i]);
@@ -265,11 +307,19 @@ void count_miters(std::span<const Miter> miters, std::span<const VertexState> st
 MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {
   if (miters.empty()) return;
   farther_.assign(paths.displacement.size(), 0.0);
+  nearer_ = farther_;
   Indices all;
   for (const Miter& miter : miters) {
     all.push_back(miter.vertex);
-    others_.push_back(
-        {miter.vertex, miter.displacement, miter.distance, miter.state, miter.closest, {}, miter.distance, false});
+    others_.push_back({miter.vertex,
+                       miter.displacement,
+                       miter.distance,
+                       miter.state,
+                       miter.closest,
+                       {},
+                       miter.distance,
+                       miter.nearer,
+                       false});
   }
   exchange(all, paths, false);
 }
@@ -305,6 +355,7 @@ Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mi
     if (!paths.trace.empty()) std::swap(paths.trace[v], other.trace);
     other.is_mitred = !are_mitred;
     farther_[v] = are_mitred ? 0 : other.farther;
+    nearer_[v] = are_mitred ? 0 : other.nearer;
     exchanged.push_back(v);
   }
   return exchanged;

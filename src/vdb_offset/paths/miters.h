@@ -12,6 +12,7 @@
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
+#include "vdb_offset/paths/exact_corners.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/query/obstacles.h"
@@ -23,7 +24,8 @@ namespace vdb_offset {
 struct Miter {
   std::uint32_t vertex;
   Vec3d displacement;     ///< World units; rounded as those of paths are.
-  double distance;        ///< Exact unsigned distance to the surface there.
+  double distance;        ///< Exact unsigned distance to the surface there; to the exact one, where that is known.
+  double nearer;          ///< That to the triangles, if they are nearer than the exact surface is; else 0.
   std::uint32_t closest;  ///< The triangle of the surface that is closest there.
   VertexState state;      ///< Reached, where the end is at the distance as well; Mitred; or Cut.
   double excess;          ///< By how much more than its distance a plane is moved, as a share of the distance.
@@ -48,6 +50,10 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 /// is not proven have none, nor have those on edges of more than two faces. With Corners::Round, miters are those whose
 /// ends are at the distance themselves, as inward at convex edges: of all positions that are, the one with the faces
 /// at the distance, too.
+///
+/// Where the exact surface is known, its normals are the planes, and all vertices have miters: one that is not on a
+/// crease goes along the normal. There, what is nearest to the end may be nearer than the distance by the deflection,
+/// if it is of the surface around the vertex.
 template <class Query>
 class MiterFinder {
  public:
@@ -55,8 +61,9 @@ class MiterFinder {
   /// \param longest a miter may be so many distances long, at least 1, if its end is farther than the distance
   /// \param obstacles to keep off; nullptr without any
   /// \param walls of some vertices, sorted by vertex
+  /// \param exact of the surface, if it is known; not of curves
   MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
-              std::span<const MiterWalls> walls = {});
+              std::span<const MiterWalls> walls = {}, const ExactCorners* exact = nullptr);
 
   /// The miters that are proven for some distances of the surface's vertices, sorted by vertex. `facts` receives how
   /// many were tried and why others were not kept. The result does not depend on the number of threads.
@@ -71,6 +78,8 @@ class MiterFinder {
     Vec3d end;
     double excess;
     std::array<bool, 2> is_above_face;  // inward, outward: the end is at the distance, as far as its own faces tell
+    bool on_crease;
+    bool is_exact;  // its planes are those of the exact surface
   };
 
   /// Where a miter ends for a distance of 1 to the side of `distance`, and whether it is cut there; zero if nowhere.
@@ -80,13 +89,16 @@ class MiterFinder {
   std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(const Distances& distances) const;
   void prove(std::span<const UnitMiter> some, const Distances& distances, std::span<Miter> miters,
              std::span<std::uint8_t> proven) const;
-  bool is_proven(const Miter& miter, const Vec3d& end, const Closest& closest, double distance) const;
+  bool is_proven(const Miter& miter, bool is_exact, const Vec3d& end, const Closest& closest, double distance) const;
+  void bring_to_exact(const Distances& distances, std::span<Miter> miters) const;
+  UnitMiter unit_miter(std::uint32_t vertex, bool on_crease, std::span<const MiterWalls> walls) const;
 
   const Query& query_;
   const Corners corners_;
   const double longest_;
   const Obstacles* obstacles_;
-  std::vector<UnitMiter> miters_;  // of all vertices on creases, sorted; `end` is zero of one without a miter
+  const ExactCorners* exact_;
+  std::vector<UnitMiter> miters_;  // of all vertices on creases or known, sorted; `end` is zero of one without a miter
 };
 
 extern template class MiterFinder<ClosestQuery>;
@@ -106,6 +118,9 @@ class MitredPaths {
   /// Of each vertex of the paths: the distance of its end from the surface if that is farther than was asked, as it is
   /// mitred; 0 of the others. Empty if no vertex is mitred.
   std::span<const double> farther() const { return farther_; }
+  /// Of each vertex of the paths: the distance of its end from the triangles, if that is less than was asked, and less
+  /// than it is from the exact surface; 0 of the others. Empty if no vertex is mitred.
+  std::span<const double> nearer() const { return nearer_; }
   /// Whether a vertex's path leads to the end of its miter now.
   bool is_mitred(std::uint32_t vertex) const;
   /// The vertices whose miters have been taken back.
@@ -124,7 +139,7 @@ class MitredPaths {
     VertexState state;
     std::uint32_t closest;
     std::vector<Vec3d> trace;
-    double farther;  // of the miter, always
+    double farther, nearer;  // of the miter, always
     bool is_mitred = true;
   };
 
@@ -132,7 +147,7 @@ class MitredPaths {
   Indices exchange(const Indices& vertices, Paths& paths, bool are_mitred);
 
   std::vector<Other> others_;  // sorted by vertex
-  std::vector<double> farther_;
+  std::vector<double> farther_, nearer_;
 };
 
 }  // namespace vdb_offset

@@ -94,18 +94,23 @@ double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3
 
 /// The miters of the vertices of all parts, and how far from the moving part each of them may be therefore.
 struct WantedMiters {
-  std::vector<Miter> of_vertex;  // sorted by vertex
-  std::vector<double> farther;
+  std::vector<Miter> of_vertex;         // sorted by vertex
+  std::vector<double> farther, nearer;  // as of ConstrainedSurface
 };
 
 WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
-                         const Distances& distances, const CheckOptions& options) {
-  if (options.corners == Corners::Round) return {};
-  WantedMiters miters{miters_of_all(parts, MiterFinder(query, Corners::Miter, options.miter_limit, obstacles,
-                                                       walls_at_edge(parts, options.border))
-                                               .all(distances_of_part(parts, distances))),
-                      std::vector<double>(parts.surface().vertices.size(), 0.0)};
-  for (const Miter& miter : miters.of_vertex) miters.farther[miter.vertex] = miter.distance;
+                         const ExactCorners* exact, const Distances& distances, const CheckOptions& options) {
+  if (options.corners == Corners::Round && !exact) return {};
+  const auto walls =
+      options.corners == Corners::Miter ? walls_at_edge(parts, options.border) : std::vector<MiterWalls>();
+  const MiterFinder finder(query, options.corners, options.miter_limit, obstacles, walls, exact);
+  const std::size_t count = parts.surface().vertices.size();
+  WantedMiters miters{miters_of_all(parts, finder.all(distances_of_part(parts, distances))),
+                      std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  for (const Miter& miter : miters.of_vertex) {
+    miters.farther[miter.vertex] = miter.distance;
+    miters.nearer[miter.vertex] = miter.nearer;
+  }
   return miters;
 }
 
@@ -126,6 +131,7 @@ void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const
     result.states[v] = is_mitred                      ? miter->state
                        : std::abs(error) <= tolerance ? VertexState::Reached
                                                       : VertexState::Limited;
+    if (is_mitred && miter->nearer > 0) result.achieved[v] = miter->distance;
     result.beyond += error > tolerance && !is_mitred;
     result.wrong_side += !finder.on_right_side(w);
   }
@@ -207,8 +213,12 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
       if (surface.welded[v] != kNone) result.states[v] = VertexState::Reached;
     return;
   }
-  const WantedMiters miters = find_miters(parts, query, constrained.obstacles, distances, options);
+  std::optional<ExactCorners> exact;
+  if (options.exact && options.metric.even()) exact.emplace(*options.exact, space.view(), parts.moving_part);
+  const WantedMiters miters =
+      find_miters(parts, query, constrained.obstacles, exact ? &*exact : nullptr, distances, options);
   constrained.farther = miters.farther;
+  constrained.nearer = miters.nearer;
   std::optional<SelfCrossings> source_crossings;
   if (surroundings) source_crossings = SelfCrossings{surroundings->source_crossings(), false, {}};
   FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));

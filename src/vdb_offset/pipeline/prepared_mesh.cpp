@@ -21,6 +21,8 @@ namespace {
 
 // Bytes that a vertex takes while a result in which much is held back is made valid; measured: up to 430.
 constexpr std::size_t kLimitBytes = 500;
+// And where the exact surface is known: a miter, the path that it stands for, and normals of six triangles' corners.
+constexpr std::size_t kExactBytes = 500;
 
 /// The paths of all vertices from those of the moving part's; all other vertices stay, as was asked.
 Paths paths_of_all(const MeshParts& parts, Paths of_part) {
@@ -64,6 +66,7 @@ GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthes
     if (*surface) beside += surface_bytes(**surface);
   if (options.collision == Collision::Limit || options.corners == Corners::Miter)
     beside += kLimitBytes * mesh.positions.size();
+  if (options.exact) beside += kExactBytes * mesh.positions.size();
   if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
   return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads, {beside});
 }
@@ -90,6 +93,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
   if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
   if (moves) query_.emplace(parts_.moving_part);
+  if (moves && options.exact && options.metric.even()) exact_.emplace(*options.exact, mesh_, parts_.moving_part);
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
   if (parts_.obstacles) surroundings_.emplace(parts_, source_, options.clearance);
   if (moves && options.border == Border::Slide && parts_.rest) slides_.emplace(parts_, *query_);
@@ -114,7 +118,7 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   for (std::size_t i = 0; i < of_part.size(); ++i)
     hold(distances[i], marched.emplace_back(of_all(on_part[i], std::move(of_part[i]))));
   // Paths along sharp ridges are what is asked for: they end where those do.
-  if (options_.corners == Corners::Miter || ridges == Ridges::Smooth) miter(on_part, marched);
+  if (options_.corners == Corners::Miter || ridges == Ridges::Smooth || exact_) miter(on_part, marched);
   return marched;
 }
 
@@ -123,7 +127,8 @@ void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> 
   const bool may_go_farther = options_.corners == Corners::Miter;
   const std::vector<MiterWalls> walls =
       may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
-  const MiterFinder miters(*query_, options_.corners, options_.miter_limit, obstacles(), walls);
+  const MiterFinder miters(*query_, options_.corners, options_.miter_limit, obstacles(), walls,
+                           exact_ ? &*exact_ : nullptr);
   for (std::size_t i = 0; i < marched.size(); ++i) {
     Marched& each = marched[i];
     MiterFacts facts;
@@ -173,7 +178,8 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
                              : falls_short(state)                       ? state
                                                                         : VertexState::Limited;
     if (off > 0 && (state == VertexState::Mitred || state == VertexState::Cut))
-      marched.miters.push_back({w, marched.paths.displacement[w], closest[i].distance, closest[i].triangle, state, 0});
+      marched.miters.push_back(
+          {w, marched.paths.displacement[w], closest[i].distance, 0, closest[i].triangle, state, 0});
   }
   bring_to_distance(distances, marched);
   marched.bound = std::exchange(parts_.bound, {});
@@ -231,6 +237,7 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
   ConstrainedSurface constrained = parts_.constrained(*query_, obstacles(), off_source, resting_faces);
   constrained.bound = marched.bound;
   constrained.farther = marched.mitred.farther();
+  constrained.nearer = marched.mitred.nearer();
   return constrained;
 }
 

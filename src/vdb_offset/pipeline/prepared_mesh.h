@@ -14,6 +14,7 @@
 #include "vdb_offset/options.h"
 #include "vdb_offset/parts/border_slide.h"
 #include "vdb_offset/parts/mesh_parts.h"
+#include "vdb_offset/paths/exact_corners.h"
 #include "vdb_offset/paths/miters.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/pipeline/field_stage.h"
@@ -103,6 +104,7 @@ class PreparedMesh {
   MeshParts parts_;
   DistanceField field_;
   std::optional<ClosestQuery> query_;
+  std::optional<ExactCorners> exact_;  // of the moving part's triangles, if the exact surface is known
   std::vector<Vec3d> source_;
   std::optional<Surroundings> surroundings_;
   std::optional<BorderSlides> slides_;

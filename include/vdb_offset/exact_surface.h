@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "vdb_offset/api.h"
+#include "vdb_offset/numbers.h"
+
+namespace vdb_offset {
+
+/// The surface that a mesh is a tessellation of, as far as an offset needs it: that of a CAD model. All spans are as
+/// long as the mesh asks for.
+class VDB_OFFSET_API ExactSurface {
+ public:
+  ExactSurface() = default;
+  ExactSurface(const ExactSurface&) = delete;
+  ExactSurface& operator=(const ExactSurface&) = delete;
+  virtual ~ExactSurface() = default;
+
+  /// The surface's normal at each corner of each face: of unit length, outward; zero where it has none.
+  virtual std::span<const Vec3d> corner_normals() const = 0;
+  /// Of each face the piece of the surface that it is of. Pieces end at sharp edges, not at smooth ones.
+  virtual std::span<const std::uint32_t> piece_of_face() const = 0;
+  /// The most distance between a face and the surface, world units, > 0.
+  virtual double deflection() const = 0;
+  /// Moves points that are near the offset of vertices to where they are at the vertices' distances from all faces of
+  /// the model that these are on, each measured to the face as it goes on beyond its edges; or as near to that as one
+  /// point can be.
+  /// \param vertices of the mesh
+  /// \param distances of each of them, world units; negative is inward
+  /// \param points of each of them: where to begin, and where it ends
+  virtual void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
+                                  std::span<Vec3d> points) const = 0;
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vdb_offset/exact_surface.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// What is known of the exact surface at the corners of a Surface's triangles.
+class ExactCorners {
+ public:
+  /// Keeps references to both surfaces. \pre `surface` is of faces of `mesh`, which `exact` is of
+  ExactCorners(const ExactSurface& exact, PolygonView mesh, const Surface& surface);
+
+  /// Whether the exact normals around a vertex are known; of one at which several of the mesh's vertices meet, they
+  /// are not.
+  bool knows(std::uint32_t vertex) const { return known_[vertex] != 0; }
+  /// The exact normal of a triangle at one of its vertices. \pre knows(vertex)
+  const Vec3d& normal(std::uint32_t triangle, std::uint32_t vertex) const;
+  /// Whether a point on a triangle, the closest one to the offset of a vertex, is of the surface around the vertex, and
+  /// so is nearer than asked only as triangles are flat.
+  /// \param distance of the vertex, world units, not 0
+  bool is_own(std::uint32_t vertex, const Vec3d& end, double distance, std::uint32_t triangle,
+              const Vec3d& point) const;
+  double deflection() const { return exact_.deflection(); }
+
+  /// As ExactSurface's, for vertices and points of the Surface.
+  void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
+                          std::span<Vec3d> points) const;
+
+ private:
+  const ExactSurface& exact_;
+  const Surface& surface_;
+  std::vector<Vec3d> normals_;       // three for each triangle
+  std::vector<std::uint8_t> known_;  // of each vertex
+};
+
+}  // namespace vdb_offset
