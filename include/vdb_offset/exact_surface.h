@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/numbers.h"
@@ -32,6 +33,10 @@ class VDB_OFFSET_API ExactSurface {
   /// \param points of each of them: where to begin, and where it ends
   virtual void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
                                   std::span<Vec3d> points) const = 0;
+  /// Of each point, the most by which its distance from one of these faces is another than the vertex's, world units.
+  virtual std::vector<double> distance_errors(std::span<const std::uint32_t> vertices,
+                                              std::span<const double> distances,
+                                              std::span<const Vec3d> points) const = 0;
 };
 
 }  // namespace vdb_offset

@@ -102,6 +102,12 @@ struct MiterFacts {
                       ///< it: where more planes meet than one point can be on.
 };
 
+/// How exactly vertices are at their distances from the faces of a CAD model, of those that are said to be there.
+struct ExactFacts {
+  std::size_t vertices = 0;
+  double mean = 0, worst = 0;  ///< World units.
+};
+
 /// What is proven of the faces of an offset, at every point of them. Shares are of the area that the faces which move
 /// have in the source.
 struct CertifiedFaces {
@@ -160,6 +166,7 @@ struct OffsetStatistics {
   LimitStatistics limit;
   BorderFacts borders;
   MiterFacts miters;
+  std::optional<ExactFacts> exact;  ///< With OffsetOptions::exact; not of layers.
   SideRoom room;
   std::optional<ObstacleFacts> obstacles;   ///< If there are any. Of layers: of the outermost surface.
   std::optional<FitFacts> fit;              ///< Of what fit() made.

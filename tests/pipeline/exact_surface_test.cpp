@@ -28,6 +28,14 @@ class Implicit : public ExactSurface {
         for (const int piece : pieces_at[vertices[i]])
           points[i] += gradient(piece, points[i]) * (distances[i] - value(piece, points[i]));
   }
+  std::vector<double> distance_errors(std::span<const std::uint32_t> vertices, std::span<const double> distances,
+                                      std::span<const Vec3d> points) const override {
+    std::vector<double> errors(vertices.size(), 0.0);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      for (const int piece : pieces_at[vertices[i]])
+        errors[i] = std::max(errors[i], std::abs(value(piece, points[i]) - distances[i]));
+    return errors;
+  }
   virtual double value(int piece, const Vec3d& x) const = 0;
   virtual Vec3d gradient(int piece, const Vec3d& x) const = 0;
 

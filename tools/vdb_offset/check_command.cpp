@@ -71,7 +71,8 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
               "property of SOURCE, or 'vtk:NAME', an array of its points",
               request.distance_from);
   line.repeated("--only", "PART",
-                "The part that was offset: 'group=NAME', 'material=NAME' or 'faces=FILE'; may be repeated",
+                "The part that was offset: 'group=NAME', 'material=NAME', 'faces=FILE', 'face=N', 'name=NAME' or "
+                "'color=RRGGBB'; may be repeated",
                 [&made](const std::string& text) { made.only.push_back(parse_part(text)); });
   line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
               [&made](const std::string& text) { made.border = parse_border(text); });
@@ -108,6 +109,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.option("--flatten", "TOL",
               "How far straight segments were from the curved ones of a drawing, as it was for the offset [0.001%]",
               [&made](const std::string& text) { made.flatten = parse_flatten(text); });
+  declare_cad(line, made);
   line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }
 
@@ -120,7 +122,8 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help");
   line.file(
       "SOURCE",
-      "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), or curves (.dat .txt .xy .svg .dxf .obj)",
+      "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), CAD model (.step .iges .brep) or curves (.dat "
+      ".txt .xy .svg .dxf .obj)",
       made.input);
   line.file("OFFSET", "Mesh or curves after", made.output);
   declare_offset(line, request, distance_xy, distance_z);
@@ -308,6 +311,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   options.clearance = job.options.clearance;
   options.corners = job.options.corners;
   options.miter_limit = job.options.miter_limit;
+  options.exact = job.options.exact;
   options.weld = job.options.weld;
   options.orient = job.options.orient;
   if (io::is_written(offset.format)) options.precision = io::precision_of(made.output, offset, made.write);

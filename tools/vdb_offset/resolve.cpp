@@ -227,6 +227,8 @@ Job resolve_options(const Request& request, const Source& source) {
           .shell = request.shell,
           .asked = request.distances};
   if (source.scene) settle_scene(job);
+  // With a tolerance faces are split, and fitting goes by rounds of distances: both by the triangles alone.
+  if (source.file && !request.tolerance && request.fit.empty()) job.options.exact = source.file->exact.get();
   if (source.file && source.file->has_touching_objects && request.weld_text == "auto") job.options.weld.enabled = false;
   if (request.solver) job.options.solver = *request.solver;
   if (request.collision) job.options.collision = *request.collision;

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "messages.h"
 #include "request/units.h"
@@ -58,6 +60,40 @@ io::CurveReading curve_reading(const Request& request) {
   return how;
 }
 
+io::CadReading cad_reading(const Request& request) {
+  // Of the distance; and shares of the diagonal that this is not to pass, so that a tiny distance does not make millions
+  // of triangles, nor a large one a coarse shape. The bounds are not measured.
+  constexpr double kShare = 0.01, kLeast = 2e-5, kMost = 5e-3;
+  io::CadReading how;
+  how.angle_degrees = request.angle;
+  how.seconds = request.cad_seconds;
+  const auto take = [&how](const scene::Distance& length, double factor) {
+    const double value = std::abs(length.value) * factor;
+    how.deflection = length.percent ? 0 : value;
+    if (length.percent) how.deflection_share = value / 100;
+  };
+  if (request.deflection) {
+    take(*request.deflection, 1);
+    return how;
+  }
+  how.least_share = kLeast;
+  how.most_share = kMost;
+  std::vector<const DistanceRequest*> asked;
+  for (const DistanceRequest& each : request.distances) asked.push_back(&each);
+  if (request.inner) asked.push_back(&*request.inner);
+  if (request.layers && request.layers->first) asked.push_back(&*request.layers->first);
+  if (request.layers && request.layers->total) asked.push_back(&*request.layers->total);
+  const scene::Distance* least = nullptr;
+  for (const DistanceRequest* each : asked) {
+    const scene::Distance& one = each->distance;
+    if (!each->from.empty() || one.expression || one.value == 0) continue;
+    // A length and a percentage are not compared: the first of them counts.
+    if (!least || (one.percent == least->percent && std::abs(one.value) < std::abs(least->value))) least = &one;
+  }
+  if (least) take(*least, kShare);
+  return how;
+}
+
 void write_curves(const std::string& path, const Source& source, std::span<const Vec3d> positions,
                   const io::WriteOptions& options) {
   if (source.as_closed && io::curve_format_of(path) != source.curves->format)
@@ -86,6 +122,10 @@ void tell_remarks(const io::MeshFile& file) {
 
 namespace {
 
+io::ReadOptions reading_of(const std::string& path, const Request& request) {
+  return {format_of(path, request), cad_reading(request)};
+}
+
 /// Refuses a mesh beside the source whose file says that its numbers are something else.
 void require_same_unit(const Source& source, const std::string& option, const io::MeshFile& file) {
   const std::optional<double> own = source.file ? source.file->unit_micrometres : std::nullopt;
@@ -106,19 +146,19 @@ Source read_source(const Request& request, bool curves) {
     return source;
   }
   if (scene::is_scene(request.input)) source.scene = scene::read_scene(request.input);
-  if (!source.scene) source.file = io::read_mesh(request.input, format_of(request.input, request));
-  else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path);
+  if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request));
+  else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request)});
   // What the user says counts more than what the file does.
   if (source.file && !request.unit.empty()) source.file->unit_micrometres = micrometres_of(request.unit);
   if (source.file && !request.quiet) tell_remarks(*source.file);
   for (const std::string& path : request.obstacles) {
-    const io::MeshFile obstacle = io::read_mesh(path, format_of(path, request));
+    const io::MeshFile obstacle = io::read_mesh(path, reading_of(path, request));
     require_same_unit(source, "--obstacle", obstacle);
     if (!request.quiet) tell_remarks(obstacle);
     add(source.obstacles, obstacle.polygons);
   }
   if (!request.fit.empty()) {
-    const io::MeshFile to_fit = io::read_mesh(request.fit, format_of(request.fit, request));
+    const io::MeshFile to_fit = io::read_mesh(request.fit, reading_of(request.fit, request));
     require_same_unit(source, "--fit", to_fit);
     if (!request.quiet) tell_remarks(to_fit);
     source.to_fit = to_fit.polygons;

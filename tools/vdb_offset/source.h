@@ -47,6 +47,9 @@ bool holds_curves(const std::string& path);
 /// How curves are read for this request.
 io::CurveReading curve_reading(const Request& request);
 
+/// How CAD models are read for this request: by default to a hundredth of the least distance, between bounds.
+io::CadReading cad_reading(const Request& request);
+
 /// Prints what is wrong with a file that was read all the same.
 void tell_remarks(const io::MeshFile& file);
 

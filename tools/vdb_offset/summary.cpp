@@ -245,6 +245,11 @@ void print_states(std::FILE* out, const OffsetResult& result) {
   if (in(VertexState::OutsideField)) fmt::print(out, ", {} outside the field", in(VertexState::OutsideField));
 }
 
+void print_exactness(std::FILE* out, const ExactFacts& exact) {
+  fmt::print(out, "from the faces of the CAD model, {} vertices are off their distance by {:.2g} on average, {:.2g} at most\n",
+             exact.vertices, exact.mean, exact.worst);
+}
+
 void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {
   fmt::print(out, "{}: shell {}{}, {}, volume {:.6g}, rim of {} quads and {} triangles", path,
              shell.has_thickness ? "" : "without any thickness, ", shell.closed ? "closed" : "not closed",
@@ -332,6 +337,7 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
   if (result.statistics.certified)
     print_certified(out, *result.statistics.certified, faces_in(result.statistics.facts));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
+  if (result.statistics.exact) print_exactness(out, *result.statistics.exact);
   if (shell) print_shell(out, outcome.to.mesh, *shell);
   print_disagreeing(out, job, result.statistics);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +45,8 @@ struct Materials {
   std::vector<std::string> names;      ///< "" for faces that have none.
   std::vector<std::uint32_t> of_face;  ///< Index into `names`. Empty: no face has a material.
   std::vector<std::string> libraries;  ///< What the file says of where they are described.
+  /// Of each its colour: red, green and blue, 0 .. 1, sRGB. Empty: none is known.
+  std::vector<std::optional<std::array<double, 3>>> colours = {};
 };
 
 /// The materials of an OBJ file, or of one that holds more than a mesh; other files have none.
@@ -64,13 +67,19 @@ struct Selector {
     Group,     ///< OBJ: a name of a `g` or `o` line; ASCII STL: the name of a solid.
     Material,  ///< OBJ: a name of a `usemtl` line.
     File,      ///< A text file: a 0 or 1 for each face, or else the indices of faces, counted from 0.
+    Face,      ///< Of a CAD model: the number of a face, from 1.
+    Name,      ///< Of a CAD model: the name of a face, its layer, or the solid or part that it is of.
+    Colour,    ///< Of a CAD model: the colour of faces, as six hexadecimal digits, red first.
   };
   By by;
   std::string name;
 };
 
-/// \throw InvalidOption unless the text is `group=NAME`, `material=NAME` or `faces=FILE`.
+/// \throw InvalidOption unless the text is `group=NAME`, `material=NAME`, `faces=FILE`, `face=N`, `name=NAME` or
+/// `color=RRGGBB`.
 VDB_OFFSET_API Selector parse_selector(const std::string& text);
+/// The word before the equals sign.
+VDB_OFFSET_API const char* in_words(Selector::By by);
 
 /// One number a face: 1 if any of the selectors names it. \throw InvalidOption for a name that no face has; it tells
 /// those that there are. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this mesh.

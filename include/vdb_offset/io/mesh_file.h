@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
+#include "vdb_offset/exact_surface.h"
 #include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
@@ -18,15 +19,18 @@
 
 namespace vdb_offset::io {
 
-/// Those from ThreeMf on hold more than a mesh: see Document. Assimp stands for all that is read by that library.
-enum class Format { Obj, Off, Ply, Stl, ThreeMf, Gltf, Glb, Vtp, Vtk, Vtu, Assimp };
+/// Those from ThreeMf on hold more than a mesh: see Document. Assimp stands for all that is read by that library; Step,
+/// Iges and Brep (of OpenCASCADE) are CAD models.
+enum class Format { Obj, Off, Ply, Stl, ThreeMf, Gltf, Glb, Vtp, Vtk, Vtu, Assimp, Step, Iges, Brep };
 
-/// The format that a file name's ending stands for (.obj .off .ply .stl .3mf .gltf .glb .vtp .vtk .vtu, and .fbx .dae
-/// .3ds, any case, also before .gz or .zst), if it does.
+/// The format that a file name's ending stands for (.obj .off .ply .stl .3mf .gltf .glb .vtp .vtk .vtu, .fbx .dae .3ds,
+/// and .step .stp .iges .igs .brep, any case, also before .gz or .zst), if it does.
 VDB_OFFSET_API std::optional<Format> format_of(std::string_view path);
 VDB_OFFSET_API const char* name(Format format);
-/// Whether files of the format can be written: all but those that are read by Assimp.
+/// Whether files of the format can be written: all but those that are read by Assimp, and CAD models.
 VDB_OFFSET_API bool is_written(Format format);
+/// Whether a file of the format holds a CAD model.
+VDB_OFFSET_API bool is_cad(Format format);
 
 /// The length of the unit of a file's coordinates in micrometres, if the file tells it. Reads no more than that takes.
 /// \throw ReadError, InvalidInput as read_mesh()
@@ -64,6 +68,8 @@ struct VDB_OFFSET_API MeshFile {
   std::size_t vertex_normals = 0;          ///< With a document: its normals; one for each vertex, or none.
   std::optional<double> unit_micrometres;  ///< The length of the unit of its coordinates, if the file tells it.
   std::vector<std::string> files_beside;   ///< Files that were read besides, as a .gltf names them.
+  /// Of a CAD model: its surface, which the polygons are a tessellation of.
+  std::shared_ptr<const ExactSurface> exact;
   /// Vertices at equal positions are of objects that touch, and no two of one object are: not to be welded.
   bool has_touching_objects = false;
 
@@ -72,11 +78,27 @@ struct VDB_OFFSET_API MeshFile {
 };
 inline constexpr std::uint32_t kNoNormal = 0xffffffff;
 
+/// How a CAD model becomes a mesh.
+struct CadReading {
+  /// The most distance between triangles and the faces that they stand for, in the file's unit; if it is 0, as a share of
+  /// the diagonal of the model's bounding box.
+  double deflection = 0, deflection_share = 2e-4;
+  double least_share = 0, most_share = 1;  ///< The deflection is between these shares of the diagonal.
+  double angle_degrees = 15;  ///< The most angle between a face's normals at neighbouring vertices.
+  double seconds = 300;       ///< How long OpenCASCADE may take for a file, and for each question about it.
+};
+
+struct ReadOptions {
+  std::optional<Format> format;  ///< By the file's ending, if not told.
+  CadReading cad;
+};
+
 /// Reads a mesh, by the file's ending or as told; STL gives three vertices a facet. `.gz` and `.zst` behind that ending
 /// are decompressed; "-" is standard input, and needs to be told its format. A .gltf may name files beside it.
 /// \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was expected, what was
 /// found) for content that is no mesh. Never allocates more than a small multiple of the file's size.
 VDB_OFFSET_API MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
+VDB_OFFSET_API MeshFile read_mesh(const std::string& path, const ReadOptions& options);
 
 /// Reads a mesh as read_mesh() does from bytes in memory; `name` is for messages.
 VDB_OFFSET_API MeshFile parse_mesh(const std::string& name, Format format, std::string bytes);

@@ -164,6 +164,10 @@ Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
   return report;
 }
 
+Json exact_json(const ExactFacts& exact) {
+  return {{"vertices", exact.vertices}, {"mean_error", exact.mean}, {"worst_error", exact.worst}};
+}
+
 Json miters_json(const MiterFacts& miters) {
   return {{"on_creases", miters.on_creases}, {"mitred", miters.mitred},         {"cut", miters.cut},
           {"unproven", miters.unproven},     {"taken_back", miters.taken_back}, {"worst_excess", miters.excess}};
@@ -336,6 +340,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)}};
   if (statistics.faces.samples > 0) report["faces"] = faces_json(statistics.faces);
+  if (statistics.exact) report["cad_faces"] = exact_json(*statistics.exact);
   if (statistics.certified) report["certified"] = certified_json(*statistics.certified, statistics.facts);
   if (first_faces && first_faces->samples > 0) report["faces_at_first_height"] = faces_json(*first_faces);
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);

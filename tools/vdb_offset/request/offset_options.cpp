@@ -22,8 +22,8 @@ constexpr const char* kAbout =
 
 constexpr const char* kMore = R"(
 INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
-behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, or a scene
-(.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
+behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, a CAD
+model (.step .stp .iges .igs .brep), which is tessellated, or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
 of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
 face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
@@ -149,8 +149,9 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
 void declare_parts(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.repeated("--only", "PART",
-                "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME' or "
-                "'faces=FILE' (indices from 0, or a 0 or 1 for each face); may be repeated",
+                "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME', "
+                "'faces=FILE' (indices from 0, or a 0 or 1 for each face), or of a CAD model 'face=N' (from 1), "
+                "'name=NAME' or 'color=RRGGBB'; may be repeated",
                 [&request](const std::string& text) {
                   request.only_texts.push_back(text);
                   request.only.push_back(parse_part(text));
@@ -222,6 +223,26 @@ void declare_products(CommandLine& line, Draft& draft) {
       "units, or percent of the drawing's diagonal [0.001%]",
       [&request](const std::string& text) { request.flatten = parse_flatten(text); });
 }
+
+}  // namespace
+
+void declare_cad(CommandLine& line, Request& request) {
+  line.option("--deflection", "TOL",
+              "Of CAD models: no triangle is farther than this from the face that it stands for: world units, or percent "
+              "of the diagonal [a hundredth of the distance]",
+              [&request](const std::string& text) { request.deflection = parse_deflection(text); });
+  line.option("--angle", "A",
+              "Of CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
+              [&request](const std::string& text) {
+                request.angle = parse_number("--angle", text, "a number above 0, up to 90", 0, 90);
+              });
+  line.option("--cad-seconds", "S", "Of CAD models: how long OpenCASCADE may take for one [300]",
+              [&request](const std::string& text) {
+                request.cad_seconds = parse_number("--cad-seconds", text, "a number above 0", 0, kAny);
+              });
+}
+
+namespace {
 
 /// Declares the options that say how the offset is computed.
 void declare_method(CommandLine& line, Draft& draft) {
@@ -338,6 +359,7 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_distances(line, draft);
   declare_tolerance(line, draft);
   declare_parts(line, draft);
+  declare_cad(line, draft.request);
   declare_products(line, draft);
   declare_method(line, draft);
   declare_files(line, draft);

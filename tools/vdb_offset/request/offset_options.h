@@ -9,6 +9,9 @@
 
 namespace vdb_offset::tool {
 
+/// Declares the options that say how CAD models become meshes.
+void declare_cad(CommandLine& line, Request& request);
+
 /// A request that is being made, and values that become part of it only if another option says so.
 struct Draft {
   Request request;

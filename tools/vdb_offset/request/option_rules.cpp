@@ -69,6 +69,7 @@ void require_for_curves(const Request& request) {
                           {"--tolerance", request.tolerance.has_value()},
                           {"--weld", request.weld_text != "auto" && request.weld_text != "exact"},
                           {"--orient", request.orient_text != "keep"},
+                          {"--deflection", request.deflection.has_value()},
                           {"--fit", !request.fit.empty()}});
   require(!request.axes || request.write.digits == 0, "--precision and --distance-xy exclude each other for curves");
 }

@@ -177,17 +177,26 @@ scene::Distance parse_clearance(const std::string& text) {
   return clearance;
 }
 
-scene::Distance parse_flatten(const std::string& text) {
-  scene::Distance flatten;
+namespace {
+
+/// A length above 0, or a percentage.
+scene::Distance parse_fineness(const char* option, const std::string& text) {
+  scene::Distance fineness;
   try {
-    flatten = scene::parse_distance(text);
+    fineness = scene::parse_distance(text);
   } catch (const InvalidInput&) {
-    flatten.value = 0;
+    fineness.value = 0;
   }
-  require(flatten.value > 0,
-          fmt::format("--flatten: expected a number of world units or percent, above 0, got '{}'", text));
-  return flatten;
+  require(fineness.value > 0 && !fineness.expression,
+          fmt::format("{}: expected a number of world units or percent, above 0, got '{}'", option, text));
+  return fineness;
 }
+
+}  // namespace
+
+scene::Distance parse_flatten(const std::string& text) { return parse_fineness("--flatten", text); }
+
+scene::Distance parse_deflection(const std::string& text) { return parse_fineness("--deflection", text); }
 
 WeldOptions parse_weld(const std::string& text) {
   WeldOptions weld;

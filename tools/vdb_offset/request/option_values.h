@@ -53,7 +53,9 @@ std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string
 /// The metric in which distances by axis are one distance, and that distance, world units.
 std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mesh);
 
-/// group=NAME, material=NAME or faces=FILE.
+/// --deflection: a length above 0, or a percentage.
+scene::Distance parse_deflection(const std::string& text);
+/// group=NAME, material=NAME, faces=FILE, and of CAD models face=N, name=NAME or color=RRGGBB.
 io::Selector parse_part(const std::string& text);
 
 /// 'slide', 'fixed' or 'free'.

@@ -17,6 +17,7 @@ void parse_gltf(MeshFile& file);  ///< .gltf and .glb
 void parse_3mf(MeshFile& file);
 void parse_vtk(MeshFile& file);  ///< .vtp, .vtk and .vtu
 void parse_by_assimp(MeshFile& file);
+void parse_cad(MeshFile& file, const CadReading& how);  ///< .step, .iges and .brep; fills in `exact`, too
 
 /// The unit of glTF's coordinates.
 inline constexpr double kMetre = 1e6;  // micrometres

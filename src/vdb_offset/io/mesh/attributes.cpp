@@ -406,7 +406,7 @@ Materials read_materials(const MeshFile& source) {
   Materials materials;
   if (source.document) {
     FaceNames names = source.document->face_names();
-    return {std::move(names.materials), std::move(names.material_of), {}};
+    return {std::move(names.materials), std::move(names.material_of), {}, std::move(names.colours)};
   }
   if (source.format != Format::Obj || !has_extra(source, "materials")) return materials;
   std::unordered_map<std::string, std::uint32_t> index_of;

@@ -12,6 +12,7 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/io/base/nearest_names.h"
+#include "vdb_offset/io/mesh/document.h"
 #include "vdb_offset/io/mesh/encode.h"
 #include "vdb_offset/io/mesh/new_normals.h"
 
@@ -69,6 +70,21 @@ void name_losses_of_triangles(const MeshFile& source, Format target, std::vector
     lost.emplace_back("triangles that have a vertex twice");
   if (is_single(target) && source.precision.kind != Precision::Kind::Single)
     lost.emplace_back("digits beyond single precision");
+}
+
+/// The faces of a CAD model as parts, which follow each other.
+std::vector<Part> parts_of_model(const FaceNames& names) {
+  std::vector<Part> parts;
+  for (std::size_t f = 0; f < names.group_of.size(); ++f) {
+    const std::uint32_t group = names.group_of[f];
+    if (f > 0 && group == names.group_of[f - 1]) {
+      ++parts.back().faces;
+      continue;
+    }
+    const std::string& layer = names.layers[group];
+    parts.push_back({names.groups[group] + (layer.empty() ? "" : " " + layer), 1});
+  }
+  return parts;
 }
 
 }  // namespace
@@ -132,6 +148,10 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
         std::replace(with.lost.begin(), with.lost.end(), std::string("materials"),
                      std::string(target == Format::ThreeMf ? "colours of materials" : "what materials are made of"));
     }
+  // In 3MF a triangle has a material or says of which part it is.
+  if (is_cad(source.format) && keeps_parts(target, with) &&
+      !(target == Format::ThreeMf && !content->materials.of_face.empty()))
+    content->parts = parts_of_model(source.document->face_names());
   if (!with.normals.empty() && normals == Normals::Recompute && holds_normals(target))
     update_normals(new_normals(source, positions, precision), with.normals.value, result);
   return encode_fitting(source, target, content, result);

@@ -17,6 +17,11 @@ void Document::read_attributes(const MeshFile&, Attributes&) const {}
 
 FaceNames Document::face_names() const { return {}; }
 
+std::vector<std::uint8_t> Document::select(const MeshFile& source, const Selector& selector) const {
+  throw InvalidOption(fmt::format("{}: expected a CAD model for '{}={}', got another file", source.path,
+                                  in_words(selector.by), selector.name));
+}
+
 std::vector<double> Document::vertex_numbers(const MeshFile& source, const std::string& name) const {
   throw InvalidInput(
       fmt::format("{}: expected numbers of vertices under the name '{}', got a format without any", source.path, name));

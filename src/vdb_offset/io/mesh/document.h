@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +20,9 @@ namespace vdb_offset::io {
 struct FaceNames {
   std::vector<std::string> groups, materials;
   std::vector<std::uint32_t> group_of, material_of;  ///< Of all faces, or empty.
+  std::vector<std::string> layers = {};  ///< Of each group a second name, that of its layer; or empty.
+  /// Of each material its colour: red, green and blue, 0 .. 1, sRGB. Empty: none is known.
+  std::vector<std::optional<std::array<double, 3>>> colours = {};
 };
 
 /// The moved mesh that a document is to be written with.
@@ -58,6 +63,10 @@ class Document {
   virtual void read_attributes(const MeshFile& source, Attributes& attributes) const;
 
   virtual FaceNames face_names() const;
+
+  /// One number a face: 1 if the selector names it, which is not by a group, a material or a file.
+  /// \throw InvalidOption if there is no such face, or the format has no such names
+  virtual std::vector<std::uint8_t> select(const MeshFile& source, const Selector& selector) const;
 
   /// The numbers that it holds for its vertices under a name.
   /// \throw InvalidInput if it has none of that name, or not one finite number for each

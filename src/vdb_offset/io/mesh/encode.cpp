@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/scanner.h"
@@ -177,6 +178,8 @@ struct TextureLists {
   }
 };
 
+bool has_byte_parts(const Content& content) { return content.parts.size() <= 256; }
+
 std::string ply_header(const Content& content, const TextureLists& lists) {
   const auto& [mesh, precision, with, parts, materials, unit] = content;
   std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.size());
@@ -192,18 +195,21 @@ std::string ply_header(const Content& content, const TextureLists& lists) {
   header += fmt::format("element face {}\nproperty list uint uint vertex_indices\n", mesh.face_count());
   if (lists.exist)
     header += fmt::format("property list {} {} texcoord\n", lists.wide ? "uint" : "uchar", floating(lists.single));
-  if (!parts.empty()) add("uchar", {"part"});
+  if (!parts.empty()) add(has_byte_parts(content) ? "uchar" : "uint", {"part"});
   return header + "end_header\n";
 }
 
-std::uint8_t part_of(const Content& content, std::size_t f) {
-  std::uint8_t part = 0;
-  for (std::size_t end = content.parts[0].faces; f >= end; end += content.parts[part].faces) ++part;
-  return part;
+/// Appends the part that a face is of, in a byte where that holds them all.
+void append_part(std::string& bytes, const Content& content, std::span<const std::size_t> part_ends, std::size_t f) {
+  const auto part = std::upper_bound(part_ends.begin(), part_ends.end(), f) - part_ends.begin();
+  if (has_byte_parts(content)) append_binary(bytes, static_cast<std::uint8_t>(part));
+  else append_binary(bytes, static_cast<std::uint32_t>(part));
 }
 
 Pieces to_ply(const SharedContent& content) {
   const TextureLists lists(*content);
+  std::vector<std::size_t> part_ends;
+  for (const Part& part : content->parts) part_ends.push_back(part.faces + (part_ends.empty() ? 0 : part_ends.back()));
   const auto append_vertex = [=](std::string& bytes, std::size_t v) {
     const auto& with = content->with;
     append_values(bytes, content->mesh.positions[v], false);
@@ -217,7 +223,7 @@ Pieces to_ply(const SharedContent& content) {
     append_binary(bytes, static_cast<std::uint32_t>(face.size()));
     for (const auto v : face) append_binary(bytes, v);
     if (lists.exist) lists.append(bytes, *content, f);
-    if (!content->parts.empty()) append_binary(bytes, part_of(*content, f));
+    if (!content->parts.empty()) append_part(bytes, *content, part_ends, f);
   };
   return in_sections(ply_header(*content, lists),
                      {{content->mesh.positions.size(), append_vertex}, {content->mesh.face_count(), append_face}});
@@ -299,7 +305,10 @@ Pieces encode(Format format, const SharedContent& content) {
     case Format::Vtu:
       return to_vtk(format, content);
     case Format::Stl:
-    case Format::Assimp:  // is not written
+    case Format::Assimp:  // these are not written
+    case Format::Step:
+    case Format::Iges:
+    case Format::Brep:
       break;
   }
   return to_stl(content->mesh);

@@ -25,8 +25,11 @@ void visit_names(const FaceNames& names, std::size_t faces, Listener& listener) 
   };
   for (std::size_t f = 0; f < faces; ++f) {
     if (changes(names.group_of, f)) {
-      const std::string& group = names.groups[names.group_of[f]];
-      listener.set_groups(group.empty() ? std::vector<std::string>{} : std::vector{group});
+      const std::uint32_t number = names.group_of[f];
+      std::vector<std::string> groups;
+      if (!names.groups[number].empty()) groups.push_back(names.groups[number]);
+      if (!names.layers.empty() && !names.layers[number].empty()) groups.push_back(names.layers[number]);
+      listener.set_groups(std::move(groups));
     }
     if (changes(names.material_of, f)) listener.set_material(names.materials[names.material_of[f]]);
     listener.add_face();

@@ -24,7 +24,7 @@
 namespace vdb_offset::io {
 namespace {
 
-MeshFile parse(std::string name, Format format, FileBytes bytes) {
+MeshFile parse(std::string name, Format format, FileBytes bytes, const CadReading& cad = {}) {
   MeshFile file;
   file.path = std::move(name);
   file.format = format;
@@ -58,6 +58,11 @@ MeshFile parse(std::string name, Format format, FileBytes bytes) {
     case Format::Assimp:
       parse_by_assimp(file);
       break;
+    case Format::Step:
+    case Format::Iges:
+    case Format::Brep:
+      parse_cad(file, cad);
+      break;
   }
   return file;
 }
@@ -71,7 +76,8 @@ constexpr Ending kFormatEndings[] = {{"obj", Format::Obj},   {"off", Format::Off
                                      {"stl", Format::Stl},   {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf},
                                      {"glb", Format::Glb},   {"vtp", Format::Vtp},     {"vtk", Format::Vtk},
                                      {"vtu", Format::Vtu},   {"fbx", Format::Assimp},  {"dae", Format::Assimp},
-                                     {"3ds", Format::Assimp}};
+                                     {"3ds", Format::Assimp}, {"step", Format::Step},  {"stp", Format::Step},
+                                     {"iges", Format::Iges},  {"igs", Format::Iges},   {"brep", Format::Brep}};
 
 /// The source's own document over other positions.
 WrittenDocument rewritten(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
@@ -123,11 +129,17 @@ const char* name(Format format) {
       ->text.data();
 }
 
-bool is_written(Format format) { return format != Format::Assimp; }
+bool is_written(Format format) { return format != Format::Assimp && !is_cad(format); }
+
+bool is_cad(Format format) { return format == Format::Step || format == Format::Iges || format == Format::Brep; }
 
 MeshFile read_mesh(const std::string& path, std::optional<Format> format) {
-  const Format known = require_format(path, format);
-  return parse(path, known, FileBytes::open(path));
+  return read_mesh(path, ReadOptions{format, {}});
+}
+
+MeshFile read_mesh(const std::string& path, const ReadOptions& options) {
+  const Format known = require_format(path, options.format);
+  return parse(path, known, FileBytes::open(path), options.cad);
 }
 
 MeshFile parse_mesh(const std::string& name, Format format, std::string bytes) {
@@ -137,7 +149,7 @@ MeshFile parse_mesh(const std::string& name, Format format, std::string bytes) {
 std::optional<double> unit_micrometres(const std::string& path, std::optional<Format> format) {
   const Format known = require_format(path, format);
   if (is_gltf(known)) return kMetre;
-  if (known == Format::Assimp) return read_mesh(path, known).unit_micrometres;
+  if (known == Format::Assimp || is_cad(known)) return read_mesh(path, known).unit_micrometres;
   return known == Format::ThreeMf ? unit_of_3mf(path) : std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <set>
 
 #include "vdb_offset/error.h"
@@ -15,6 +16,23 @@
 
 namespace vdb_offset::io {
 namespace {
+
+struct SelectorWord {
+  const char* word;
+  Selector::By by;
+};
+constexpr SelectorWord kSelectorWords[] = {{"group", Selector::By::Group}, {"material", Selector::By::Material},
+                                           {"faces", Selector::By::File},  {"face", Selector::By::Face},
+                                           {"name", Selector::By::Name},   {"color", Selector::By::Colour}};
+
+bool is_label(const Selector& selector) {
+  return selector.by == Selector::By::Group || selector.by == Selector::By::Material;
+}
+
+void join(std::vector<std::uint8_t>& marks, const std::vector<std::uint8_t>& others) {
+  std::transform(marks.begin(), marks.end(), others.begin(), marks.begin(),
+                 [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
+}
 
 /// The names of groups and materials of a file, and the faces that selectors choose by them.
 struct Labels {
@@ -95,8 +113,7 @@ void mark_from_file(const std::string& path, std::vector<std::uint8_t>& marks) {
     as_indices[static_cast<std::size_t>(number)] = 1;
   }
   const bool is_mask = may_be_marks && as_marks.size() == marks.size();
-  std::transform(marks.begin(), marks.end(), is_mask ? as_marks.begin() : as_indices.begin(), marks.begin(),
-                 [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
+  join(marks, is_mask ? as_marks : as_indices);
 }
 
 }  // namespace
@@ -104,23 +121,33 @@ void mark_from_file(const std::string& path, std::vector<std::uint8_t>& marks) {
 Selector parse_selector(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string kind = text.substr(0, equals), name = equals == std::string::npos ? "" : text.substr(equals + 1);
-  if (!name.empty()) {
-    if (kind == "group") return {Selector::By::Group, name};
-    if (kind == "material") return {Selector::By::Material, name};
-    if (kind == "faces") return {Selector::By::File, name};
-  }
-  throw InvalidOption(fmt::format("expected 'group=NAME', 'material=NAME' or 'faces=FILE', got '{}'", text));
+  if (!name.empty())
+    for (const auto& [word, by] : kSelectorWords)
+      if (kind == word) return {by, name};
+  throw InvalidOption(fmt::format(
+      "expected 'group=NAME', 'material=NAME', 'faces=FILE', or of a CAD model 'face=N', 'name=NAME' or "
+      "'color=RRGGBB', got '{}'",
+      text));
+}
+
+const char* in_words(Selector::By by) {
+  return std::find_if(std::begin(kSelectorWords), std::end(kSelectorWords),
+                      [&](const SelectorWord& each) { return each.by == by; })
+      ->word;
 }
 
 std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors) {
-  const bool by_name =
-      std::any_of(selectors.begin(), selectors.end(), [](const Selector& s) { return s.by != Selector::By::File; });
+  const bool by_label = std::any_of(selectors.begin(), selectors.end(), is_label);
   Labels labels;
-  if (by_name) labels = label(mesh, selectors);
+  if (by_label) labels = label(mesh, selectors);
   labels.chosen.resize(mesh.polygons.face_count(), 0);
   for (const Selector& selector : selectors) {
     if (selector.by == Selector::By::File) mark_from_file(selector.name, labels.chosen);
-    else require_known(mesh, labels, selector);
+    else if (is_label(selector)) require_known(mesh, labels, selector);
+    else if (!mesh.document)
+      throw InvalidOption(fmt::format("{}: expected a CAD model for '{}={}', got another file", mesh.path,
+                                      in_words(selector.by), selector.name));
+    else join(labels.chosen, mesh.document->select(mesh, selector));
   }
   return std::move(labels.chosen);
 }

@@ -25,6 +25,12 @@ constexpr int kVertexTarget = 34962, kIndexTarget = 34963;
 // A vertex index of all ones is not allowed.
 constexpr std::size_t kMostShort = 65535;
 
+/// A part of a colour as glTF has it, from sRGB (IEC 61966-2-1), to four digits.
+double linear(double part) {
+  const double light = part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
+  return std::round(light * 1e4) / 1e4;
+}
+
 /// A file's JSON, and the binary data that it is about.
 class NewModel {
  public:
@@ -63,9 +69,15 @@ class NewModel {
     const Materials& materials = content_->materials;
     if (materials.of_face.empty()) return;
     Json list = Json::array();
-    for (const std::string& name : materials.names) {
+    for (std::size_t m = 0; m < materials.names.size(); ++m) {
       material_.push_back(list.size());
-      if (!name.empty()) list.push_back({{"name", name}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+      if (materials.names[m].empty()) continue;
+      Json look = {{"metallicFactor", 0}};
+      if (!materials.colours.empty() && materials.colours[m]) {
+        for (const double part : *materials.colours[m]) look["baseColorFactor"].push_back(linear(part));
+        look["baseColorFactor"].push_back(1);
+      }
+      list.push_back({{"name", materials.names[m]}, {"pbrMetallicRoughness", std::move(look)}});
     }
     if (!list.empty()) json_["materials"] = std::move(list);
   }

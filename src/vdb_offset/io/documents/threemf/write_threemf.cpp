@@ -116,6 +116,15 @@ struct NewModel {
   }
 
   bool has_properties() const { return !colours.empty() || !materials.empty(); }
+  /// Of a material: red first.
+  std::uint32_t display_colour(std::size_t material) const {
+    constexpr std::uint32_t kUnknown = 0xcccccc;
+    const auto& known = content->materials.colours;
+    if (!content->parts.empty() || known.empty() || !known[material]) return kUnknown;
+    std::uint32_t packed = 0;
+    for (const double part : *known[material]) packed = packed << 8 | colour_byte(part);
+    return packed;
+  }
   std::uint32_t colour_index(std::uint32_t vertex) const {
     const auto found = std::lower_bound(colours.begin(), colours.end(), packed_colour(content->with.colours[vertex]));
     return static_cast<std::uint32_t>(found - colours.begin());
@@ -151,8 +160,9 @@ std::string model_head(const NewModel& model) {
     head += "  </m:colorgroup>\n";
   } else if (!model.materials.empty()) {
     head += fmt::format("  <basematerials id=\"{}\">\n", kGroupId);
-    for (const std::string& material : model.materials)
-      head += fmt::format("   <base name=\"{}\" displaycolor=\"#CCCCCC\"/>\n", in_xml(material));
+    for (std::size_t m = 0; m < model.materials.size(); ++m)
+      head += fmt::format("   <base name=\"{}\" displaycolor=\"#{:06X}\"/>\n", in_xml(model.materials[m]),
+                          model.display_colour(m));
     head += "  </basematerials>\n";
   }
   head += fmt::format("  <object id=\"{}\" type=\"model\"", kObjectId);
