@@ -13,7 +13,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// The module's file. Never a relative path, which could name a stranger's file.
+/// The file of a module or a worker. Never a relative path, which could name a stranger's file.
 std::filesystem::path find_module(const std::string& file) {
   if (const char* const told = std::getenv("VDB_OFFSET_MODULES"); told && std::filesystem::path(told).is_absolute())
     return std::filesystem::path(told) / file;
@@ -28,6 +28,8 @@ std::filesystem::path find_module(const std::string& file) {
 }
 
 }  // namespace
+
+std::string worker_program(const std::string& name) { return find_module(name).string(); }
 
 const void* open_module(const std::string& path, const std::string& name, ModuleUse use) {
   const std::string file = name + ".so";

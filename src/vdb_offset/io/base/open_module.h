@@ -17,4 +17,8 @@ enum class ModuleUse { Read, Write };
 /// \throw ReadError or WriteError if there is none, something that it needs is missing, or it is of another version
 const void* open_module(const std::string& path, const std::string& name, ModuleUse use);
 
+/// The file of a program that a program of the project starts for what it does not do itself; looked for where modules
+/// are. It may not be there.
+std::string worker_program(const std::string& name);
+
 }  // namespace vdb_offset::io

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <BRep_Tool.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
+#include <Poly_Triangulation.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <cmath>
+
+#include "vdb_offset/cad/tessellate/body_mesh.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+struct EdgeNodes {
+  std::vector<std::uint32_t> vertices;
+  std::vector<double> parameters;
+};
+
+/// Gives numbers to vertices, of which some turn out to be one.
+class Joiner {
+ public:
+  explicit Joiner(BodyMesh& mesh) : mesh_(mesh) {}
+
+  std::uint32_t add(const gp_Pnt& at, bool is_on_edge) {
+    mesh_.positions.push_back(at);
+    mesh_.is_on_edge.push_back(is_on_edge);
+    same_as_.push_back(static_cast<std::uint32_t>(same_as_.size()));
+    return same_as_.back();
+  }
+
+  std::uint32_t find(std::uint32_t vertex) {
+    while (same_as_[vertex] != vertex) vertex = same_as_[vertex] = same_as_[same_as_[vertex]];
+    return vertex;
+  }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    same_as_[std::max(a, b)] = std::min(a, b);
+  }
+
+  std::uint32_t of_vertex(const TopoDS_Vertex& vertex) {
+    const int index = vertices_.Add(vertex);
+    if (static_cast<std::size_t>(index) > ids_.size()) ids_.push_back(add(BRep_Tool::Pnt(vertex), true));
+    return ids_[static_cast<std::size_t>(index) - 1];
+  }
+
+  /// The vertices along an edge, in the order of a face's nodes.
+  std::vector<std::uint32_t> along(const TopoDS_Edge& edge, const Poly_PolygonOnTriangulation& polygon,
+                                   const std::vector<gp_Pnt>& nodes) {
+    const int index = edges_.Add(edge);
+    if (static_cast<std::size_t>(index) > along_.size()) along_.push_back(first_along(edge, polygon, nodes));
+    const EdgeNodes& known = along_[static_cast<std::size_t>(index) - 1];
+    if (static_cast<int>(known.vertices.size()) == polygon.NbNodes()) return known.vertices;
+    ++mesh_.unmatched;
+    return matched(known, polygon, nodes);
+  }
+
+  TopoDS_Edge edge_of(std::size_t index) const { return TopoDS::Edge(edges_(static_cast<int>(index) + 1)); }
+
+  /// Curves and their parts, when all faces are known.
+  void make_segments() {
+    for (std::size_t e = 0; e < along_.size(); ++e) {
+      const EdgeNodes& nodes = along_[e];
+      if (nodes.parameters.size() < 2 || BRep_Tool::Degenerated(edge_of(e))) continue;
+      const auto curve = static_cast<std::uint32_t>(mesh_.curves.size());
+      mesh_.curves.emplace_back(edge_of(e));
+      for (std::size_t k = 0; k + 1 < nodes.vertices.size(); ++k) {
+        const std::uint32_t a = find(nodes.vertices[k]), b = find(nodes.vertices[k + 1]);
+        const double s = nodes.parameters[k], t = nodes.parameters[k + 1];
+        if (a != b) mesh_.segments.try_emplace(BodyMesh::key(a, b), Segment{curve, a < b ? s : t, a < b ? t : s});
+      }
+    }
+  }
+
+ private:
+  EdgeNodes first_along(const TopoDS_Edge& edge, const Poly_PolygonOnTriangulation& polygon,
+                        const std::vector<gp_Pnt>& nodes) {
+    const int count = polygon.NbNodes();
+    EdgeNodes found;
+    found.vertices.resize(static_cast<std::size_t>(count));
+    const TopoDS_Edge forward = TopoDS::Edge(edge.Oriented(TopAbs_FORWARD));
+    const TopoDS_Vertex first = TopExp::FirstVertex(forward), last = TopExp::LastVertex(forward);
+    const bool is_degenerated = BRep_Tool::Degenerated(edge);
+    const bool has_curve = !is_degenerated && polygon.HasParameters() && BRep_Tool::IsGeometric(edge);
+    std::optional<BRepAdaptor_Curve> curve;
+    if (has_curve) curve.emplace(edge);
+    for (int k = 0; k < count; ++k) {
+      const gp_Pnt& node = nodes[static_cast<std::size_t>(polygon.Node(k + 1)) - 1];
+      std::uint32_t& vertex = found.vertices[static_cast<std::size_t>(k)];
+      if (!first.IsNull() && (k == 0 || is_degenerated)) vertex = of_vertex(first);
+      else if (!last.IsNull() && k + 1 == count) vertex = of_vertex(last);
+      else vertex = add(curve ? curve->Value(polygon.Parameter(k + 1)) : node, true);
+      if (has_curve) found.parameters.push_back(polygon.Parameter(k + 1));
+    }
+    return found;
+  }
+
+  /// Of an edge that is divided in another way: its ends, and where the parameters are the same.
+  std::vector<std::uint32_t> matched(const EdgeNodes& known, const Poly_PolygonOnTriangulation& polygon,
+                                     const std::vector<gp_Pnt>& nodes) {
+    std::vector<std::uint32_t> vertices;
+    const auto count = static_cast<std::size_t>(polygon.NbNodes());
+    for (std::size_t k = 0; k < count; ++k) {
+      std::optional<std::uint32_t> same;
+      if (k == 0) same = known.vertices.front();
+      else if (k + 1 == count) same = known.vertices.back();
+      for (std::size_t j = 0; !same && polygon.HasParameters() && j < known.parameters.size(); ++j)
+        if (std::abs(known.parameters[j] - polygon.Parameter(static_cast<int>(k) + 1)) < 1e-9)
+          same = known.vertices[j];
+      vertices.push_back(same ? *same
+                              : add(nodes[static_cast<std::size_t>(polygon.Node(static_cast<int>(k) + 1)) - 1], true));
+    }
+    return vertices;
+  }
+
+  BodyMesh& mesh_;
+  std::vector<std::uint32_t> same_as_, ids_;
+  TopTools_IndexedMapOfShape vertices_, edges_;
+  std::vector<EdgeNodes> along_;
+};
+
+std::vector<gp_Pnt> nodes_of(const Poly_Triangulation& mesh, const TopLoc_Location& place) {
+  std::vector<gp_Pnt> nodes;
+  nodes.reserve(static_cast<std::size_t>(mesh.NbNodes()));
+  for (int k = 1; k <= mesh.NbNodes(); ++k) nodes.push_back(mesh.Node(k).Transformed(place.Transformation()));
+  return nodes;
+}
+
+void join_edges(const TopoDS_Face& face, const opencascade::handle<Poly_Triangulation>& mesh,
+                const TopLoc_Location& place, const std::vector<gp_Pnt>& nodes, Joiner& joiner,
+                std::vector<std::uint32_t>& vertices) {
+  for (TopExp_Explorer found(face, TopAbs_EDGE); found.More(); found.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(found.Current());
+    const auto polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, place);
+    if (polygon.IsNull()) continue;
+    const std::vector<std::uint32_t> along = joiner.along(edge, *polygon, nodes);
+    for (int k = 1; k <= polygon->NbNodes(); ++k) {
+      std::uint32_t& vertex = vertices[static_cast<std::size_t>(polygon->Node(k)) - 1];
+      const std::uint32_t own = along[static_cast<std::size_t>(k) - 1];
+      if (vertex == kNone) vertex = own;
+      else joiner.join(vertex, own);
+    }
+  }
+}
+
+FaceMesh take_face(const TopoDS_Face& face, Joiner& joiner) {
+  FaceMesh result{FaceSurface(face), 1, false, {}, {}};
+  TopLoc_Location place;
+  const auto mesh = BRep_Tool::Triangulation(face, place);
+  result.is_missing = mesh.IsNull() || mesh->NbTriangles() == 0;
+  if (result.is_missing) return result;
+  const bool is_turned = (face.Orientation() == TopAbs_REVERSED) != face.Location().Transformation().IsNegative();
+  result.side = is_turned ? -1 : 1;
+  const std::vector<gp_Pnt> nodes = nodes_of(*mesh, place);
+  std::vector<std::uint32_t> vertices(nodes.size(), kNone);
+  join_edges(face, mesh, place, nodes, joiner, vertices);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Node node{vertices[k], 0, 0};
+    if (mesh->HasUVNodes()) {
+      const gp_Pnt2d uv = mesh->UVNode(static_cast<int>(k) + 1);
+      node.u = uv.X(), node.v = uv.Y();
+    }
+    if (node.vertex == kNone) node.vertex = joiner.add(result.surface.point(node.u, node.v), false);
+    result.nodes.push_back(node);
+  }
+  for (int k = 1; k <= mesh->NbTriangles(); ++k) {
+    int a = 0, b = 0, c = 0;
+    mesh->Triangle(k).Get(a, b, c);
+    if (is_turned) std::swap(b, c);
+    result.triangles.push_back({static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1),
+                                static_cast<std::uint32_t>(c - 1)});
+  }
+  return result;
+}
+
+/// Without triangles that have come to nothing as their vertices are one: at poles, and where edges are too short. All
+/// that they had in common with others is one as well.
+void drop_collapsed(FaceMesh& face) {
+  std::erase_if(face.triangles, [&](const Triangle& t) {
+    const std::uint32_t a = face.nodes[t[0]].vertex, b = face.nodes[t[1]].vertex, c = face.nodes[t[2]].vertex;
+    return a == b || b == c || c == a;
+  });
+}
+
+}  // namespace
+
+BodyMesh take_mesh(const Body& body) {
+  BodyMesh mesh;
+  Joiner joiner(mesh);
+  mesh.faces.reserve(body.faces.size());
+  for (const ModelFace& face : body.faces) mesh.faces.push_back(take_face(face.face, joiner));
+  for (FaceMesh& face : mesh.faces) {
+    for (Node& node : face.nodes) node.vertex = joiner.find(node.vertex);
+    drop_collapsed(face);
+  }
+  joiner.make_segments();
+  return mesh;
+}
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/tessellate/tessellate.h"
+
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <Bnd_Box.hxx>
+#include <TopoDS_Compound.hxx>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <unordered_map>
+
+#include "vdb_offset/cad/tessellate/body_mesh.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+constexpr int kSamples = 4;                    // steps across a face, for the model's size
+constexpr std::size_t kMostNamed = 5;          // faces that a remark names
+constexpr double kLeastShare = 1e-7;           // of the diagonal: a finer deflection is refused as numberless triangles
+
+double diagonal_of(const CadModel& model) {
+  Bnd_Box box;
+  for (const Body& body : model.bodies)
+    for (const ModelFace& face : body.faces) {
+      const FaceSurface surface(face.face);
+      for (int i = 0; i <= kSamples; ++i)
+        for (int j = 0; j <= kSamples; ++j)
+          box.Add(surface.point(surface.first_u() + (surface.last_u() - surface.first_u()) * i / kSamples,
+                                surface.first_v() + (surface.last_v() - surface.first_v()) * j / kSamples));
+    }
+  return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+}
+
+void mesh_by_opencascade(const CadModel& model, double deflection, double angle) {
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  for (const Body& body : model.bodies)
+    for (const ModelFace& face : body.faces) builder.Add(all, face.face);
+  BRepTools::Clean(all);  // files may have triangles with them
+  IMeshTools_Parameters parameters;
+  parameters.Deflection = deflection;
+  parameters.Angle = angle;
+  parameters.AngleInterior = angle;
+  parameters.InParallel = Standard_False;
+  parameters.Relative = Standard_False;
+  BRepMesh_IncrementalMesh mesher(all, parameters);
+}
+
+/// Faces without triangles, by number and name.
+void tell_missing(const std::vector<std::pair<std::size_t, std::string>>& missing, std::vector<std::string>& remarks) {
+  if (missing.empty()) return;
+  std::string text = missing.size() == 1 ? "OpenCASCADE finds no triangles for face"
+                                         : "OpenCASCADE finds no triangles for faces";
+  for (std::size_t k = 0; k < std::min(missing.size(), kMostNamed); ++k) {
+    text += (k > 0 ? ", " : " ") + std::to_string(missing[k].first);
+    if (!missing[k].second.empty()) text += " (" + missing[k].second + ")";
+  }
+  if (missing.size() > kMostNamed) text += " and " + std::to_string(missing.size() - kMostNamed) + " more";
+  remarks.push_back(std::move(text));
+}
+
+std::size_t count_open_sides(const BodyMesh& mesh) {
+  std::unordered_map<std::uint64_t, int> sides;
+  for (const FaceMesh& face : mesh.faces)
+    for (const Triangle& t : face.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        ++sides[BodyMesh::key(face.nodes[t[k]].vertex, face.nodes[t[(k + 1) % 3]].vertex)];
+  return static_cast<std::size_t>(std::count_if(sides.begin(), sides.end(), [](const auto& s) { return s.second == 1; }));
+}
+
+/// What was done to all bodies together.
+struct Work {
+  std::size_t turned = 0, open_solids = 0, open_sides = 0, unmatched = 0;
+  double farthest = 0;
+  std::vector<std::pair<std::size_t, std::string>> missing;
+};
+
+void append_tessellated(const Body& body, double deflection, io::CadMesh& result, Work& work) {
+  BodyMesh mesh = take_mesh(body);
+  work.farthest = std::max(work.farthest, divide_to_deflection(mesh, deflection));
+  place_on_surfaces(mesh);
+  work.turned += orient(mesh, body.is_solid);
+  work.unmatched += mesh.unmatched;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    if (mesh.faces[f].is_missing) work.missing.emplace_back(result.faces.size() + f + 1, body.faces[f].facts.name);
+  if (const std::size_t open = body.is_solid ? count_open_sides(mesh) : 0) ++work.open_solids, work.open_sides += open;
+  append_body(mesh, body, result);
+}
+
+void tell(const Work& work, double deflection, std::vector<std::string>& remarks) {
+  tell_missing(work.missing, remarks);
+  if (work.turned > 0) remarks.push_back(std::to_string(work.turned) + " faces are turned round");
+  if (work.unmatched > 0)
+    remarks.push_back(std::to_string(work.unmatched) + " edges are divided in two ways by their faces");
+  if (work.open_solids > 0)
+    remarks.push_back(std::to_string(work.open_solids) + " solids are open, at " + std::to_string(work.open_sides) +
+                      " edges of triangles");
+  if (work.farthest <= deflection) return;
+  char text[160];
+  std::snprintf(text, sizeof(text), "triangles are up to %.3g from their faces, which is more than %.3g", work.farthest,
+                deflection);
+  remarks.emplace_back(text);
+}
+
+double deflection_of(const io::CadFineness& fineness, double diagonal) {
+  const double wanted = fineness.deflection > 0 ? fineness.deflection : fineness.deflection_of_diagonal * diagonal;
+  if (!(diagonal > 0) || !std::isfinite(diagonal)) throw InvalidCad("expected faces of some size, got none");
+  if (!(wanted >= kLeastShare * diagonal)) {
+    char text[160];
+    std::snprintf(text, sizeof(text),
+                  "expected a deflection of at least %.3g, which is 1e-7 of the model's diagonal, got %.3g (--deflection)",
+                  kLeastShare * diagonal, wanted);
+    throw InvalidCad(text);
+  }
+  return wanted;
+}
+
+}  // namespace
+
+io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
+  const double diagonal = diagonal_of(model), deflection = deflection_of(fineness, diagonal);
+  for (Body& body : model.bodies) sew_open_edges(body, model.tolerance, diagonal, model.remarks);
+  mesh_by_opencascade(model, deflection, fineness.angle);
+  io::CadMesh result;
+  Work work;
+  for (const Body& body : model.bodies) append_tessellated(body, deflection, result, work);
+  result.unit_micrometres = model.unit_micrometres;
+  result.has_unit = model.has_unit;
+  result.extras = model.extras;
+  result.remarks = model.remarks;
+  tell(work, deflection, result.remarks);
+  if (result.triangles.empty()) throw InvalidCad("expected faces that OpenCASCADE can tessellate, got none");
+  return result;
+}
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/worker/requests.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "vdb_offset/cad/tessellate/tessellate.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+/// Lets this process have so many more bytes of addresses.
+void limit_memory(std::uint64_t more) {
+#ifndef __SANITIZE_ADDRESS__  // which has terabytes of addresses
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t most = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + more;
+  if (const rlimit limit{most, most}; more > 0 && pages > 0) ::setrlimit(RLIMIT_AS, &limit);
+#else
+  (void)more;
+#endif
+}
+
+}  // namespace
+
+std::string Requests::mesh(const io::ReadCad& read) {
+  limit_memory(read.most_memory);
+  model_ = read_model(read.path, read.format);
+  const io::CadMesh mesh = tessellate(*model_, read.fineness);
+  surfaces_.clear();
+  for (const Body& body : model_->bodies)
+    for (const ModelFace& face : body.faces) surfaces_.emplace_back(face.face);
+  return io::pack(mesh);
+}
+
+std::string Requests::distances(std::string_view payload) const {
+  io::Unpacker unpacker(payload);
+  const auto points = unpacker.list<io::CadPoint>();
+  unpacker.end();
+  std::vector<double> errors;
+  errors.reserve(points.size());
+  for (const io::CadPoint& at : points) {
+    if (at.face >= surfaces_.size())
+      throw InvalidCad("expected points of " + std::to_string(surfaces_.size()) + " faces, got one of face " +
+                       std::to_string(at.face + 1));
+    const Foot foot = surfaces_[at.face].foot(gp_Pnt(at.x, at.y, at.z), at.u, at.v);
+    errors.push_back(std::abs(std::abs(foot.distance) - std::abs(at.distance)));
+  }
+  io::Packer packer;
+  packer.list(errors);
+  return packer.take();
+}
+
+std::string Requests::answer(io::CadRequest kind, std::string_view payload) {
+  if (kind == io::CadRequest::Mesh) return mesh(io::unpack_read(payload));
+  if (!model_) throw io::BadMessage("expected a model first, got another request");
+  if (kind == io::CadRequest::Distances) return distances(payload);
+  throw io::BadMessage("expected a request that is known, got number " + std::to_string(static_cast<std::uint32_t>(kind)));
+}
+
+}  // namespace vdb_offset::cad

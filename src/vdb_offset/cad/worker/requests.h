@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdb_offset/cad/read/cad_model.h"
+#include "vdb_offset/cad/surface/face_surface.h"
+#include "vdb_offset/io/documents/cad/cad_messages.h"
+
+namespace vdb_offset::cad {
+
+/// The model that requests are about.
+class Requests {
+ public:
+  /// What a request asks for. \throw InvalidCad, io::BadMessage and whatever OpenCASCADE throws
+  std::string answer(io::CadRequest kind, std::string_view payload);
+
+ private:
+  std::string mesh(const io::ReadCad& read);
+  std::string distances(std::string_view payload) const;
+
+  std::optional<CadModel> model_;
+  std::vector<FaceSurface> surfaces_;  ///< Of the faces, in the order in which they are told.
+};
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/documents/cad/cad_messages.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace vdb_offset::io {
+namespace {
+
+using Numbers = std::array<double, 3>;
+
+void put_texts(Packer& packer, const std::vector<std::string>& texts) {
+  packer.value(std::uint64_t{texts.size()});
+  for (const std::string& text : texts) packer.text(text);
+}
+
+std::vector<std::string> take_texts(Unpacker& unpacker) {
+  std::vector<std::string> texts(unpacker.count(sizeof(std::uint64_t)));
+  for (std::string& text : texts) text = unpacker.text();
+  return texts;
+}
+
+void put_face(Packer& packer, const CadFaceFacts& face) {
+  packer.text(face.name).text(face.layer).text(face.solid).text(face.kind);
+  packer.value(std::uint8_t{face.colour.has_value()}).value(face.colour.value_or(Numbers{}));
+  packer.value(face.u).value(face.v);
+}
+
+CadFaceFacts take_face(Unpacker& unpacker) {
+  CadFaceFacts face;
+  for (std::string* text : {&face.name, &face.layer, &face.solid, &face.kind}) *text = unpacker.text();
+  const bool has_colour = unpacker.value<std::uint8_t>() != 0;
+  const auto colour = unpacker.value<Numbers>();
+  if (has_colour) face.colour = colour;
+  face.u = unpacker.value<std::array<double, 2>>();
+  face.v = unpacker.value<std::array<double, 2>>();
+  return face;
+}
+
+void require(bool holds, const char* otherwise) {
+  if (!holds) throw BadMessage(otherwise);
+}
+
+bool is_finite(const Vec3d& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
+
+void require_edges(const CadMesh& mesh) {
+  require(mesh.edge_kinds.size() == mesh.edges.size(), "edges without a kind");
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+    const auto& edge = mesh.edges[e];
+    require(edge[0] < edge[1] && edge[1] < mesh.positions.size(), "an edge of no vertices");
+    require(e == 0 || mesh.edges[e - 1] < edge, "edges out of order");
+    require(mesh.edge_kinds[e] <= CadEdge::Sharp, "an edge of no kind");
+  }
+}
+
+void require_whole(const CadMesh& mesh) {
+  const std::size_t triangles = mesh.triangles.size();
+  require(mesh.positions.size() < kNone && triangles < kNone, "more than can be numbered");
+  require(mesh.face_of.size() == triangles && mesh.corner_parameters.size() == 3 * triangles &&
+              mesh.corner_normals.size() == 3 * triangles,
+          "triangles without all that belongs to them");
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) require(vertex < mesh.positions.size(), "a triangle of no vertices");
+  for (const std::uint32_t face : mesh.face_of) require(face < mesh.faces.size(), "a triangle of no face");
+  require(std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite) &&
+              std::all_of(mesh.corner_normals.begin(), mesh.corner_normals.end(), is_finite),
+          "a number that is none");
+  for (const auto& uv : mesh.corner_parameters)
+    require(std::isfinite(uv[0]) && std::isfinite(uv[1]), "a parameter that is no number");
+  require(mesh.unit_micrometres > 0 && std::isfinite(mesh.unit_micrometres), "a unit without a length");
+  require_edges(mesh);
+}
+
+}  // namespace
+
+std::string pack(const ReadCad& read) {
+  Packer packer;
+  packer.text(read.path).text(read.format).value(read.fineness).value(read.most_memory);
+  return packer.take();
+}
+
+ReadCad unpack_read(std::string_view bytes) {
+  Unpacker unpacker(bytes);
+  ReadCad read;
+  read.path = unpacker.text();
+  read.format = unpacker.text();
+  read.fineness = unpacker.value<CadFineness>();
+  read.most_memory = unpacker.value<std::uint64_t>();
+  unpacker.end();
+  return read;
+}
+
+std::string pack(const CadMesh& mesh) {
+  Packer packer;
+  packer.list(mesh.positions).list(mesh.triangles).list(mesh.face_of);
+  packer.list(mesh.corner_parameters).list(mesh.corner_normals);
+  packer.value(std::uint64_t{mesh.faces.size()});
+  for (const CadFaceFacts& face : mesh.faces) put_face(packer, face);
+  packer.list(mesh.edges).list(mesh.edge_kinds);
+  packer.value(mesh.unit_micrometres).value(std::uint8_t{mesh.has_unit});
+  put_texts(packer, mesh.extras);
+  put_texts(packer, mesh.remarks);
+  return packer.take();
+}
+
+CadMesh unpack_mesh(std::string_view bytes) {
+  Unpacker unpacker(bytes);
+  CadMesh mesh;
+  mesh.positions = unpacker.list<Vec3d>();
+  mesh.triangles = unpacker.list<std::array<std::uint32_t, 3>>();
+  mesh.face_of = unpacker.list<std::uint32_t>();
+  mesh.corner_parameters = unpacker.list<std::array<double, 2>>();
+  mesh.corner_normals = unpacker.list<Vec3d>();
+  constexpr std::size_t kLeastOfFace = 4 * sizeof(std::uint64_t);
+  mesh.faces.resize(unpacker.count(kLeastOfFace));
+  for (CadFaceFacts& face : mesh.faces) face = take_face(unpacker);
+  mesh.edges = unpacker.list<std::array<std::uint32_t, 2>>();
+  mesh.edge_kinds = unpacker.list<CadEdge>();
+  mesh.unit_micrometres = unpacker.value<double>();
+  mesh.has_unit = unpacker.value<std::uint8_t>() != 0;
+  mesh.extras = take_texts(unpacker);
+  mesh.remarks = take_texts(unpacker);
+  unpacker.end();
+  require_whole(mesh);
+  return mesh;
+}
+
+}  // namespace vdb_offset::io

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdb_offset/io/documents/cad/cad_mesh.h"
+#include "vdb_offset/io/documents/cad/packing.h"
+
+namespace vdb_offset::io {
+
+// What the program and its worker, vdb_offset_cad, tell each other. The worker first says its version; then each request
+// has one reply.
+
+/// What the worker is asked for.
+enum class CadRequest : std::uint32_t {
+  Mesh = 1,       ///< Reads the file and tessellates it: ReadCad; the reply is a CadMesh.
+  Distances = 2,  ///< A list of CadPoint; the reply is a list of as many doubles.
+};
+
+/// What the worker says.
+enum class CadReply : std::uint32_t {
+  Version = 1,      ///< A text.
+  Done = 2,         ///< What the request's kind says.
+  InvalidFile = 3,  ///< A text: `expected X, got Y`.
+  OutOfMemory = 4,  ///< A text, as before.
+  Failed = 5,       ///< A text, as before: the request, and not the file, is at fault.
+};
+
+/// The file to be read, and how.
+struct ReadCad {
+  std::string path;    ///< Where the worker finds the file's bytes.
+  std::string format;  ///< step, iges or brep
+  CadFineness fineness;
+  std::uint64_t most_memory = 0;  ///< How many bytes more than it has at its start the worker may ask for; 0: any.
+};
+
+/// A point of an offset surface: of the point (u, v) of a face, at a distance, to either side.
+struct CadPoint {
+  double x = 0, y = 0, z = 0, u = 0, v = 0, distance = 0;
+  std::uint64_t face = 0;  ///< An index of CadMesh::faces.
+};
+
+std::string pack(const ReadCad& read);
+std::string pack(const CadMesh& mesh);
+
+/// \throw BadMessage
+ReadCad unpack_read(std::string_view bytes);
+/// Every index, length and kind is checked. \throw BadMessage
+CadMesh unpack_mesh(std::string_view bytes);
+
+}  // namespace vdb_offset::io
