@@ -37,6 +37,12 @@ class VDB_OFFSET_API ExactSurface {
   virtual std::vector<double> distance_errors(std::span<const std::uint32_t> vertices,
                                               std::span<const double> distances,
                                               std::span<const Vec3d> points) const = 0;
+  /// Of each point, by how much its distance from the model's face that a face of the mesh is of is another than asked,
+  /// world units.
+  /// \param feet points of the mesh's faces, near which the closest ones of the model's are
+  virtual std::vector<double> distance_errors_near(std::span<const std::uint32_t> faces, std::span<const Vec3d> feet,
+                                                   std::span<const double> distances,
+                                                   std::span<const Vec3d> points) const = 0;
 };
 
 }  // namespace vdb_offset

@@ -36,6 +36,14 @@ class Implicit : public ExactSurface {
         errors[i] = std::max(errors[i], std::abs(value(piece, points[i]) - distances[i]));
     return errors;
   }
+  std::vector<double> distance_errors_near(std::span<const std::uint32_t> faces, std::span<const Vec3d>,
+                                           std::span<const double> distances,
+                                           std::span<const Vec3d> points) const override {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      errors.push_back(std::abs(value(static_cast<int>(pieces[faces[i]]), points[i]) - distances[i]));
+    return errors;
+  }
   virtual double value(int piece, const Vec3d& x) const = 0;
   virtual Vec3d gradient(int piece, const Vec3d& x) const = 0;
 

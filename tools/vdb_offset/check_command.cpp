@@ -15,6 +15,7 @@
 #include "messages.h"
 #include "page/run_pages.h"
 #include "request/command_line.h"
+#include "request/offset_options.h"
 #include "request/option_rules.h"
 #include "request/option_values.h"
 #include "run_files.h"

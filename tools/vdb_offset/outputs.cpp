@@ -96,9 +96,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"precision", request.write.digits > 0 ? fmt::format("{}", request.write.digits) : "automatic"},
           {"threads", fmt::format("{}", options.threads)},
           {"max-memory", fmt::format("{}", options.max_memory)},
-          {"deflection", job.source.file && job.source.file->exact
-                             ? fmt::format("{}", job.source.file->exact->deflection())
-                             : ""},
+          {"deflection",
+           job.source.file && job.source.file->exact ? fmt::format("{}", job.source.file->exact->deflection()) : ""},
           {"flatten", job.source.curves && job.source.curves->flattened_shapes > 0
                           ? fmt::format("{}", job.source.curves->flattened_to)
                           : ""},

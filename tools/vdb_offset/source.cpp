@@ -61,8 +61,8 @@ io::CurveReading curve_reading(const Request& request) {
 }
 
 io::CadReading cad_reading(const Request& request) {
-  // Of the distance; and shares of the diagonal that this is not to pass, so that a tiny distance does not make millions
-  // of triangles, nor a large one a coarse shape. The bounds are not measured.
+  // Of the distance; and shares of the diagonal that this is not to pass, so that a tiny distance does not make
+  // millions of triangles, nor a large one a coarse shape. The bounds are not measured.
   constexpr double kShare = 0.01, kLeast = 2e-5, kMost = 5e-3;
   io::CadReading how;
   how.angle_degrees = request.angle;
@@ -147,7 +147,8 @@ Source read_source(const Request& request, bool curves) {
   }
   if (scene::is_scene(request.input)) source.scene = scene::read_scene(request.input);
   if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request));
-  else if (!source.scene->mesh_path.empty()) source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request)});
+  else if (!source.scene->mesh_path.empty())
+    source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request)});
   // What the user says counts more than what the file does.
   if (source.file && !request.unit.empty()) source.file->unit_micrometres = micrometres_of(request.unit);
   if (source.file && !request.quiet) tell_remarks(*source.file);

@@ -246,8 +246,9 @@ void print_states(std::FILE* out, const OffsetResult& result) {
 }
 
 void print_exactness(std::FILE* out, const ExactFacts& exact) {
-  fmt::print(out, "from the faces of the CAD model, {} vertices are off their distance by {:.2g} on average, {:.2g} at most\n",
-             exact.vertices, exact.mean, exact.worst);
+  fmt::print(
+      out, "from the faces of the CAD model, {} vertices are off their distance by {:.2g} on average, {:.2g} at most\n",
+      exact.vertices, exact.mean, exact.worst);
 }
 
 void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {

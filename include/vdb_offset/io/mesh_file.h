@@ -80,12 +80,12 @@ inline constexpr std::uint32_t kNoNormal = 0xffffffff;
 
 /// How a CAD model becomes a mesh.
 struct CadReading {
-  /// The most distance between triangles and the faces that they stand for, in the file's unit; if it is 0, as a share of
-  /// the diagonal of the model's bounding box.
+  /// The most distance between triangles and the faces that they stand for, in the file's unit; if it is 0, as a share
+  /// of the diagonal of the model's bounding box.
   double deflection = 0, deflection_share = 2e-4;
   double least_share = 0, most_share = 1;  ///< The deflection is between these shares of the diagonal.
-  double angle_degrees = 15;  ///< The most angle between a face's normals at neighbouring vertices.
-  double seconds = 300;       ///< How long OpenCASCADE may take for a file, and for each question about it.
+  double angle_degrees = 15;               ///< The most angle between a face's normals at neighbouring vertices.
+  double seconds = 300;  ///< How long OpenCASCADE may take for a file, and for each question about it.
 };
 
 struct ReadOptions {

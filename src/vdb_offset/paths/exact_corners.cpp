@@ -34,6 +34,13 @@ ExactCorners::ExactCorners(const ExactSurface& exact, PolygonView mesh, const Su
     if (const auto w = surface.welded[v]; w != kNone && surface.representative[w] != v) known_[w] = 0;
 }
 
+bool ExactCorners::is_sharp(std::uint32_t vertex) const {
+  const auto piece = exact_.piece_of_face();
+  const auto around = surface_.triangles_around(vertex);
+  return std::any_of(around.begin(), around.end(),
+                     [&](auto t) { return piece[surface_.face[t]] != piece[surface_.face[around[0]]]; });
+}
+
 const Vec3d& ExactCorners::normal(std::uint32_t triangle, std::uint32_t vertex) const {
   const auto& corners = surface_.triangles[triangle];
   return normals_[3 * triangle + (corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2)];

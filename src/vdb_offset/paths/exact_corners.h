@@ -20,6 +20,8 @@ class ExactCorners {
   /// Whether the exact normals around a vertex are known; of one at which several of the mesh's vertices meet, they
   /// are not.
   bool knows(std::uint32_t vertex) const { return known_[vertex] != 0; }
+  /// Whether pieces of the surface meet at a vertex, at an edge or a corner.
+  bool is_sharp(std::uint32_t vertex) const;
   /// The exact normal of a triangle at one of its vertices. \pre knows(vertex)
   const Vec3d& normal(std::uint32_t triangle, std::uint32_t vertex) const;
   /// Whether a point on a triangle, the closest one to the offset of a vertex, is of the surface around the vertex, and

@@ -319,6 +319,7 @@ MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {
                        {},
                        miter.distance,
                        miter.nearer,
+                       miter.displacement,
                        false});
   }
   exchange(all, paths, false);
@@ -333,6 +334,11 @@ std::vector<MitredPaths::Other>::const_iterator MitredPaths::find(std::uint32_t 
 bool MitredPaths::is_mitred(std::uint32_t vertex) const {
   const auto at = find(vertex);
   return at != others_.end() && at->is_mitred;
+}
+
+bool MitredPaths::is_miter(std::uint32_t vertex, const Vec3d& displacement) const {
+  const auto at = find(vertex);
+  return at != others_.end() && at->miter == displacement;
 }
 
 Indices MitredPaths::taken_back() const {

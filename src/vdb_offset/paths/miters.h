@@ -123,6 +123,8 @@ class MitredPaths {
   std::span<const double> nearer() const { return nearer_; }
   /// Whether a vertex's path leads to the end of its miter now.
   bool is_mitred(std::uint32_t vertex) const;
+  /// Whether a displacement of a vertex is its miter's.
+  bool is_miter(std::uint32_t vertex, const Vec3d& displacement) const;
   /// The vertices whose miters have been taken back.
   Indices taken_back() const;
   /// Gives those of some vertices that are mitred the paths back that they had before, and returns them.
@@ -140,6 +142,7 @@ class MitredPaths {
     std::uint32_t closest;
     std::vector<Vec3d> trace;
     double farther, nearer;  // of the miter, always
+    Vec3d miter;             // its displacement
     bool is_mitred = true;
   };
 

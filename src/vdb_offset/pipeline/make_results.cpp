@@ -17,6 +17,7 @@
 #include "vdb_offset/field/grid_plan.h"
 #include "vdb_offset/limit/limit.h"
 #include "vdb_offset/limit/warm_start.h"
+#include "vdb_offset/pipeline/exactness.h"
 #include "vdb_offset/pipeline/faulty_miters.h"
 #include "vdb_offset/pipeline/moved_input.h"
 #include "vdb_offset/sheets/sheet_sides.h"
@@ -196,29 +197,8 @@ class ResultMaker {
       if (options_.keep_face_errors) result.face_errors = measure_each_face(faces, mesh_.mesh().face_count());
     }
     result.face_faults = draft.face_faults;
-    if (mesh_.knows_surface()) result.statistics.exact = measure_exactness(result);
+    if (mesh_.exact()) result.statistics.exact = measure_exactness(mesh_, draft.marched, result);
     return result;
-  }
-
-  /// How exactly the vertices that are said to be there are at their distances from the model's faces.
-  ExactFacts measure_exactness(const OffsetResult& result) const {
-    std::vector<std::uint32_t> vertices;
-    std::vector<double> distances;
-    std::vector<Vec3d> points;
-    for (std::uint32_t v = 0; v < result.states.size(); ++v) {
-      if (result.distances[v] == 0 ||
-          (result.states[v] != VertexState::Reached && result.states[v] != VertexState::Mitred))
-        continue;
-      vertices.push_back(v);
-      distances.push_back(result.distances[v]);
-      points.push_back(result.positions[v]);
-    }
-    ExactFacts facts{vertices.size(), 0, 0};
-    for (const double error : options_.exact->distance_errors(vertices, distances, points)) {
-      facts.mean += error / static_cast<double>(vertices.size());
-      facts.worst = std::max(facts.worst, error);
-    }
-    return facts;
   }
 
   /// Vertices at junctions are short, until a shell gives each sheet there a position of its own (see shell_of()).

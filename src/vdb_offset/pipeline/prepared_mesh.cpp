@@ -127,8 +127,7 @@ void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> 
   const bool may_go_farther = options_.corners == Corners::Miter;
   const std::vector<MiterWalls> walls =
       may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
-  const MiterFinder miters(*query_, options_.corners, options_.miter_limit, obstacles(), walls,
-                           exact_ ? &*exact_ : nullptr);
+  const MiterFinder miters(*query_, options_.corners, options_.miter_limit, obstacles(), walls, exact());
   for (std::size_t i = 0; i < marched.size(); ++i) {
     Marched& each = marched[i];
     MiterFacts facts;

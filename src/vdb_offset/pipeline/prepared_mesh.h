@@ -55,8 +55,8 @@ class PreparedMesh {
     return *query_;
   }
   DistanceField& field() { return field_; }
-  /// Whether the exact surface is known, and counts.
-  bool knows_surface() const { return exact_.has_value(); }
+  /// What is known of the exact surface at the moving part's triangles; nullptr: nothing.
+  const ExactCorners* exact() const { return exact_ ? &*exact_ : nullptr; }
   /// The mesh beside its obstacles; nullptr without any.
   const Surroundings* surroundings() const { return surroundings_ ? &*surroundings_ : nullptr; }
   const Obstacles* obstacles() const { return surroundings_ ? &surroundings_->obstacles() : nullptr; }

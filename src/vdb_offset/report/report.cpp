@@ -63,8 +63,7 @@ Json facts_json(const MeshFacts& facts) {
           {"longest_sliver", facts.longest_sliver}};
 }
 
-/// A report as text. Names of files and parts may hold bytes that are no UTF-8, and so not allowed in JSON: they are
-/// replaced.
+/// A report as text; bytes of names that are no UTF-8, and so not allowed in JSON, are replaced.
 std::string as_text(const Json& report) { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json faults_json(const FaultCounts& counts) {
@@ -162,10 +161,6 @@ Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
     report["out_of_faces"] = certified.out_of_faces;
   }
   return report;
-}
-
-Json exact_json(const ExactFacts& exact) {
-  return {{"vertices", exact.vertices}, {"mean_error", exact.mean}, {"worst_error", exact.worst}};
 }
 
 Json miters_json(const MiterFacts& miters) {
@@ -340,7 +335,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
                  {"room", room_json(statistics.room)},
                  {"achieved", achieved_json(achieved)}};
   if (statistics.faces.samples > 0) report["faces"] = faces_json(statistics.faces);
-  if (statistics.exact) report["cad_faces"] = exact_json(*statistics.exact);
+  if (const auto& e = statistics.exact) report["cad_faces"] = {{"mean_error", e->mean}, {"worst_error", e->worst}};
   if (statistics.certified) report["certified"] = certified_json(*statistics.certified, statistics.facts);
   if (first_faces && first_faces->samples > 0) report["faces_at_first_height"] = faces_json(*first_faces);
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);

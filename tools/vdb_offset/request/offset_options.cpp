@@ -227,10 +227,11 @@ void declare_products(CommandLine& line, Draft& draft) {
 }  // namespace
 
 void declare_cad(CommandLine& line, Request& request) {
-  line.option("--deflection", "TOL",
-              "Of CAD models: no triangle is farther than this from the face that it stands for: world units, or percent "
-              "of the diagonal [a hundredth of the distance]",
-              [&request](const std::string& text) { request.deflection = parse_deflection(text); });
+  line.option(
+      "--deflection", "TOL",
+      "Of CAD models: no triangle is farther than this from the face that it stands for: world units, or percent "
+      "of the diagonal [a hundredth of the distance]",
+      [&request](const std::string& text) { request.deflection = parse_deflection(text); });
   line.option("--angle", "A",
               "Of CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
               [&request](const std::string& text) {

@@ -80,7 +80,7 @@ void require_for_mesh(const Request& request) {
       scene::is_scene(request.input) || format_of(request.input, request),
       request.input +
           ": expected an input that ends in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .fbx, .dae, "
-          ".3ds (or these and .gz or .zst) or .json, or --format");
+          ".3ds, .step, .stp, .iges, .igs, .brep (or these and .gz or .zst) or .json, or --format");
   const bool volume =
       io::volume_format_of(request.output).has_value() || io::structured_format_of(request.output).has_value();
   // A .vtu is a mesh of cells with --layers, and one of faces without.

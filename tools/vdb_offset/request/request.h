@@ -88,12 +88,12 @@ struct Request {
   GridOptions grid;
   WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
-  int threads = 0;                         ///< 0: all.
-  std::size_t max_memory = 0;              ///< Bytes.
-  bool close = false;                      ///< Join ends of curves that are near each other.
+  int threads = 0;                            ///< 0: all.
+  std::size_t max_memory = 0;                 ///< Bytes.
+  bool close = false;                         ///< Join ends of curves that are near each other.
   std::optional<scene::Distance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
   double angle = 15, cad_seconds = 300;       ///< Of CAD models: degrees, and how long reading may take.
-  std::optional<scene::Distance> flatten;  ///< How far straight segments may be from curved ones; none: the default.
+  std::optional<scene::Distance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
 
   std::string unit;  ///< Of the file's numbers; empty: not said.
   // Texts as given, for the report.

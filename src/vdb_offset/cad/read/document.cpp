@@ -93,7 +93,8 @@ class Walk {
     tell(curves_, "free curve", "free curves");
     tell(points_, "free point", "free points");
     if (repeated_ > 0)
-      model_.remarks.push_back(std::to_string(repeated_) + " faces that the file has twice in one place are taken once");
+      model_.remarks.push_back(std::to_string(repeated_) +
+                               " faces that the file has twice in one place are taken once");
     if (!loose_.faces.empty()) model_.bodies.push_back(std::move(loose_));
   }
 

@@ -124,16 +124,15 @@ CadModel read_brep(const std::string& path) {
   if (is_binary) is_read = BinTools::Read(shape, path.c_str());
   else if (start.find("DBRep_DrawableShape") != std::string::npos || start.find("CASCADE") != std::string::npos)
     is_read = BRepTools::Read(shape, path.c_str(), BRep_Builder());
-  if (!is_read || shape.IsNull()) throw InvalidCad("expected a BREP file of OpenCASCADE's, got one that it cannot read");
+  if (!is_read || shape.IsNull())
+    throw InvalidCad("expected a BREP file of OpenCASCADE's, got one that it cannot read");
   CadModel model;
   add_shape(shape, model);
   return model;
 }
 
 CadModel read_model(const std::string& path, const std::string& format) {
-  CadModel model = format == "step"   ? read_step(path)
-                   : format == "iges" ? read_iges(path)
-                                      : read_brep(path);
+  CadModel model = format == "step" ? read_step(path) : format == "iges" ? read_iges(path) : read_brep(path);
   if (!model.bodies.empty()) return model;
   std::string others;
   for (const std::string& extra : model.extras) others += (others.empty() ? "" : ", ") + extra;

@@ -38,7 +38,9 @@ FaceSurface::FaceSurface(const TopoDS_Face& face)
     : surface_(face, Standard_False), type_(surface_.GetType()), is_analytic_(is_known(type_)) {
   BRepTools::UVBounds(face, u_[0], u_[1], v_[0], v_[1]);
   switch (type_) {
-    case GeomAbs_Plane: frame_ = surface_.Plane().Position(); break;
+    case GeomAbs_Plane:
+      frame_ = surface_.Plane().Position();
+      break;
     case GeomAbs_Cylinder:
       frame_ = surface_.Cylinder().Position();
       radius_ = surface_.Cylinder().Radius();
@@ -58,7 +60,8 @@ FaceSurface::FaceSurface(const TopoDS_Face& face)
       radius_ = surface_.Torus().MajorRadius();
       tube_ = surface_.Torus().MinorRadius();
       break;
-    default: break;
+    default:
+      break;
   }
   side_ = frame_.Direct() ? 1 : -1;
   size_ = std::max({radius_ + tube_, std::abs(v_[1] - v_[0]) * std::abs(sine_), 1e-300});
@@ -66,17 +69,28 @@ FaceSurface::FaceSurface(const TopoDS_Face& face)
 
 std::string FaceSurface::kind() const {
   switch (type_) {
-    case GeomAbs_Plane: return "plane";
-    case GeomAbs_Cylinder: return "cylinder";
-    case GeomAbs_Cone: return "cone";
-    case GeomAbs_Sphere: return "sphere";
-    case GeomAbs_Torus: return "torus";
-    case GeomAbs_BezierSurface: return "bezier";
-    case GeomAbs_BSplineSurface: return "b-spline";
-    case GeomAbs_SurfaceOfRevolution: return "revolution";
-    case GeomAbs_SurfaceOfExtrusion: return "extrusion";
-    case GeomAbs_OffsetSurface: return "offset";
-    default: return "other";
+    case GeomAbs_Plane:
+      return "plane";
+    case GeomAbs_Cylinder:
+      return "cylinder";
+    case GeomAbs_Cone:
+      return "cone";
+    case GeomAbs_Sphere:
+      return "sphere";
+    case GeomAbs_Torus:
+      return "torus";
+    case GeomAbs_BezierSurface:
+      return "bezier";
+    case GeomAbs_BSplineSurface:
+      return "b-spline";
+    case GeomAbs_SurfaceOfRevolution:
+      return "revolution";
+    case GeomAbs_SurfaceOfExtrusion:
+      return "extrusion";
+    case GeomAbs_OffsetSurface:
+      return "offset";
+    default:
+      return "other";
   }
 }
 

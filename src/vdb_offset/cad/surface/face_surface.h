@@ -17,8 +17,8 @@ struct Foot {
   double distance = 0;  ///< Of the point, positive on the side that the normal, du x dv, points to.
 };
 
-/// The surface of a face, with the face's placement and without its bounds: points, unit normals and closest points. For
-/// planes, cylinders, cones, spheres and tori in closed form.
+/// The surface of a face, with the face's placement and without its bounds: points, unit normals and closest points.
+/// For planes, cylinders, cones, spheres and tori in closed form.
 class FaceSurface {
  public:
   explicit FaceSurface(const TopoDS_Face& face);

@@ -9,7 +9,8 @@ namespace vdb_offset::cad {
 namespace {
 
 // Faces whose normals differ by less meet smoothly. Files keep directions and trimming curves to some 1e-3 of a radian,
-// and approximated fillets are off by tenths of a degree; and a mitre of a degree is only 4e-5 longer than the distance.
+// and approximated fillets are off by tenths of a degree; and a mitre of a degree is only 4e-5 longer than the
+// distance.
 constexpr double kSharpAngle = std::numbers::pi / 180;
 // How far from a pole, as a share of the way to the triangle's middle, its normal there is taken.
 constexpr double kBesidePole = 1e-3;
@@ -24,7 +25,8 @@ gp_Vec normal_beside(const FaceMesh& face, const Triangle& t, double u, double v
   double to_u = 0, to_v = 0;
   for (const std::uint32_t node : t) to_u += face.nodes[node].u / 3, to_v += face.nodes[node].v / 3;
   for (double share = kBesidePole; share <= 1; share *= 10)
-    if (const auto normal = face.surface.normal(u + share * (to_u - u), v + share * (to_v - v))) return *normal * face.side;
+    if (const auto normal = face.surface.normal(u + share * (to_u - u), v + share * (to_v - v)))
+      return *normal * face.side;
   return {0, 0, 0};
 }
 
@@ -37,7 +39,8 @@ gp_Vec flat_normal(const BodyMesh& mesh, const FaceMesh& face, const Triangle& t
 }
 
 /// The normal of a face beside an edge of a triangle, in the middle of the edge's part of the model.
-gp_Vec normal_at_edge(const BodyMesh& mesh, const FaceMesh& face, const Triangle& t, std::size_t k, const gp_Pnt& middle) {
+gp_Vec normal_at_edge(const BodyMesh& mesh, const FaceMesh& face, const Triangle& t, std::size_t k,
+                      const gp_Pnt& middle) {
   const Node &a = face.nodes[t[k]], &b = face.nodes[t[(k + 1) % 3]];
   const Foot foot = face.surface.foot(middle, (a.u + b.u) / 2, (a.v + b.v) / 2);
   if (const auto normal = face.surface.normal(foot.u, foot.v)) return *normal * face.side;
@@ -115,8 +118,8 @@ void append_body(const BodyMesh& mesh, const Body& body, io::CadMesh& result) {
     facts.u = {face.surface.first_u(), face.surface.last_u()};
     facts.v = {face.surface.first_v(), face.surface.last_v()};
     for (const Triangle& t : face.triangles) {
-      result.triangles.push_back({number[face.nodes[t[0]].vertex], number[face.nodes[t[1]].vertex],
-                                  number[face.nodes[t[2]].vertex]});
+      result.triangles.push_back(
+          {number[face.nodes[t[0]].vertex], number[face.nodes[t[1]].vertex], number[face.nodes[t[2]].vertex]});
       result.face_of.push_back(static_cast<std::uint32_t>(result.faces.size()));
       for (std::size_t k = 0; k < 3; ++k) {
         const gp_Vec normal = corner_normal(mesh, face, t, k);

@@ -43,7 +43,7 @@ struct BodyMesh {
   std::vector<FaceMesh> faces;
   std::vector<BRepAdaptor_Curve> curves;
   std::unordered_map<std::uint64_t, Segment> segments;  ///< By the numbers of their vertices.
-  std::size_t unmatched = 0;  ///< Edges that two faces have divided in two ways.
+  std::size_t unmatched = 0;                            ///< Edges that two faces have divided in two ways.
 
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
     return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;

@@ -56,14 +56,12 @@ class Divider {
   double height_of_edge(const FaceMesh& face, std::uint32_t a, std::uint32_t b) const {
     const Node &from = face.nodes[a], &to = face.nodes[b];
     const gp_Pnt p = at(face, a), q = at(face, b);
-    double height = face.surface.is_plane()
-                        ? 0
-                        : face.surface.height(between(p, q), (from.u + to.u) / 2, (from.v + to.v) / 2);
+    double height =
+        face.surface.is_plane() ? 0 : face.surface.height(between(p, q), (from.u + to.u) / 2, (from.v + to.v) / 2);
     const auto segment = mesh_.segments.find(BodyMesh::key(from.vertex, to.vertex));
     if (segment == mesh_.segments.end()) return height;
     const Segment& part = segment->second;
-    return std::max(height,
-                    height_of_chord(p, q, mesh_.curves[part.edge].Value((part.lower + part.upper) / 2)));
+    return std::max(height, height_of_chord(p, q, mesh_.curves[part.edge].Value((part.lower + part.upper) / 2)));
   }
 
   double height_of_middle(const FaceMesh& face, const Triangle& t) const {
@@ -176,8 +174,7 @@ class Divider {
       parts.push_back({ab, b, bc});
       if (at(face, a).SquareDistance(at(face, bc)) < at(face, ab).SquareDistance(at(face, c)))
         parts.insert(parts.end(), {{a, ab, bc}, {a, bc, c}});
-      else
-        parts.insert(parts.end(), {{a, ab, c}, {ab, bc, c}});
+      else parts.insert(parts.end(), {{a, ab, c}, {ab, bc, c}});
     }
   }
 

@@ -10,7 +10,7 @@ namespace {
 // Surfaces that meet at a smaller angle (its sine) leave the place along them open: where they miss each other by the
 // file's tolerance, a point on both may be as far away as one likes.
 constexpr double kLeastSine = 0.02;
-constexpr int kMostRounds = 4;     // each squares the error
+constexpr int kMostRounds = 4;      // each squares the error
 constexpr double kMostFactor = 10;  // of a move, times what it is to mend
 
 struct Use {

@@ -109,8 +109,7 @@ class Joiner {
       if (k == 0) same = known.vertices.front();
       else if (k + 1 == count) same = known.vertices.back();
       for (std::size_t j = 0; !same && polygon.HasParameters() && j < known.parameters.size(); ++j)
-        if (std::abs(known.parameters[j] - polygon.Parameter(static_cast<int>(k) + 1)) < 1e-9)
-          same = known.vertices[j];
+        if (std::abs(known.parameters[j] - polygon.Parameter(static_cast<int>(k) + 1)) < 1e-9) same = known.vertices[j];
       vertices.push_back(same ? *same
                               : add(nodes[static_cast<std::size_t>(polygon.Node(static_cast<int>(k) + 1)) - 1], true));
     }
@@ -171,8 +170,8 @@ FaceMesh take_face(const TopoDS_Face& face, Joiner& joiner) {
     int a = 0, b = 0, c = 0;
     mesh->Triangle(k).Get(a, b, c);
     if (is_turned) std::swap(b, c);
-    result.triangles.push_back({static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1),
-                                static_cast<std::uint32_t>(c - 1)});
+    result.triangles.push_back(
+        {static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1), static_cast<std::uint32_t>(c - 1)});
   }
   return result;
 }

@@ -16,9 +16,9 @@
 namespace vdb_offset::cad {
 namespace {
 
-constexpr int kSamples = 4;                    // steps across a face, for the model's size
-constexpr std::size_t kMostNamed = 5;          // faces that a remark names
-constexpr double kLeastShare = 1e-7;           // of the diagonal: a finer deflection is refused as numberless triangles
+constexpr int kSamples = 4;            // steps across a face, for the model's size
+constexpr std::size_t kMostNamed = 5;  // faces that a remark names
+constexpr double kLeastShare = 1e-7;   // of the diagonal: a finer deflection is refused as numberless triangles
 
 double diagonal_of(const CadModel& model) {
   Bnd_Box box;
@@ -52,8 +52,8 @@ void mesh_by_opencascade(const CadModel& model, double deflection, double angle)
 /// Faces without triangles, by number and name.
 void tell_missing(const std::vector<std::pair<std::size_t, std::string>>& missing, std::vector<std::string>& remarks) {
   if (missing.empty()) return;
-  std::string text = missing.size() == 1 ? "OpenCASCADE finds no triangles for face"
-                                         : "OpenCASCADE finds no triangles for faces";
+  std::string text =
+      missing.size() == 1 ? "OpenCASCADE finds no triangles for face" : "OpenCASCADE finds no triangles for faces";
   for (std::size_t k = 0; k < std::min(missing.size(), kMostNamed); ++k) {
     text += (k > 0 ? ", " : " ") + std::to_string(missing[k].first);
     if (!missing[k].second.empty()) text += " (" + missing[k].second + ")";
@@ -68,7 +68,8 @@ std::size_t count_open_sides(const BodyMesh& mesh) {
     for (const Triangle& t : face.triangles)
       for (std::size_t k = 0; k < 3; ++k)
         ++sides[BodyMesh::key(face.nodes[t[k]].vertex, face.nodes[t[(k + 1) % 3]].vertex)];
-  return static_cast<std::size_t>(std::count_if(sides.begin(), sides.end(), [](const auto& s) { return s.second == 1; }));
+  return static_cast<std::size_t>(
+      std::count_if(sides.begin(), sides.end(), [](const auto& s) { return s.second == 1; }));
 }
 
 /// What was done to all bodies together.
@@ -106,13 +107,15 @@ void tell(const Work& work, double deflection, std::vector<std::string>& remarks
 }
 
 double deflection_of(const io::CadFineness& fineness, double diagonal) {
-  const double wanted = fineness.deflection > 0 ? fineness.deflection : fineness.deflection_of_diagonal * diagonal;
+  const double asked = fineness.deflection > 0 ? fineness.deflection : fineness.deflection_of_diagonal * diagonal;
+  const double wanted = std::clamp(asked, fineness.least_of_diagonal * diagonal, fineness.most_of_diagonal * diagonal);
   if (!(diagonal > 0) || !std::isfinite(diagonal)) throw InvalidCad("expected faces of some size, got none");
   if (!(wanted >= kLeastShare * diagonal)) {
     char text[160];
-    std::snprintf(text, sizeof(text),
-                  "expected a deflection of at least %.3g, which is 1e-7 of the model's diagonal, got %.3g (--deflection)",
-                  kLeastShare * diagonal, wanted);
+    std::snprintf(
+        text, sizeof(text),
+        "expected a deflection of at least %.3g, which is 1e-7 of the model's diagonal, got %.3g (--deflection)",
+        kLeastShare * diagonal, wanted);
     throw InvalidCad(text);
   }
   return wanted;
@@ -127,6 +130,7 @@ io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
   io::CadMesh result;
   Work work;
   for (const Body& body : model.bodies) append_tessellated(body, deflection, result, work);
+  result.deflection = std::max(deflection, work.farthest);
   result.unit_micrometres = model.unit_micrometres;
   result.has_unit = model.has_unit;
   result.extras = model.extras;

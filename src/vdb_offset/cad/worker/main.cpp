@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program that reads CAD files by OpenCASCADE. Programs of the project start it, and talk with it by messages
 // (io/documents/cad/cad_messages.h); by hand it is of no use.
+#include <fcntl.h>
+#include <unistd.h>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_OutOfMemory.hxx>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <new>
@@ -56,8 +56,7 @@ Reply reply_to(Requests& requests, const io::Message& asked) {
     return {io::CadReply::InvalidFile, std::string("expected a CAD file that OpenCASCADE can read, got: ") +
                                            failure.DynamicType()->Name() + ": " + in_short(failure.GetMessageString())};
   } catch (const std::exception& error) {
-    return {io::CadReply::InvalidFile,
-            "expected a CAD file that OpenCASCADE can read, got: " + in_short(error.what())};
+    return {io::CadReply::InvalidFile, "expected a CAD file that OpenCASCADE can read, got: " + in_short(error.what())};
   }
 }
 

@@ -32,7 +32,14 @@ std::string Requests::mesh(const io::ReadCad& read) {
   const io::CadMesh mesh = tessellate(*model_, read.fineness);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
-    for (const ModelFace& face : body.faces) surfaces_.emplace_back(face.face);
+    for (const ModelFace& face : body.faces) surfaces_.push_back({FaceSurface(face.face), 1});
+  // Faces may have been turned: the triangles know which side is outward.
+  for (std::size_t c = 0; c < mesh.corner_normals.size(); ++c) {
+    SidedSurface& face = surfaces_[mesh.face_of[c / 3]];
+    const Vec3d& outward = mesh.corner_normals[c];
+    const auto normal = face.surface.normal(mesh.corner_parameters[c][0], mesh.corner_parameters[c][1]);
+    if (normal) face.side = normal->Dot(gp_Vec(outward.x(), outward.y(), outward.z())) < 0 ? -1 : 1;
+  }
   return io::pack(mesh);
 }
 
@@ -46,7 +53,7 @@ std::string Requests::distances(std::string_view payload) const {
     if (at.face >= surfaces_.size())
       throw InvalidCad("expected points of " + std::to_string(surfaces_.size()) + " faces, got one of face " +
                        std::to_string(at.face + 1));
-    const Foot foot = surfaces_[at.face].foot(gp_Pnt(at.x, at.y, at.z), at.u, at.v);
+    const Foot foot = surfaces_[at.face].surface.foot(gp_Pnt(at.x, at.y, at.z), at.u, at.v);
     errors.push_back(std::abs(std::abs(foot.distance) - std::abs(at.distance)));
   }
   io::Packer packer;
@@ -54,11 +61,31 @@ std::string Requests::distances(std::string_view payload) const {
   return packer.take();
 }
 
+std::string Requests::offset(std::string_view payload) const {
+  io::Unpacker unpacker(payload);
+  const auto aims = unpacker.list<io::CadAim>();
+  const auto places = unpacker.list<io::CadPlace>();
+  unpacker.end();
+  std::uint64_t count = 0;
+  for (const io::CadAim& aim : aims)
+    if ((count += aim.places) > places.size() || aim.places > places.size())
+      throw io::BadMessage("expected a place for each face of a point, got fewer");
+  for (const io::CadPlace& place : places)
+    if (place.face >= surfaces_.size())
+      throw InvalidCad("expected points of " + std::to_string(surfaces_.size()) + " faces, got one of face " +
+                       std::to_string(place.face + 1));
+  io::Packer packer;
+  packer.list(offset_points(surfaces_, aims, places));
+  return packer.take();
+}
+
 std::string Requests::answer(io::CadRequest kind, std::string_view payload) {
   if (kind == io::CadRequest::Mesh) return mesh(io::unpack_read(payload));
   if (!model_) throw io::BadMessage("expected a model first, got another request");
   if (kind == io::CadRequest::Distances) return distances(payload);
-  throw io::BadMessage("expected a request that is known, got number " + std::to_string(static_cast<std::uint32_t>(kind)));
+  if (kind == io::CadRequest::Offset) return offset(payload);
+  throw io::BadMessage("expected a request that is known, got number " +
+                       std::to_string(static_cast<std::uint32_t>(kind)));
 }
 
 }  // namespace vdb_offset::cad

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vdb_offset/cad/read/cad_model.h"
-#include "vdb_offset/cad/surface/face_surface.h"
+#include "vdb_offset/cad/surface/offset_points.h"
 #include "vdb_offset/io/documents/cad/cad_messages.h"
 
 namespace vdb_offset::cad {
@@ -21,9 +21,10 @@ class Requests {
  private:
   std::string mesh(const io::ReadCad& read);
   std::string distances(std::string_view payload) const;
+  std::string offset(std::string_view payload) const;
 
   std::optional<CadModel> model_;
-  std::vector<FaceSurface> surfaces_;  ///< Of the faces, in the order in which they are told.
+  std::vector<SidedSurface> surfaces_;  ///< Of the faces, in the order in which they are told.
 };
 
 }  // namespace vdb_offset::cad

@@ -20,7 +20,7 @@ namespace vdb_offset::io {
 struct FaceNames {
   std::vector<std::string> groups, materials;
   std::vector<std::uint32_t> group_of, material_of;  ///< Of all faces, or empty.
-  std::vector<std::string> layers = {};  ///< Of each group a second name, that of its layer; or empty.
+  std::vector<std::string> layers = {};              ///< Of each group a second name, that of its layer; or empty.
   /// Of each material its colour: red, green and blue, 0 .. 1, sRGB. Empty: none is known.
   std::vector<std::optional<std::array<double, 3>>> colours = {};
 };

@@ -72,12 +72,12 @@ struct Ending {
   std::string_view text;
   Format format;
 };
-constexpr Ending kFormatEndings[] = {{"obj", Format::Obj},   {"off", Format::Off},     {"ply", Format::Ply},
-                                     {"stl", Format::Stl},   {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf},
-                                     {"glb", Format::Glb},   {"vtp", Format::Vtp},     {"vtk", Format::Vtk},
-                                     {"vtu", Format::Vtu},   {"fbx", Format::Assimp},  {"dae", Format::Assimp},
-                                     {"3ds", Format::Assimp}, {"step", Format::Step},  {"stp", Format::Step},
-                                     {"iges", Format::Iges},  {"igs", Format::Iges},   {"brep", Format::Brep}};
+constexpr Ending kFormatEndings[] = {{"obj", Format::Obj},    {"off", Format::Off},     {"ply", Format::Ply},
+                                     {"stl", Format::Stl},    {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf},
+                                     {"glb", Format::Glb},    {"vtp", Format::Vtp},     {"vtk", Format::Vtk},
+                                     {"vtu", Format::Vtu},    {"fbx", Format::Assimp},  {"dae", Format::Assimp},
+                                     {"3ds", Format::Assimp}, {"step", Format::Step},   {"stp", Format::Step},
+                                     {"iges", Format::Iges},  {"igs", Format::Iges},    {"brep", Format::Brep}};
 
 /// The source's own document over other positions.
 WrittenDocument rewritten(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,

@@ -124,10 +124,10 @@ Selector parse_selector(const std::string& text) {
   if (!name.empty())
     for (const auto& [word, by] : kSelectorWords)
       if (kind == word) return {by, name};
-  throw InvalidOption(fmt::format(
-      "expected 'group=NAME', 'material=NAME', 'faces=FILE', or of a CAD model 'face=N', 'name=NAME' or "
-      "'color=RRGGBB', got '{}'",
-      text));
+  throw InvalidOption(
+      fmt::format("expected 'group=NAME', 'material=NAME', 'faces=FILE', or of a CAD model 'face=N', 'name=NAME' or "
+                  "'color=RRGGBB', got '{}'",
+                  text));
 }
 
 const char* in_words(Selector::By by) {

@@ -112,8 +112,8 @@ class CadDocument : public Document {
 
   [[noreturn]] void fail(const MeshFile& source, const Selector& selector, std::vector<std::string> known) const {
     if (selector.by == Selector::By::Face)
-      throw InvalidOption(fmt::format("{}: expected a face from 1 to {}, got '{}'", source.path, mesh_->faces.size(),
-                                      selector.name));
+      throw InvalidOption(
+          fmt::format("{}: expected a face from 1 to {}, got '{}'", source.path, mesh_->faces.size(), selector.name));
     const char* const kind = selector.by == Selector::By::Name ? "name" : "color";
     if (known.empty())
       throw InvalidOption(

@@ -69,6 +69,7 @@ void require_whole(const CadMesh& mesh) {
           "a number that is none");
   for (const auto& uv : mesh.corner_parameters)
     require(std::isfinite(uv[0]) && std::isfinite(uv[1]), "a parameter that is no number");
+  require(mesh.deflection > 0 && std::isfinite(mesh.deflection), "a deflection that is no length");
   require(mesh.unit_micrometres > 0 && std::isfinite(mesh.unit_micrometres), "a unit without a length");
   require_edges(mesh);
 }
@@ -99,6 +100,7 @@ std::string pack(const CadMesh& mesh) {
   packer.value(std::uint64_t{mesh.faces.size()});
   for (const CadFaceFacts& face : mesh.faces) put_face(packer, face);
   packer.list(mesh.edges).list(mesh.edge_kinds);
+  packer.value(mesh.deflection);
   packer.value(mesh.unit_micrometres).value(std::uint8_t{mesh.has_unit});
   put_texts(packer, mesh.extras);
   put_texts(packer, mesh.remarks);
@@ -118,6 +120,7 @@ CadMesh unpack_mesh(std::string_view bytes) {
   for (CadFaceFacts& face : mesh.faces) face = take_face(unpacker);
   mesh.edges = unpacker.list<std::array<std::uint32_t, 2>>();
   mesh.edge_kinds = unpacker.list<CadEdge>();
+  mesh.deflection = unpacker.value<double>();
   mesh.unit_micrometres = unpacker.value<double>();
   mesh.has_unit = unpacker.value<std::uint8_t>() != 0;
   mesh.extras = take_texts(unpacker);

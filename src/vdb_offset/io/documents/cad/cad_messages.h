@@ -12,13 +12,14 @@
 
 namespace vdb_offset::io {
 
-// What the program and its worker, vdb_offset_cad, tell each other. The worker first says its version; then each request
-// has one reply.
+// What the program and its worker, vdb_offset_cad, tell each other. The worker first says its version; then each
+// request has one reply.
 
 /// What the worker is asked for.
 enum class CadRequest : std::uint32_t {
   Mesh = 1,       ///< Reads the file and tessellates it: ReadCad; the reply is a CadMesh.
   Distances = 2,  ///< A list of CadPoint; the reply is a list of as many doubles.
+  Offset = 3,     ///< A list of CadAim and one of CadPlace; the reply is a list of as many points as aims.
 };
 
 /// What the worker says.
@@ -41,6 +42,19 @@ struct ReadCad {
 /// A point of an offset surface: of the point (u, v) of a face, at a distance, to either side.
 struct CadPoint {
   double x = 0, y = 0, z = 0, u = 0, v = 0, distance = 0;
+  std::uint64_t face = 0;  ///< An index of CadMesh::faces.
+};
+
+/// A point that is to be at a distance from faces, and how many of the places that come with it are its own.
+struct CadAim {
+  double x = 0, y = 0, z = 0;  ///< Where to begin.
+  double distance = 0;         ///< Negative is inward.
+  std::uint64_t places = 0;
+};
+
+/// Where on a face such a point comes from.
+struct CadPlace {
+  double u = 0, v = 0;
   std::uint64_t face = 0;  ///< An index of CadMesh::faces.
 };
 

@@ -94,4 +94,30 @@ std::vector<double> CadSurface::distance_errors(std::span<const std::uint32_t> v
   return errors;
 }
 
+std::vector<double> CadSurface::distance_errors_near(std::span<const std::uint32_t> faces, std::span<const Vec3d> feet,
+                                                     std::span<const double> distances,
+                                                     std::span<const Vec3d> points) const {
+  std::vector<CadPoint> of_faces;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto& corners = mesh_->triangles[faces[i]];
+    const Vec3d a = mesh_->positions[corners[0]], ab = mesh_->positions[corners[1]] - a,
+                ac = mesh_->positions[corners[2]] - a, normal = ab.cross(ac);
+    const double twice = normal.lengthSqr();
+    double weight[3] = {1, 0, 0};
+    if (twice > 0) {
+      weight[1] = normal.dot((feet[i] - a).cross(ac)) / twice;
+      weight[2] = normal.dot(ab.cross(feet[i] - a)) / twice;
+      weight[0] = 1 - weight[1] - weight[2];
+    }
+    double u = 0, v = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      u += weight[k] * mesh_->corner_parameters[3 * faces[i] + k][0];
+      v += weight[k] * mesh_->corner_parameters[3 * faces[i] + k][1];
+    }
+    of_faces.push_back({points[i].x(), points[i].y(), points[i].z(), u, v, distances[i], mesh_->face_of[faces[i]]});
+  }
+  const std::lock_guard lock(one_at_a_time_);
+  return worker_.distance_errors(of_faces);
+}
+
 }  // namespace vdb_offset::io

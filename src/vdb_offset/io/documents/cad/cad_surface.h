@@ -26,6 +26,10 @@ class CadSurface : public ExactSurface {
   std::vector<double> distance_errors(std::span<const std::uint32_t> vertices, std::span<const double> distances,
                                       std::span<const Vec3d> points) const override;
 
+  std::vector<double> distance_errors_near(std::span<const std::uint32_t> faces, std::span<const Vec3d> feet,
+                                           std::span<const double> distances,
+                                           std::span<const Vec3d> points) const override;
+
  private:
   /// Where a vertex is on one of its faces.
   struct Place {

@@ -52,14 +52,17 @@ OpenFile file_of(const std::string& path, std::string_view bytes) {
 }
 
 [[noreturn]] void fail_to_start(const std::string& path, const std::string& found) {
-  throw ReadError(fmt::format("{}: expected the program {}, which reads it, got: {} (install the whole package, or "
-                              "convert it first)",
-                              path, kWorkerName, found));
+  throw ReadError(
+      fmt::format("{}: expected the program {}, which reads it, got: {} (install the whole package, or "
+                  "convert it first)",
+                  path, kWorkerName, found));
 }
 
 }  // namespace
 
 struct CadWorker::State {
+  State(std::string its_path, double most_seconds) : path(std::move(its_path)), seconds(most_seconds) {}
+
   std::string path;
   double seconds;
   std::optional<WorkerProcess> process;
@@ -76,6 +79,7 @@ struct CadWorker::State {
     const std::string end = !status                ? "ends its reader"
                             : WIFSIGNALED(*status) ? fmt::format("ends its reader by signal {}", WTERMSIG(*status))
                                                    : fmt::format("ends its reader with code {}", WEXITSTATUS(*status));
+    process.reset();
     throw InvalidInput(path + ": expected a CAD file that OpenCASCADE can read, got one that " + end);
   }
 
@@ -109,11 +113,15 @@ struct CadWorker::State {
       process->messages().send(static_cast<std::uint32_t>(kind), payload, until);
       Message reply = process->messages().receive(until, kMostOfReply);
       switch (static_cast<CadReply>(reply.kind)) {
-        case CadReply::Done: return std::move(reply.payload);
+        case CadReply::Done:
+          return std::move(reply.payload);
         case CadReply::InvalidFile:
-        case CadReply::Failed: throw InvalidInput(path + ": " + reply.payload);
-        case CadReply::OutOfMemory: throw OutOfBudget(path + ": " + reply.payload);
-        default: throw BadMessage("a reply of no kind");
+        case CadReply::Failed:
+          throw InvalidInput(path + ": " + reply.payload);
+        case CadReply::OutOfMemory:
+          throw OutOfBudget(path + ": " + reply.payload);
+        default:
+          throw BadMessage("a reply of no kind");
       }
     } catch (const Hangup&) {
       fail_by_end();
@@ -132,7 +140,7 @@ struct CadWorker::State {
 
 CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadFineness& fineness,
                      double seconds, std::uint64_t most_memory)
-    : state_(std::make_unique<State>(State{std::move(path), seconds, {}})) {
+    : state_(std::make_unique<State>(std::move(path), seconds)) {
   const std::string name = format_of(state_->path, format);
   const Deadline until = state_->deadline();
   state_->start(file_of(state_->path, bytes), until);
@@ -163,6 +171,21 @@ std::vector<double> CadWorker::distance_errors(std::span<const CadPoint> points)
     unpacker.end();
     if (errors.size() != points.size()) throw BadMessage("distances of other points");
     return errors;
+  } catch (const BadMessage& bad) {
+    state_->fail_by_message(bad);
+  }
+}
+
+std::vector<Vec3d> CadWorker::offset_points(std::span<const CadAim> aims, std::span<const CadPlace> places) {
+  Packer packer;
+  packer.list(std::vector<CadAim>(aims.begin(), aims.end())).list(std::vector<CadPlace>(places.begin(), places.end()));
+  const std::string reply = request(CadRequest::Offset, packer.take());
+  try {
+    Unpacker unpacker(reply);
+    auto points = unpacker.list<Vec3d>();
+    unpacker.end();
+    if (points.size() != aims.size()) throw BadMessage("points of other vertices");
+    return points;
   } catch (const BadMessage& bad) {
     state_->fail_by_message(bad);
   }

@@ -8,7 +8,8 @@ namespace vdb_offset::io {
 struct CadWorker::State {};
 
 CadWorker::CadWorker(std::string path, std::string_view, std::string_view, const CadFineness&, double, std::uint64_t) {
-  throw ReadError(path + ": expected a build with OpenCASCADE, which reads such files, got one without (VDB_OFFSET_CAD)");
+  throw ReadError(path +
+                  ": expected a build with OpenCASCADE, which reads such files, got one without (VDB_OFFSET_CAD)");
 }
 
 CadWorker::~CadWorker() = default;
@@ -17,6 +18,7 @@ CadWorker& CadWorker::operator=(CadWorker&&) noexcept = default;
 
 // Never called: there is none of these.
 std::vector<double> CadWorker::distance_errors(std::span<const CadPoint>) { return {}; }
+std::vector<Vec3d> CadWorker::offset_points(std::span<const CadAim>, std::span<const CadPlace>) { return {}; }
 std::string CadWorker::request(CadRequest, std::string_view) { return {}; }
 
 }  // namespace vdb_offset::io

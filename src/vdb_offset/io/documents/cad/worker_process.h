@@ -13,10 +13,10 @@ namespace vdb_offset::io {
 /// Descriptors that the worker starts with, beside the three that every program has, which are those of /dev/null.
 inline constexpr int kWorkerMessages = 3;  ///< A socket: messages.
 inline constexpr int kWorkerModel = 4;     ///< The file's bytes.
-inline constexpr int kWorkerEnd = 5;       ///< A socket: how it ended, an int as of waitpid(); it ends when this closes.
+inline constexpr int kWorkerEnd = 5;  ///< A socket: how it ended, an int as of waitpid(); it ends when this closes.
 
-/// A worker, vdb_offset_cad, in a process of its own. Nothing of this process is changed for it: neither how signals are
-/// dealt with nor which children it may wait for.
+/// A worker, vdb_offset_cad, in a process of its own. Nothing of this process is changed for it: neither how signals
+/// are dealt with nor which children it may wait for.
 class WorkerProcess {
  public:
   /// \throw std::system_error if there is no such program, or the system has no more processes
