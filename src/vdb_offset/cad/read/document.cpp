@@ -58,10 +58,11 @@ std::array<double, 3> shown(const Quantity_Color& colour) {
 /// Walks through a document, from assemblies to faces.
 class Walk {
  public:
-  Walk(const opencascade::handle<TDocStd_Document>& document, CadModel& model)
+  Walk(const opencascade::handle<TDocStd_Document>& document, const Names& names, CadModel& model)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
         colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
         layers_(XCAFDoc_DocumentTool::LayerTool(document->Main())),
+        names_(names),
         model_(model) {}
 
   void walk() {
@@ -147,7 +148,9 @@ class Walk {
   Told told_of_part_of(const TopoDS_Shape& shape, const TDF_Label& part, const Told& otherwise) {
     TDF_Label label;
     const TopoDS_Shape unplaced = shape.Located(place_.Inverted() * shape.Location());
-    return shapes_->FindSubShape(part, unplaced, label) ? told_of(label, otherwise) : otherwise;
+    Told told = shapes_->FindSubShape(part, unplaced, label) ? told_of(label, otherwise) : otherwise;
+    if (const auto name = names_.find(shape.TShape().get()); name != names_.end()) told.name = name->second;
+    return told;
   }
 
   void add_faces_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum not_of, const TDF_Label& part, const Told& told,
@@ -167,6 +170,7 @@ class Walk {
   opencascade::handle<XCAFDoc_ShapeTool> shapes_;
   opencascade::handle<XCAFDoc_ColorTool> colours_;
   opencascade::handle<XCAFDoc_LayerTool> layers_;
+  const Names& names_;
   CadModel& model_;
   Body loose_;
   TopLoc_Location place_;
@@ -183,14 +187,15 @@ opencascade::handle<TDocStd_Document> make_document(double unit_millimetres) {
   return document;
 }
 
-void add_document(const opencascade::handle<TDocStd_Document>& document, CadModel& model) {
-  Walk walk(document, model);
+void add_document(const opencascade::handle<TDocStd_Document>& document, const Names& names, CadModel& model) {
+  Walk walk(document, names, model);
   walk.walk();
   walk.finish();
 }
 
 void add_shape(const TopoDS_Shape& shape, CadModel& model) {
-  Walk walk(make_document(1), model);
+  const Names none;
+  Walk walk(make_document(1), none, model);
   walk.add_faces(shape, TDF_Label(), {});
   walk.finish();
 }

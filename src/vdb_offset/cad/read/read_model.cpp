@@ -5,14 +5,20 @@
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
-#include <Interface_Static.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPConstruct_UnitContext.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_Face.hxx>
+#include <StepShape_SolidModel.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
 #include <UnitsMethods.hxx>
+#include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
@@ -60,6 +66,23 @@ StepUnits step_units(const opencascade::handle<Interface_InterfaceModel>& entiti
   return units;
 }
 
+/// The names of solids and faces. (OpenCASCADE's own option for these, read.stepcaf.subshapes.name, takes solids of broken
+/// files for whole.)
+Names step_names(const XSControl_WorkSession& session) {
+  Names names;
+  const auto process = session.TransferReader()->TransientProcess();
+  const auto entities = session.Model();
+  for (int k = 1; k <= entities->NbEntities(); ++k) {
+    const auto entity = entities->Value(k);
+    if (!entity->IsKind(STANDARD_TYPE(StepShape_Face)) && !entity->IsKind(STANDARD_TYPE(StepShape_SolidModel))) continue;
+    const auto item = opencascade::handle<StepRepr_RepresentationItem>::DownCast(entity);
+    if (item.IsNull() || item->Name().IsNull() || item->Name()->IsEmpty()) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
+    if (!shape.IsNull()) names.try_emplace(shape.TShape().get(), item->Name()->ToCString());
+  }
+  return names;
+}
+
 void set_unit(CadModel& model, double millimetres, bool has_unit) {
   model.unit_micrometres = millimetres * kMicrometres;
   model.has_unit = has_unit;
@@ -69,8 +92,7 @@ void set_unit(CadModel& model, double millimetres, bool has_unit) {
 
 CadModel read_step(const std::string& path) {
   STEPCAFControl_Reader reader;
-  // What names faces is read; what is drawn and written around them is not.
-  Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
+  // What is drawn and written around faces is not read.
   reader.SetGDTMode(false);
   reader.SetMatMode(false);
   reader.SetPropsMode(false);
@@ -88,7 +110,7 @@ CadModel read_step(const std::string& path) {
   auto document = make_document(unit);
   if (!reader.Transfer(document))
     throw InvalidCad("expected a STEP file with shapes, got one of which OpenCASCADE makes none");
-  add_document(document, model);
+  add_document(document, step_names(*reader.Reader().WS()), model);
   return model;
 }
 
@@ -111,7 +133,7 @@ CadModel read_iges(const std::string& path) {
   auto document = make_document(unit);
   if (!reader.Transfer(document))
     throw InvalidCad("expected an IGES file with shapes, got one of which OpenCASCADE makes none");
-  add_document(document, model);
+  add_document(document, {}, model);
   return model;
 }
 

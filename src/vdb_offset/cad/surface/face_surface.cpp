@@ -183,6 +183,7 @@ Foot FaceSurface::analytic_foot(const gp_Pnt& point, double u, double v) const {
 /// Newton's method on half the squared distance.
 Foot FaceSurface::searched_foot(const gp_Pnt& point, double u, double v) const {
   const double most_u = kBeyond * (u_[1] - u_[0]), most_v = kBeyond * (v_[1] - v_[0]);
+  const double start_u = u, start_v = v, start = point.Distance(surface_.Value(u, v));
   gp_Pnt at;
   gp_Vec du, dv, duu, dvv, duv;
   for (int step = 0; step < kMostSteps; ++step) {
@@ -207,6 +208,7 @@ Foot FaceSurface::searched_foot(const gp_Pnt& point, double u, double v) const {
     v = std::clamp(v + std::clamp(step_v, -most_v, most_v), v_[0] - most_v, v_[1] + most_v);
     if (std::abs(step_u) <= 1e-13 * (u_[1] - u_[0]) && std::abs(step_v) <= 1e-13 * (v_[1] - v_[0])) break;
   }
+  if (!(point.Distance(surface_.Value(u, v)) <= start)) u = start_u, v = start_v;  // it went astray
   surface_.D1(u, v, at, du, dv);
   const gp_Vec off(at, point);
   return {u, v, std::copysign(off.Magnitude(), off.Dot(du.Crossed(dv)))};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 #include <utility>
 
@@ -84,43 +83,46 @@ Part part_of(std::uint32_t first, const Neighbours& neighbours, std::vector<std:
   return part;
 }
 
-/// Turns the lesser part of the faces; gives how many.
-std::size_t turn_lesser(BodyMesh& mesh, Part& part) {
-  auto count = static_cast<std::size_t>(std::count(part.is_turned.begin(), part.is_turned.end(), 1));
+/// Turns the lesser part of the faces.
+void turn_lesser(BodyMesh& mesh, const Part& part) {
+  const auto count = static_cast<std::size_t>(std::count(part.is_turned.begin(), part.is_turned.end(), 1));
   const bool is_other = 2 * count > part.faces.size();
   for (std::size_t k = 0; k < part.faces.size(); ++k)
     if ((part.is_turned[k] != 0) != is_other) turn(mesh.faces[part.faces[k]]);
-  return is_other ? part.faces.size() - count : count;
 }
 
-std::size_t turn_all(BodyMesh& mesh, const std::vector<std::uint32_t>& faces) {
-  for (const std::uint32_t f : faces) turn(mesh.faces[f]);
-  return faces.size();
+/// Turns what has to be turned.
+void turn_outward(BodyMesh& mesh, bool is_solid) {
+  const Neighbours neighbours = find_neighbours(mesh);
+  std::vector<std::uint8_t> is_seen(mesh.faces.size(), 0);
+  double whole = 0;
+  bool is_closed = true;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    if (is_seen[f]) continue;
+    const Part part = part_of(f, neighbours, is_seen);
+    turn_lesser(mesh, part);
+    double volume = 0;
+    for (const std::uint32_t face : part.faces) volume += volume_of(mesh, mesh.faces[face], mesh.positions[0]);
+    whole += volume;
+    is_closed = is_closed && part.is_closed;
+    // A solid's inner shells look into their hollows; shells of no solid outward, each.
+    if (!is_solid && part.is_closed && volume < 0)
+      for (const std::uint32_t face : part.faces) turn(mesh.faces[face]);
+  }
+  if (is_solid && is_closed && whole < 0)
+    for (FaceMesh& face : mesh.faces) turn(face);
 }
 
 }  // namespace
 
 std::size_t orient(BodyMesh& mesh, bool is_solid) {
   if (mesh.positions.empty()) return 0;
-  const Neighbours neighbours = find_neighbours(mesh);
-  std::vector<std::uint8_t> is_seen(mesh.faces.size(), 0);
+  std::vector<double> before;
+  for (const FaceMesh& face : mesh.faces) before.push_back(face.side);
+  turn_outward(mesh, is_solid);
   std::size_t turned = 0;
-  double whole = 0;
-  bool is_closed = true;
-  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-    if (is_seen[f]) continue;
-    Part part = part_of(f, neighbours, is_seen);
-    turned += turn_lesser(mesh, part);
-    double volume = 0;
-    for (const std::uint32_t face : part.faces) volume += volume_of(mesh, mesh.faces[face], mesh.positions[0]);
-    whole += volume;
-    is_closed = is_closed && part.is_closed;
-    // A solid's inner shells look into their hollows; shells of no solid outward, each.
-    if (!is_solid && part.is_closed && volume < 0) turned += turn_all(mesh, part.faces);
-  }
-  if (!is_solid || !is_closed || whole >= 0) return turned;
-  for (FaceMesh& face : mesh.faces) turn(face);
-  return turned + mesh.faces.size();
+  for (std::size_t f = 0; f < before.size(); ++f) turned += mesh.faces[f].side != before[f];
+  return turned;
 }
 
 }  // namespace vdb_offset::cad

@@ -20,6 +20,7 @@ struct Use {
 struct Constraint {
   gp_Vec normal;
   double distance;
+  bool is_analytic;
 };
 
 /// Uses of vertices of edges, those of a vertex one behind the other.
@@ -60,7 +61,7 @@ gp_Vec shortest_move(const std::vector<Constraint>& constraints) {
   return move;
 }
 
-/// Moves one vertex; false if it would go far. The nodes' parameters follow.
+/// Moves one vertex, unless it would go far. The nodes' parameters follow.
 void place(BodyMesh& mesh, std::uint32_t vertex, const Use* first, const Use* last) {
   gp_Pnt at = mesh.positions[vertex];
   double start = 0;
@@ -74,8 +75,10 @@ void place(BodyMesh& mesh, std::uint32_t vertex, const Use* first, const Use* la
       const Foot foot = face.surface.foot(at, node.u, node.v);
       node.u = foot.u, node.v = foot.v;
       most = std::max(most, std::abs(foot.distance));
-      if (const auto normal = face.surface.normal(foot.u, foot.v)) constraints.push_back({*normal, foot.distance});
+      if (const auto normal = face.surface.normal(foot.u, foot.v)) constraints.push_back({*normal, foot.distance, face.surface.is_analytic()});
     }
+    // Where faces contradict each other, those that are what they are by a formula are kept to.
+    std::stable_partition(constraints.begin(), constraints.end(), [](const Constraint& c) { return c.is_analytic; });
     if (round == 0) start = most;
     const double scale = std::max({std::abs(at.X()), std::abs(at.Y()), std::abs(at.Z())});
     if (most <= 4e-16 * scale) break;
