@@ -66,6 +66,9 @@ void place_on_surfaces(BodyMesh& mesh);
 /// distance that is left.
 double divide_to_deflection(BodyMesh& mesh, double deflection);
 
+/// Gives triangles of a face whose vertices lie on a line another side, in common with a neighbour, that is none.
+void flip_slivers(BodyMesh& mesh);
+
 /// Turns faces so that neighbours go round in one sense, and closed bodies outward; gives how many it turned.
 std::size_t orient(BodyMesh& mesh, bool is_solid);
 

@@ -83,6 +83,7 @@ void append_tessellated(const Body& body, double deflection, io::CadMesh& result
   BodyMesh mesh = take_mesh(body);
   work.farthest = std::max(work.farthest, divide_to_deflection(mesh, deflection));
   place_on_surfaces(mesh);
+  flip_slivers(mesh);
   work.turned += orient(mesh, body.is_solid);
   work.unmatched += mesh.unmatched;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the CAD files that the tests read, by OpenCASCADE: make_models FOLDER. A program of its own, so that the tests are
+// not linked to OpenCASCADE, as the library is not.
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_LayerTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <cmath>
+#include <gp_Ax2.hxx>
+#include <gp_Trsf.hxx>
+#include <string>
+
+namespace {
+
+std::string folder;
+
+std::string file(const char* name) { return folder + "/" + name; }
+
+void write_brep(const TopoDS_Shape& shape, const char* name) { BRepTools::Write(shape, file(name).c_str()); }
+
+void write_step(const TopoDS_Shape& shape, const char* name, const char* unit) {
+  STEPControl_Writer writer;
+  Interface_Static::SetCVal("write.step.unit", unit);
+  writer.Transfer(shape, STEPControl_AsIs);
+  writer.Write(file(name).c_str());
+  Interface_Static::SetCVal("write.step.unit", "MM");
+}
+
+/// A block of 40 x 30 x 20 with a hole of radius 5, and an upright edge rounded by 4.
+TopoDS_Shape block() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(40, 30, 20).Shape();
+  BRepFilletAPI_MakeFillet round(box);
+  for (TopExp_Explorer edge(box, TopAbs_EDGE); edge.More(); edge.Next()) {
+    Standard_Real from = 0, to = 0;
+    const auto curve = BRep_Tool::Curve(TopoDS::Edge(edge.Current()), from, to);
+    const gp_Pnt middle = curve->Value((from + to) / 2);
+    if (middle.Distance(gp_Pnt(0, 0, 10)) < 1e-6) round.Add(4, TopoDS::Edge(edge.Current()));
+  }
+  const gp_Ax2 axis(gp_Pnt(20, 15, -1), gp_Dir(0, 0, 1));
+  return BRepAlgoAPI_Cut(round.Shape(), BRepPrimAPI_MakeCylinder(axis, 5, 22).Shape()).Shape();
+}
+
+/// Two boxes that have a face in one place, each with faces of its own.
+TopoDS_Shape touching() {
+  BRep_Builder builder;
+  TopoDS_Compound both;
+  builder.MakeCompound(both);
+  builder.Add(both, BRepPrimAPI_MakeBox(1, 1, 1).Shape());
+  builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(1, 0, 0), gp_Pnt(2, 1, 1)).Shape());
+  return both;
+}
+
+TopoDS_Shape curves() {
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  for (int k = 0; k < 3; ++k) builder.Add(all, BRepBuilderAPI_MakeEdge(gp_Pnt(k, 0, 0), gp_Pnt(k, 1, 0)).Edge());
+  return all;
+}
+
+/// A box without its last face, and one of its faces once more.
+TopoDS_Shape open_box() {
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  TopoDS_Shape first;
+  int count = 0;
+  for (TopExp_Explorer face(BRepPrimAPI_MakeBox(1, 1, 1).Shape(), TopAbs_FACE); face.More() && count < 5; face.Next()) {
+    if (count++ == 0) first = face.Current();
+    builder.Add(all, face.Current());
+  }
+  builder.Add(all, first);
+  return all;
+}
+
+/// A box whose shell looks inward.
+TopoDS_Shape inside_out() { return BRepPrimAPI_MakeBox(2, 2, 2).Shape().Reversed(); }
+
+/// A part placed twice: at (100, 0, 0), and turned by a right angle about z.
+void write_assembly(const char* name) {
+  opencascade::handle<TDocStd_Document> document;
+  XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
+  const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const auto colours = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  const auto layers = XCAFDoc_DocumentTool::LayerTool(document->Main());
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
+  const TDF_Label part = shapes->AddShape(box, Standard_False);
+  TDataStd_Name::Set(part, "peg");
+  colours->SetColor(part, Quantity_Color(0.25, 0.5, 0.75, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  const TDF_Label face = shapes->AddSubShape(part, TopExp_Explorer(box, TopAbs_FACE).Current());
+  TDataStd_Name::Set(face, "front");
+  colours->SetColor(face, Quantity_Color(1, 0, 0, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  layers->SetLayer(face, "painted");
+  const TDF_Label whole = shapes->NewShape();
+  TDataStd_Name::Set(whole, "pair");
+  gp_Trsf moved, turned;
+  moved.SetTranslation(gp_Vec(100, 0, 0));
+  turned.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), std::acos(0.0));
+  shapes->AddComponent(whole, part, TopLoc_Location(moved));
+  shapes->AddComponent(whole, part, TopLoc_Location(turned));
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
+  writer.Transfer(document, STEPControl_AsIs);
+  writer.Write(file(name).c_str());
+}
+
+void write_iges(const TopoDS_Shape& shape, const char* name) {
+  IGESControl_Controller::Init();
+  IGESControl_Writer writer("IN", 0);  // inches; each face by itself
+  writer.AddShape(shape);
+  writer.ComputeModel();
+  writer.Write(file(name).c_str());
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 2) return 1;
+  folder = words[1];
+  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+  write_step(block(), "block.step", "MM");
+  write_brep(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape(), "sphere.brep");
+  write_brep(BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape()).Shape(), "spline.brep");
+  write_brep(BRepPrimAPI_MakeCone(6, 0, 8).Shape(), "cone.brep");
+  write_brep(BRepPrimAPI_MakeTorus(10, 3).Shape(), "torus.brep");
+  write_step(BRepPrimAPI_MakeBox(2 * 25.4, 3 * 25.4, 4 * 25.4).Shape(), "inch.stp", "INCH");
+  write_step(BRepPrimAPI_MakeBox(2000, 3000, 4000).Shape(), "metre.step", "M");
+  write_step(touching(), "touching.step", "MM");
+  write_step(curves(), "curves.step", "MM");
+  write_brep(open_box(), "open.brep");
+  write_brep(inside_out(), "inside_out.brep");
+  write_iges(BRepPrimAPI_MakeBox(25.4, 2 * 25.4, 3 * 25.4).Shape(), "faces.igs");
+  write_assembly("assembly.step");
+  return 0;
+}
