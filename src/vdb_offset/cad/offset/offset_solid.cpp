@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/offset/offset_solid.h"
+
+#include <BRepCheck_Analyzer.hxx>
+#include <BRep_Builder.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Solid.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_offset/cad/offset/build.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+double vertex_margin(double distance) { return 4 * std::abs(distance); }
+
+}  // namespace
+
+OffsetCadResult offset_cad(const OffsetCadRequest& request) {
+  OffsetCadResult result;
+  Tolerances tolerances;
+  tolerances.distance = std::abs(request.distance);
+  tolerances.fit = request.fit_tolerance > 0 ? request.fit_tolerance : 1e-4 * tolerances.distance;
+  tolerances.curve = std::max(1e-7, 1e-5 * tolerances.distance);
+  tolerances.gap = 2e-3 * tolerances.distance;
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  std::vector<TopoDS_Shape> pieces;
+  for (TopExp_Explorer s(request.source, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
+  for (TopExp_Explorer s(request.source, TopAbs_SHELL, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
+  int first_face = 0, made = 0;
+  TopoDS_Shape last;
+  for (const TopoDS_Shape& piece : pieces) {
+    std::vector<TopoDS_Shape> shells;
+    for (TopExp_Explorer s(piece, TopAbs_SHELL); s.More(); s.Next()) {
+      Model model = read_model(s.Current());
+      if (!model.failure.empty()) {
+        result.gaps.push_back(model.failure);
+        continue;
+      }
+      for (std::size_t f = 0; f < model.faces.size(); f++) {
+        ModelFace& face = model.faces[f];
+        const int number = first_face + static_cast<int>(f);
+        face.distance.constant = face.sign * request.distance;
+        if (request.distance_at)
+          face.distance.at = [&request, number, sign = face.sign](double u, double v) {
+            return sign * request.distance_at(number, u, v);
+          };
+        face.offset =
+            offset_surface(face.surface, face.box, face.distance, vertex_margin(request.distance), tolerances.fit);
+        result.fit_error = std::max(result.fit_error, face.offset.error);
+        result.faces.push_back(face.offset.made == FaceMade::Kept     ? CadFace::Kept
+                               : face.offset.made == FaceMade::Fitted ? CadFace::Fitted
+                                                                      : CadFace::Swallowed);
+        if (face.offset.made == FaceMade::Swallowed)
+          result.gaps.push_back("face " + std::to_string(f + 1) + " is swallowed");
+      }
+      first_face += static_cast<int>(model.faces.size());
+      if (!result.gaps.empty()) continue;
+      classify_edges(model, tolerances);
+      for (std::size_t v = 0; v < model.vertices.size(); v++) {
+        place_vertex(model, static_cast<int>(v), tolerances);
+        if (model.vertices[v].residual > tolerances.gap * 2)
+          result.gaps.push_back("vertex " + std::to_string(v + 1) + " of " +
+                                std::to_string(model.vertices[v].ring.size()) + " edges: faces miss by " +
+                                std::to_string(model.vertices[v].residual));
+      }
+      Built built = build_shell(model, tolerances);
+      result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
+      if (!built.shell.IsNull()) shells.push_back(built.shell);
+    }
+    if (shells.empty()) continue;
+    if (piece.ShapeType() == TopAbs_SOLID) {
+      TopoDS_Solid solid;
+      builder.MakeSolid(solid);
+      for (const TopoDS_Shape& s : shells) builder.Add(solid, s);
+      last = solid;
+      result.kind = CadKind::Solid;
+    } else {
+      last = shells.front();
+      result.kind = CadKind::Shells;
+    }
+    builder.Add(all, last);
+    made++;
+  }
+  if (made == 1) result.shape = last;
+  else if (made > 1) result.shape = all;
+  return result;
+}
+
+}  // namespace vdb_offset::cad
