@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "vdb_offset/cad/offset/build.h"
+#include "vdb_offset/cad/offset/resolve.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -64,8 +65,8 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
       if (!result.gaps.empty()) continue;
       classify_edges(model, tolerances);
       for (std::size_t v = 0; v < model.vertices.size(); v++) {
-        place_vertex(model, static_cast<int>(v), tolerances);
-        if (model.vertices[v].residual > tolerances.gap * 2)
+        const bool is_placed = resolve_vertex(model, static_cast<int>(v), tolerances);
+        if (!is_placed)
           result.gaps.push_back("vertex " + std::to_string(v + 1) + " of " +
                                 std::to_string(model.vertices[v].ring.size()) + " edges: faces miss by " +
                                 std::to_string(model.vertices[v].residual));

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/offset/judge.h"
+
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRep_Tool.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "vdb_offset/cad/offset/soup.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+// Farthest that a mitre may reach, in distances: edges of 10 degrees.
+constexpr double kLongestMitre = 12;
+
+// Points that are held against the exact shape where its tessellation leaves doubt. More doubt than that is none.
+constexpr int kMostDoubts = 100;
+
+// Numbers in [0, 1) that are the same on every machine (splitmix64).
+class Numbers {
+ public:
+  double next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+// Points spread over a soup by area: a stratified choice of triangles.
+std::vector<SoupPoint> spread(const Soup& soup, int count) {
+  std::vector<double> sums = {0};
+  for (const Soup::Triangle& t : soup.triangles())
+    sums.push_back(sums.back() +
+                   gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2])).Magnitude());
+  std::vector<SoupPoint> points;
+  Numbers numbers;
+  std::size_t at = 0;
+  for (int i = 0; i < count; i++) {
+    const double area = sums.back() * (i + numbers.next()) / count;
+    while (at + 2 < sums.size() && sums[at + 1] <= area) at++;
+    const double a = numbers.next(), b = numbers.next();
+    points.push_back(soup.on_triangle(static_cast<int>(at), a, b));
+  }
+  // Small faces too: one point in every face's largest triangle.
+  std::vector<int> largest(soup.faces().size(), -1);
+  for (std::size_t t = 0; t + 1 < sums.size(); t++) {
+    int& best = largest[soup.triangles()[t].face];
+    if (best < 0 || sums[t + 1] - sums[t] > sums[best + 1] - sums[best]) best = static_cast<int>(t);
+  }
+  for (int t : largest)
+    if (t >= 0) points.push_back(soup.on_triangle(t, 1.0 / 3, 1.0 / 3));
+  return points;
+}
+
+struct Counts {
+  int solids = 0, shells = 0, open = 0;
+};
+
+Counts counts_of(const TopoDS_Shape& s) {
+  Counts c;
+  for (TopExp_Explorer e(s, TopAbs_SOLID); e.More(); e.Next()) c.solids++;
+  for (TopExp_Explorer e(s, TopAbs_SHELL); e.More(); e.Next()) {
+    c.shells++;
+    if (!BRep_Tool::IsClosed(e.Current())) c.open++;
+  }
+  return c;
+}
+
+// How much nearer than the distance a tessellation may make a point seem.
+constexpr double kDoubtful = 0.1;
+
+// The distance by the exact geometry, and whether it is to the inside of a face.
+double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point, bool& is_inside) {
+  BRepExtrema_DistShapeShape d(BRepBuilderAPI_MakeVertex(point).Vertex(), shape);
+  is_inside = false;
+  if (!d.IsDone()) return 0;
+  for (int i = 1; i <= d.NbSolution(); i++) is_inside = is_inside || d.SupportTypeShape2(i) == BRepExtrema_IsInFace;
+  return d.Value();
+}
+
+double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point) {
+  bool is_inside;
+  return exact_distance(shape, point, is_inside);
+}
+
+class Judge {
+ public:
+  Judge(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance, const JudgeOptions& options)
+      : source_(source), result_(result), distance_(distance), far_(std::abs(distance)), options_(options) {}
+
+  Verdict judge() {
+    check_topology();
+    if (!verdict_.faults.empty()) return verdict_;
+    const Soup source(source_, 0.02 * far_, 0.2), result(result_, 0.05 * far_, 0.25);
+    if (!result.is_complete()) fault("a face has no triangles");
+    if (result.triangles().empty()) return verdict_;
+    verdict_.volume = result.volume();
+    check_points(source, result);
+    check_cover(source, result);
+    if (result.crossings(1) > 0 && Soup(result_, 0.005 * far_, 0.1).crossings(1) > 0)
+      fault("the result crosses itself");
+    return verdict_;
+  }
+
+ private:
+  void fault(const std::string& text) {
+    verdict_.is_good = false;
+    verdict_.faults.push_back(text);
+  }
+
+  void check_topology() {
+    if (!BRepCheck_Analyzer(result_).IsValid()) fault("the topology is not valid");
+    const Counts was = counts_of(source_), is = counts_of(result_);
+    if (is.solids != was.solids) fault(std::to_string(is.solids) + " solids in place of " + std::to_string(was.solids));
+    if (is.shells != was.shells) fault(std::to_string(is.shells) + " shells in place of " + std::to_string(was.shells));
+    if (is.open > was.open) fault(std::to_string(is.open) + " shells are open");
+    is_closed_ = was.open == 0;
+  }
+
+  void check_points(const Soup& source, const Soup& result) {
+    const std::vector<SoupPoint> points = spread(result, options_.samples);
+    int near = 0, far = 0, doubts = 0, wrong_side = 0, wrong_way = 0, n = 0;
+    verdict_.least = 1e300;
+    const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / 40000000);
+    for (const SoupPoint& p : points) {
+      SoupPoint foot = source.closest(p.point);
+      double share = foot.distance / far_;
+      if ((share < 1 - options_.tolerance || (foot.is_inside && share > 1 + options_.tolerance)) &&
+          share > 1 - kDoubtful && doubts++ < kMostDoubts) {
+        share = exact_distance(source_, p.point, foot.is_inside) / far_;
+      }
+      verdict_.least = std::min(verdict_.least, share);
+      verdict_.most = std::max(verdict_.most, share);
+      near += share < 1 - options_.tolerance;
+      far += share > (foot.is_inside ? 1 + options_.tolerance : kLongestMitre);
+      // Over the inside of a face, the result looks the same way as the source.
+      const gp_Vec to(foot.point, p.point), out = source.outside(foot);
+      if (foot.is_inside && (to.Dot(out) > 0) != (distance_ > 0)) wrong_side++;
+      if (foot.is_inside && std::abs(share - 1) < options_.tolerance && out.Dot(result.outside(p)) < 0) wrong_way++;
+      if (is_closed_ && n++ % every == 0 && source.contains(p.point) != (distance_ < 0)) wrong_side++;
+    }
+    if (near)
+      fault(std::to_string(near) + " points are nearer than the distance (least " + number(verdict_.least) + ")");
+    if (far) fault(std::to_string(far) + " points are farther than the distance (most " + number(verdict_.most) + ")");
+    if (wrong_side) fault(std::to_string(wrong_side) + " points are on the wrong side");
+    if (wrong_way) fault(std::to_string(wrong_way) + " points look the wrong way");
+  }
+
+  void check_cover(const Soup& source, const Soup& result) {
+    int missing = 0, doubts = 0;
+    double worst = 0;
+    for (const SoupPoint& p : spread(source, options_.samples / 2)) {
+      const gp_Pnt moved = p.point.Translated(source.outside(p) * distance_);
+      if (source.closest(moved).distance < far_ * (1 - 1e-3)) continue;
+      const double way = result.closest(moved).distance / far_;
+      worst = std::max(worst, way);
+      if (way > options_.tolerance && doubts++ < kMostDoubts)
+        missing += exact_distance(source_, moved) > far_ * (1 - 1e-3) &&
+                   exact_distance(result_, moved) > far_ * options_.tolerance;
+      else missing += way > options_.tolerance;
+    }
+    if (missing)
+      fault(std::to_string(missing) + " offset points are not in the result (farthest " + number(worst) + ")");
+  }
+
+  TopoDS_Shape source_, result_;
+  double distance_, far_;
+  JudgeOptions options_;
+  Verdict verdict_;
+  bool is_closed_ = false;
+};
+
+}  // namespace
+
+Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance,
+                     const JudgeOptions& options) {
+  try {
+    return Judge(source, result, distance, options).judge();
+  } catch (const Standard_Failure& failure) {
+    Verdict v;
+    v.is_good = false;
+    v.faults.push_back(std::string("judging failed: ") + failure.GetMessageString());
+    return v;
+  }
+}
+
+}  // namespace vdb_offset::cad

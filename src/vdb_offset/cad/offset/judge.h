@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+#include <string>
+#include <vector>
+
+namespace vdb_offset::cad {
+
+struct JudgeOptions {
+  int samples = 10000;
+  double tolerance = 0.01;  ///< Of |distance|: how near or far points may be.
+};
+
+struct Verdict {
+  bool is_good = true;
+  std::vector<std::string> faults;  ///< In words; empty if it is good.
+  double least = 0, most = 0;       ///< Sampled distances of the result to the source, as shares of |distance|.
+  double volume = 0;
+};
+
+/// Judges an offset by what it is, not by how it was made: valid topology; as many solids and shells as the source, and
+/// as closed; every sampled point of the result at least |distance| from the source, on its right side, and no farther
+/// but over edges and vertices; every point of the source whose offset is no nearer to another part of the source has
+/// it in the result; no triangles of its tessellation cross.
+Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance,
+                     const JudgeOptions& options);
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/offset/soup.h"
+
+#include <BRepBuilderAPI_Copy.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRep_Tool.hxx>
+#include <Poly_Triangulation.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "vdb_offset/cad/offset/contact.h"
+#include "vdb_offset/cad/offset/offset_surface.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+constexpr int kLeaf = 4;
+
+// The closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5), as shares of its corners.
+std::array<double, 3> closest_shares(const std::array<gp_Pnt, 3>& t, const gp_Pnt& p) {
+  const gp_Vec ab(t[0], t[1]), ac(t[0], t[2]), ap(t[0], p);
+  const double d1 = ab.Dot(ap), d2 = ac.Dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  const gp_Vec bp(t[1], p);
+  const double d3 = ab.Dot(bp), d4 = ac.Dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+  const gp_Vec cp(t[2], p);
+  const double d5 = ab.Dot(cp), d6 = ac.Dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+double box_distance(const std::array<double, 6>& b, const gp_Pnt& p) {
+  double s = 0;
+  for (int i = 0; i < 3; i++) {
+    const double x = p.Coord(i + 1), out = std::max({b[i] - x, x - b[i + 3], 0.0});
+    s += out * out;
+  }
+  return s;
+}
+
+bool overlap(const std::array<double, 6>& a, const std::array<double, 6>& b) {
+  for (int i = 0; i < 3; i++)
+    if (a[i] > b[i + 3] || b[i] > a[i + 3]) return false;
+  return true;
+}
+
+std::array<double, 6> box_of(const Soup::Triangle& t) {
+  std::array<double, 6> b;
+  for (int i = 0; i < 3; i++) {
+    b[i] = std::min({t.points[0].Coord(i + 1), t.points[1].Coord(i + 1), t.points[2].Coord(i + 1)});
+    b[i + 3] = std::max({t.points[0].Coord(i + 1), t.points[1].Coord(i + 1), t.points[2].Coord(i + 1)});
+  }
+  return b;
+}
+
+gp_Pnt mixed(const std::array<gp_Pnt, 3>& p, const std::array<double, 3>& s) {
+  return gp_Pnt(p[0].XYZ() * s[0] + p[1].XYZ() * s[1] + p[2].XYZ() * s[2]);
+}
+
+gp_Pnt2d mixed(const std::array<gp_Pnt2d, 3>& p, const std::array<double, 3>& s) {
+  return gp_Pnt2d(p[0].XY() * s[0] + p[1].XY() * s[1] + p[2].XY() * s[2]);
+}
+
+// Whether a foot on the surface lies beyond the border that the closest point of the tessellation is on.
+bool leaves(const Soup::Triangle& t, const std::array<double, 3>& shares, const gp_Pnt2d& uv) {
+  bool is_on_border = false;
+  for (int k = 0; k < 3; k++)
+    is_on_border = is_on_border || (t.is_border[k] && shares[k] < 1e-9) || (t.is_on_border[k] && shares[k] > 1 - 1e-9);
+  if (!is_on_border) return false;
+  const gp_Vec2d a(t.uv[0], t.uv[1]), b(t.uv[0], t.uv[2]), p(t.uv[0], uv);
+  const double area = a.Crossed(b);
+  if (std::abs(area) < 1e-300) return true;
+  const double s1 = p.Crossed(b) / area, s2 = a.Crossed(p) / area;
+  return s1 < -1e-9 || s2 < -1e-9 || 1 - s1 - s2 < -1e-9;
+}
+
+// Whether a side of one triangle passes through the inside of the other.
+bool pierces(const Soup::Triangle& a, const Soup::Triangle& b) {
+  const gp_Vec e1(b.points[0], b.points[1]), e2(b.points[0], b.points[2]);
+  for (int i = 0; i < 3; i++) {
+    const gp_Pnt &p = a.points[i], &q = a.points[(i + 1) % 3];
+    const gp_Vec d(p, q), h = d.Crossed(e2);
+    const double det = e1.Dot(h);
+    if (std::abs(det) < 1e-9 * e1.Magnitude() * e2.Magnitude() * d.Magnitude()) continue;
+    const gp_Vec s(b.points[0], p);
+    const double u = s.Dot(h) / det;
+    const gp_Vec k = s.Crossed(e1);
+    const double v = d.Dot(k) / det, t = e2.Dot(k) / det;
+    constexpr double kInside = 1e-6;
+    if (u > kInside && v > kInside && u + v < 1 - kInside && t > kInside && t < 1 - kInside) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Soup::Soup(const TopoDS_Shape& shape, double deflection, double angle) {
+  const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape).Shape();
+  BRepMesh_IncrementalMesh(copy, deflection, false, angle);
+  std::map<std::array<double, 3>, int> numbers;
+  for (TopExp_Explorer e(copy, TopAbs_FACE); e.More(); e.Next()) {
+    const TopoDS_Face& f = TopoDS::Face(e.Current());
+    TopLoc_Location place;
+    const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(f, place);
+    const double sign = f.Orientation() == TopAbs_REVERSED ? -1 : 1;
+    faces_.push_back({surface_of(f), sign});
+    if (mesh.IsNull() || mesh->NbTriangles() == 0) {
+      is_complete_ = false;
+      continue;
+    }
+    std::map<std::array<int, 2>, int> uses;
+    std::vector<char> on_border(mesh->NbNodes() + 1, 0);
+    const auto side = [](int a, int b) { return std::array<int, 2>{std::min(a, b), std::max(a, b)}; };
+    for (int i = 1; i <= mesh->NbTriangles(); i++) {
+      std::array<int, 3> n;
+      mesh->Triangle(i).Get(n[0], n[1], n[2]);
+      for (int k = 0; k < 3; k++) uses[side(n[k], n[(k + 1) % 3])]++;
+    }
+    for (const auto& [ends, count] : uses)
+      if (count == 1) on_border[ends[0]] = on_border[ends[1]] = 1;
+    for (int i = 1; i <= mesh->NbTriangles(); i++) {
+      std::array<int, 3> n;
+      mesh->Triangle(i).Get(n[0], n[1], n[2]);
+      if (sign < 0) std::swap(n[1], n[2]);
+      Triangle t;
+      t.face = static_cast<int>(faces_.size()) - 1;
+      for (int k = 0; k < 3; k++) {
+        t.points[k] = mesh->Node(n[k]).Transformed(place.Transformation());
+        t.is_border[k] = uses[side(n[(k + 1) % 3], n[(k + 2) % 3])] == 1;
+        t.is_on_border[k] = on_border[n[k]];
+        t.uv[k] = mesh->HasUVNodes() ? mesh->UVNode(n[k]) : gp_Pnt2d();
+        const double grid = 1e-4 * deflection;
+        const std::array<double, 3> key = {std::round(t.points[k].X() / grid), std::round(t.points[k].Y() / grid),
+                                           std::round(t.points[k].Z() / grid)};
+        t.nodes[k] = numbers.emplace(key, static_cast<int>(numbers.size())).first->second;
+      }
+      triangles_.push_back(t);
+    }
+  }
+  order_.resize(triangles_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  nodes_.push_back({});
+  if (!triangles_.empty()) build(0, 0, static_cast<int>(order_.size()));
+}
+
+void Soup::build(int node, int first, int count) {
+  constexpr double kFar = std::numeric_limits<double>::max();
+  std::array<double, 6> box = {kFar, kFar, kFar, -kFar, -kFar, -kFar};
+  for (int i = first; i < first + count; i++) {
+    const std::array<double, 6> b = box_of(triangles_[order_[i]]);
+    for (int k = 0; k < 3; k++) {
+      box[k] = std::min(box[k], b[k]);
+      box[k + 3] = std::max(box[k + 3], b[k + 3]);
+    }
+  }
+  if (count <= kLeaf) {
+    nodes_[node] = {box, first, count};
+    return;
+  }
+  int axis = 0;
+  for (int k = 1; k < 3; k++)
+    if (box[k + 3] - box[k] > box[axis + 3] - box[axis]) axis = k;
+  const auto middle = [&](int t) {
+    const auto& p = triangles_[t].points;
+    return p[0].Coord(axis + 1) + p[1].Coord(axis + 1) + p[2].Coord(axis + 1);
+  };
+  std::nth_element(order_.begin() + first, order_.begin() + first + count / 2, order_.begin() + first + count,
+                   [&](int a, int b) { return middle(a) < middle(b); });
+  const int children = static_cast<int>(nodes_.size());
+  nodes_.resize(nodes_.size() + 2);
+  nodes_[node] = {box, children, 0};
+  build(children, first, count / 2);
+  build(children + 1, first + count / 2, count - count / 2);
+}
+
+SoupPoint Soup::closest(const gp_Pnt& point) const {
+  double best = std::numeric_limits<double>::max();
+  SoupPoint result;
+  std::array<double, 3> shares = {1, 0, 0};
+  std::vector<int> stack = {0};
+  while (!stack.empty()) {
+    const Node& n = nodes_[stack.back()];
+    stack.pop_back();
+    if (box_distance(n.box, point) >= best) continue;
+    for (int i = n.first; i < n.first + n.count; i++) {
+      const Triangle& t = triangles_[order_[i]];
+      const std::array<double, 3> s = closest_shares(t.points, point);
+      const double d = mixed(t.points, s).SquareDistance(point);
+      if (d >= best) continue;
+      best = d;
+      shares = s;
+      result.triangle = order_[i];
+    }
+    if (n.count > 0) continue;
+    const bool near_first = box_distance(nodes_[n.first].box, point) < box_distance(nodes_[n.first + 1].box, point);
+    stack.push_back(near_first ? n.first + 1 : n.first);
+    stack.push_back(near_first ? n.first : n.first + 1);
+  }
+  const Triangle& t = triangles_[result.triangle];
+  result.point = mixed(t.points, shares);
+  result.uv = mixed(t.uv, shares);
+  result.distance = std::sqrt(best);
+  // The foot on the surface, if it stays within about a triangle of that on the tessellation.
+  const Handle(Geom_Surface)& s = faces_[t.face].surface;
+  double exact = 0;
+  const gp_Pnt2d uv = project(*s, point, result.uv, &exact);
+  const double size = std::max(t.points[0].Distance(t.points[1]), t.points[0].Distance(t.points[2]));
+  const gp_Pnt foot = s->Value(uv.X(), uv.Y());
+  if (leaves(t, shares, uv)) return result;
+  if (foot.Distance(result.point) < 0.05 * size + 1e-3 * result.distance) {
+    result.point = foot;
+    result.uv = uv;
+    result.distance = exact;
+    result.is_inside = true;
+  }
+  return result;
+}
+
+SoupPoint Soup::on_triangle(int triangle, double a, double b) const {
+  const Triangle& t = triangles_[triangle];
+  if (a + b > 1) {
+    a = 1 - a;
+    b = 1 - b;
+  }
+  SoupPoint r;
+  r.triangle = triangle;
+  r.uv = mixed(t.uv, {1 - a - b, a, b});
+  r.point = faces_[t.face].surface->Value(r.uv.X(), r.uv.Y());
+  return r;
+}
+
+gp_Vec Soup::outside(const SoupPoint& at) const {
+  const Triangle& t = triangles_[at.triangle];
+  const Box2 box{std::min({t.uv[0].X(), t.uv[1].X(), t.uv[2].X()}), std::max({t.uv[0].X(), t.uv[1].X(), t.uv[2].X()}),
+                 std::min({t.uv[0].Y(), t.uv[1].Y(), t.uv[2].Y()}), std::max({t.uv[0].Y(), t.uv[1].Y(), t.uv[2].Y()})};
+  return unit_normal(*faces_[t.face].surface, at.uv.X(), at.uv.Y(), box) * faces_[t.face].sign;
+}
+
+bool Soup::contains(const gp_Pnt& point) const {
+  double sum = 0;  // Van Oosterom and Strackee, 1983.
+  for (const Triangle& t : triangles_) {
+    const gp_XYZ a = t.points[0].XYZ() - point.XYZ(), b = t.points[1].XYZ() - point.XYZ(),
+                 c = t.points[2].XYZ() - point.XYZ();
+    const double la = a.Modulus(), lb = b.Modulus(), lc = c.Modulus();
+    sum += std::atan2(a.Dot(b.Crossed(c)), la * lb * lc + a.Dot(b) * lc + b.Dot(c) * la + c.Dot(a) * lb);
+  }
+  return std::abs(sum) > M_PI;
+}
+
+double Soup::volume() const {
+  double sum = 0;
+  for (const Triangle& t : triangles_) sum += t.points[0].XYZ().Dot(t.points[1].XYZ().Crossed(t.points[2].XYZ()));
+  return sum / 6;
+}
+
+int Soup::crossings(int most) const {
+  int found = 0;
+  for (std::size_t i = 0; i < triangles_.size() && found < most; i++) {
+    const Triangle& t = triangles_[i];
+    const std::array<double, 6> box = box_of(t);
+    std::vector<int> stack = {0};
+    while (!stack.empty() && found < most) {
+      const Node& n = nodes_[stack.back()];
+      stack.pop_back();
+      if (!overlap(n.box, box)) continue;
+      for (int k = n.first; k < n.first + n.count; k++) {
+        const Triangle& o = triangles_[order_[k]];
+        const bool shares_corner = std::any_of(t.nodes.begin(), t.nodes.end(), [&](int v) {
+          return std::find(o.nodes.begin(), o.nodes.end(), v) != o.nodes.end();
+        });
+        if (!shares_corner && pierces(t, o)) found++;
+      }
+      if (n.count == 0) stack.insert(stack.end(), {n.first, n.first + 1});
+    }
+  }
+  return found;
+}
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Geom_Surface.hxx>
+#include <TopoDS_Shape.hxx>
+#include <array>
+#include <gp_Pnt.hxx>
+#include <gp_Pnt2d.hxx>
+#include <vector>
+
+namespace vdb_offset::cad {
+
+/// A point of a face, found from its tessellation and corrected on its surface.
+struct SoupPoint {
+  gp_Pnt point;
+  int triangle = -1;
+  gp_Pnt2d uv;
+  double distance = 0;
+  bool is_inside = false;  ///< Of a face: not on a border of it, where another one begins.
+};
+
+/// The triangles of a shape, with (u, v), in a tree of boxes.
+class Soup {
+ public:
+  struct Triangle {
+    std::array<gp_Pnt, 3> points;
+    std::array<gp_Pnt2d, 3> uv;
+    std::array<int, 3> nodes;          ///< Equal where triangles share a corner.
+    std::array<bool, 3> is_border;     ///< The side across from corner i borders the face.
+    std::array<bool, 3> is_on_border;  ///< Corner i lies on a border of the face.
+    int face;
+  };
+  struct Face {
+    Handle(Geom_Surface) surface;
+    double sign;  ///< Of the material's outside along Su x Sv.
+  };
+
+  /// Tessellates a copy of the shape.
+  Soup(const TopoDS_Shape& shape, double deflection, double angle);
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<Face>& faces() const { return faces_; }
+  bool is_complete() const { return is_complete_; }  ///< Every face has triangles.
+
+  /// The closest point of the shape: exact within faces, that of the tessellation on their borders.
+  SoupPoint closest(const gp_Pnt& point) const;
+  /// A point of a triangle, on its surface.
+  SoupPoint on_triangle(int triangle, double a, double b) const;
+  /// The material's outside there.
+  gp_Vec outside(const SoupPoint& at) const;
+  /// Whether the point lies in the closed shape, by the solid angle of all triangles.
+  bool contains(const gp_Pnt& point) const;
+  /// The volume of the tessellation.
+  double volume() const;
+  /// How many pairs of triangles without a common corner cross, up to `most`.
+  int crossings(int most) const;
+
+ private:
+  struct Node {
+    std::array<double, 6> box;  // Least x, y, z, then most.
+    int first, count;           // Of order_; count 0: two children at `first` and `first` + 1.
+  };
+  void build(int node, int first, int count);
+
+  std::vector<Triangle> triangles_;
+  std::vector<Face> faces_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+  bool is_complete_ = true;
+};
+
+}  // namespace vdb_offset::cad
