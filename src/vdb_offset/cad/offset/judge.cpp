@@ -4,14 +4,23 @@
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepLib.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 
+#include "vdb_offset/cad/offset/offset_surface.h"
 #include "vdb_offset/cad/offset/soup.h"
 
 namespace vdb_offset::cad {
@@ -20,8 +29,14 @@ namespace {
 // Farthest that a mitre may reach, in distances: edges of 10 degrees.
 constexpr double kLongestMitre = 12;
 
+// The angle of faces that do not touch.
+constexpr double kSharp = 0.02;
+
+// How far from a sharp edge its mitre is looked for over other faces.
+constexpr double kMitreOverFace = 3;
+
 // Points that are held against the exact shape where its tessellation leaves doubt. More doubt than that is none.
-constexpr int kMostDoubts = 100;
+constexpr int kMostDoubts = 300;
 
 // Numbers in [0, 1) that are the same on every machine (splitmix64).
 class Numbers {
@@ -41,6 +56,14 @@ std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", x);
   return text;
+}
+
+std::string text_of(const gp_Pnt& p) { return number(p.X()) + " " + number(p.Y()) + " " + number(p.Z()); }
+
+// Which faces a point lies on and over.
+std::string place_of(const Soup& source, const SoupPoint& foot, const Soup& result, const SoupPoint& p) {
+  return " on face " + std::to_string(result.triangles()[p.triangle].face + 1) + " over the source's face " +
+         std::to_string(source.triangles()[foot.triangle].face + 1);
 }
 
 // Points spread over a soup by area: a stratified choice of triangles.
@@ -86,35 +109,80 @@ Counts counts_of(const TopoDS_Shape& s) {
 // How much nearer than the distance a tessellation may make a point seem.
 constexpr double kDoubtful = 0.1;
 
-// The distance by the exact geometry, and whether it is to the inside of a face.
-double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point, bool& is_inside) {
+// Without solids: a point in one is at no distance from it.
+TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) BRep_Builder().Add(all, e.Current());
+  return all;
+}
+
+// The edges of a shape where its faces do not touch.
+TopoDS_Shape sharp_edges_of(const TopoDS_Shape& shape) {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  TopTools_IndexedDataMapOfShapeListOfShape faces;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces);
+  for (int i = 1; i <= faces.Extent(); i++) {
+    const TopoDS_Edge& e = TopoDS::Edge(faces.FindKey(i));
+    if (BRep_Tool::Degenerated(e) || faces(i).Extent() < 2) continue;
+    const TopoDS_Face &a = TopoDS::Face(faces(i).First()), &b = TopoDS::Face(faces(i).Last());
+    if (!a.IsSame(b) && BRepLib::ContinuityOfFaces(e, a, b, kSharp) == GeomAbs_C0) BRep_Builder().Add(all, e);
+  }
+  return all;
+}
+
+bool is_along(const gp_Vec& way, const gp_Vec& normal) {
+  return way.Crossed(normal).Magnitude() < 0.02 * way.Magnitude() * normal.Magnitude();
+}
+
+// The distance by the exact geometry, and whether it is to the inside of a face: along its normal.
+double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point, bool& is_inside, double otherwise) {
   BRepExtrema_DistShapeShape d(BRepBuilderAPI_MakeVertex(point).Vertex(), shape);
   is_inside = false;
-  if (!d.IsDone()) return 0;
-  for (int i = 1; i <= d.NbSolution(); i++) is_inside = is_inside || d.SupportTypeShape2(i) == BRepExtrema_IsInFace;
+  if (!d.IsDone()) return otherwise;
+  for (int i = 1; i <= d.NbSolution(); i++) {
+    if (d.SupportTypeShape2(i) != BRepExtrema_IsInFace) continue;
+    double u, v;
+    d.ParOnFaceS2(i, u, v);
+    gp_Pnt foot;
+    gp_Vec du, dv;
+    surface_of(TopoDS::Face(d.SupportOnShape2(i)))->D1(u, v, foot, du, dv);
+    is_inside = is_inside || is_along(gp_Vec(foot, point), du.Crossed(dv));
+  }
   return d.Value();
 }
 
 double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point) {
   bool is_inside;
-  return exact_distance(shape, point, is_inside);
+  return exact_distance(shape, point, is_inside, 0);
 }
 
 class Judge {
  public:
   Judge(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance, const JudgeOptions& options)
-      : source_(source), result_(result), distance_(distance), far_(std::abs(distance)), options_(options) {}
+      : source_(source),
+        result_(result),
+        source_faces_(faces_of(source)),
+        result_faces_(faces_of(result)),
+        sharp_edges_(sharp_edges_of(source)),
+        distance_(distance),
+        far_(std::abs(distance)),
+        options_(options) {}
 
   Verdict judge() {
     check_topology();
     if (!verdict_.faults.empty()) return verdict_;
-    const Soup source(source_, 0.02 * far_, 0.2), result(result_, 0.05 * far_, 0.25);
+    const Soup source(source_, 0.02 * far_, 0.25), result(result_, 0.01 * far_, 0.3);
     if (!result.is_complete()) fault("a face has no triangles");
     if (result.triangles().empty()) return verdict_;
     verdict_.volume = result.volume();
+    if (is_closed_ && (verdict_.volume > source.volume()) != (distance_ > 0))
+      fault("the volume is not on the right side");
+    if (is_closed_ && verdict_.volume < 0) fault("the result is turned inside out");
     check_points(source, result);
     check_cover(source, result);
-    if (result.crossings(1) > 0 && Soup(result_, 0.005 * far_, 0.1).crossings(1) > 0)
+    if (result.crossings(1) > 0 && Soup(result_, 0.002 * far_, 0.1).crossings(1) > 0)
       fault("the result crosses itself");
     return verdict_;
   }
@@ -136,7 +204,8 @@ class Judge {
 
   void check_points(const Soup& source, const Soup& result) {
     const std::vector<SoupPoint> points = spread(result, options_.samples);
-    int near = 0, far = 0, doubts = 0, wrong_side = 0, wrong_way = 0, n = 0;
+    int near = 0, far = 0, doubts = 0, wrong_side = 0, n = 0;
+    std::string place;
     verdict_.least = 1e300;
     const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / 40000000);
     for (const SoupPoint& p : points) {
@@ -144,43 +213,51 @@ class Judge {
       double share = foot.distance / far_;
       if ((share < 1 - options_.tolerance || (foot.is_inside && share > 1 + options_.tolerance)) &&
           share > 1 - kDoubtful && doubts++ < kMostDoubts) {
-        share = exact_distance(source_, p.point, foot.is_inside) / far_;
+        share = exact_distance(source_faces_, p.point, foot.is_inside, foot.distance) / far_;
+        // Beyond a sharp edge its mitre may lie over the inside of a third face.
+        if (foot.is_inside && share > 1 + options_.tolerance)
+          foot.is_inside = exact_distance(sharp_edges_, p.point) > kMitreOverFace * far_;
       }
       verdict_.least = std::min(verdict_.least, share);
       verdict_.most = std::max(verdict_.most, share);
-      near += share < 1 - options_.tolerance;
-      far += share > (foot.is_inside ? 1 + options_.tolerance : kLongestMitre);
-      // Over the inside of a face, the result looks the same way as the source.
+      if (share < 1 - options_.tolerance && near++ == 0) place = text_of(p.point) + place_of(source, foot, result, p);
+      if (share > (foot.is_inside ? 1 + options_.tolerance : kLongestMitre) && far++ == 0)
+        place = text_of(p.point) + place_of(source, foot, result, p);
       const gp_Vec to(foot.point, p.point), out = source.outside(foot);
       if (foot.is_inside && (to.Dot(out) > 0) != (distance_ > 0)) wrong_side++;
-      if (foot.is_inside && std::abs(share - 1) < options_.tolerance && out.Dot(result.outside(p)) < 0) wrong_way++;
       if (is_closed_ && n++ % every == 0 && source.contains(p.point) != (distance_ < 0)) wrong_side++;
     }
     if (near)
-      fault(std::to_string(near) + " points are nearer than the distance (least " + number(verdict_.least) + ")");
-    if (far) fault(std::to_string(far) + " points are farther than the distance (most " + number(verdict_.most) + ")");
+      fault(std::to_string(near) + " points are nearer than the distance (least " + number(verdict_.least) +
+            ") as at " + place);
+    if (far)
+      fault(std::to_string(far) + " points are farther than the distance (most " + number(verdict_.most) + ") as at " +
+            place);
     if (wrong_side) fault(std::to_string(wrong_side) + " points are on the wrong side");
-    if (wrong_way) fault(std::to_string(wrong_way) + " points look the wrong way");
   }
 
   void check_cover(const Soup& source, const Soup& result) {
     int missing = 0, doubts = 0;
     double worst = 0;
+    std::string place;
     for (const SoupPoint& p : spread(source, options_.samples / 2)) {
       const gp_Pnt moved = p.point.Translated(source.outside(p) * distance_);
       if (source.closest(moved).distance < far_ * (1 - 1e-3)) continue;
       const double way = result.closest(moved).distance / far_;
+      if (way > worst) place = text_of(moved) + place_of(source, p, result, result.closest(moved));
       worst = std::max(worst, way);
       if (way > options_.tolerance && doubts++ < kMostDoubts)
-        missing += exact_distance(source_, moved) > far_ * (1 - 1e-3) &&
-                   exact_distance(result_, moved) > far_ * options_.tolerance;
+        missing += exact_distance(source_faces_, moved) > far_ * (1 - 1e-3) &&
+                   exact_distance(result_faces_, moved) > far_ * options_.tolerance;
       else missing += way > options_.tolerance;
     }
     if (missing)
-      fault(std::to_string(missing) + " offset points are not in the result (farthest " + number(worst) + ")");
+      fault(std::to_string(missing) + " offset points are not in the result (farthest " + number(worst) + ") as at " +
+            place);
   }
 
   TopoDS_Shape source_, result_;
+  TopoDS_Shape source_faces_, result_faces_, sharp_edges_;
   double distance_, far_;
   JudgeOptions options_;
   Verdict verdict_;

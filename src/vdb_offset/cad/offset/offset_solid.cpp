@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdb_offset/cad/offset/arrange.h"
 #include "vdb_offset/cad/offset/build.h"
-#include "vdb_offset/cad/offset/resolve.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -58,19 +58,12 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
         result.faces.push_back(face.offset.made == FaceMade::Kept     ? CadFace::Kept
                                : face.offset.made == FaceMade::Fitted ? CadFace::Fitted
                                                                       : CadFace::Swallowed);
-        if (face.offset.made == FaceMade::Swallowed)
-          result.gaps.push_back("face " + std::to_string(f + 1) + " is swallowed");
       }
       first_face += static_cast<int>(model.faces.size());
-      if (!result.gaps.empty()) continue;
+      const std::size_t gaps_before = result.gaps.size();
       classify_edges(model, tolerances);
-      for (std::size_t v = 0; v < model.vertices.size(); v++) {
-        const bool is_placed = resolve_vertex(model, static_cast<int>(v), tolerances);
-        if (!is_placed)
-          result.gaps.push_back("vertex " + std::to_string(v + 1) + " of " +
-                                std::to_string(model.vertices[v].ring.size()) + " edges: faces miss by " +
-                                std::to_string(model.vertices[v].residual));
-      }
+      arrange(model, tolerances, result.gaps);
+      if (result.gaps.size() > gaps_before) continue;
       Built built = build_shell(model, tolerances);
       result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
       if (!built.shell.IsNull()) shells.push_back(built.shell);

@@ -8,6 +8,7 @@
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_ConicalSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
+#include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_RectangularTrimmedSurface.hxx>
 #include <Geom_SphericalSurface.hxx>
@@ -47,13 +48,24 @@ OffsetSurface offset_cone(const Handle(Geom_ConicalSurface) & s, const Box2& box
   const double radius = s->RefRadius() + out * std::cos(a);
   OffsetSurface result;
   const double r0 = radius + box.v0 * std::sin(a), r1 = radius + box.v1 * std::sin(a);
-  if (radius < 0 || std::max(r0, r1) <= 1e-7) {
+  if (std::max(r0, r1) <= 1e-7) {
     result.made = FaceMade::Swallowed;
+    return result;
+  }
+  result.has_apex = true;
+  result.apex_v = -radius / std::sin(a);
+  const gp_Vec shift = gp_Vec(axes.Direction()) * (-out * std::sin(a));
+  if (radius < 0) {
+    // A cone starts where its radius is none or more, which would shift v: the same points by turning a line.
+    const gp_Vec along = gp_Vec(axes.XDirection()) * std::sin(a) + gp_Vec(axes.Direction()) * std::cos(a);
+    const gp_Pnt start = axes.Location().Translated(shift + gp_Vec(axes.XDirection()) * radius);
+    const gp_Dir axis = axes.Direct() ? axes.Direction() : axes.Direction().Reversed();
+    result.surface = new Geom_SurfaceOfRevolution(new Geom_Line(start, gp_Dir(along)), gp_Ax1(axes.Location(), axis));
     return result;
   }
   const Handle(Geom_ConicalSurface) copy = Handle(Geom_ConicalSurface)::DownCast(s->Copy());
   copy->SetRadius(radius);
-  copy->Translate(gp_Vec(axes.Direction()) * (-out * std::sin(a)));
+  copy->Translate(shift);
   result.surface = copy;
   return result;
 }
@@ -77,9 +89,8 @@ OffsetSurface offset_elementary(const Handle(Geom_Surface) & surface, const Box2
       result.made = FaceMade::Swallowed;
       return result;
     }
-    const Handle(Geom_ToroidalSurface) copy = Handle(Geom_ToroidalSurface)::DownCast(s->Copy());
-    copy->SetMinorRadius(radius);
-    result.surface = copy;
+    // Made anew: a torus that crosses itself at its axis, out of use, cannot be had by a new radius.
+    result.surface = new Geom_ToroidalSurface(s->Position(), s->MajorRadius(), radius);
     return result;
   }
   return {};

@@ -30,6 +30,8 @@ struct OffsetSurface {
   Handle(Geom_Surface) surface;  ///< Null if the distance swallows it.
   FaceMade made = FaceMade::Kept;
   double error = 0;  ///< Of a fit, at the same (u, v).
+  bool has_apex = false;
+  double apex_v = 0;  ///< Where a cone's offset has its apex.
 };
 
 /// The surface under a face, without trims of its own.

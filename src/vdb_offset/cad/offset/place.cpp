@@ -80,8 +80,7 @@ gp_Pnt mitre_point(const Model& model, const gp_Pnt& source, const std::vector<i
   double a[3][3] = {}, b[3] = {};
   for (int h : halves) {
     const gp_Vec n = start_normal(model, h);
-    const ModelFace& f = model.faces[model.halves[h].face];
-    const double d = distance_at(f, model.halves[h].origin) * f.sign;
+    const double d = gp_Vec(source, moved_start(model, h)).Dot(n);
     for (int i = 0; i < 3; i++) {
       b[i] += n.Coord(i + 1) * d;
       for (int k = 0; k < 3; k++) a[i][k] += n.Coord(i + 1) * n.Coord(k + 1);
@@ -137,12 +136,43 @@ void spread_vertex(Model& model, int vertex) {
   }
 }
 
+namespace {
+
+// Moves a vertex at the apex of a cone to that of its offset. False if it is none.
+bool place_apex(Model& model, ModelVertex& v) {
+  const ModelFace* cone = nullptr;
+  for (int h : v.ring) {
+    const ModelFace& f = model.faces[model.halves[h].face];
+    if (model.edges[model.halves[model.halves[h].previous].edge].kind == EdgeKind::Pole && f.offset.has_apex) cone = &f;
+  }
+  if (!cone) return false;
+  for (int h : v.ring) {
+    const HalfEdge& half = model.halves[h];
+    ModelEdge& e = model.edges[half.edge];
+    const double end = half.forward ? e.first : e.last;
+    gp_Pnt2d uv;
+    gp_Vec2d along;
+    evaluate(*half.pcurve, end, uv, along);
+    if (std::abs(along.Y()) < 1e-12) return false;
+    e.range[half.forward ? 0 : 1] = end + (model.faces[half.face].offset.apex_v - uv.Y()) / along.Y();
+  }
+  v.point = cone->offset.surface->Value(0, cone->offset.apex_v);
+  v.residual = 0;
+  return true;
+}
+
+}  // namespace
+
 void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   ModelVertex& v = model.vertices[vertex];
   std::vector<int> spokes = v.ring;
   if (v.is_open) spokes.push_back(previous_drawn(model, v.ring.back()));  // It ends here: see below.
   bool is_smooth = true;
   for (int h : v.ring) is_smooth = is_smooth && model.edges[model.halves[h].edge].kind == EdgeKind::Smooth;
+  if (is_smooth && place_apex(model, v)) {
+    spread_vertex(model, vertex);
+    return;
+  }
   if (is_smooth) {
     // All faces touch here: the vertex is the offset of the source's, and no curve changes its range.
     gp_XYZ sum(0, 0, 0);

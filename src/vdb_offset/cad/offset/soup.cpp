@@ -23,6 +23,10 @@ namespace {
 
 constexpr int kLeaf = 4;
 
+// How far a foot on the surface may be from that on the tessellation, as a share of its distance: normals of the two
+// differ by no more than the tessellation's angle.
+constexpr double kLongestCorrection = 0.3;
+
 // The closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5), as shares of its corners.
 std::array<double, 3> closest_shares(const std::array<gp_Pnt, 3>& t, const gp_Pnt& p) {
   const gp_Vec ab(t[0], t[1]), ac(t[0], t[2]), ap(t[0], p);
@@ -112,7 +116,7 @@ bool pierces(const Soup::Triangle& a, const Soup::Triangle& b) {
 
 }  // namespace
 
-Soup::Soup(const TopoDS_Shape& shape, double deflection, double angle) {
+Soup::Soup(const TopoDS_Shape& shape, double deflection, double angle) : deflection_(deflection) {
   const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape).Shape();
   BRepMesh_IncrementalMesh(copy, deflection, false, angle);
   std::map<std::array<double, 3>, int> numbers;
@@ -218,14 +222,13 @@ SoupPoint Soup::closest(const gp_Pnt& point) const {
   result.point = mixed(t.points, shares);
   result.uv = mixed(t.uv, shares);
   result.distance = std::sqrt(best);
-  // The foot on the surface, if it stays within about a triangle of that on the tessellation.
+  // The foot on the surface, if it is close to that on the tessellation.
   const Handle(Geom_Surface)& s = faces_[t.face].surface;
   double exact = 0;
   const gp_Pnt2d uv = project(*s, point, result.uv, &exact);
-  const double size = std::max(t.points[0].Distance(t.points[1]), t.points[0].Distance(t.points[2]));
   const gp_Pnt foot = s->Value(uv.X(), uv.Y());
   if (leaves(t, shares, uv)) return result;
-  if (foot.Distance(result.point) < 0.05 * size + 1e-3 * result.distance) {
+  if (foot.Distance(result.point) < kLongestCorrection * result.distance + 3 * deflection_) {
     result.point = foot;
     result.uv = uv;
     result.distance = exact;

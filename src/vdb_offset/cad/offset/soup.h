@@ -66,6 +66,7 @@ class Soup {
   std::vector<Face> faces_;
   std::vector<int> order_;
   std::vector<Node> nodes_;
+  double deflection_;
   bool is_complete_ = true;
 };
 

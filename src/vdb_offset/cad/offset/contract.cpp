@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/offset/contract.h"
+
+#include <GCPnts_AbscissaPoint.hxx>
+#include <GeomAdaptor_Curve.hxx>
+#include <algorithm>
+
+namespace vdb_offset::cad {
+namespace {
+
+// A face is long, and not to become a vertex, if its longest side is so many times its shortest.
+constexpr double kLong = 2.5;
+
+void drop_loop_start(Model& model, int half) {
+  const HalfEdge& h = model.halves[half];
+  std::vector<int>& loops = model.faces[h.face].loops;
+  for (auto l = loops.begin(); l != loops.end(); ++l)
+    if (*l == half) {
+      if (h.next == half) loops.erase(l);
+      else *l = h.next;
+      break;
+    }
+  if (loops.empty()) model.faces[h.face].is_gone = true;
+}
+
+void unlink(Model& model, int half) {
+  drop_loop_start(model, half);
+  HalfEdge& h = model.halves[half];
+  model.halves[h.previous].next = h.next;
+  model.halves[h.next].previous = h.previous;
+  h.face = -1;
+}
+
+void unlink_edge(Model& model, int edge) {
+  for (int half : model.edges[edge].half)
+    if (half >= 0 && model.halves[half].face >= 0) unlink(model, half);
+  model.edges[edge].is_gone = true;
+}
+
+bool is_drawn(const Model& model, int half) {
+  return model.halves[half].face >= 0 && model.edges[model.halves[half].edge].kind != EdgeKind::Pole;
+}
+
+// Finds a vertex's ring anew. False if its half-edges are more than one ring, or an open one.
+bool rebuild_ring(Model& model, int vertex) {
+  std::vector<int> all;
+  for (int h = 0; h < static_cast<int>(model.halves.size()); h++)
+    if (model.halves[h].vertex == vertex && is_drawn(model, h)) all.push_back(h);
+  ModelVertex& v = model.vertices[vertex];
+  v.ring.clear();
+  if (all.empty()) {
+    v.is_gone = true;
+    return true;
+  }
+  for (int h = all.front();;) {
+    v.ring.push_back(h);
+    h = model.halves[previous_drawn(model, h)].twin;
+    if (h == all.front()) break;
+    if (h < 0 || v.ring.size() > all.size()) return false;
+  }
+  return v.ring.size() == all.size();
+}
+
+// Joins vertices: the first one stays.
+bool join(Model& model, std::vector<int> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  gp_XYZ sum(0, 0, 0);
+  for (int v : vertices) sum += model.vertices[v].source.XYZ();
+  model.vertices[vertices.front()].source = gp_Pnt(sum / static_cast<double>(vertices.size()));
+  for (HalfEdge& h : model.halves)
+    if (std::binary_search(vertices.begin(), vertices.end(), h.vertex)) h.vertex = vertices.front();
+  for (std::size_t i = 1; i < vertices.size(); i++) {
+    model.vertices[vertices[i]].is_gone = true;
+    model.vertices[vertices[i]].ring.clear();
+  }
+  return rebuild_ring(model, vertices.front());
+}
+
+double length_of(const Model& model, int edge) {
+  const ModelEdge& e = model.edges[edge];
+  if (!e.curve.IsNull()) return GCPnts_AbscissaPoint::Length(GeomAdaptor_Curve(e.curve), e.first, e.last);
+  const int h = e.half[0];
+  return model.vertices[model.halves[h].vertex].source.Distance(model.vertices[end_vertex(model, h)].source);
+}
+
+// Merges the two edges of a face that has no others: that of the first side stays, between the two neighbours.
+bool merge_sides(Model& model, int face, int first, int second) {
+  const int inner = model.edges[first].half[0], inner_twin = model.edges[first].half[1];
+  const int mine = model.halves[inner].face == face ? inner : inner_twin;
+  const int a = model.edges[second].half[0], b = model.edges[second].half[1];
+  const int other = model.halves[a].face == face ? b : a;
+  if (model.halves[model.halves[mine].twin].face == model.halves[other].face) return false;
+  // The face's own half-edge of the first side takes the place of the neighbour's behind the second side.
+  drop_loop_start(model, mine);
+  model.faces[face].is_gone = true;
+  HalfEdge &h = model.halves[mine], &o = model.halves[other];
+  const int neighbour = o.face;
+  h.face = neighbour;
+  h.pcurve.Nullify();
+  h.origin = o.origin;
+  h.start = o.start;
+  h.end = o.end;
+  h.next = o.next == other ? mine : o.next;
+  h.previous = o.previous == other ? mine : o.previous;
+  h.vertex = o.vertex;
+  model.halves[h.next].previous = mine;
+  model.halves[h.previous].next = mine;
+  for (int& l : model.faces[neighbour].loops)
+    if (l == other) l = mine;
+  o.face = -1;
+  model.halves[o.twin].face = -1;
+  model.edges[second].is_gone = true;
+  model.edges[first].kind = EdgeKind::Sharp;
+  // Both ends of what was the face's border are ends of the edge now.
+  return true;
+}
+
+}  // namespace
+
+std::vector<int> sides_of_face(const Model& model, int face) {
+  std::vector<int> sides;
+  for (int first : model.faces[face].loops)
+    for (int h = first;;) {
+      const int twin = model.halves[h].twin;
+      if (twin >= 0 && model.halves[twin].face != face) sides.push_back(model.halves[h].edge);
+      h = model.halves[h].next;
+      if (h == first) break;
+    }
+  return sides;
+}
+
+bool contract_edges(Model& model, const std::vector<int>& edges) {
+  std::vector<int> vertices;
+  for (int e : edges) {
+    const int h = model.edges[e].half[0] >= 0 ? model.edges[e].half[0] : model.edges[e].half[1];
+    if (model.halves[h].face < 0) continue;
+    vertices.push_back(model.halves[h].vertex);
+    vertices.push_back(end_vertex(model, h));
+  }
+  for (int e : edges)
+    if (!model.edges[e].is_gone) unlink_edge(model, e);
+  return vertices.empty() || join(model, vertices);
+}
+
+bool close_hole(Model& model, const std::vector<int>& faces) {
+  const auto is_inside = [&](int f) { return std::find(faces.begin(), faces.end(), f) != faces.end(); };
+  std::vector<int> edges, vertices;
+  int loops = 0;
+  for (int f : faces)
+    for (int first : model.faces[f].loops)
+      for (int h = first;;) {
+        edges.push_back(model.halves[h].edge);
+        vertices.push_back(model.halves[h].vertex);
+        const int twin = model.halves[h].twin;
+        if (twin < 0 && model.edges[model.halves[h].edge].kind != EdgeKind::Pole) return false;
+        if (twin >= 0 && !is_inside(model.halves[twin].face)) {
+          const std::vector<int>& of = model.faces[model.halves[twin].face].loops;
+          for (int o = twin;;) {
+            const int inner = model.halves[o].twin;
+            if (inner < 0 || !is_inside(model.halves[inner].face)) return false;
+            if (std::find(of.begin(), of.end(), o) != of.end()) loops++;
+            o = model.halves[o].next;
+            if (o == twin) break;
+          }
+          if (of.size() < 2) return false;
+        }
+        h = model.halves[h].next;
+        if (h == first) break;
+      }
+  if (loops < 1) return false;
+  for (int e : edges)
+    if (!model.edges[e].is_gone) unlink_edge(model, e);
+  for (int v : vertices) {
+    model.vertices[v].ring.clear();
+    model.vertices[v].is_gone = true;
+  }
+  return true;
+}
+
+bool remove_face(Model& model, int face) {
+  // Seams and poles go with the face.
+  std::vector<int> inner, round;
+  for (int first : model.faces[face].loops)
+    for (int h = first;;) {
+      const int twin = model.halves[h].twin;
+      if (twin < 0 && model.edges[model.halves[h].edge].kind != EdgeKind::Pole) return false;
+      if (twin < 0 || model.halves[twin].face == face) inner.push_back(model.halves[h].edge);
+      else round.push_back(model.halves[h].edge);
+      h = model.halves[h].next;
+      if (h == first) break;
+    }
+  std::sort(inner.begin(), inner.end());
+  inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
+  if (round.empty() || model.faces[face].loops.size() > 1) return false;
+  std::vector<double> lengths;
+  for (int e : round) lengths.push_back(length_of(model, e));
+  const int n = static_cast<int>(round.size());
+  const double longest = *std::max_element(lengths.begin(), lengths.end());
+  const double shortest = *std::min_element(lengths.begin(), lengths.end());
+  const bool is_ring = n == 2 && !inner.empty();
+  if (n > 2 && (n == 3 ? longest < 3 * kLong * shortest : longest < kLong * shortest)) {
+    std::vector<int> all = round;
+    all.insert(all.end(), inner.begin(), inner.end());
+    return contract_edges(model, all);
+  }
+  if (n == 1) return false;
+  // The two long sides: the longest, and the longest that does not touch it (or any, of three).
+  const int a = static_cast<int>(std::max_element(lengths.begin(), lengths.end()) - lengths.begin());
+  int b = -1;
+  for (int i = 0; i < n; i++) {
+    const bool touches = n > 3 && ((a + 1) % n == i || (i + 1) % n == a);
+    if (i != a && !touches && (b < 0 || lengths[i] > lengths[b])) b = i;
+  }
+  // The sides between them become vertices.
+  if (!is_ring) {
+    for (int from : {a, b}) {
+      const int to = from == a ? b : a;
+      std::vector<int> ends;
+      for (int i = (from + 1) % n; i != to; i = (i + 1) % n) ends.push_back(round[i]);
+      if (!ends.empty() && !contract_edges(model, ends)) return false;
+    }
+  } else if (!contract_edges(model, inner)) {
+    // A ring has its seam contracted: two closed edges at one vertex.
+    return false;
+  }
+  if (model.faces[face].is_gone) return true;
+  std::vector<int> touched;
+  for (int h : {model.edges[round[a]].half[0], model.edges[round[a]].half[1]})
+    touched.push_back(model.halves[h].vertex);
+  if (!merge_sides(model, face, round[a], round[b])) return false;
+  for (int v : touched)
+    if (!rebuild_ring(model, v)) return false;
+  return true;
+}
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_offset/cad/offset/model.h"
+
+namespace vdb_offset::cad {
+
+/// Joins the ends of edges to one vertex; faces all of whose edges go are gone. False if what meets there would be more
+/// than one fan of faces (the model is then of no more use).
+bool contract_edges(Model& model, const std::vector<int>& edges);
+
+/// Takes a face out and lets its neighbours meet: a long one becomes the edge between the two neighbours along it, a
+/// short one a vertex. False if its border is none of these.
+bool remove_face(Model& model, int face);
+
+/// Takes faces out that close a hole: those behind their borders lose a whole loop each, and nothing else. False if it
+/// is not so; the model is as it was then.
+bool close_hole(Model& model, const std::vector<int>& faces);
+
+/// The edges round a face that have another face behind them, in turn by loops.
+std::vector<int> sides_of_face(const Model& model, int face);
+
+}  // namespace vdb_offset::cad
