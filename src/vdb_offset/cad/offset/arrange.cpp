@@ -49,10 +49,29 @@ std::vector<int> swallowed_with(const Model& model, int face) {
   return group;
 }
 
+// Takes faces out of which contractions have left two edges between the same two vertices.
+bool remove_lenses(Model& model, std::vector<std::string>& gaps) {
+  for (int f = 0; f < static_cast<int>(model.faces.size()); f++) {
+    const ModelFace& face = model.faces[f];
+    if (face.is_gone || face.loops.size() != 1) continue;
+    const int h = face.loops.front(), other = model.halves[h].next;
+    if (other == h || model.halves[other].next != h || face.sides < 3) continue;
+    if (model.halves[h].twin < 0 || model.halves[other].twin < 0 || model.halves[h].twin == other) continue;
+    model.steps.push_back("face " + std::to_string(f + 1) + " has no width left");
+    if (remove_face(model, f)) continue;
+    gaps.push_back("face " + std::to_string(f + 1) + " is swallowed, and its neighbours do not close the gap");
+    return false;
+  }
+  return true;
+}
+
 bool remove_swallowed(Model& model, std::vector<std::string>& gaps) {
   for (int f = 0; f < static_cast<int>(model.faces.size()); f++) {
     if (model.faces[f].is_gone || !model.faces[f].offset.surface.IsNull()) continue;
-    if (close_hole(model, swallowed_with(model, f)) || remove_face(model, f)) continue;
+    if (close_hole(model, swallowed_with(model, f)) || remove_face(model, f)) {
+      model.steps.push_back("face " + std::to_string(f + 1) + " is swallowed");
+      continue;
+    }
     gaps.push_back("face " + std::to_string(f + 1) + " is swallowed, and its neighbours do not close the gap");
     return false;
   }
@@ -64,6 +83,7 @@ bool remove_swallowed(Model& model, std::vector<std::string>& gaps) {
 void arrange(Model& model, const Tolerances& tolerances, std::vector<std::string>& gaps) {
   if (!remove_swallowed(model, gaps)) return;
   for (int round = 0; round < kMostRounds; round++) {
+    if (!remove_lenses(model, gaps)) return;
     std::vector<std::string> missed;
     for (int v = 0; v < static_cast<int>(model.vertices.size()); v++) {
       if (model.vertices[v].is_gone || resolve_vertex(model, v, tolerances)) continue;
@@ -72,6 +92,7 @@ void arrange(Model& model, const Tolerances& tolerances, std::vector<std::string
     }
     const int face = most_inverted_face(model);
     if (face >= 0) {
+      model.steps.push_back("face " + std::to_string(face + 1) + " shrinks to nothing");
       if (remove_face(model, face)) continue;
       gaps.push_back("face " + std::to_string(face + 1) + " is swallowed, and its neighbours do not close the gap");
       return;
@@ -83,6 +104,7 @@ void arrange(Model& model, const Tolerances& tolerances, std::vector<std::string
       gaps.insert(gaps.end(), missed.begin(), missed.end());
       return;
     }
+    model.steps.push_back("edge " + std::to_string(edge + 1) + " shrinks to nothing");
     if (!contract_edges(model, {edge})) {
       gaps.push_back("edge " + std::to_string(edge + 1) + " shrinks to nothing");
       return;

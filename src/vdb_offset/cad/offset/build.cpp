@@ -53,7 +53,7 @@ class ShellBuilder {
       return c;
     }
     if (c.folds) built_.trouble.push_back(name + " folds over");
-    if (c.tolerance > 5 * tolerances_.gap + 2 * model_.edges[e].gap)
+    if (c.tolerance > 10 * tolerances_.gap + 2 * model_.edges[e].gap)
       built_.trouble.push_back(name + ": the faces miss each other by " + std::to_string(c.tolerance));
     return c;
   }

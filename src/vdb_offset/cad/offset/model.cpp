@@ -54,6 +54,7 @@ bool add_wire(Model& model, int f, const TopoDS_Wire& wire, const TopoDS_Face& f
     edge.half[at] = base + i;
   }
   model.faces[f].loops.push_back(base);
+  model.faces[f].sides += n;
   return true;
 }
 

@@ -59,6 +59,7 @@ struct ModelFace {
   OffsetSurface offset;
   FaceDistance distance;   ///< Along Su x Sv.
   std::vector<int> loops;  ///< One half-edge of each; the outer one need not be first.
+  int sides = 0;           ///< How many edges it has in the source.
   bool is_gone = false;
 };
 
@@ -68,7 +69,8 @@ struct Model {
   std::vector<ModelEdge> edges;
   std::vector<ModelVertex> vertices;
   std::vector<ModelFace> faces;
-  std::string failure;  ///< Why the shell cannot be taken; empty if it can.
+  std::vector<std::string> steps;  ///< What was changed, in words.
+  std::string failure;             ///< Why the shell cannot be taken; empty if it can.
 };
 
 /// A source edge's curve, drawn out straight beyond its range unless it is a line or a conic.

@@ -17,7 +17,7 @@
 namespace vdb_offset::cad {
 namespace {
 
-double vertex_margin(double distance) { return 4 * std::abs(distance); }
+double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
 
 }  // namespace
 
@@ -52,8 +52,8 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
           face.distance.at = [&request, number, sign = face.sign](double u, double v) {
             return sign * request.distance_at(number, u, v);
           };
-        face.offset =
-            offset_surface(face.surface, face.box, face.distance, vertex_margin(request.distance), tolerances.fit);
+        face.offset = offset_surface(face.surface, face.box, face.distance, sharp_sides(model, static_cast<int>(f)),
+                                     vertex_margin(request.distance), tolerances.fit);
         result.fit_error = std::max(result.fit_error, face.offset.error);
         result.faces.push_back(face.offset.made == FaceMade::Kept     ? CadFace::Kept
                                : face.offset.made == FaceMade::Fitted ? CadFace::Fitted
@@ -63,6 +63,7 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
       const std::size_t gaps_before = result.gaps.size();
       classify_edges(model, tolerances);
       arrange(model, tolerances, result.gaps);
+      result.steps.insert(result.steps.end(), model.steps.begin(), model.steps.end());
       if (result.gaps.size() > gaps_before) continue;
       Built built = build_shell(model, tolerances);
       result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());

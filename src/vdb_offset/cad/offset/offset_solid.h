@@ -25,6 +25,7 @@ struct OffsetCadResult {
   std::vector<CadFace> faces;         ///< How each face of the source was made.
   std::vector<TopoDS_Shape> made_of;  ///< The face of the result for each face of the source; null if none.
   double fit_error = 0;               ///< The worst of the fitted surfaces.
+  std::vector<std::string> steps;     ///< What was changed of the topology, in words.
   std::vector<std::string> gaps;      ///< What is missing or not good, in words.
 };
 

@@ -138,8 +138,27 @@ Knots knots_along(const Handle(Geom_Surface) & surface, bool along_u, double fir
   return offset_knots(degree, knots, multiplicities, first, last);
 }
 
+// Which sides of the box are poles: a single point of the surface.
+Sides poles_of(const Geom_Surface& s, const Box2& box) {
+  const auto is_pole = [&](bool along_v, double at) {
+    const double um = (box.u0 + box.u1) / 2, vm = (box.v0 + box.v1) / 2;
+    const gp_Pnt middle = s.Value(um, vm);
+    const double size = middle.Distance(along_v ? s.Value(at, vm) : s.Value(um, at));
+    gp_Pnt first;
+    for (int i = 0; i <= 4; i++) {
+      const double t = i / 4.0;
+      const gp_Pnt p =
+          along_v ? s.Value(at, box.v0 + (box.v1 - box.v0) * t) : s.Value(box.u0 + (box.u1 - box.u0) * t, at);
+      if (i == 0) first = p;
+      else if (p.Distance(first) > 1e-5 * size) return false;
+    }
+    return true;
+  };
+  return {is_pole(true, box.u0), is_pole(true, box.u1), is_pole(false, box.v0), is_pole(false, box.v1)};
+}
+
 // The box drawn out by the margin where the surface does not close, less where normals turn too far out there.
-Box2 drawn_out(const Geom_Surface& s, const Box2& box, double margin) {
+Box2 drawn_out(const Geom_Surface& s, const Box2& box, const Sides& poles, const Sides& drawn, double margin) {
   Box2 wide = box;
   const double um = (box.u0 + box.u1) / 2, vm = (box.v0 + box.v1) / 2;
   const auto reach = [&](double u, double v, bool along_u) {
@@ -162,13 +181,13 @@ Box2 drawn_out(const Geom_Surface& s, const Box2& box, double margin) {
   s.Bounds(u0, u1, v0, v1);
   if (!s.IsUClosed() || box.u1 - box.u0 < 0.999 * (u1 - u0)) {
     const double a = reach(box.u0, vm, true), b = reach(box.u1, vm, true);
-    wide.u0 -= a * limited(box.u0, vm, -a, 0);
-    wide.u1 += b * limited(box.u1, vm, b, 0);
+    if (drawn.u0) wide.u0 -= a * (poles.u0 ? 1 : limited(box.u0, vm, -a, 0));
+    if (drawn.u1) wide.u1 += b * (poles.u1 ? 1 : limited(box.u1, vm, b, 0));
   }
   if (!s.IsVClosed() || box.v1 - box.v0 < 0.999 * (v1 - v0)) {
     const double a = reach(um, box.v0, false), b = reach(um, box.v1, false);
-    wide.v0 -= a * limited(um, box.v0, 0, -a);
-    wide.v1 += b * limited(um, box.v1, 0, b);
+    if (drawn.v0) wide.v0 -= a * (poles.v0 ? 1 : limited(um, box.v0, 0, -a));
+    if (drawn.v1) wide.v1 += b * (poles.v1 ? 1 : limited(um, box.v1, 0, b));
   }
   return wide;
 }
@@ -199,16 +218,25 @@ Handle(Geom_Surface) surface_of(const TopoDS_Face& face) {
   return s;
 }
 
-OffsetSurface offset_surface(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,
-                             double margin, double tolerance) {
+namespace {
+
+OffsetSurface fitted(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,
+                     const Sides& drawn_sides, double margin, double tolerance) {
   const bool is_constant = !distance.at;
-  if (is_constant) {
-    const OffsetSurface elementary = offset_elementary(surface, box, distance.constant);
-    if (!elementary.surface.IsNull() || elementary.made == FaceMade::Swallowed) return elementary;
-  }
-  const Box2 wide = drawn_out(*surface, box, margin);
+  const Sides poles = poles_of(*surface, box);
+  const Box2 wide = drawn_out(*surface, box, poles, drawn_sides, margin);
+  // Beyond a pole normals turn over: as at a cone's apex, the offset goes on straight from beside it.
+  const auto beside = [](double t, double t0, double t1, bool pole0, bool pole1) {
+    const double step = 1e-4 * (t1 - t0);
+    return std::clamp(t, pole0 ? t0 + step : t - 1, pole1 ? t1 - step : t + 1);
+  };
   const auto map = [&](double u, double v) {
-    return surface->Value(u, v).Translated(unit_normal(*surface, u, v, box) * distance(u, v));
+    const double bu = beside(u, box.u0, box.u1, poles.u0, poles.u1), bv = beside(v, box.v0, box.v1, poles.v0, poles.v1);
+    if (bu == u && bv == v) return surface->Value(u, v).Translated(unit_normal(*surface, u, v, box) * distance(u, v));
+    gp_Pnt p;
+    gp_Vec du, dv;
+    surface->D1(bu, bv, p, du, dv);
+    return p.Translated(du * (u - bu) + dv * (v - bv) + unit_normal(*surface, bu, bv, box) * distance(bu, bv));
   };
   OffsetSurface result;
   result.made = FaceMade::Fitted;
@@ -233,6 +261,23 @@ OffsetSurface offset_surface(const Handle(Geom_Surface) & surface, const Box2& b
   result.surface = fit.surface;
   result.error = fit.error;
   return result;
+}
+
+}  // namespace
+
+OffsetSurface offset_surface(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,
+                             const Sides& drawn_sides, double margin, double tolerance) {
+  if (!distance.at) {
+    const OffsetSurface elementary = offset_elementary(surface, box, distance.constant);
+    if (!elementary.surface.IsNull() || elementary.made == FaceMade::Swallowed) return elementary;
+  }
+  OffsetSurface best;
+  for (double part : {1.0, 0.3, 0.05, 0.0}) {
+    const OffsetSurface fit = fitted(surface, box, distance, drawn_sides, margin * part, tolerance);
+    if (best.surface.IsNull() || fit.error < best.error) best = fit;
+    if (best.error <= tolerance) break;
+  }
+  return best;
 }
 
 }  // namespace vdb_offset::cad

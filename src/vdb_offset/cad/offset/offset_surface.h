@@ -24,6 +24,11 @@ struct FaceDistance {
   double operator()(double u, double v) const { return at ? at(u, v) : constant; }
 };
 
+/// Sides of a box.
+struct Sides {
+  bool u0 = true, u1 = true, v0 = true, v1 = true;
+};
+
 enum class FaceMade { Kept, Fitted, Swallowed };
 
 struct OffsetSurface {
@@ -38,9 +43,9 @@ struct OffsetSurface {
 Handle(Geom_Surface) surface_of(const TopoDS_Face& face);
 
 /// The offset of a face's surface over the same (u, v): planes, cylinders, cones, spheres and tori in closed form,
-/// surfaces of revolution and extrusion by the offset of their generators, others fitted. Reaches `margin` beyond the
-/// face's box on all sides that do not close.
+/// surfaces of revolution and extrusion by the offset of their generators, others fitted. Reaches up to `margin` beyond
+/// the box on the sides that are asked for and do not close: less where the surface cannot be followed so far.
 OffsetSurface offset_surface(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,
-                             double margin, double tolerance);
+                             const Sides& drawn_sides, double margin, double tolerance);
 
 }  // namespace vdb_offset::cad

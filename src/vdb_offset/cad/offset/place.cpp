@@ -64,6 +64,31 @@ void classify_edges(Model& model, const Tolerances& tolerances) {
   }
 }
 
+Sides sharp_sides(const Model& model, int face) {
+  const ModelFace& f = model.faces[face];
+  Sides sides{false, false, false, false};
+  const double near_u = 0.02 * (f.box.u1 - f.box.u0), near_v = 0.02 * (f.box.v1 - f.box.v0);
+  for (int first : f.loops)
+    for (int half = first;;) {
+      const HalfEdge& h = model.halves[half];
+      const ModelEdge& e = model.edges[h.edge];
+      for (int i = 0; i <= 8 && h.twin >= 0; i++) {
+        const HalfEdge& t = model.halves[h.twin];
+        const double at = e.first + (e.last - e.first) * i / 8;
+        const gp_Pnt2d p = h.pcurve->Value(at), q = t.pcurve->Value(at);
+        const gp_Vec n = outside(f, p), m = outside(model.faces[t.face], q);
+        if (n.Magnitude() < 0.5 || m.Magnitude() < 0.5 || n.Angle(m) < 0.01) continue;
+        sides.u0 = sides.u0 || p.X() - f.box.u0 < near_u;
+        sides.u1 = sides.u1 || f.box.u1 - p.X() < near_u;
+        sides.v0 = sides.v0 || p.Y() - f.box.v0 < near_v;
+        sides.v1 = sides.v1 || f.box.v1 - p.Y() < near_v;
+      }
+      half = h.next;
+      if (half == first) break;
+    }
+  return sides;
+}
+
 gp_Pnt moved_start(const Model& model, int half) {
   const HalfEdge& h = model.halves[half];
   const ModelFace& f = model.faces[h.face];
@@ -180,8 +205,11 @@ void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
     v.point = gp_Pnt(sum / static_cast<double>(v.ring.size()));
     v.residual = 0;
     for (int h : v.ring) v.residual = std::max(v.residual, v.point.Distance(moved_start(model, h)));
-    spread_vertex(model, vertex);
-    return;
+    // But at the tip of a cone, where curves meet beyond their ends.
+    if (v.residual <= tolerances.gap || v.ring.size() < 2) {
+      spread_vertex(model, vertex);
+      return;
+    }
   }
   if (v.is_open) spokes.pop_back();
   std::vector<Support> supports = supports_of(model, v.ring, spokes);
@@ -198,7 +226,6 @@ void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
     e.range[h.forward ? 0 : 1] = supports[at++].t;
   }
   spread_vertex(model, vertex);
-  (void)tolerances;
 }
 
 }  // namespace vdb_offset::cad

@@ -17,6 +17,9 @@ struct Tolerances {
 /// Finds which edges are smooth: the offsets of their two faces stay together along the trimming curves.
 void classify_edges(Model& model, const Tolerances& tolerances);
 
+/// The sides of a face's box at which it has a sharp edge: its offset may have to reach farther there.
+Sides sharp_sides(const Model& model, int face);
+
 /// Where a face is over the start of one of its half-edges: the point moved by the face's distance.
 gp_Pnt moved_start(const Model& model, int half);
 

@@ -15,8 +15,6 @@ using Triangulation = std::vector<Triangle>;
 
 // More corners have too many triangulations (429 of nine).
 constexpr int kMostCorners = 9;
-// New edges between faces that turn less than this are none: the faces touch.
-constexpr double kTouching = 0.02;
 
 // All triangulations of the polygon with corners i, i + 1, ..., k.
 std::vector<Triangulation> triangulations(int i, int k) {
@@ -102,7 +100,7 @@ class Splitter {
       for (int a = 0; a < 3; a++) {
         const int i = k[a], j = k[(a + 1) % 3];
         const bool is_side = (i + 1) % n_ == j || (j + 1) % n_ == i;
-        if (!is_side && (face(i) == face(j) || normals_[i].Angle(normals_[j]) < kTouching)) return -1;
+        if (!is_side && face(i) == face(j)) return -1;
       }
       points.push_back(point_of(k));
       if (!points.back().is_good) return -1;
@@ -265,7 +263,9 @@ bool resolve_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   const int n = static_cast<int>(v.ring.size());
   if (v.residual <= tolerances.gap) return true;
   if (n < 4 || n > kMostCorners || v.is_open) return false;
-  return Splitter(model, vertex, tolerances).split();
+  if (!Splitter(model, vertex, tolerances).split()) return false;
+  model.steps.push_back("vertex " + std::to_string(vertex + 1) + " of " + std::to_string(n) + " faces is split");
+  return true;
 }
 
 }  // namespace vdb_offset::cad
