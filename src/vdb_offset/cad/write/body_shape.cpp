@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/write/body_shape.h"
+
+#include <BRepLib.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <numeric>
+
+namespace vdb_offset::cad {
+namespace {
+
+/// Which faces are of one shell: those that have edges in common.
+std::vector<std::size_t> shells_of(const Body& body) {
+  std::vector<std::size_t> joined(body.faces.size());
+  std::iota(joined.begin(), joined.end(), std::size_t{0});
+  const auto root = [&](std::size_t f) {
+    while (joined[f] != f) f = joined[f] = joined[joined[f]];
+    return f;
+  };
+  TopTools_IndexedMapOfShape edges;
+  std::vector<std::size_t> first_face;  // of each edge
+  for (std::size_t f = 0; f < body.faces.size(); ++f) {
+    TopTools_IndexedMapOfShape own;
+    TopExp::MapShapes(body.faces[f].face, TopAbs_EDGE, own);
+    for (int e = 1; e <= own.Extent(); ++e) {
+      const auto number = static_cast<std::size_t>(edges.Add(own(e)));
+      if (number > first_face.size()) first_face.push_back(f);
+      else joined[root(f)] = root(first_face[number - 1]);
+    }
+  }
+  for (std::size_t f = 0; f < joined.size(); ++f) joined[f] = root(f);
+  return joined;
+}
+
+}  // namespace
+
+BodyShape shape_of(const Body& body) {
+  const std::vector<std::size_t> shell_of = shells_of(body);
+  BRep_Builder builder;
+  BodyShape result;
+  std::vector<TopoDS_Shell> shells;
+  for (std::size_t root = 0; root < shell_of.size(); ++root) {
+    if (shell_of[root] != root) continue;
+    TopoDS_Shell shell;
+    builder.MakeShell(shell);
+    for (std::size_t f = 0; f < shell_of.size(); ++f) {
+      if (shell_of[f] != root) continue;
+      builder.Add(shell, body.faces[f].face);
+      result.face_numbers.push_back(f);
+    }
+    shell.Closed(BRep_Tool::IsClosed(shell));
+    shells.push_back(shell);
+  }
+  if (body.is_solid) {
+    TopoDS_Solid solid;
+    builder.MakeSolid(solid);
+    for (const TopoDS_Shell& shell : shells) builder.Add(solid, shell);
+    if (shells.size() == 1) BRepLib::OrientClosedSolid(solid);
+    result.shape = solid;
+  } else if (shells.size() == 1) {
+    result.shape = shells.front();
+  } else {
+    TopoDS_Compound all;
+    builder.MakeCompound(all);
+    for (const TopoDS_Shell& shell : shells) builder.Add(all, shell);
+    result.shape = all;
+  }
+  return result;
+}
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/io/documents/cad/cad_mesh.h"
+
+namespace vdb_offset::cad {
+
+/// What is written of a model, and what its faces are told to be.
+struct WrittenModel {
+  std::vector<TopoDS_Shape> shapes;
+  std::vector<std::string> names;  ///< Of each shape; may be empty.
+  std::vector<std::pair<TopoDS_Shape, io::CadFaceFacts>> faces;
+  double unit_micrometres = 1000;
+};
+
+/// Writes a STEP file (AP214) with the names of shapes and faces, colours and layers, in the unit of the coordinates; or
+/// a BREP file, which has a place for none of these. `format` is step or brep. \throw InvalidCad if it cannot
+void write_model(const WrittenModel& model, const std::string& format, const std::string& path);
+
+}  // namespace vdb_offset::cad
