@@ -25,7 +25,7 @@ add_library(vdb_offset_cad_objects OBJECT)
 set(cad_sources read/document read/read_model surface/face_surface surface/offset_points tessellate/append_body
   tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
-  worker/guard worker/requests)
+  worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)
 target_sources(vdb_offset_cad_objects PRIVATE ${cad_sources})

@@ -18,6 +18,7 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
+#include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
@@ -149,8 +150,9 @@ int main(int count, char** words) {
   write_brep(BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape()).Shape(), "spline.brep");
   write_brep(BRepPrimAPI_MakeCone(6, 0, 8).Shape(), "cone.brep");
   write_brep(BRepPrimAPI_MakeTorus(10, 3).Shape(), "torus.brep");
-  write_step(BRepPrimAPI_MakeBox(2 * 25.4, 3 * 25.4, 4 * 25.4).Shape(), "inch.stp", "INCH");
-  write_step(BRepPrimAPI_MakeBox(2000, 3000, 4000).Shape(), "metre.step", "M");
+  // Coordinates are written as they are, whatever the unit.
+  write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "inch.stp", "INCH");
+  write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "metre.step", "M");
   write_step(touching(), "touching.step", "MM");
   write_step(curves(), "curves.step", "MM");
   write_brep(open_box(), "open.brep");

@@ -181,6 +181,7 @@ class Walk {
 }  // namespace
 
 opencascade::handle<TDocStd_Document> make_document(double unit_millimetres) {
+  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False);  // what has no name in the file has none
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
   XCAFDoc_DocumentTool::SetLengthUnit(document, unit_millimetres, UnitsMethods_LengthUnit_Millimeter);

@@ -117,19 +117,19 @@ CadModel read_step(const std::string& path) {
 CadModel read_iges(const std::string& path) {
   IGESCAFControl_Reader reader;
   UnitsMethods::SetCasCadeLengthUnit(1.0);
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
-    throw InvalidCad("expected an IGES file, got one that OpenCASCADE cannot read");
+  const bool is_read = reader.ReadFile(path.c_str()) == IFSelect_RetDone;
   const auto entities = opencascade::handle<IGESData_IGESModel>::DownCast(reader.WS()->Model());
+  if (!is_read || entities.IsNull() || entities->NbEntities() == 0)
+    throw InvalidCad("expected an IGES file, got one that OpenCASCADE cannot read");
   CadModel model;
   double unit = 1;
-  if (!entities.IsNull()) {
-    const IGESData_GlobalSection& about = entities->GlobalSection();
-    if (about.UnitFlag() > 0 && about.UnitFlag() != 3 && about.UnitValue() > 0) {
-      unit = about.UnitValue();
-      set_unit(model, unit, true);
-    }
-    model.tolerance = std::max(0.0, about.Resolution());
+  const IGESData_GlobalSection& about = entities->GlobalSection();
+  constexpr int kNamedUnit = 3;  // a unit by a name of its own, of which the length is not known
+  if (about.UnitFlag() > 0 && about.UnitFlag() != kNamedUnit && about.UnitValue() > 0) {
+    unit = about.UnitValue();
+    set_unit(model, unit, true);
   }
+  model.tolerance = std::max(0.0, about.Resolution());
   auto document = make_document(unit);
   if (!reader.Transfer(document))
     throw InvalidCad("expected an IGES file with shapes, got one of which OpenCASCADE makes none");

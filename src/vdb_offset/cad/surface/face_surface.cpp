@@ -16,6 +16,8 @@ namespace {
 
 // A direction whose sine against another is below this has no side that could be told in double numbers.
 constexpr double kNoDirection = 1e-10;
+// Where a face is so narrow, as a share of what it is along, its directions are those of rounded numbers.
+constexpr double kNoWidth = 1e-9;
 // Steps of a search that starts beside its end: they square the error.
 constexpr int kMostSteps = 20;
 // How far a search may leave the range of a face's parameters, as a share of it: points of mitres lie outside.
@@ -117,14 +119,12 @@ bool FaceSurface::is_beyond_apex(double v) const {
   return (std::abs(at) > kNoDirection * size_ ? at : ring((v_[0] + v_[1]) / 2)) < 0;
 }
 
-bool FaceSurface::is_pole(double u, double v) const {
-  if (type_ == GeomAbs_Plane || type_ == GeomAbs_Cylinder) return false;
-  if (is_analytic_) return std::abs(ring(v)) <= kNoDirection * size_;
+bool FaceSurface::is_pole_of_u(double u, double v) const {
+  if (is_analytic_) return true;
   gp_Pnt at;
   gp_Vec du, dv;
   surface_.D1(u, v, at, du, dv);
-  const double width = du.Magnitude() * (u_[1] - u_[0]), height = dv.Magnitude() * (v_[1] - v_[0]);
-  return std::min(width, height) <= 1e-9 * std::max(width, height);
+  return du.Magnitude() * (u_[1] - u_[0]) <= dv.Magnitude() * (v_[1] - v_[0]);
 }
 
 gp_Pnt FaceSurface::point(double u, double v) const { return surface_.Value(u, v); }
@@ -145,8 +145,10 @@ std::optional<gp_Vec> FaceSurface::normal(double u, double v) const {
   gp_Vec du, dv;
   surface_.D1(u, v, at, du, dv);
   const gp_Vec across = du.Crossed(dv);
-  const double lengths = du.Magnitude() * dv.Magnitude(), area = across.Magnitude();
-  if (!(area > kNoDirection * lengths) || !(area > 0) || is_pole(u, v)) return std::nullopt;
+  const double width = du.Magnitude() * (u_[1] - u_[0]), height = dv.Magnitude() * (v_[1] - v_[0]);
+  const double area = across.Magnitude();
+  const bool is_pole = std::min(width, height) <= kNoWidth * std::max(width, height);
+  if (!(area > kNoDirection * du.Magnitude() * dv.Magnitude()) || !(area > 0) || is_pole) return std::nullopt;
   return across / area;
 }
 

@@ -32,10 +32,11 @@ class FaceSurface {
   double last_v() const { return v_[1]; }
 
   gp_Pnt point(double u, double v) const;
-  /// du x dv as a unit vector, and at the apex of a cone that of the face's side; nothing where there is none.
+  /// du x dv as a unit vector, at the apex of a cone what it tends to along u; nothing where there is none, as at other
+  /// poles that are not of a formula.
   std::optional<gp_Vec> normal(double u, double v) const;
-  /// Whether the place is a pole, where each u is the same point.
-  bool is_pole(double u, double v) const;
+  /// Whether at a pole each u is the same point; else each v is.
+  bool is_pole_of_u(double u, double v) const;
   /// The closest point near (u, v), which is kept as far as the place leaves it open, as u at a pole.
   Foot foot(const gp_Pnt& point, double u, double v) const;
   /// How far a point is from the surface near (u, v), for points close to it: to first order for surfaces that are not

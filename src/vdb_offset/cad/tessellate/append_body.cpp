@@ -13,7 +13,7 @@ namespace {
 // distance.
 constexpr double kSharpAngle = std::numbers::pi / 180;
 // How far from a pole, as a share of the way to the triangle's middle, its normal there is taken.
-constexpr double kBesidePole = 1e-3;
+constexpr double kBesidePole = 1e-5;
 
 /// What an edge of triangles has on its sides, along an edge of the model.
 struct Sides {
@@ -98,14 +98,8 @@ std::vector<std::uint32_t> append_vertices(const BodyMesh& mesh, io::CadMesh& re
 
 gp_Vec corner_normal(const BodyMesh& mesh, const FaceMesh& face, const Triangle& triangle, std::size_t corner) {
   const Node& node = face.nodes[triangle[corner]];
-  double u = node.u;
-  const double v = node.v;
-  if (mesh.is_on_edge[node.vertex] && face.surface.is_pole(u, v)) {
-    const Node &next = face.nodes[triangle[(corner + 1) % 3]], &last = face.nodes[triangle[(corner + 2) % 3]];
-    u = (next.u + last.u) / 2;  // a pole has each u; the one that is told may be any
-  }
-  if (const auto normal = face.surface.normal(u, v)) return *normal * face.side;
-  const gp_Vec beside = normal_beside(face, triangle, u, v);
+  if (const auto normal = face.surface.normal(node.u, node.v)) return *normal * face.side;
+  const gp_Vec beside = normal_beside(face, triangle, node.u, node.v);
   return beside.SquareMagnitude() > 0 ? beside : flat_normal(mesh, face, triangle);
 }
 

@@ -128,8 +128,10 @@ class Divider {
     const auto [entry, is_new] = own.try_emplace(BodyMesh::key(a, b), static_cast<std::uint32_t>(face.nodes.size()));
     if (!is_new) return entry->second;
     const double u = (face.nodes[a].u + face.nodes[b].u) / 2, v = (face.nodes[a].v + face.nodes[b].v) / 2;
+    const auto before = mesh_.positions.size();
     Node node{middle(face, a, b, u, v), u, v};
-    if (mesh_.is_on_edge[node.vertex]) {
+    // Made of other parameters: on the edge's curve, or for the other side of an edge that goes to a pole.
+    if (mesh_.is_on_edge[node.vertex] || node.vertex < before) {
       const Foot foot = face.surface.foot(mesh_.positions[node.vertex], u, v);
       node.u = foot.u, node.v = foot.v;
     }

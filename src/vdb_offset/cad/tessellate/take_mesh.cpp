@@ -131,19 +131,37 @@ std::vector<gp_Pnt> nodes_of(const Poly_Triangulation& mesh, const TopLoc_Locati
 
 void join_edges(const TopoDS_Face& face, const opencascade::handle<Poly_Triangulation>& mesh,
                 const TopLoc_Location& place, const std::vector<gp_Pnt>& nodes, Joiner& joiner,
-                std::vector<std::uint32_t>& vertices) {
+                std::vector<std::uint32_t>& vertices, std::vector<std::uint8_t>& is_pole) {
   for (TopExp_Explorer found(face, TopAbs_EDGE); found.More(); found.Next()) {
     const TopoDS_Edge edge = TopoDS::Edge(found.Current());
     const auto polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, place);
     if (polygon.IsNull()) continue;
     const std::vector<std::uint32_t> along = joiner.along(edge, *polygon, nodes);
     for (int k = 1; k <= polygon->NbNodes(); ++k) {
-      std::uint32_t& vertex = vertices[static_cast<std::size_t>(polygon->Node(k)) - 1];
+      const auto node = static_cast<std::size_t>(polygon->Node(k)) - 1;
+      if (BRep_Tool::Degenerated(edge)) is_pole[node] = 1;
+      std::uint32_t& vertex = vertices[node];
       const std::uint32_t own = along[static_cast<std::size_t>(k) - 1];
       if (vertex == kNone) vertex = own;
       else joiner.join(vertex, own);
     }
   }
+}
+
+/// Gives each triangle at a pole a corner of its own there, with the parameter in the middle of the other two's: the one
+/// that it shared with others may be of any place along the pole.
+void part_poles(FaceMesh& face, const std::vector<std::uint8_t>& is_pole) {
+  for (Triangle& t : face.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t own = t[k], next = t[(k + 1) % 3], last = t[(k + 2) % 3];
+      if (own >= is_pole.size() || !is_pole[own]) continue;
+      if (face.nodes[next].vertex == face.nodes[own].vertex || face.nodes[last].vertex == face.nodes[own].vertex) continue;
+      Node node = face.nodes[own];
+      if (face.surface.is_pole_of_u(node.u, node.v)) node.u = (face.nodes[next].u + face.nodes[last].u) / 2;
+      else node.v = (face.nodes[next].v + face.nodes[last].v) / 2;
+      t[k] = static_cast<std::uint32_t>(face.nodes.size());
+      face.nodes.push_back(node);
+    }
 }
 
 FaceMesh take_face(const TopoDS_Face& face, Joiner& joiner) {
@@ -156,7 +174,8 @@ FaceMesh take_face(const TopoDS_Face& face, Joiner& joiner) {
   result.side = is_turned ? -1 : 1;
   const std::vector<gp_Pnt> nodes = nodes_of(*mesh, place);
   std::vector<std::uint32_t> vertices(nodes.size(), kNone);
-  join_edges(face, mesh, place, nodes, joiner, vertices);
+  std::vector<std::uint8_t> is_pole(nodes.size(), 0);
+  join_edges(face, mesh, place, nodes, joiner, vertices, is_pole);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     Node node{vertices[k], 0, 0};
     if (mesh->HasUVNodes()) {
@@ -173,6 +192,7 @@ FaceMesh take_face(const TopoDS_Face& face, Joiner& joiner) {
     result.triangles.push_back(
         {static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1), static_cast<std::uint32_t>(c - 1)});
   }
+  part_poles(result, is_pole);
   return result;
 }
 

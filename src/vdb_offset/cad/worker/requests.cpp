@@ -1,27 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/worker/requests.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <new>
 
 #include "vdb_offset/cad/tessellate/tessellate.h"
+#include "vdb_offset/cad/worker/memory_limit.h"
 
 namespace vdb_offset::cad {
 namespace {
 
-/// Lets this process have so many more bytes of addresses.
-void limit_memory(std::uint64_t more) {
-#ifndef __SANITIZE_ADDRESS__  // which has terabytes of addresses
-  std::uint64_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  const rlim_t most = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + more;
-  if (const rlimit limit{most, most}; more > 0 && pages > 0) ::setrlimit(RLIMIT_AS, &limit);
-#else
-  (void)more;
-#endif
+/// Whether each face has triangles.
+bool is_whole(const io::CadMesh& mesh) {
+  std::vector<std::uint8_t> has_triangles(mesh.faces.size(), 0);
+  for (const std::uint32_t face : mesh.face_of) has_triangles[face] = 1;
+  return std::find(has_triangles.begin(), has_triangles.end(), 0) == has_triangles.end();
+}
+
+/// \throw std::bad_alloc if faces have no triangles as there was no memory for them
+io::CadMesh tessellate_within_memory(CadModel& model, const io::CadFineness& fineness) {
+  try {
+    io::CadMesh mesh = tessellate(model, fineness);
+    if (is_whole(mesh) || !is_memory_short()) return mesh;
+  } catch (const InvalidCad&) {
+    if (!is_memory_short()) throw;
+  }
+  throw std::bad_alloc();
 }
 
 }  // namespace
@@ -29,7 +34,7 @@ void limit_memory(std::uint64_t more) {
 std::string Requests::mesh(const io::ReadCad& read) {
   limit_memory(read.most_memory);
   model_ = read_model(read.path, read.format);
-  const io::CadMesh mesh = tessellate(*model_, read.fineness);
+  const io::CadMesh mesh = tessellate_within_memory(*model_, read.fineness);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
     for (const ModelFace& face : body.faces) surfaces_.push_back({FaceSurface(face.face), 1});
