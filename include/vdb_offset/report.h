@@ -32,6 +32,7 @@ struct RunFacts {
   std::string distance_text;  ///< The distance as the user gave it.
   double total_seconds = 0;
   std::optional<ShellFacts> shell;             ///< If a shell was written.
+  std::optional<CadFileFacts> cad;             ///< If a CAD model was written.
   std::optional<IsoStatistics> inner_surface;  ///< If a hollow solid was written that has two captured skins.
   std::optional<LayerReport> layers;           ///< If layers were written.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdb_offset/api.h"
@@ -106,6 +107,24 @@ struct MiterFacts {
 struct ExactFacts {
   std::size_t vertices = 0;
   double mean = 0, worst = 0;  ///< World units.
+};
+
+/// What of a CAD model's faces became faces of a file.
+struct CadFileFacts {
+  enum class Made {
+    Solid,   ///< As many solids as the source has: valid, closed and at the distance as far as 10,000 samples tell.
+    Shells,  ///< The same of a source that is no solid.
+    Faces,   ///< Faces that are good, and not all of the source's offset.
+    Facets,  ///< Solids of triangles.
+  };
+  Made made = Made::Faces;
+  /// Faces of the source: that stay what they are (plane, cylinder, cone, sphere, torus), that are fitted, that the
+  /// distance swallows, and that could not be made.
+  std::size_t kept = 0, fitted = 0, swallowed = 0, missing = 0;
+  double fit_error = 0;           ///< Of fitted faces, the most, world units.
+  double least = 0, most = 0;     ///< Distances of its points from the source, as shares; 0: not sampled.
+  double volume = 0;              ///< Of solids; 0: not known.
+  std::vector<std::string> gaps;  ///< What is not as it should be, in words.
 };
 
 /// What is proven of the faces of an offset, at every point of them. Shares are of the area that the faces which move

@@ -13,7 +13,7 @@ vdb_offset_folder(io/documents/cad cad_worker message_channel worker_process)
 find_path(OPENCASCADE_HEADERS Standard_Version.hxx PATH_SUFFIXES opencascade occt REQUIRED)
 set(OPENCASCADE_LIBRARIES "")
 foreach(name IN ITEMS TKXDESTEP TKXDEIGES TKXCAF TKLCAF TKCDF TKCAF TKSTEP TKSTEPBase TKSTEPAttr TKSTEP209 TKIGES TKXSBase TKMesh
-        TKShHealing TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d TKG2d TKMath TKernel)
+        TKOffset TKBool TKBO TKPrim TKShHealing TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d TKG2d TKMath TKernel)
   find_library(OPENCASCADE_${name} ${name} REQUIRED)
   mark_as_advanced(OPENCASCADE_${name})
   list(APPEND OPENCASCADE_LIBRARIES ${OPENCASCADE_${name}})
@@ -25,6 +25,9 @@ add_library(vdb_offset_cad_objects OBJECT)
 set(cad_sources read/document read/read_model surface/face_surface surface/offset_points tessellate/append_body
   tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
+  offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/judge offset/model offset/offset_solid
+  offset/offset_surface offset/place offset/resolve offset/soup offset/surface_fit
+  write/body_shape write/faceted write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)

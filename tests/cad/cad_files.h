@@ -18,11 +18,12 @@ namespace vdb_offset::test {
 /// The files that make_models makes, for as long as this process lives.
 class CadFiles {
  public:
-  CadFiles()
-      : folder_(std::filesystem::temp_directory_path() / ("vdb_offset_cad_" + std::to_string(::getpid()))) {
+  CadFiles() : folder_(std::filesystem::temp_directory_path() / ("vdb_offset_cad_" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
-    is_made_ = std::system((std::string(CAD_MODELS) + " '" + folder_.string() + "' >'" + folder_.string() +
-                            "/log' 2>&1").c_str()) == 0;
+    is_made_ =
+        std::system(
+            (std::string(CAD_MODELS) + " '" + folder_.string() + "' >'" + folder_.string() + "/log' 2>&1").c_str()) ==
+        0;
   }
   ~CadFiles() { std::filesystem::remove_all(folder_); }
 

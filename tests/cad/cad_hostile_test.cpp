@@ -94,7 +94,8 @@ void flip_in(const char* name, int tries) {
   for (int k = 0; k < tries; ++k) {
     std::string broken = bytes;
     for (int flips = 0; flips < 4; ++flips) broken[random() % broken.size()] = static_cast<char>(random() % 256);
-    if (const std::string message = reads(broken, ending, 5); !message.empty()) check_one_line(message, "part" + ending);
+    if (const std::string message = reads(broken, ending, 5); !message.empty())
+      check_one_line(message, "part" + ending);
   }
 }
 
@@ -122,16 +123,17 @@ TEST_CASE("cad: files cut at 200 places, and with bytes flipped", "[cad][long]")
 
 TEST_CASE("cad: a deflection that no memory would hold the triangles of is refused", "[cad]") {
   REQUIRE(cad_files().is_made());
-  CHECK_THROWS_WITH(open_cad("sphere.brep", 1e-9), Contains("expected a deflection of at least") &&
-                                                       Contains("got 1e-09 (--deflection)"));
+  CHECK_THROWS_WITH(open_cad("sphere.brep", 1e-9),
+                    Contains("expected a deflection of at least") && Contains("got 1e-09 (--deflection)"));
 }
 
 TEST_CASE("cad: a file that takes too long or too much is given up", "[cad]") {
   REQUIRE(cad_files().is_made());
   const std::string bytes = cad_files().bytes("sphere.brep");
   const auto start = std::chrono::steady_clock::now();
-  CHECK_THROWS_WITH(io::CadWorker("ball.brep", bytes, "brep", {4e-6, 0, 0.5}, 0.25, 0),
-                    "ball.brep: expected a CAD file, got one that takes OpenCASCADE longer than 0.25 s (--cad-seconds)");
+  CHECK_THROWS_WITH(
+      io::CadWorker("ball.brep", bytes, "brep", {4e-6, 0, 0.5}, 0.25, 0),
+      "ball.brep: expected a CAD file, got one that takes OpenCASCADE longer than 0.25 s (--cad-seconds)");
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
 #ifndef __SANITIZE_ADDRESS__  // where memory has no limit
   CHECK_THROWS_AS(io::CadWorker("ball.brep", bytes, "brep", {1e-4, 0, 0.5}, 60, 1 << 20), OutOfBudget);
@@ -151,8 +153,9 @@ TEST_CASE("cad: a worker that is killed is told of, whatever becomes of children
       const auto reader = child_of(*guard);
       REQUIRE(reader);
       ::kill(*reader, SIGSEGV);
-      CHECK_THROWS_WITH(worker.distance_errors({}),
-                        "cone.brep: expected a CAD file that OpenCASCADE can read, got one that ends its reader by signal 11");
+      CHECK_THROWS_WITH(
+          worker.distance_errors({}),
+          "cone.brep: expected a CAD file that OpenCASCADE can read, got one that ends its reader by signal 11");
       CHECK_THROWS_WITH(worker.distance_errors({}), Contains("expected a CAD file that is still being read"));
     }
     {
@@ -184,12 +187,14 @@ TEST_CASE("cad: a worker that is missing, or another, is told of", "[cad]") {
   CHECK_THAT(message(folder_with("silent", "#!/bin/sh\n")), Contains("got: one that does not start"));
   // The version is the first message: its start, its kind, its length, each of eight bytes.
   const std::string zeros = "\\000\\000\\000\\000\\000\\000\\000";
-  CHECK_THAT(message(folder_with("older", "#!/bin/sh\nprintf 'vdbo-cad\\001" + zeros + "\\005" + zeros + "0.0.1' >&3\n")),
-             Contains("got: version 0.0.1 for a program of version " VDB_OFFSET_VERSION));
+  CHECK_THAT(
+      message(folder_with("older", "#!/bin/sh\nprintf 'vdbo-cad\\001" + zeros + "\\005" + zeros + "0.0.1' >&3\n")),
+      Contains("got: version 0.0.1 for a program of version " VDB_OFFSET_VERSION));
 }
 
 TEST_CASE("cad: messages that are cut off or lead astray are refused", "[cad]") {
   io::CadMesh mesh;
+  mesh.deflection = 0.1;
   mesh.positions = {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
   mesh.face_of = {0};

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the CAD files that the tests read, by OpenCASCADE: make_models FOLDER. A program of its own, so that the tests are
-// not linked to OpenCASCADE, as the library is not.
+// Makes the CAD files that the tests read, by OpenCASCADE: make_models FOLDER. A program of its own, so that the tests
+// are not linked to OpenCASCADE, as the library is not.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
-#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <IGESControl_Controller.hxx>

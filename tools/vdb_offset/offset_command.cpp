@@ -80,6 +80,18 @@ bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
   return any;
 }
 
+/// Names the CAD models of which not all could be made. Returns false if there are none.
+bool tell_cad_gaps(const Job& job, std::span<const Products> made) {
+  bool any = false;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (!made[i].cad || made[i].cad->made != CadFileFacts::Made::Faces) continue;
+    any = true;
+    tell(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)", job.outputs[i].mesh,
+                     fmt::join(made[i].cad->gaps, "; ")));
+  }
+  return any;
+}
+
 /// Returns kProcessing if a result is not valid, or if what a scene expects or --strict asks for is not met.
 ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std::optional<ShellFacts>& shell) {
   std::vector<std::string> failed;
@@ -106,18 +118,19 @@ ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const Refine
                 ProgressBar& bar) {
   const Request& request = job.request;
   const OffsetResult* const inner = request.inner ? &results.back() : nullptr;
-  std::vector<std::optional<ShellFacts>> shells;
+  std::vector<Products> made;
   OutputFiles outputs(request.sync);
   if (refined) write_refinement(request, *refined);
   for (std::size_t i = 0; i < job.outputs.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
-    shells.push_back(write_outputs(job, {job.outputs[i], results[i], inner}, timing.start));
+    made.push_back(write_outputs(job, {job.outputs[i], results[i], inner}, timing.start));
   }
   outputs.commit(ignore_interrupts);
   bar.clear();
   for (std::size_t i = 0; i < job.outputs.size() && !request.quiet; ++i)
-    print_summary(job, {job.outputs[i], results[i], inner}, shells[i], seconds_since(timing.start));
-  return judge(job, results, shells.back());
+    print_summary(job, {job.outputs[i], results[i], inner}, made[i], seconds_since(timing.start));
+  const ExitCode judged = judge(job, results, made.back().shell);
+  return tell_cad_gaps(job, made) ? kProcessing : judged;
 }
 
 /// Gives each vertex of a file what the one has that it is a copy of: in STL facets have vertices of their own.

@@ -9,6 +9,7 @@
 #include "messages.h"
 #include "page/run_pages.h"
 #include "vdb_offset/distance_field.h"
+#include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/refined_file.h"
 #include "vdb_offset/io/shell_file.h"
@@ -115,12 +116,12 @@ RunFacts facts_of(const Job& job, const Destination& to, Clock::time_point start
 }
 
 /// The report, and the page that has it in it.
-void write_report_and_page(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                           Clock::time_point start) {
+void write_report_and_page(const Job& job, const Outcome& outcome, const Products& made, Clock::time_point start) {
   const Destination& to = outcome.to;
   if (to.report.empty() && to.html.empty()) return;
   RunFacts facts = facts_of(job, to, start);
-  facts.shell = shell;
+  facts.shell = made.shell;
+  facts.cad = made.cad;
   const std::string report = report_json(outcome.result, facts);
   if (!to.report.empty()) write_file(to.report, report);
   if (!to.html.empty()) write_page(job, outcome, report);
@@ -226,7 +227,7 @@ void write_iso_report(const Job& job, const Destination& to, const IsoResult& re
   write_file(to.report, report_json(result.statistics, facts));
 }
 
-std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start) {
+Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start) {
   const Request& request = job.request;
   const Destination& to = outcome.to;
   const OffsetResult& result = outcome.result;
@@ -238,11 +239,11 @@ std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, 
   const PolygonView mesh = job.source.view();
   const auto writing = Clock::now();
   std::optional<Shell> shell;
-  std::optional<ShellFacts> facts;
+  Products made;
   if (job.shell) {
     shell = shell_of(mesh, outcome.result, job.options, outcome.inner);
     tell_states(*shell, outcome.result);
-    facts = shell->facts;
+    made.shell = shell->facts;
   }
   const io::VertexStates states{result.states, result.achieved, result.distances};
   if (!to.states.empty()) {
@@ -252,11 +253,15 @@ std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, 
   }
   if (io::is_lines_file(to.paths)) io::write_path_lines(to.paths, result.paths, states);
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
-  const io::WriteResult written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
+  io::WriteResult written;
+  if (io::is_cad_output(to.mesh))
+    made.cad = io::write_cad(to.mesh, *job.source.file, result.distances, result.positions,
+                             {request.fit_tolerance, request.faceted});
+  else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  write_report_and_page(job, outcome, facts, start);
+  write_report_and_page(job, outcome, made, start);
   tell_losses(request, to.mesh, written);
-  return facts;
+  return made;
 }
 
 }  // namespace vdb_offset::tool

@@ -31,6 +31,12 @@ std::size_t ending_of(const std::string& name);
 /// the number is put behind the name, if there are several.
 std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances);
 
+/// What was made besides a mesh.
+struct Products {
+  std::optional<ShellFacts> shell;
+  std::optional<CadFileFacts> cad;
+};
+
 /// What is written for one distance.
 struct Outcome {
   const Destination& to;
@@ -57,6 +63,6 @@ void write_iso_report(const Job& job, const Destination& to, const IsoResult& re
 
 /// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
 /// held before. Returns the facts of a shell, if it is one.
-std::optional<ShellFacts> write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start);
+Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start);
 
 }  // namespace vdb_offset::tool

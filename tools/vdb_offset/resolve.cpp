@@ -13,6 +13,7 @@
 #include "vdb_offset/curves.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/mesh_facts.h"
@@ -210,6 +211,7 @@ Precision precision_of(const Job& job) {
   const bool cells =
       request.layers && (io::volume_format_of(request.output) || io::structured_format_of(request.output));
   if (cells || !(job.curves() || job.source.file)) return {};
+  if (io::is_cad_output(request.output)) return {};
   const std::string path = request.layers ? name_of_layer(request.output, 1, job.distances.size()) : request.output;
   const io::WriteOptions writing = write_options(request, path);
   if (job.curves()) return io::precision_of_curves(writing);
@@ -228,6 +230,9 @@ Job resolve_options(const Request& request, const Source& source) {
           .asked = request.distances};
   if (source.scene) settle_scene(job);
   // With a tolerance faces are split, and fitting goes by rounds of distances: both by the triangles alone.
+  if (io::is_cad_output(request.output) && !(source.file && io::is_cad(source.file->format)))
+    throw InvalidInput(request.output + ": expected an input that is a CAD model, for an output that is one, got " +
+                       request.input);
   if (source.file && !request.tolerance && request.fit.empty()) job.options.exact = source.file->exact.get();
   if (source.file && source.file->has_touching_objects && request.weld_text == "auto") job.options.weld.enabled = false;
   if (request.solver) job.options.solver = *request.solver;

@@ -251,6 +251,18 @@ void print_exactness(std::FILE* out, const ExactFacts& exact) {
       exact.vertices, exact.mean, exact.worst);
 }
 
+void print_cad(std::FILE* out, const std::string& path, const CadFileFacts& cad) {
+  constexpr const char* kMade[] = {"a valid solid", "valid shells", "faces alone", "a solid of triangles"};
+  fmt::print(out, "{}: {}: {} faces kept, {} fitted", path, kMade[static_cast<int>(cad.made)], cad.kept, cad.fitted);
+  if (cad.fitted > 0) fmt::print(out, " to {:.2g}", cad.fit_error);
+  if (cad.swallowed > 0) fmt::print(out, ", {} swallowed", cad.swallowed);
+  if (cad.missing > 0) fmt::print(out, ", {} missing", cad.missing);
+  if (cad.least > 0)
+    fmt::print(out, "; read again, 10000 points at {:.6g} to {:.6g} of the distance", cad.least, cad.most);
+  if (cad.volume > 0) fmt::print(out, ", volume {:.6g}", cad.volume);
+  fmt::print(out, "\n");
+}
+
 void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {
   fmt::print(out, "{}: shell {}{}, {}, volume {:.6g}, rim of {} quads and {} triangles", path,
              shell.has_thickness ? "" : "without any thickness, ", shell.closed ? "closed" : "not closed",
@@ -319,8 +331,7 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
   if (!job.curves()) print_orientation(out, statistics.facts, job.options.orient);
 }
 
-void print_summary(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                   double total_seconds) {
+void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds) {
   const Printout out(output_is_taken(job.request));
   const OffsetResult& result = outcome.result;
   const AchievedSummary achieved = summarise(result);
@@ -339,7 +350,8 @@ void print_summary(const Job& job, const Outcome& outcome, const std::optional<S
     print_certified(out, *result.statistics.certified, faces_in(result.statistics.facts));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
   if (result.statistics.exact) print_exactness(out, *result.statistics.exact);
-  if (shell) print_shell(out, outcome.to.mesh, *shell);
+  if (made.shell) print_shell(out, outcome.to.mesh, *made.shell);
+  if (made.cad) print_cad(out, outcome.to.mesh, *made.cad);
   print_disagreeing(out, job, result.statistics);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
   if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);

@@ -18,8 +18,7 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
 
 /// What is printed of one output; with --verbose all that is known of the mesh and the grid. Goes to standard output
 /// unless the mesh does.
-void print_summary(const Job& job, const Outcome& outcome, const std::optional<ShellFacts>& shell,
-                   double total_seconds);
+void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds);
 
 /// How far faces are off their distance, as a part of a line.
 void print_faces(std::FILE* out, const FaceError& faces, bool curves);

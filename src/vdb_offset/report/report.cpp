@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/report/product_reports.h"
 #include "vdb_offset/version.h"
 
 namespace vdb_offset {
@@ -168,23 +169,6 @@ Json miters_json(const MiterFacts& miters) {
           {"unproven", miters.unproven},     {"taken_back", miters.taken_back}, {"worst_excess", miters.excess}};
 }
 
-Json shell_json(const ShellFacts& shell) {
-  return {{"closed", shell.closed},
-          {"oriented", shell.oriented},
-          {"volume", shell.volume},
-          {"rim_quads", shell.rim_quads},
-          {"rim_triangles", shell.rim_triangles},
-          {"border_edges_left", shell.border_edges_left},
-          {"non_manifold_edges", shell.non_manifold_edges},
-          {"pinched_vertices", shell.pinched_vertices},
-          {"has_thickness", shell.has_thickness},
-          {"junction_vertices", shell.junction_vertices},
-          {"short_junctions", shell.short_junctions},
-          {"source_crossings", shell.source_crossings},
-          {"crossings_near_source", shell.crossings_near_source},
-          {"crossings", shell.crossings}};
-}
-
 Json spread_json(const Spread& spread) {
   return {{"least", spread.least},
           {"quantile_01", spread.quantile_01},
@@ -341,6 +325,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
   if (statistics.obstacles) report["obstacles"] = obstacles_json(*statistics.obstacles);
   if (statistics.fit) report["fit"] = fit_json(*statistics.fit);
   if (run.shell) report["shell"] = shell_json(*run.shell);
+  if (run.cad) report["cad_file"] = cad_json(*run.cad);
   if (run.layers) report["layers"] = layers_json(*run.layers);
   return as_text(report);
 }

@@ -23,7 +23,7 @@ constexpr const char* kAbout =
 constexpr const char* kMore = R"(
 INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
 behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, a CAD
-model (.step .stp .iges .igs .brep), which is tessellated, or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
+model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may be one (.step .stp .brep), or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
 of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
 face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
@@ -245,6 +245,19 @@ void declare_cad(CommandLine& line, Request& request) {
 
 namespace {
 
+/// Declares the options that say how CAD models are written.
+void declare_cad_output(CommandLine& line, Request& request) {
+  line.option(
+      "--fit-tolerance", "TOL",
+      "With an OUTPUT that is a CAD model (.step .stp .brep): how far fitted faces may be from the offset, world "
+      "units [a ten-thousandth of the distance]",
+      [&request](const std::string& text) {
+        request.fit_tolerance = parse_number("--fit-tolerance", text, "a number above 0", 0, kAny);
+      });
+  line.flag("--faceted", "With an OUTPUT that is a CAD model: write a solid of triangles where no other can be made",
+            request.faceted);
+}
+
 /// Declares the options that say how the offset is computed.
 void declare_method(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
@@ -361,6 +374,7 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_tolerance(line, draft);
   declare_parts(line, draft);
   declare_cad(line, draft.request);
+  declare_cad_output(line, draft.request);
   declare_products(line, draft);
   declare_method(line, draft);
   declare_files(line, draft);

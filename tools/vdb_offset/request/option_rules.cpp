@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "request/option_values.h"
+#include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/page_file.h"
 #include "vdb_offset/io/states_file.h"
@@ -87,6 +88,13 @@ void require_for_mesh(const Request& request) {
   require(!volume || request.layers || format_of(request.output, request),
           request.output + ": expected a mesh, as this is for --layers");
   require_structured(request);
+  const bool is_model = io::is_cad_output(request.output);
+  require(is_model || (!request.faceted && request.fit_tolerance == 0),
+          "--faceted and --fit-tolerance: expected an output that ends in .step, .stp or .brep");
+  require(!is_model || !(request.shell || request.layers || request.iso || request.tolerance || request.axes),
+          request.output +
+              ": expected a mesh, as this is for --shell, --layers, --mode iso, --tolerance and "
+              "--distance-xy");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }

@@ -92,6 +92,8 @@ struct Request {
   std::size_t max_memory = 0;                 ///< Bytes.
   bool close = false;                         ///< Join ends of curves that are near each other.
   std::optional<scene::Distance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
+  double fit_tolerance = 0;                   ///< Of written CAD models, world units; 0: 1e-4 distances.
+  bool faceted = false;                       ///< Write a CAD model of triangles where no other can be made.
   double angle = 15, cad_seconds = 300;       ///< Of CAD models: degrees, and how long reading may take.
   std::optional<scene::Distance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
 

@@ -16,8 +16,8 @@ opencascade::handle<TDocStd_Document> make_document(double unit_millimetres);
 /// Names of solids and faces, by what their shapes have in common wherever they are placed.
 using Names = std::unordered_map<const TopoDS_TShape*, std::string>;
 
-/// Adds the faces of a document's shapes, each as often as it is placed, with what is told of them. `names` are those that
-/// the document does not have.
+/// Adds the faces of a document's shapes, each as often as it is placed, with what is told of them. `names` are those
+/// that the document does not have.
 void add_document(const opencascade::handle<TDocStd_Document>& document, const Names& names, CadModel& model);
 
 /// Adds the faces of a shape of which nothing is told. What has faces, edges and points apart is told in words.

@@ -66,15 +66,16 @@ StepUnits step_units(const opencascade::handle<Interface_InterfaceModel>& entiti
   return units;
 }
 
-/// The names of solids and faces. (OpenCASCADE's own option for these, read.stepcaf.subshapes.name, takes solids of broken
-/// files for whole.)
+/// The names of solids and faces. (OpenCASCADE's own option for these, read.stepcaf.subshapes.name, takes solids of
+/// broken files for whole.)
 Names step_names(const XSControl_WorkSession& session) {
   Names names;
   const auto process = session.TransferReader()->TransientProcess();
   const auto entities = session.Model();
   for (int k = 1; k <= entities->NbEntities(); ++k) {
     const auto entity = entities->Value(k);
-    if (!entity->IsKind(STANDARD_TYPE(StepShape_Face)) && !entity->IsKind(STANDARD_TYPE(StepShape_SolidModel))) continue;
+    if (!entity->IsKind(STANDARD_TYPE(StepShape_Face)) && !entity->IsKind(STANDARD_TYPE(StepShape_SolidModel)))
+      continue;
     const auto item = opencascade::handle<StepRepr_RepresentationItem>::DownCast(entity);
     if (item.IsNull() || item->Name().IsNull() || item->Name()->IsEmpty()) continue;
     const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);

@@ -75,7 +75,8 @@ void place(BodyMesh& mesh, std::uint32_t vertex, const Use* first, const Use* la
       const Foot foot = face.surface.foot(at, node.u, node.v);
       node.u = foot.u, node.v = foot.v;
       most = std::max(most, std::abs(foot.distance));
-      if (const auto normal = face.surface.normal(foot.u, foot.v)) constraints.push_back({*normal, foot.distance, face.surface.is_analytic()});
+      if (const auto normal = face.surface.normal(foot.u, foot.v))
+        constraints.push_back({*normal, foot.distance, face.surface.is_analytic()});
     }
     // Where faces contradict each other, those that are what they are by a formula are kept to.
     std::stable_partition(constraints.begin(), constraints.end(), [](const Constraint& c) { return c.is_analytic; });

@@ -148,14 +148,15 @@ void join_edges(const TopoDS_Face& face, const opencascade::handle<Poly_Triangul
   }
 }
 
-/// Gives each triangle at a pole a corner of its own there, with the parameter in the middle of the other two's: the one
-/// that it shared with others may be of any place along the pole.
+/// Gives each triangle at a pole a corner of its own there, with the parameter in the middle of the other two's: the
+/// one that it shared with others may be of any place along the pole.
 void part_poles(FaceMesh& face, const std::vector<std::uint8_t>& is_pole) {
   for (Triangle& t : face.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t own = t[k], next = t[(k + 1) % 3], last = t[(k + 2) % 3];
       if (own >= is_pole.size() || !is_pole[own]) continue;
-      if (face.nodes[next].vertex == face.nodes[own].vertex || face.nodes[last].vertex == face.nodes[own].vertex) continue;
+      if (face.nodes[next].vertex == face.nodes[own].vertex || face.nodes[last].vertex == face.nodes[own].vertex)
+        continue;
       Node node = face.nodes[own];
       if (face.surface.is_pole_of_u(node.u, node.v)) node.u = (face.nodes[next].u + face.nodes[last].u) / 2;
       else node.v = (face.nodes[next].v + face.nodes[last].v) / 2;

@@ -11,8 +11,8 @@
 namespace vdb_offset::cad {
 namespace {
 
-// What has to be left for the limit not to have been met: the largest pieces that OpenCASCADE asks for by habit; and the
-// share of the limit that the largest of its own growing lists would have passed it from.
+// What has to be left for the limit not to have been met: the largest pieces that OpenCASCADE asks for by habit; and
+// the share of the limit that the largest of its own growing lists would have passed it from.
 constexpr std::size_t kPiece = std::size_t{1} << 26;
 constexpr double kShare = 0.75;
 

@@ -7,6 +7,7 @@
 
 #include "vdb_offset/cad/tessellate/tessellate.h"
 #include "vdb_offset/cad/worker/memory_limit.h"
+#include "vdb_offset/cad/write/write_offset.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -89,6 +90,7 @@ std::string Requests::answer(io::CadRequest kind, std::string_view payload) {
   if (!model_) throw io::BadMessage("expected a model first, got another request");
   if (kind == io::CadRequest::Distances) return distances(payload);
   if (kind == io::CadRequest::Offset) return offset(payload);
+  if (kind == io::CadRequest::Write) return io::pack(write_offset(*model_, io::unpack_write(payload)));
   throw io::BadMessage("expected a request that is known, got number " +
                        std::to_string(static_cast<std::uint32_t>(kind)));
 }

@@ -7,8 +7,10 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
 #include <map>
@@ -62,8 +64,7 @@ class FacetedShape {
 
 }  // namespace
 
-TopoDS_Shape faceted_shape(std::span<const Vec3d> positions,
-                           std::span<const std::array<std::uint32_t, 3>> triangles) {
+TopoDS_Shape faceted_shape(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles) {
   FacetedShape shape(positions);
   for (const auto& triangle : triangles) shape.add(triangle);
   return shape.take();

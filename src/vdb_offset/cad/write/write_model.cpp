@@ -29,8 +29,8 @@ const char* word_of(double micrometres) {
     double micrometres;
     const char* word;
   };
-  constexpr Unit kUnits[] = {{1000, "MM"}, {1e6, "M"},      {25400, "INCH"}, {1e4, "CM"},  {304800, "FT"},
-                             {1e9, "KM"},  {1, "UM"}, {25.4, "MIL"},   {0.0254, "UIN"}};
+  constexpr Unit kUnits[] = {{1000, "MM"}, {1e6, "M"}, {25400, "INCH"}, {1e4, "CM"},    {304800, "FT"},
+                             {1e9, "KM"},  {1, "UM"},  {25.4, "MIL"},   {0.0254, "UIN"}};
   for (const Unit& unit : kUnits)
     if (std::abs(unit.micrometres - micrometres) < 1e-6 * micrometres) return unit.word;
   return "MM";

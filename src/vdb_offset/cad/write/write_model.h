@@ -18,8 +18,8 @@ struct WrittenModel {
   double unit_micrometres = 1000;
 };
 
-/// Writes a STEP file (AP214) with the names of shapes and faces, colours and layers, in the unit of the coordinates; or
-/// a BREP file, which has a place for none of these. `format` is step or brep. \throw InvalidCad if it cannot
+/// Writes a STEP file (AP214) with the names of shapes and faces, colours and layers, in the unit of the coordinates;
+/// or a BREP file, which has a place for none of these. `format` is step or brep. \throw InvalidCad if it cannot
 void write_model(const WrittenModel& model, const std::string& format, const std::string& path);
 
 }  // namespace vdb_offset::cad

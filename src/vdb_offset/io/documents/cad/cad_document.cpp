@@ -128,8 +128,8 @@ class CadDocument : public Document {
 };
 
 CadFineness fineness_of(const CadReading& how) {
-  return {how.deflection, how.deflection > 0 ? 0 : how.deflection_share, how.least_share, how.most_share,
-          how.angle_degrees * std::numbers::pi / 180};
+  return {how.deflection, how.deflection > 0 ? 0 : how.deflection_share, how.angle_degrees * std::numbers::pi / 180,
+          how.least_share, how.most_share};
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace vdb_offset::io {
 struct CadFineness {
   double deflection = 0;              ///< Most distance of a triangle from its face, in the file's unit; 0: as follows.
   double deflection_of_diagonal = 0;  ///< The same, as a share of the diagonal of the model's bounding box.
+  double angle = 0;                   ///< Most angle between neighbouring normals on a face, in radians, > 0.
   double least_of_diagonal = 0, most_of_diagonal = 1;  ///< Bounds of the deflection, as shares of the diagonal.
-  double angle = 0;  ///< Most angle between neighbouring normals on a face, in radians, > 0.
 };
 
 /// What a face of a CAD model is, as far as it is told.

@@ -130,4 +130,52 @@ CadMesh unpack_mesh(std::string_view bytes) {
   return mesh;
 }
 
+std::string pack(const WriteCad& write) {
+  Packer packer;
+  packer.text(write.format).value(write.distance).list(write.of_face).value(write.fit_tolerance);
+  packer.value(std::uint8_t{write.faceted}).list(write.positions).list(write.triangles);
+  return packer.take();
+}
+
+WriteCad unpack_write(std::string_view bytes) {
+  Unpacker unpacker(bytes);
+  WriteCad write;
+  write.format = unpacker.text();
+  write.distance = unpacker.value<double>();
+  write.of_face = unpacker.list<double>();
+  write.fit_tolerance = unpacker.value<double>();
+  write.faceted = unpacker.value<std::uint8_t>() != 0;
+  write.positions = unpacker.list<Vec3d>();
+  write.triangles = unpacker.list<std::array<std::uint32_t, 3>>();
+  unpacker.end();
+  for (const auto& triangle : write.triangles)
+    for (const std::uint32_t vertex : triangle) require(vertex < write.positions.size(), "a triangle of no vertices");
+  return write;
+}
+
+std::string pack(const CadWritten& written) {
+  Packer packer;
+  packer.text(written.bytes).value(written.made);
+  for (const std::uint64_t count : {written.kept, written.fitted, written.swallowed, written.missing})
+    packer.value(count);
+  for (const double value : {written.fit_error, written.least, written.most, written.volume}) packer.value(value);
+  put_texts(packer, written.gaps);
+  return packer.take();
+}
+
+CadWritten unpack_written(std::string_view bytes) {
+  Unpacker unpacker(bytes);
+  CadWritten written;
+  written.bytes = unpacker.text();
+  written.made = unpacker.value<CadMade>();
+  require(written.made <= CadMade::Facets, "a file of no kind");
+  for (std::uint64_t* count : {&written.kept, &written.fitted, &written.swallowed, &written.missing})
+    *count = unpacker.value<std::uint64_t>();
+  for (double* value : {&written.fit_error, &written.least, &written.most, &written.volume})
+    *value = unpacker.value<double>();
+  written.gaps = take_texts(unpacker);
+  unpacker.end();
+  return written;
+}
+
 }  // namespace vdb_offset::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -19,6 +20,7 @@ namespace vdb_offset::io {
 enum class CadRequest : std::uint32_t {
   Mesh = 1,       ///< Reads the file and tessellates it: ReadCad; the reply is a CadMesh.
   Distances = 2,  ///< A list of CadPoint; the reply is a list of as many doubles.
+  Write = 4,      ///< A WriteCad; the reply is a CadWritten.
   Offset = 3,     ///< A list of CadAim and one of CadPlace; the reply is a list of as many points as aims.
 };
 
@@ -58,11 +60,45 @@ struct CadPlace {
   std::uint64_t face = 0;  ///< An index of CadMesh::faces.
 };
 
+/// The model's offset as a file.
+struct WriteCad {
+  std::string format;            ///< step or brep
+  double distance = 0;           ///< Towards the outside of the material; negative is inward.
+  std::vector<double> of_face;   ///< In place of it, of each face; or empty.
+  double fit_tolerance = 0;      ///< In the file's unit, > 0.
+  bool faceted = false;          ///< Write the triangles as faces where no solid comes of the faces.
+  std::vector<Vec3d> positions;  ///< Of the offset mesh, for that, with its triangles; else empty.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// What a written file holds.
+enum class CadMade : std::uint32_t {
+  Nothing,  ///< No file: no face could be made.
+  Solid,    ///< As many solids as the source has, valid, closed and at the distance as far as 10,000 samples tell.
+  Shells,   ///< The same of a source that is no solid.
+  Faces,    ///< Faces that are good, and not all of the source's offset.
+  Facets,   ///< Solids of triangles.
+};
+
+struct CadWritten {
+  std::string bytes;
+  CadMade made = CadMade::Nothing;
+  std::uint64_t kept = 0, fitted = 0, swallowed = 0, missing = 0;  ///< Faces of the source.
+  double fit_error = 0;                                            ///< In the file's unit.
+  double least = 0, most = 0;     ///< Distances of the result's points from the source, as shares; 0: not sampled.
+  double volume = 0;              ///< Of solids; 0: not known.
+  std::vector<std::string> gaps;  ///< What is not good, in words.
+};
+
 std::string pack(const ReadCad& read);
+std::string pack(const WriteCad& write);
+std::string pack(const CadWritten& written);
 std::string pack(const CadMesh& mesh);
 
 /// \throw BadMessage
 ReadCad unpack_read(std::string_view bytes);
+WriteCad unpack_write(std::string_view bytes);
+CadWritten unpack_written(std::string_view bytes);
 /// Every index, length and kind is checked. \throw BadMessage
 CadMesh unpack_mesh(std::string_view bytes);
 

@@ -30,6 +30,9 @@ class CadSurface : public ExactSurface {
                                            std::span<const double> distances,
                                            std::span<const Vec3d> points) const override;
 
+  const CadMesh& mesh() const { return *mesh_; }
+  CadWritten write(const WriteCad& write) const;
+
  private:
   /// Where a vertex is on one of its faces.
   struct Place {

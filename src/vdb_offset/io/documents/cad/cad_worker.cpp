@@ -191,4 +191,13 @@ std::vector<Vec3d> CadWorker::offset_points(std::span<const CadAim> aims, std::s
   }
 }
 
+CadWritten CadWorker::write(const WriteCad& write) {
+  const std::string reply = request(CadRequest::Write, pack(write));
+  try {
+    return unpack_written(reply);
+  } catch (const BadMessage& bad) {
+    state_->fail_by_message(bad);
+  }
+}
+
 }  // namespace vdb_offset::io

@@ -42,6 +42,9 @@ class CadWorker {
   /// says, in their order: see ExactSurface::bring_to_distances(). \throw InvalidInput for a face that is none
   std::vector<Vec3d> offset_points(std::span<const CadAim> aims, std::span<const CadPlace> places);
 
+  /// Makes the model's offset, and the bytes of a file of it.
+  CadWritten write(const WriteCad& write);
+
   /// Another request, and the payload of its reply. (The kinds that have a function are asked for by that.)
   std::string request(CadRequest kind, std::string_view payload);
 

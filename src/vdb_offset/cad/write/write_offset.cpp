@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/cad/write/write_offset.h"
+
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRep_Builder.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <optional>
+#include <system_error>
+
+#include "vdb_offset/cad/offset/judge.h"
+#include "vdb_offset/cad/offset/offset_solid.h"
+#include "vdb_offset/cad/write/body_shape.h"
+#include "vdb_offset/cad/write/faceted.h"
+#include "vdb_offset/cad/write/write_model.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+constexpr std::size_t kMostGaps = 8;  // that are told
+
+/// A file in memory, which has a name for as long as this lives.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("offset", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  ~MemoryFile() { ::close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  std::string bytes() const {
+    struct stat facts {};
+    if (::fstat(descriptor_, &facts) != 0) throw std::system_error(errno, std::generic_category(), "fstat");
+    std::string all(static_cast<std::size_t>(facts.st_size), '\0');
+    for (std::size_t at = 0; at < all.size();) {
+      const ssize_t got = ::pread(descriptor_, all.data() + at, all.size() - at, static_cast<off_t>(at));
+      if (got <= 0) throw std::system_error(errno, std::generic_category(), "pread");
+      at += static_cast<std::size_t>(got);
+    }
+    return all;
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// A body of the source, and its offset.
+struct OffsetBody {
+  const Body& body;
+  BodyShape source;
+  OffsetCadResult result;
+};
+
+class OffsetWriter {
+ public:
+  OffsetWriter(const CadModel& model, const io::WriteCad& write) : model_(model), write_(write) {}
+
+  io::CadWritten run() {
+    std::size_t first_face = 0;
+    for (const Body& body : model_.bodies) {
+      bodies_.push_back({body, shape_of(body), {}});
+      make(bodies_.back(), first_face);
+      first_face += body.faces.size();
+    }
+    if (try_whole()) return std::move(written_);
+    if (write_.faceted) write_facets();
+    else write_faces();
+    written_.gaps.resize(std::min(written_.gaps.size(), kMostGaps));
+    return std::move(written_);
+  }
+
+ private:
+  double distance_of(std::size_t face) const { return write_.of_face.empty() ? write_.distance : write_.of_face[face]; }
+  bool is_even() const {
+    return std::all_of(write_.of_face.begin(), write_.of_face.end(), [&](double d) { return d == write_.of_face[0]; });
+  }
+
+  void make(OffsetBody& body, std::size_t first_face) {
+    OffsetCadRequest request;
+    request.source = body.source.shape;
+    request.distance = is_even() && !write_.of_face.empty() ? write_.of_face[0] : write_.distance;
+    request.fit_tolerance = write_.fit_tolerance;
+    if (!is_even())
+      request.distance_at = [&, first_face](int face, double, double) {
+        return distance_of(first_face + body.source.face_numbers[static_cast<std::size_t>(face)]);
+      };
+    try {
+      body.result = offset_cad(request);
+    } catch (const Standard_Failure& failure) {
+      body.result = {};
+      body.result.gaps.push_back(std::string("OpenCASCADE fails: ") + failure.DynamicType()->Name());
+    }
+    for (const CadFace made : body.result.faces)
+      ++(made == CadFace::Kept      ? written_.kept
+         : made == CadFace::Fitted  ? written_.fitted
+         : made == CadFace::Missing ? written_.missing
+                                    : written_.swallowed);
+    written_.fit_error = std::max(written_.fit_error, body.result.fit_error);
+    for (const std::string& gap : body.result.gaps) written_.gaps.push_back(gap);
+  }
+
+  /// What is told of a body's faces goes with the faces that are made of them.
+  void name_faces(const OffsetBody& body, WrittenModel& model) const {
+    for (std::size_t k = 0; k < body.result.made_of.size() && k < body.source.face_numbers.size(); ++k)
+      if (!body.result.made_of[k].IsNull())
+        model.faces.emplace_back(body.result.made_of[k], body.body.faces[body.source.face_numbers[k]].facts);
+  }
+
+  WrittenModel empty_model() const {
+    WrittenModel model;
+    model.unit_micrometres = model_.unit_micrometres;
+    return model;
+  }
+  static std::string name_of(const Body& body) { return body.faces.empty() ? "" : body.faces.front().facts.solid; }
+
+  /// Writes all bodies, reads them again and judges them; false if one of them is not good.
+  bool try_whole() {
+    WrittenModel model = empty_model();
+    bool all_solid = true;
+    for (const OffsetBody& body : bodies_) {
+      if (body.result.shape.IsNull() || !body.result.gaps.empty()) return false;
+      model.shapes.push_back(body.result.shape);
+      model.names.push_back(name_of(body.body));
+      name_faces(body, model);
+      all_solid = all_solid && body.body.is_solid;
+    }
+    const MemoryFile file;
+    write_model(model, write_.format, file.path());
+    const CadModel again = read_model(file.path(), write_.format);
+    if (again.bodies.size() != bodies_.size()) {
+      written_.gaps.push_back("read again, the file has " + std::to_string(again.bodies.size()) + " bodies and not " +
+                              std::to_string(bodies_.size()));
+      return false;
+    }
+    written_.least = INFINITY;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+      if (!is_good(bodies_[i], again.bodies[i])) return false;
+    if (!is_even()) written_.least = 0;
+    written_.bytes = file.bytes();
+    written_.made = all_solid ? io::CadMade::Solid : io::CadMade::Shells;
+    return true;
+  }
+
+  bool is_good(const OffsetBody& body, const Body& again) {
+    const TopoDS_Shape shape = shape_of(again).shape;
+    if (!is_even()) {
+      const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid;
+      if (!is_valid) written_.gaps.emplace_back("read again, the solid is not valid");
+      return is_valid;
+    }
+    const Verdict verdict = judge_offset(body.source.shape, shape, distance_of(0), {});
+    written_.least = std::min(written_.least, verdict.least);
+    written_.most = std::max(written_.most, verdict.most);
+    written_.volume += verdict.volume;
+    written_.gaps.insert(written_.gaps.end(), verdict.faults.begin(), verdict.faults.end());
+    return verdict.is_good;
+  }
+
+  void write_facets() {
+    WrittenModel model = empty_model();
+    model.shapes.push_back(faceted_shape(write_.positions, write_.triangles));
+    model.names.emplace_back();
+    finish(model, io::CadMade::Facets);
+  }
+
+  /// Writes the faces that there are, as none of a solid.
+  void write_faces() {
+    WrittenModel model = empty_model();
+    for (const OffsetBody& body : bodies_) {
+      TopoDS_Compound faces;
+      BRep_Builder builder;
+      builder.MakeCompound(faces);
+      bool any = false;
+      for (TopExp_Explorer face(body.result.shape, TopAbs_FACE); !body.result.shape.IsNull() && face.More();
+           face.Next()) {
+        if (!BRepCheck_Analyzer(face.Current()).IsValid()) continue;
+        builder.Add(faces, face.Current());
+        any = true;
+      }
+      if (!any) continue;
+      model.shapes.push_back(faces);
+      model.names.push_back(name_of(body.body));
+      name_faces(body, model);
+    }
+    if (!model.shapes.empty()) finish(model, io::CadMade::Faces);
+  }
+
+  void finish(const WrittenModel& model, io::CadMade made) {
+    const MemoryFile file;
+    write_model(model, write_.format, file.path());
+    read_model(file.path(), write_.format);
+    written_.bytes = file.bytes();
+    written_.made = made;
+    written_.least = written_.most = written_.volume = 0;
+  }
+
+  const CadModel& model_;
+  const io::WriteCad& write_;
+  std::vector<OffsetBody> bodies_;
+  io::CadWritten written_;
+};
+
+}  // namespace
+
+io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
+  std::size_t faces = 0;
+  for (const Body& body : model.bodies) faces += body.faces.size();
+  if (!write.of_face.empty() && write.of_face.size() != faces)
+    throw InvalidCad("expected distances of " + std::to_string(faces) + " faces, got " +
+                     std::to_string(write.of_face.size()));
+  return OffsetWriter(model, write).run();
+}
+
+}  // namespace vdb_offset::cad

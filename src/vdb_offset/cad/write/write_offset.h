@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_offset/cad/read/cad_model.h"
+#include "vdb_offset/io/documents/cad/cad_messages.h"
+
+namespace vdb_offset::cad {
+
+/// Makes the offset of a model as a file of a CAD model: each body by offset_cad(). The file is read again, and what is
+/// found in it is judged; solids that are not good are left out as such, and their faces written.
+/// \throw InvalidCad if OpenCASCADE cannot write it
+io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write);
+
+}  // namespace vdb_offset::cad

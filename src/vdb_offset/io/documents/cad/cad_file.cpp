@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/cad_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/base/chunked_output.h"
+#include "vdb_offset/io/documents/cad/cad_surface.h"
+#include "vdb_offset/output_files.h"
+
+namespace vdb_offset::io {
+namespace {
+
+constexpr double kFitShare = 1e-4;  // of the distance
+
+/// The distance of each face. \throw InvalidInput if vertices of one differ
+std::vector<double> distances_of_faces(const std::string& path, const CadMesh& mesh, const Distances& distances) {
+  std::vector<std::optional<double>> found(mesh.faces.size());
+  // A vertex on an edge has one distance for all of its faces: where these differ, those inside of a face tell.
+  std::vector<std::uint32_t> face_of(mesh.positions.size(), kNone);
+  std::vector<std::uint8_t> is_inside(mesh.positions.size(), 1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (face_of[v] != kNone && face_of[v] != mesh.face_of[t]) is_inside[v] = 0;
+      face_of[v] = mesh.face_of[t];
+    }
+  const auto take = [&](std::uint32_t v, std::uint32_t f, bool inside) {
+    if (static_cast<bool>(is_inside[v]) != inside || (!inside && found[f])) return;
+    if (found[f] && *found[f] != distances[v] && inside)
+      throw InvalidInput(
+          fmt::format("{}: expected one distance for each face of a CAD model, got {:g} and {:g} for "
+                      "face {}",
+                      path, *found[f], distances[v], f + 1));
+    found[f] = distances[v];
+  };
+  for (const bool inside : {true, false})
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const std::uint32_t v : mesh.triangles[t]) take(v, mesh.face_of[t], inside);
+  std::vector<double> of_face;
+  for (const std::optional<double>& distance : found) of_face.push_back(distance.value_or(0));
+  return of_face;
+}
+
+CadFileFacts facts_of(CadWritten&& written) {
+  CadFileFacts facts;
+  facts.made = written.made == CadMade::Solid    ? CadFileFacts::Made::Solid
+               : written.made == CadMade::Shells ? CadFileFacts::Made::Shells
+               : written.made == CadMade::Facets ? CadFileFacts::Made::Facets
+                                                 : CadFileFacts::Made::Faces;
+  facts.kept = written.kept;
+  facts.fitted = written.fitted;
+  facts.swallowed = written.swallowed;
+  facts.missing = written.missing;
+  facts.fit_error = written.fit_error;
+  facts.least = written.least;
+  facts.most = written.most;
+  facts.volume = written.volume;
+  facts.gaps = std::move(written.gaps);
+  return facts;
+}
+
+}  // namespace
+
+bool is_cad_output(const std::string& path) {
+  const auto format = format_of(path);
+  return format == Format::Step || format == Format::Brep;
+}
+
+CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Distances& distances,
+                       std::span<const Vec3d> positions, const CadWriting& how) {
+  const auto* const model = dynamic_cast<const CadSurface*>(source.exact.get());
+  if (!model)
+    throw InvalidInput(
+        fmt::format("{}: expected an input that is a CAD model, for an output that is one, got {}", path, source.path));
+  WriteCad write;
+  write.format = name(*format_of(path));
+  if (distances.uniform()) write.distance = distances[0];
+  else write.of_face = distances_of_faces(path, model->mesh(), distances);
+  write.distance = distances.farthest();
+  write.fit_tolerance = how.fit_tolerance > 0 ? how.fit_tolerance : kFitShare * std::abs(write.distance);
+  write.faceted = how.faceted;
+  if (how.faceted) {
+    write.positions.assign(positions.begin(), positions.end());
+    write.triangles = model->mesh().triangles;
+  }
+  CadWritten written = model->write(write);
+  if (written.made == CadMade::Nothing)
+    throw InvalidInput(
+        fmt::format("{}: expected faces of a CAD model that can be offset, got none{}{} (--faceted writes "
+                    "triangles)",
+                    path, written.gaps.empty() ? "" : ": ", written.gaps.empty() ? "" : written.gaps.front()));
+  write_pieces(path, {1, [bytes = std::move(written.bytes)](std::size_t) { return bytes; }});
+  return facts_of(std::move(written));
+}
+
+}  // namespace vdb_offset::io
