@@ -19,34 +19,61 @@ bool is_inverted(const Model& model, int edge) {
   return false;
 }
 
-// The face with most of its sides inverted, two at least and half of them; -1 if there is none.
-int most_inverted_face(const Model& model) {
-  int best = -1;
-  double best_share = 0.49;
-  for (int f = 0; f < static_cast<int>(model.faces.size()); f++) {
-    if (model.faces[f].is_gone) continue;
-    const std::vector<int> sides = sides_of_face(model, f);
-    const auto inverted = std::count_if(sides.begin(), sides.end(), [&](int e) { return is_inverted(model, e); });
-    const double share = static_cast<double>(inverted) / static_cast<double>(std::max<std::size_t>(1, sides.size()));
-    if (inverted >= 2 && share > best_share) {
-      best = f;
-      best_share = share;
+// How much of a face's border is inverted, if the face cannot be any more: two sides and half of them at least, or the
+// seam of a face that closes. 0: it can be.
+double dead_share(const Model& model, int face) {
+  const ModelFace& f = model.faces[face];
+  if (f.is_gone) return 0;
+  if (f.offset.surface.IsNull()) return 1;
+  for (int first : f.loops)
+    for (int h = first;;) {
+      const int twin = model.halves[h].twin;
+      if (twin >= 0 && model.halves[twin].face == face && is_inverted(model, model.halves[h].edge)) return 1;
+      h = model.halves[h].next;
+      if (h == first) break;
     }
+  const std::vector<int> sides = sides_of_face(model, face);
+  const auto inverted = std::count_if(sides.begin(), sides.end(), [&](int e) { return is_inverted(model, e); });
+  const double share = static_cast<double>(inverted) / static_cast<double>(std::max<std::size_t>(1, sides.size()));
+  return inverted >= 2 && share > 0.49 ? share : 0;
+}
+
+int deadest_face(const Model& model) {
+  int best = -1;
+  double best_share = 0;
+  for (int f = 0; f < static_cast<int>(model.faces.size()); f++) {
+    const double share = dead_share(model, f);
+    if (share <= best_share) continue;
+    best = f;
+    best_share = share;
   }
   return best;
 }
 
-// The swallowed faces that hang together with one of them.
-std::vector<int> swallowed_with(const Model& model, int face) {
+// The dead faces that hang together with one of them.
+std::vector<int> dead_with(const Model& model, int face) {
   std::vector<int> group = {face};
   for (std::size_t i = 0; i < group.size(); i++)
     for (int e : sides_of_face(model, group[i]))
       for (int h : model.edges[e].half) {
         const int f = model.halves[h].face;
-        if (model.faces[f].offset.surface.IsNull() && std::find(group.begin(), group.end(), f) == group.end())
-          group.push_back(f);
+        if (std::find(group.begin(), group.end(), f) == group.end() && dead_share(model, f) > 0) group.push_back(f);
       }
   return group;
+}
+
+bool remove_dead(Model& model, int face, std::vector<std::string>& gaps) {
+  const std::string name = "face " + std::to_string(face + 1);
+  const std::vector<int> group = dead_with(model, face);
+  if (close_hole(model, group)) {
+    model.steps.push_back(name + " is swallowed with " + std::to_string(group.size() - 1) +
+                          " beside it, and a hole or boss");
+    return true;
+  }
+  model.steps.push_back(name + " is swallowed");
+  if (remove_face(model, face)) return true;
+  gaps.push_back(name + " is swallowed, and its neighbours do not close the gap");
+  return false;
 }
 
 // Takes faces out of which contractions have left two edges between the same two vertices.
@@ -66,15 +93,8 @@ bool remove_lenses(Model& model, std::vector<std::string>& gaps) {
 }
 
 bool remove_swallowed(Model& model, std::vector<std::string>& gaps) {
-  for (int f = 0; f < static_cast<int>(model.faces.size()); f++) {
-    if (model.faces[f].is_gone || !model.faces[f].offset.surface.IsNull()) continue;
-    if (close_hole(model, swallowed_with(model, f)) || remove_face(model, f)) {
-      model.steps.push_back("face " + std::to_string(f + 1) + " is swallowed");
-      continue;
-    }
-    gaps.push_back("face " + std::to_string(f + 1) + " is swallowed, and its neighbours do not close the gap");
-    return false;
-  }
+  for (int f = 0; f < static_cast<int>(model.faces.size()); f++)
+    if (!model.faces[f].is_gone && model.faces[f].offset.surface.IsNull() && !remove_dead(model, f, gaps)) return false;
   return true;
 }
 
@@ -90,11 +110,9 @@ void arrange(Model& model, const Tolerances& tolerances, std::vector<std::string
       missed.push_back("vertex " + std::to_string(v + 1) + " of " + std::to_string(model.vertices[v].ring.size()) +
                        " edges: faces miss by " + std::to_string(model.vertices[v].residual));
     }
-    const int face = most_inverted_face(model);
+    const int face = deadest_face(model);
     if (face >= 0) {
-      model.steps.push_back("face " + std::to_string(face + 1) + " shrinks to nothing");
-      if (remove_face(model, face)) continue;
-      gaps.push_back("face " + std::to_string(face + 1) + " is swallowed, and its neighbours do not close the gap");
+      if (remove_dead(model, face, gaps)) continue;
       return;
     }
     int edge = -1;

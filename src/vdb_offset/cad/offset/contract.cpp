@@ -4,6 +4,9 @@
 #include <GCPnts_AbscissaPoint.hxx>
 #include <GeomAdaptor_Curve.hxx>
 #include <algorithm>
+#include <array>
+
+#include "vdb_offset/cad/offset/contact.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -116,6 +119,35 @@ bool merge_sides(Model& model, int face, int first, int second) {
   return true;
 }
 
+// The face behind a side.
+int behind(const Model& model, int face, int edge) {
+  const int h = model.edges[edge].half[0], o = model.edges[edge].half[1];
+  return model.halves[h].face == face ? o : h;
+}
+
+// Two sides whose neighbours meet once the face is gone: of those that do, the pair that is longest together.
+std::array<int, 2> sides_that_meet(const Model& model, int face, const std::vector<int>& round,
+                                   const std::vector<double>& lengths) {
+  const int n = static_cast<int>(round.size());
+  std::array<int, 2> best = {0, -1};
+  double best_length = -1;
+  for (int i = 0; i < n; i++)
+    for (int k = i + 1; k < n; k++) {
+      const bool touches = n > 3 && (k == i + 1 || (i == 0 && k == n - 1));
+      const int a = behind(model, face, round[i]), b = behind(model, face, round[k]);
+      if (touches || lengths[i] + lengths[k] <= best_length || model.halves[a].face == model.halves[b].face) continue;
+      std::vector<Support> supports;
+      for (int h : {a, b})
+        supports.push_back({model.faces[model.halves[h].face].offset.surface, {}, model.halves[h].origin, 0});
+      if (supports[0].surface.IsNull() || supports[1].surface.IsNull()) continue;
+      gp_Pnt point = model.vertices[model.halves[a].vertex].source;
+      if (meet(supports, point) > 1e-6 * (lengths[i] + lengths[k])) continue;
+      best = {i, k};
+      best_length = lengths[i] + lengths[k];
+    }
+  return best;
+}
+
 }  // namespace
 
 std::vector<int> sides_of_face(const Model& model, int face) {
@@ -143,32 +175,35 @@ bool contract_edges(Model& model, const std::vector<int>& edges) {
   return vertices.empty() || join(model, vertices);
 }
 
-bool close_hole(Model& model, const std::vector<int>& faces) {
+bool close_hole(Model& model, std::vector<int> faces) {
   const auto is_inside = [&](int f) { return std::find(faces.begin(), faces.end(), f) != faces.end(); };
+  // A whole loop behind the border: all of its edges border faces of the group.
+  const auto is_whole = [&](int half) {
+    for (int o = half;;) {
+      const int inner = model.halves[o].twin;
+      if (inner < 0 || !is_inside(model.halves[inner].face)) return false;
+      o = model.halves[o].next;
+      if (o == half) return true;
+    }
+  };
   std::vector<int> edges, vertices;
-  int loops = 0;
-  for (int f : faces)
-    for (int first : model.faces[f].loops)
+  for (std::size_t i = 0; i < faces.size(); i++)
+    for (int first : model.faces[faces[i]].loops)
       for (int h = first;;) {
         edges.push_back(model.halves[h].edge);
         vertices.push_back(model.halves[h].vertex);
         const int twin = model.halves[h].twin;
         if (twin < 0 && model.edges[model.halves[h].edge].kind != EdgeKind::Pole) return false;
         if (twin >= 0 && !is_inside(model.halves[twin].face)) {
-          const std::vector<int>& of = model.faces[model.halves[twin].face].loops;
-          for (int o = twin;;) {
-            const int inner = model.halves[o].twin;
-            if (inner < 0 || !is_inside(model.halves[inner].face)) return false;
-            if (std::find(of.begin(), of.end(), o) != of.end()) loops++;
-            o = model.halves[o].next;
-            if (o == twin) break;
-          }
-          if (of.size() < 2) return false;
+          const int behind = model.halves[twin].face;
+          if (!is_whole(twin)) return false;
+          // A face that is bordered by the group alone goes with it: the bottom of a hole, the top of a boss.
+          const std::vector<int>& loops = model.faces[behind].loops;
+          if (std::all_of(loops.begin(), loops.end(), is_whole)) faces.push_back(behind);
         }
         h = model.halves[h].next;
         if (h == first) break;
       }
-  if (loops < 1) return false;
   for (int e : edges)
     if (!model.edges[e].is_gone) unlink_edge(model, e);
   for (int v : vertices) {
@@ -205,13 +240,9 @@ bool remove_face(Model& model, int face) {
     return contract_edges(model, all);
   }
   if (n == 1) return false;
-  // The two long sides: the longest, and the longest that does not touch it (or any, of three).
-  const int a = static_cast<int>(std::max_element(lengths.begin(), lengths.end()) - lengths.begin());
-  int b = -1;
-  for (int i = 0; i < n; i++) {
-    const bool touches = n > 3 && ((a + 1) % n == i || (i + 1) % n == a);
-    if (i != a && !touches && (b < 0 || lengths[i] > lengths[b])) b = i;
-  }
+  const std::array<int, 2> pair = n == 2 ? std::array<int, 2>{0, 1} : sides_that_meet(model, face, round, lengths);
+  const int a = pair[0], b = pair[1];
+  if (b < 0) return false;
   // The sides between them become vertices.
   if (!is_ring) {
     for (int from : {a, b}) {

@@ -13,9 +13,9 @@ bool contract_edges(Model& model, const std::vector<int>& edges);
 /// short one a vertex. False if its border is none of these.
 bool remove_face(Model& model, int face);
 
-/// Takes faces out that close a hole: those behind their borders lose a whole loop each, and nothing else. False if it
-/// is not so; the model is as it was then.
-bool close_hole(Model& model, const std::vector<int>& faces);
+/// Takes faces out that close a hole (or level a boss): those behind their borders lose whole loops and nothing else,
+/// or go, too, if they have no others. False if it is not so; the model is as it was then.
+bool close_hole(Model& model, std::vector<int> faces);
 
 /// The edges round a face that have another face behind them, in turn by loops.
 std::vector<int> sides_of_face(const Model& model, int face);

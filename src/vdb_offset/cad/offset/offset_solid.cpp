@@ -65,6 +65,10 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
       arrange(model, tolerances, result.gaps);
       result.steps.insert(result.steps.end(), model.steps.begin(), model.steps.end());
       if (result.gaps.size() > gaps_before) continue;
+      if (std::all_of(model.faces.begin(), model.faces.end(), [](const ModelFace& f) { return f.is_gone; })) {
+        result.gaps.push_back("the shell is swallowed whole");
+        continue;
+      }
       Built built = build_shell(model, tolerances);
       result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
       if (!built.shell.IsNull()) shells.push_back(built.shell);
