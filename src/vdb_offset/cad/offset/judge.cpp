@@ -247,8 +247,10 @@ class Judge {
       if (way > worst) place = text_of(moved) + place_of(source, p, result, result.closest(moved));
       worst = std::max(worst, way);
       if (way > options_.tolerance && doubts++ < kMostDoubts)
+        // A mitre may reach over it.
         missing += exact_distance(source_faces_, moved) > far_ * (1 - 1e-3) &&
-                   exact_distance(result_faces_, moved) > far_ * options_.tolerance;
+                   exact_distance(result_faces_, moved) > far_ * options_.tolerance &&
+                   exact_distance(sharp_edges_, moved) > kMitreOverFace * far_;
       else missing += way > options_.tolerance;
     }
     if (missing)

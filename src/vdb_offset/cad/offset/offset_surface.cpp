@@ -44,10 +44,13 @@ OffsetSurface with_radius(const Handle(Surface) & s, double radius) {
 OffsetSurface offset_cone(const Handle(Geom_ConicalSurface) & s, const Box2& box, double d) {
   // P = location + (R + v sin a) radial + v cos a axis, with the normal cos a radial - sin a axis.
   const gp_Ax3 axes = s->Position();
-  const double a = s->SemiAngle(), out = d * outward(axes);
+  const double a = s->SemiAngle();
+  // Behind its apex a cone's radius is below 0, and Su x Sv looks the other way.
+  const double nappe = s->RefRadius() + (box.v0 + box.v1) / 2 * std::sin(a) < 0 ? -1 : 1;
+  const double out = d * outward(axes) * nappe;
   const double radius = s->RefRadius() + out * std::cos(a);
   OffsetSurface result;
-  const double r0 = radius + box.v0 * std::sin(a), r1 = radius + box.v1 * std::sin(a);
+  const double r0 = nappe * (radius + box.v0 * std::sin(a)), r1 = nappe * (radius + box.v1 * std::sin(a));
   if (std::max(r0, r1) <= 1e-7) {
     result.made = FaceMade::Swallowed;
     return result;
@@ -84,7 +87,9 @@ OffsetSurface offset_elementary(const Handle(Geom_Surface) & surface, const Box2
   if (const auto s = Handle(Geom_ConicalSurface)::DownCast(surface)) return offset_cone(s, box, d);
   if (const auto s = Handle(Geom_ToroidalSurface)::DownCast(surface)) {
     OffsetSurface result;
-    const double radius = s->MinorRadius() + d * outward(s->Position());
+    // Within a torus that crosses itself Su x Sv looks the other way.
+    const double middle = s->MajorRadius() + s->MinorRadius() * std::cos((box.v0 + box.v1) / 2);
+    const double radius = s->MinorRadius() + d * outward(s->Position()) * (middle < 0 ? -1 : 1);
     if (radius <= 1e-7) {
       result.made = FaceMade::Swallowed;
       return result;

@@ -16,6 +16,9 @@ using Triangulation = std::vector<Triangle>;
 // More corners have too many triangulations (429 of nine).
 constexpr int kMostCorners = 9;
 
+// Faces that miss each other at a vertex by no more, in distances, are joined there where there is no better way.
+constexpr double kCloseEnough = 0.015;
+
 // All triangulations of the polygon with corners i, i + 1, ..., k.
 std::vector<Triangulation> triangulations(int i, int k) {
   if (k - i < 2) return {{}};
@@ -262,8 +265,9 @@ bool resolve_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   const ModelVertex& v = model.vertices[vertex];
   const int n = static_cast<int>(v.ring.size());
   if (v.residual <= tolerances.gap) return true;
-  if (n < 4 || n > kMostCorners || v.is_open) return false;
-  if (!Splitter(model, vertex, tolerances).split()) return false;
+  const bool is_close = v.residual <= kCloseEnough * tolerances.distance;
+  if (n < 4 || n > kMostCorners || v.is_open) return is_close;
+  if (!Splitter(model, vertex, tolerances).split()) return is_close;
   model.steps.push_back("vertex " + std::to_string(vertex + 1) + " of " + std::to_string(n) + " faces is split");
   return true;
 }
