@@ -4,15 +4,49 @@
 #include <BRep_Builder.hxx>
 #include <Geom2d_Line.hxx>
 #include <Geom2d_TrimmedCurve.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <Standard_Failure.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
+#include <cmath>
 
 namespace vdb_offset::cad {
 namespace {
+
+// Cuts a spline at a pole of its face and draws the border there into the pole's point, to which it was only fitted.
+void close_pole(ModelFace& face, const gp_Pnt2d& a, const gp_Pnt2d& b, const gp_Pnt& point) {
+  const auto s = Handle(Geom_BSplineSurface)::DownCast(face.offset.surface);
+  if (s.IsNull()) return;
+  const bool across_u = std::abs(a.X() - b.X()) < std::abs(a.Y() - b.Y());
+  const double at = across_u ? (a.X() + b.X()) / 2 : (a.Y() + b.Y()) / 2;
+  double u0, u1, v0, v1;
+  s->Bounds(u0, u1, v0, v1);
+  const bool is_low = at < (across_u ? u0 + u1 : v0 + v1) / 2;
+  double& end = across_u ? (is_low ? u0 : u1) : (is_low ? v0 : v1);
+  const Handle(Geom_BSplineSurface) cut = Handle(Geom_BSplineSurface)::DownCast(s->Copy());
+  if (std::abs(at - end) > 1e-9 && (is_low ? at > end : at < end)) {
+    end = at;
+    cut->Segment(u0, u1, v0, v1);
+  } else if (std::abs(at - end) > 1e-9) {
+    return;
+  }
+  const int n = across_u ? cut->NbVPoles() : cut->NbUPoles();
+  const int row = is_low ? 1 : across_u ? cut->NbUPoles() : cut->NbVPoles();
+  for (int i = 1; i <= n; i++) cut->SetPole(across_u ? row : i, across_u ? i : row, point);
+  face.offset.surface = cut;
+}
+
+void close_poles(Model& model) {
+  for (std::size_t i = 0; i < model.halves.size(); i++) {
+    const HalfEdge& h = model.halves[i];
+    if (h.face < 0 || model.edges[h.edge].kind != EdgeKind::Pole) continue;
+    close_pole(model.faces[h.face], model.halves[h.previous].end, model.halves[h.next].start,
+               model.vertices[model.halves[h.next].vertex].point);
+  }
+}
 
 class ShellBuilder {
  public:
@@ -164,6 +198,9 @@ class ShellBuilder {
 
 }  // namespace
 
-Built build_shell(const Model& model, const Tolerances& tolerances) { return ShellBuilder(model, tolerances).build(); }
+Built build_shell(Model& model, const Tolerances& tolerances) {
+  close_poles(model);
+  return ShellBuilder(model, tolerances).build();
+}
 
 }  // namespace vdb_offset::cad

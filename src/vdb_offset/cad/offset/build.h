@@ -13,7 +13,7 @@ struct Built {
   std::vector<std::string> trouble;  ///< What is not as it should be, in words.
 };
 
-/// The shell of a placed model.
-Built build_shell(const Model& model, const Tolerances& tolerances);
+/// The shell of a placed model. Splines are cut at poles.
+Built build_shell(Model& model, const Tolerances& tolerances);
 
 }  // namespace vdb_offset::cad

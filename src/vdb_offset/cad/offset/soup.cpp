@@ -274,13 +274,13 @@ double Soup::volume() const {
   return sum / 6;
 }
 
-int Soup::crossings(int most) const {
-  int found = 0;
-  for (std::size_t i = 0; i < triangles_.size() && found < most; i++) {
+std::vector<gp_Pnt> Soup::crossings(std::size_t most) const {
+  std::vector<gp_Pnt> found;
+  for (std::size_t i = 0; i < triangles_.size() && found.size() < most; i++) {
     const Triangle& t = triangles_[i];
     const std::array<double, 6> box = box_of(t);
     std::vector<int> stack = {0};
-    while (!stack.empty() && found < most) {
+    while (!stack.empty() && found.size() < most) {
       const Node& n = nodes_[stack.back()];
       stack.pop_back();
       if (!overlap(n.box, box)) continue;
@@ -289,7 +289,7 @@ int Soup::crossings(int most) const {
         const bool shares_corner = std::any_of(t.nodes.begin(), t.nodes.end(), [&](int v) {
           return std::find(o.nodes.begin(), o.nodes.end(), v) != o.nodes.end();
         });
-        if (!shares_corner && pierces(t, o)) found++;
+        if (!shares_corner && pierces(t, o)) found.push_back(mixed(t.points, {1.0 / 3, 1.0 / 3, 1.0 / 3}));
       }
       if (n.count == 0) stack.insert(stack.end(), {n.first, n.first + 1});
     }

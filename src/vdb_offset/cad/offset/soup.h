@@ -52,8 +52,8 @@ class Soup {
   bool contains(const gp_Pnt& point) const;
   /// The volume of the tessellation.
   double volume() const;
-  /// How many pairs of triangles without a common corner cross, up to `most`.
-  int crossings(int most) const;
+  /// Corners of triangles that cross others without a common corner, up to `most`.
+  std::vector<gp_Pnt> crossings(std::size_t most) const;
 
  private:
   struct Node {
