@@ -71,7 +71,7 @@ StepUnits step_units(const opencascade::handle<Interface_InterfaceModel>& entiti
 Names step_names(const XSControl_WorkSession& session) {
   Names names;
   const auto process = session.TransferReader()->TransientProcess();
-  const auto entities = session.Model();
+  const auto& entities = session.Model();
   for (int k = 1; k <= entities->NbEntities(); ++k) {
     const auto entity = entities->Value(k);
     if (!entity->IsKind(STANDARD_TYPE(StepShape_Face)) && !entity->IsKind(STANDARD_TYPE(StepShape_SolidModel)))

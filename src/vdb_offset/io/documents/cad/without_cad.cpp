@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A build without OpenCASCADE.
+#include <utility>
+
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/documents/cad/cad_worker.h"
 
