@@ -19,6 +19,7 @@ struct InvalidCad : std::runtime_error {
 struct ModelFace {
   TopoDS_Face face;
   io::CadFaceFacts facts;
+  bool is_left_out = false;  ///< It has no triangles, and its neighbours are sewn to each other.
 };
 
 /// Faces that may share edges: those of a solid, or all those of the file that are of none.

@@ -20,10 +20,12 @@ constexpr double kShares[] = {0, 1e-6, 1e-5, 1e-4};
 /// The body with its faces sewn.
 Body sewn(const Body& body, double tolerance) {
   BRepBuilderAPI_Sewing sewing(tolerance);
-  for (const ModelFace& face : body.faces) sewing.Add(face.face);
+  for (const ModelFace& face : body.faces)
+    if (!face.is_left_out) sewing.Add(face.face);
   sewing.Perform();
   Body result = body;
   for (ModelFace& face : result.faces) {
+    if (face.is_left_out) continue;
     const TopoDS_Shape& changed = sewing.Modified(face.face);
     // A face that has come to nothing stays as it was.
     if (!changed.IsNull() && changed.ShapeType() == TopAbs_FACE) face.face = TopoDS::Face(changed);
@@ -37,7 +39,7 @@ std::size_t count_free_edges(const Body& body) {
   TopTools_IndexedMapOfShape edges;
   std::vector<int> uses;
   for (const ModelFace& face : body.faces)
-    for (TopExp_Explorer found(face.face, TopAbs_EDGE); found.More(); found.Next()) {
+    for (TopExp_Explorer found(face.face, TopAbs_EDGE); found.More() && !face.is_left_out; found.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(found.Current());
       const TopAbs_Orientation way = edge.Orientation();
       if (BRep_Tool::Degenerated(edge) || way == TopAbs_INTERNAL || way == TopAbs_EXTERNAL) continue;
@@ -48,9 +50,9 @@ std::size_t count_free_edges(const Body& body) {
   return static_cast<std::size_t>(std::count(uses.begin(), uses.end(), 1));
 }
 
-void sew_open_edges(Body& body, double tolerance, double diagonal, std::vector<std::string>& remarks) {
+bool sew_open_edges(Body& body, double tolerance, double diagonal, std::vector<std::string>& remarks) {
   const std::size_t before = count_free_edges(body);
-  if (before == 0 || body.faces.size() > 1'000'000) return;
+  if (before == 0) return false;
   std::size_t least = before;
   double used = 0;
   Body best;
@@ -65,12 +67,13 @@ void sew_open_edges(Body& body, double tolerance, double diagonal, std::vector<s
     best = std::move(tried);
     if (least == 0) break;
   }
-  if (least == before) return;
+  if (least == before) return false;
   body = std::move(best);
   char text[160];
   std::snprintf(text, sizeof(text), "%zu of %zu open edges of faces are closed by sewing them at a tolerance of %.2g",
                 before - least, before, used);
   remarks.emplace_back(text);
+  return true;
 }
 
 }  // namespace vdb_offset::cad

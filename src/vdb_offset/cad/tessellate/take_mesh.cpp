@@ -165,8 +165,10 @@ void part_poles(FaceMesh& face, const std::vector<std::uint8_t>& is_pole) {
     }
 }
 
-FaceMesh take_face(const TopoDS_Face& face, Joiner& joiner) {
-  FaceMesh result{FaceSurface(face), 1, false, {}, {}};
+FaceMesh take_face(const ModelFace& of_model, Joiner& joiner) {
+  const TopoDS_Face& face = of_model.face;
+  FaceMesh result{FaceSurface(face), 1, of_model.is_left_out, {}, {}};
+  if (of_model.is_left_out) return result;
   TopLoc_Location place;
   const auto mesh = BRep_Tool::Triangulation(face, place);
   result.is_missing = mesh.IsNull() || mesh->NbTriangles() == 0;
@@ -212,7 +214,7 @@ BodyMesh take_mesh(const Body& body) {
   BodyMesh mesh;
   Joiner joiner(mesh);
   mesh.faces.reserve(body.faces.size());
-  for (const ModelFace& face : body.faces) mesh.faces.push_back(take_face(face.face, joiner));
+  for (const ModelFace& face : body.faces) mesh.faces.push_back(take_face(face, joiner));
   for (FaceMesh& face : mesh.faces) {
     for (Node& node : face.nodes) node.vertex = joiner.find(node.vertex);
     drop_collapsed(face);

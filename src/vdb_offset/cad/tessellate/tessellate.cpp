@@ -4,7 +4,9 @@
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <cmath>
@@ -38,7 +40,8 @@ void mesh_by_opencascade(const CadModel& model, double deflection, double angle)
   TopoDS_Compound all;
   builder.MakeCompound(all);
   for (const Body& body : model.bodies)
-    for (const ModelFace& face : body.faces) builder.Add(all, face.face);
+    for (const ModelFace& face : body.faces)
+      if (!face.is_left_out) builder.Add(all, face.face);
   BRepTools::Clean(all);  // files may have triangles with them
   IMeshTools_Parameters parameters;
   parameters.Deflection = deflection;
@@ -47,6 +50,27 @@ void mesh_by_opencascade(const CadModel& model, double deflection, double angle)
   parameters.InParallel = Standard_False;
   parameters.Relative = Standard_False;
   BRepMesh_IncrementalMesh mesher(all, parameters);
+}
+
+/// Leaves out faces that have no triangles, as those that are no wider than a line; whether there are any.
+bool leave_out_empty(Body& body) {
+  bool is_any = false;
+  for (ModelFace& face : body.faces) {
+    TopLoc_Location place;
+    face.is_left_out = BRep_Tool::Triangulation(face.face, place).IsNull();
+    is_any = is_any || face.is_left_out;
+  }
+  return is_any;
+}
+
+/// Meshes all, and once more where faces came to nothing and their neighbours could be sewn to each other.
+void mesh_all(CadModel& model, double diagonal, double deflection, double angle) {
+  for (Body& body : model.bodies) sew_open_edges(body, model.tolerance, diagonal, model.remarks);
+  mesh_by_opencascade(model, deflection, angle);
+  bool is_sewn = false;
+  for (Body& body : model.bodies)
+    if (leave_out_empty(body)) is_sewn = sew_open_edges(body, model.tolerance, diagonal, model.remarks) || is_sewn;
+  if (is_sewn) mesh_by_opencascade(model, deflection, angle);
 }
 
 /// Faces without triangles, by number and name.
@@ -126,8 +150,7 @@ double deflection_of(const io::CadFineness& fineness, double diagonal) {
 
 io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
   const double diagonal = diagonal_of(model), deflection = deflection_of(fineness, diagonal);
-  for (Body& body : model.bodies) sew_open_edges(body, model.tolerance, diagonal, model.remarks);
-  mesh_by_opencascade(model, deflection, fineness.angle);
+  mesh_all(model, diagonal, deflection, fineness.angle);
   io::CadMesh result;
   Work work;
   for (const Body& body : model.bodies) append_tessellated(body, deflection, result, work);
