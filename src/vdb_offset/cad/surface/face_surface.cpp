@@ -197,14 +197,16 @@ Foot FaceSurface::searched_foot(const gp_Pnt& point, double u, double v) const {
     // Where the distance curves the other way, by the first derivatives alone, which lead downhill.
     if (fa > 0 && fa * fc - fb * fb > 1e-3 * (a * c - b * b)) a = fa, b = fb, c = fc;
     const double determinant = a * c - b * b;
+    const double width = du.Magnitude() * (u_[1] - u_[0]), height = dv.Magnitude() * (v_[1] - v_[0]);
     double step_u = 0, step_v = 0;
-    if (determinant > 1e-14 * a * c) {
+    // At a pole, along the direction that there is; the other parameter is left as it is.
+    if (width <= kNoWidth * height) {
+      step_v = c > 0 ? -gv / c : 0;
+    } else if (height <= kNoWidth * width) {
+      step_u = -gu / a;
+    } else if (determinant > 1e-14 * a * c) {
       step_u = (b * gv - c * gu) / determinant;
       step_v = (b * gu - a * gv) / determinant;
-    } else if (a >= c && a > 0) {
-      step_u = -gu / a;  // at a pole: along the direction that there is
-    } else if (c > 0) {
-      step_v = -gv / c;
     }
     u = std::clamp(u + std::clamp(step_u, -most_u, most_u), u_[0] - most_u, u_[1] + most_u);
     v = std::clamp(v + std::clamp(step_v, -most_v, most_v), v_[0] - most_v, v_[1] + most_v);

@@ -9,7 +9,7 @@ namespace {
 
 // A triangle whose height is this share of its longest side has a direction of its own no more.
 constexpr double kFlat = 1e-8;
-constexpr int kMostPasses = 4;
+constexpr int kMostPasses = 8;
 
 /// Height over the longest side, as a share of that side; which side that is.
 struct Shape {
@@ -27,10 +27,13 @@ Shape shape_of(const BodyMesh& mesh, const FaceMesh& face, const Triangle& t) {
   return {most > 0 ? area / most : 0, longest};
 }
 
-/// Whether a triangle looks to the face's outside.
+/// Whether a triangle looks to the face's outside, at each of its corners.
 bool looks_outward(const BodyMesh& mesh, const FaceMesh& face, const Triangle& t) {
   const auto at = [&](std::size_t k) { return mesh.positions[face.nodes[t[k]].vertex]; };
-  return gp_Vec(at(0), at(1)).Crossed(gp_Vec(at(0), at(2))).Dot(corner_normal(mesh, face, t, 0)) > 0;
+  const gp_Vec across = gp_Vec(at(0), at(1)).Crossed(gp_Vec(at(0), at(2)));
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(across.Dot(corner_normal(mesh, face, t, k)) > 0)) return false;
+  return true;
 }
 
 /// Whether a triangle can take the place of a flat one.

@@ -165,7 +165,7 @@ void part_poles(FaceMesh& face, const std::vector<std::uint8_t>& is_pole) {
     }
 }
 
-FaceMesh take_face(const ModelFace& of_model, Joiner& joiner) {
+FaceMesh take_face(const ModelFace& of_model, Joiner& joiner, std::vector<std::uint8_t>& is_pole) {
   const TopoDS_Face& face = of_model.face;
   FaceMesh result{FaceSurface(face), 1, of_model.is_left_out, {}, {}};
   if (of_model.is_left_out) return result;
@@ -177,7 +177,7 @@ FaceMesh take_face(const ModelFace& of_model, Joiner& joiner) {
   result.side = is_turned ? -1 : 1;
   const std::vector<gp_Pnt> nodes = nodes_of(*mesh, place);
   std::vector<std::uint32_t> vertices(nodes.size(), kNone);
-  std::vector<std::uint8_t> is_pole(nodes.size(), 0);
+  is_pole.assign(nodes.size(), 0);
   join_edges(face, mesh, place, nodes, joiner, vertices, is_pole);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     Node node{vertices[k], 0, 0};
@@ -195,7 +195,6 @@ FaceMesh take_face(const ModelFace& of_model, Joiner& joiner) {
     result.triangles.push_back(
         {static_cast<std::uint32_t>(a - 1), static_cast<std::uint32_t>(b - 1), static_cast<std::uint32_t>(c - 1)});
   }
-  part_poles(result, is_pole);
   return result;
 }
 
@@ -214,11 +213,15 @@ BodyMesh take_mesh(const Body& body) {
   BodyMesh mesh;
   Joiner joiner(mesh);
   mesh.faces.reserve(body.faces.size());
-  for (const ModelFace& face : body.faces) mesh.faces.push_back(take_face(face, joiner));
+  std::vector<std::vector<std::uint8_t>> is_pole(body.faces.size());
+  for (std::size_t f = 0; f < body.faces.size(); ++f)
+    mesh.faces.push_back(take_face(body.faces[f], joiner, is_pole[f]));
   for (FaceMesh& face : mesh.faces) {
     for (Node& node : face.nodes) node.vertex = joiner.find(node.vertex);
     drop_collapsed(face);
   }
+  flip_slivers(mesh);  // while triangles at poles still have corners in common
+  for (std::size_t f = 0; f < body.faces.size(); ++f) part_poles(mesh.faces[f], is_pole[f]);
   joiner.make_segments();
   return mesh;
 }
