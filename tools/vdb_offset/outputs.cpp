@@ -142,6 +142,16 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   return {};
 }
 
+/// The one distance of an output that is a CAD model.
+double distance_of_model(const Job& job, const Destination& to) {
+  const auto number = static_cast<std::size_t>(&to - job.outputs.data());
+  const Distances& distances = job.distances[number];
+  if (!distances.uniform())
+    throw InvalidInput(fmt::format(
+        "{}: expected a distance that is a number, for an output that is a CAD model, got {}", to.mesh, to.distance));
+  return distances[0];
+}
+
 /// Writes each path as a curve.
 void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>& paths) {
   Curves lines;
@@ -255,8 +265,8 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteResult written;
   if (io::is_cad_output(to.mesh))
-    made.cad = io::write_cad(to.mesh, *job.source.file, result.distances, result.positions,
-                             {request.fit_tolerance, request.faceted});
+    made.cad = io::write_cad(to.mesh, *job.source.file, distance_of_model(job, to), result.positions,
+                             {request.fit_tolerance, job.options.only, request.faceted});
   else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   write_report_and_page(job, outcome, made, start);

@@ -17,31 +17,20 @@ namespace {
 
 constexpr double kFitShare = 1e-4;  // of the distance
 
-/// The distance of each face. \throw InvalidInput if vertices of one differ
-std::vector<double> distances_of_faces(const std::string& path, const CadMesh& mesh, const Distances& distances) {
+/// The distance of each face of the model, of which some stay. \throw InvalidInput if only a part of one does
+std::vector<double> distances_of_faces(const std::string& path, const CadMesh& mesh, double distance,
+                                       std::span<const std::uint8_t> only) {
   std::vector<std::optional<double>> found(mesh.faces.size());
-  // A vertex on an edge has one distance for all of its faces: where these differ, those inside of a face tell.
-  std::vector<std::uint32_t> face_of(mesh.positions.size(), kNone);
-  std::vector<std::uint8_t> is_inside(mesh.positions.size(), 1);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      if (face_of[v] != kNone && face_of[v] != mesh.face_of[t]) is_inside[v] = 0;
-      face_of[v] = mesh.face_of[t];
-    }
-  const auto take = [&](std::uint32_t v, std::uint32_t f, bool inside) {
-    if (static_cast<bool>(is_inside[v]) != inside || (!inside && found[f])) return;
-    if (found[f] && *found[f] != distances[v] && inside)
-      throw InvalidInput(
-          fmt::format("{}: expected one distance for each face of a CAD model, got {:g} and {:g} for "
-                      "face {}",
-                      path, *found[f], distances[v], f + 1));
-    found[f] = distances[v];
-  };
-  for (const bool inside : {true, false})
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      for (const std::uint32_t v : mesh.triangles[t]) take(v, mesh.face_of[t], inside);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const double here = only[t] ? distance : 0;
+    std::optional<double>& of_face = found[mesh.face_of[t]];
+    if (of_face && *of_face != here)
+      throw InvalidInput(fmt::format("{}: expected whole faces of a CAD model to be offset, got a part of face {}",
+                                     path, mesh.face_of[t] + 1));
+    of_face = here;
+  }
   std::vector<double> of_face;
-  for (const std::optional<double>& distance : found) of_face.push_back(distance.value_or(0));
+  for (const std::optional<double>& each : found) of_face.push_back(each.value_or(0));
   return of_face;
 }
 
@@ -70,7 +59,7 @@ bool is_cad_output(const std::string& path) {
   return format == Format::Step || format == Format::Brep;
 }
 
-CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Distances& distances,
+CadFileFacts write_cad(const std::string& path, const MeshFile& source, double distance,
                        std::span<const Vec3d> positions, const CadWriting& how) {
   const auto* const model = dynamic_cast<const CadSurface*>(source.exact.get());
   if (!model)
@@ -78,9 +67,8 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Di
         fmt::format("{}: expected an input that is a CAD model, for an output that is one, got {}", path, source.path));
   WriteCad write;
   write.format = name(*format_of(path));
-  if (distances.uniform()) write.distance = distances[0];
-  else write.of_face = distances_of_faces(path, model->mesh(), distances);
-  write.distance = distances.farthest();
+  write.distance = distance;
+  if (!how.only.empty()) write.of_face = distances_of_faces(path, model->mesh(), distance, how.only);
   write.fit_tolerance = how.fit_tolerance > 0 ? how.fit_tolerance : kFitShare * std::abs(write.distance);
   write.faceted = how.faceted;
   if (how.faceted) {

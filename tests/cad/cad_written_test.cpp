@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// CAD models that are written, as they are read again, against closed forms.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "cad/cad_files.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/cad_file.h"
+#include "vdb_offset/offset.h"
+
+using namespace vdb_offset;
+using Made = CadFileFacts::Made;
+
+namespace {
+
+struct Written {
+  CadFileFacts facts;
+  io::MeshFile source, again;
+  OffsetResult result;
+};
+
+std::string path_of(const std::string& name) { return (test::cad_files().folder() / name).string(); }
+
+/// Offsets a model as the command does, and reads what was written.
+Written write(const std::string& name, double distance, const std::string& output, const io::CadWriting& how = {}) {
+  REQUIRE(test::cad_files().is_made());
+  io::ReadOptions reading;
+  reading.cad.deflection = 0.01;
+  Written written{{}, io::read_mesh(path_of(name), reading), {}, {}};
+  OffsetOptions options;
+  options.distance = Distances(distance);
+  options.corners = Corners::Miter;
+  options.exact = written.source.exact.get();
+  written.result = offset(written.source.polygons.view(), options);
+  written.facts = io::write_cad(path_of(output), written.source, distance, written.result.positions, how);
+  written.again = io::read_mesh(path_of(output), reading);
+  return written;
+}
+
+double volume_of_mesh(const Polygons& mesh) {
+  double six = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    six += mesh.positions[face[0]].dot(mesh.positions[face[1]].cross(mesh.positions[face[2]]));
+  }
+  return six / 6;
+}
+
+/// A block of 40 by 30 by 20 with an upright hole of radius 5 and a fillet of radius 4, all moved by a distance.
+double volume_of_block(double d) {
+  const double fillet = std::max(0.0, 4 + d), hole = 5 - d;
+  return ((40 + 2 * d) * (30 + 2 * d) - std::numbers::pi * hole * hole - fillet * fillet * (1 - std::numbers::pi / 4)) *
+         (20 + 2 * d);
+}
+
+}  // namespace
+
+TEST_CASE("cad written: a block stays what it is, outward and inward", "[cad]") {
+  for (const double distance : {0.5, -0.5}) {
+    const Written written = write("block.step", distance, "moved.step");
+    CHECK(written.facts.made == Made::Solid);
+    CHECK(written.facts.kept == 8);
+    CHECK(written.facts.fitted == 0);
+    CHECK(written.facts.gaps.empty());
+    CHECK(written.again.unit_micrometres == 1000.0);
+    CHECK(io::read_materials(written.again).of_face == io::read_materials(written.source).of_face);
+    CHECK(written.facts.volume == Approx(volume_of_block(distance)).epsilon(1e-3));
+    CHECK(volume_of_mesh(written.again.polygons) == Approx(volume_of_block(distance)).epsilon(1e-3));
+    CHECK(volume_of_mesh(written.again.polygons) ==
+          Approx(volume_of_mesh(
+                     {written.result.positions, written.source.polygons.corners, written.source.polygons.face_begin}))
+              .epsilon(1e-3));
+  }
+}
+
+TEST_CASE("cad written: a fillet that the distance swallows is gone, and its neighbours meet", "[cad]") {
+  const Written written = write("block.step", -4.5, "swallowed.brep");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.kept == 7);
+  CHECK(written.facts.swallowed == 1);
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(volume_of_block(-4.5)).epsilon(2e-3));
+}
+
+TEST_CASE("cad written: points of a face are at the distance from the face that it comes of", "[cad]") {
+  for (const char* const name : {"sphere.brep", "cone.brep", "torus.brep"}) {
+    INFO(name);
+    const Written written = write(name, 0.25, "round.step");
+    CHECK(written.facts.made == Made::Solid);
+    const auto& points = written.again.polygons.positions;
+    // Each point is near the one of the source whose offset it is: its own closest.
+    const std::vector<double> distances(points.size(), 0.25);
+    std::vector<std::uint32_t> faces(points.size(), 0);
+    std::vector<Vec3d> feet(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      double nearest = INFINITY;
+      for (std::size_t f = 0; f < written.source.polygons.face_count(); ++f) {
+        const auto face = written.source.polygons.view().face(f);
+        const Vec3d centre = (written.source.polygons.positions[face[0]] + written.source.polygons.positions[face[1]] +
+                              written.source.polygons.positions[face[2]]) /
+                             3.0;
+        if ((points[i] - centre).length() >= nearest) continue;
+        nearest = (points[i] - centre).length();
+        faces[i] = static_cast<std::uint32_t>(f);
+        feet[i] = centre;
+      }
+    }
+    std::size_t exact = 0;
+    for (const double error : written.source.exact->distance_errors_near(faces, feet, distances, points))
+      exact += error < 1e-9;
+    CHECK(exact > points.size() * 9 / 10);  // all but those over sharp edges, which are farther from each face's end
+  }
+}
+
+TEST_CASE("cad written: some faces go, and the others stay", "[cad]") {
+  const io::MeshFile block = io::read_mesh(path_of("block.step"));
+  // The top alone.
+  io::CadWriting how;
+  for (std::size_t f = 0; f < block.polygons.face_count(); ++f) {
+    const auto face = block.polygons.view().face(f);
+    how.only.push_back(
+        std::all_of(face.begin(), face.end(), [&](std::uint32_t v) { return block.polygons.positions[v].z() == 20; }));
+  }
+  const CadFileFacts facts = io::write_cad(path_of("taller.step"), block, 2, block.polygons.positions, how);
+  CHECK(facts.made == Made::Solid);
+  CHECK(volume_of_mesh(io::read_mesh(path_of("taller.step")).polygons) ==
+        Approx(volume_of_block(0) * 22 / 20).epsilon(2e-3));
+}
+
+TEST_CASE("cad written: triangles where they are asked for and nothing else is to be had", "[cad]") {
+  // So far inward that nothing of the hole's wall is left of the block.
+  const Written written = write("block.step", -6, "facets.step", {0, {}, true});
+  CHECK(written.facts.made != Made::Faces);
+  CHECK(written.again.polygons.face_count() > 0);
+}
+
+TEST_CASE("cad written: what cannot be is told in a line", "[cad]") {
+  io::MeshFile mesh = io::parse_mesh("a.obj", io::Format::Obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK_THROWS_WITH(io::write_cad(path_of("no.step"), mesh, 1, mesh.polygons.positions),
+                    Catch::Contains("expected an input that is a CAD model, for an output that is one, got a.obj"));
+  const io::MeshFile block = io::read_mesh(path_of("block.step"));
+  io::CadWriting some;
+  some.only.assign(block.polygons.face_count(), 0);
+  some.only[0] = 1;
+  CHECK_THROWS_WITH(io::write_cad(path_of("no.step"), block, 1, block.polygons.positions, some),
+                    Catch::Contains("no.step: expected whole faces of a CAD model to be offset, got a part of face "));
+  CHECK_FALSE(std::filesystem::exists(path_of("no.step")));
+}
