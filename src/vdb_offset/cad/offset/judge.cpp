@@ -173,7 +173,7 @@ class Judge {
   Verdict judge() {
     check_topology();
     if (!verdict_.faults.empty()) return verdict_;
-    const Soup source(source_, 0.02 * far_, 0.25), result(result_, 0.01 * far_, 0.3);
+    const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.1 * far_, 0.3);
     if (!result.is_complete()) fault("a face has no triangles");
     if (result.triangles().empty()) return verdict_;
     verdict_.volume = result.volume();
@@ -182,7 +182,7 @@ class Judge {
     if (is_closed_ && verdict_.volume < 0) fault("the result is turned inside out");
     check_points(source, result);
     check_cover(source, result);
-    if (crosses(result) && crosses(Soup(result_, 0.002 * far_, 0.1))) fault("the result crosses itself");
+    if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
     return verdict_;
   }
 

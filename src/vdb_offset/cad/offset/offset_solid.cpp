@@ -13,11 +13,25 @@
 
 #include "vdb_offset/cad/offset/arrange.h"
 #include "vdb_offset/cad/offset/build.h"
+#include "vdb_offset/cad/offset/judge.h"
 
 namespace vdb_offset::cad {
 namespace {
 
 double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
+
+void judge(const OffsetCadRequest& request, OffsetCadResult& result) {
+  if (result.shape.IsNull()) return;
+  if (!result.gaps.empty()) result.kind = CadKind::Faces;
+  else if (request.distance_at) {
+    if (!BRepCheck_Analyzer(result.shape).IsValid()) result.gaps.push_back("the topology is not valid");
+  } else if (request.samples > 0) {
+    JudgeOptions options;
+    options.samples = request.samples;
+    result.gaps = judge_offset(request.source, result.shape, request.distance, options).faults;
+  }
+  if (!result.gaps.empty()) result.kind = CadKind::Faces;
+}
 
 }  // namespace
 
@@ -89,6 +103,7 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
   }
   if (made == 1) result.shape = last;
   else if (made > 1) result.shape = all;
+  judge(request, result);
   return result;
 }
 

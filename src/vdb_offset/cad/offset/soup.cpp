@@ -4,6 +4,7 @@
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
+#include <IMeshTools_Parameters.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
@@ -116,9 +117,15 @@ bool pierces(const Soup::Triangle& a, const Soup::Triangle& b) {
 
 }  // namespace
 
-Soup::Soup(const TopoDS_Shape& shape, double deflection, double angle) : deflection_(deflection) {
+Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflection, double angle)
+    : deflection_(deflection) {
   const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape).Shape();
-  BRepMesh_IncrementalMesh(copy, deflection, false, angle);
+  IMeshTools_Parameters parameters;
+  parameters.Deflection = border_deflection;
+  parameters.DeflectionInterior = deflection;
+  parameters.Angle = angle;
+  parameters.AngleInterior = angle;
+  BRepMesh_IncrementalMesh(copy, parameters);
   std::map<std::array<double, 3>, int> numbers;
   for (TopExp_Explorer e(copy, TopAbs_FACE); e.More(); e.Next()) {
     const TopoDS_Face& f = TopoDS::Face(e.Current());
@@ -151,7 +158,7 @@ Soup::Soup(const TopoDS_Shape& shape, double deflection, double angle) : deflect
         t.is_border[k] = uses[side(n[(k + 1) % 3], n[(k + 2) % 3])] == 1;
         t.is_on_border[k] = on_border[n[k]];
         t.uv[k] = mesh->HasUVNodes() ? mesh->UVNode(n[k]) : gp_Pnt2d();
-        const double grid = 1e-4 * deflection;
+        const double grid = 1e-4 * border_deflection;
         const std::array<double, 3> key = {std::round(t.points[k].X() / grid), std::round(t.points[k].Y() / grid),
                                            std::round(t.points[k].Z() / grid)};
         t.nodes[k] = numbers.emplace(key, static_cast<int>(numbers.size())).first->second;

@@ -35,8 +35,8 @@ class Soup {
     double sign;  ///< Of the material's outside along Su x Sv.
   };
 
-  /// Tessellates a copy of the shape.
-  Soup(const TopoDS_Shape& shape, double deflection, double angle);
+  /// Tessellates a copy of the shape: borders of faces more closely than what lies between them.
+  Soup(const TopoDS_Shape& shape, double border_deflection, double deflection, double angle);
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const std::vector<Face>& faces() const { return faces_; }

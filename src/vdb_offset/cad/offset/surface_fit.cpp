@@ -15,6 +15,7 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr std::size_t kMostKnots = 400;
+constexpr int kMostRoundsInVain = 3;
 
 TColStd_Array1OfReal sequence_of(const Knots& k) {
   int n = 0;
@@ -146,6 +147,8 @@ Knots offset_knots(int degree, const std::vector<double>& knots, const std::vect
 }
 
 FittedSurface fit_surface(const std::function<gp_Pnt(double, double)>& map, Knots u, Knots v, double tolerance) {
+  double last_error = 0;
+  int rounds_in_vain = 0;
   while (true) {
     FittedSurface fit{interpolate_map(map, u, v), 0};
     const TColStd_Array1OfReal at_u = schoenberg_points(u, sequence_of(u)), at_v = schoenberg_points(v, sequence_of(v));
@@ -156,7 +159,10 @@ FittedSurface fit_surface(const std::function<gp_Pnt(double, double)>& map, Knot
                                       [&](double b, double a) { return map(a, b).Distance(fit.surface->Value(a, b)); });
     fit.error = error_u + error_v;
     if (error_u <= tolerance / 2 && error_v <= tolerance / 2) return fit;
-    if (u.knots.size() + v.knots.size() > kMostKnots) return fit;
+    // Halving spans does not help where the map is not smooth.
+    rounds_in_vain = last_error > 0 && fit.error > 0.7 * last_error ? rounds_in_vain + 1 : 0;
+    last_error = fit.error;
+    if (u.knots.size() + v.knots.size() > kMostKnots || rounds_in_vain >= kMostRoundsInVain) return fit;
     u = halved(u, marked_u);
     v = halved(v, marked_v);
   }
