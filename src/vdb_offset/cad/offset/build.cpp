@@ -172,12 +172,13 @@ class ShellBuilder {
     for (int first : m.loops) {
       TopoDS_Wire wire;
       builder_.MakeWire(wire);
+      // Loops go round the face as it lies in the shell; wires belong to the face turned forward, and readers of files
+      // want their edges in turn.
       for (int h = first;;) {
         const HalfEdge& half = model_.halves[h];
-        // Loops go round the face as it lies in the shell; wires belong to the face turned forward.
         const bool forward = half.forward == (m.sign > 0);
         builder_.Add(wire, edges_[half.edge].Oriented(forward ? TopAbs_FORWARD : TopAbs_REVERSED));
-        h = half.next;
+        h = m.sign > 0 ? half.next : half.previous;
         if (h == first) break;
       }
       wire.Closed(true);
