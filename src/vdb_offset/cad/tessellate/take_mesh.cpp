@@ -8,7 +8,10 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Vertex.hxx>
+#include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "vdb_offset/cad/tessellate/body_mesh.h"
 
@@ -207,6 +210,46 @@ void drop_collapsed(FaceMesh& face) {
   });
 }
 
+/// Three vertices in increasing order, and whether a triangle goes round them in that sense.
+struct Corners {
+  Triangle sorted;
+  bool is_even;
+};
+
+Corners corners_of(const FaceMesh& face, const Triangle& t) {
+  Triangle v{face.nodes[t[0]].vertex, face.nodes[t[1]].vertex, face.nodes[t[2]].vertex};
+  bool is_even = true;
+  const auto order = [&](std::size_t a, std::size_t b) {
+    if (v[a] > v[b]) std::swap(v[a], v[b]), is_even = !is_even;
+  };
+  order(0, 1), order(1, 2), order(0, 1);
+  return {v, is_even};
+}
+
+/// Without pairs of triangles of the same vertices and opposite sense, to which faces fold together beside their poles:
+/// all their sides have other triangles.
+void drop_flaps(BodyMesh& mesh) {
+  struct Place {
+    Corners corners;
+    std::uint32_t face, triangle;
+  };
+  std::vector<Place> places;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
+    for (std::uint32_t t = 0; t < mesh.faces[f].triangles.size(); ++t)
+      places.push_back({corners_of(mesh.faces[f], mesh.faces[f].triangles[t]), f, t});
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.corners.sorted, a.face, a.triangle) < std::tie(b.corners.sorted, b.face, b.triangle);
+  });
+  constexpr std::uint32_t kFlap = kNone;  // for a first corner
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    const Place &a = places[k], &b = places[k + 1];
+    if (a.corners.sorted != b.corners.sorted || a.corners.is_even == b.corners.is_even) continue;
+    for (const Place* place : {&a, &b}) mesh.faces[place->face].triangles[place->triangle][0] = kFlap;
+    ++k;
+  }
+  for (FaceMesh& face : mesh.faces) std::erase_if(face.triangles, [](const Triangle& t) { return t[0] == kFlap; });
+}
+
 }  // namespace
 
 BodyMesh take_mesh(const Body& body) {
@@ -220,6 +263,7 @@ BodyMesh take_mesh(const Body& body) {
     for (Node& node : face.nodes) node.vertex = joiner.find(node.vertex);
     drop_collapsed(face);
   }
+  drop_flaps(mesh);
   flip_slivers(mesh);  // while triangles at poles still have corners in common
   for (std::size_t f = 0; f < body.faces.size(); ++f) part_poles(mesh.faces[f], is_pole[f]);
   joiner.make_segments();

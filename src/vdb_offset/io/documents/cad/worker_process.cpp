@@ -33,16 +33,16 @@ OpenFile beyond_the_workers(int number) {
   return OpenFile(copy);
 }
 
-struct Actions {
+struct SpawnActions {
   posix_spawn_file_actions_t list;
-  Actions() { require_no(posix_spawn_file_actions_init(&list), "posix_spawn"); }
-  ~Actions() { posix_spawn_file_actions_destroy(&list); }
+  SpawnActions() { require_no(posix_spawn_file_actions_init(&list), "posix_spawn"); }
+  ~SpawnActions() { posix_spawn_file_actions_destroy(&list); }
 };
 
-struct Attributes {
+struct SpawnAttributes {
   posix_spawnattr_t list;
-  Attributes() { require_no(posix_spawnattr_init(&list), "posix_spawn"); }
-  ~Attributes() { posix_spawnattr_destroy(&list); }
+  SpawnAttributes() { require_no(posix_spawnattr_init(&list), "posix_spawn"); }
+  ~SpawnAttributes() { posix_spawnattr_destroy(&list); }
 };
 
 /// Signals as a program finds them that nobody has meddled with; and no keys of a terminal reach the worker, which ends
@@ -58,7 +58,7 @@ void set_attributes(posix_spawnattr_t& attributes) {
 }
 
 pid_t spawn(const std::string& program, int messages, int model, int end) {
-  const Actions files;
+  const SpawnActions files;
   auto* const list = const_cast<posix_spawn_file_actions_t*>(&files.list);
   posix_spawn_file_actions_addopen(list, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(list, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
@@ -66,7 +66,7 @@ pid_t spawn(const std::string& program, int messages, int model, int end) {
   posix_spawn_file_actions_adddup2(list, messages, kWorkerMessages);
   posix_spawn_file_actions_adddup2(list, model, kWorkerModel);
   posix_spawn_file_actions_adddup2(list, end, kWorkerEnd);
-  Attributes attributes;
+  SpawnAttributes attributes;
   set_attributes(attributes.list);
   std::string name = "vdb_offset_cad";
   char* const words[] = {name.data(), nullptr};
