@@ -2,7 +2,10 @@
 #include "vdb_offset/cad/write/write_offset.h"
 
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRep_Builder.hxx>
@@ -14,7 +17,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
+#include <fstream>
+#include <functional>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "vdb_offset/cad/offset/judge.h"
@@ -27,6 +34,20 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr std::size_t kMostGaps = 8;  // that are told
+// Of faces that fold over, OpenCASCADE makes triangles without end. Models of 400 faces take a tenth of this.
+constexpr rlim_t kMostMemory = rlim_t{2} << 30;
+constexpr int kFailed = 3;   // an exit code
+#ifdef __SANITIZE_ADDRESS__  // which has terabytes of addresses
+constexpr bool kMayLimit = false;
+#else
+constexpr bool kMayLimit = true;
+#endif
+
+rlim_t addresses() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
 
 /// A file in memory, which has a name for as long as this lives.
 class MemoryFile {
@@ -39,6 +60,13 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  void write(std::string_view all) const {
+    while (!all.empty()) {
+      const ssize_t put = ::write(descriptor_, all.data(), all.size());
+      if (put <= 0) throw std::system_error(errno, std::generic_category(), "write");
+      all.remove_prefix(static_cast<std::size_t>(put));
+    }
+  }
   std::string bytes() const {
     struct stat facts {};
     if (::fstat(descriptor_, &facts) != 0) throw std::system_error(errno, std::generic_category(), "fstat");
@@ -55,6 +83,9 @@ class MemoryFile {
   int descriptor_;
 };
 
+/// What is tried: the whole model, and if that is not good its faces or triangles; these alone; or triangles alone.
+enum class Attempt { Whole, Rest, Facets };
+
 /// A body of the source, and its offset.
 struct OffsetBody {
   const Body& body;
@@ -66,14 +97,18 @@ class OffsetWriter {
  public:
   OffsetWriter(const CadModel& model, const io::WriteCad& write) : model_(model), write_(write) {}
 
-  io::CadWritten run() {
+  io::CadWritten run(Attempt attempt) {
+    if (attempt == Attempt::Facets) {
+      write_facets();
+      return std::move(written_);
+    }
     std::size_t first_face = 0;
     for (const Body& body : model_.bodies) {
       bodies_.push_back({body, shape_of(body), {}});
       make(bodies_.back(), first_face);
       first_face += body.faces.size();
     }
-    if (try_whole()) return std::move(written_);
+    if (attempt == Attempt::Whole && try_whole()) return std::move(written_);
     if (write_.faceted) write_facets();
     else write_faces();
     written_.gaps.resize(std::min(written_.gaps.size(), kMostGaps));
@@ -91,6 +126,7 @@ class OffsetWriter {
     request.source = body.source.shape;
     request.distance = is_even() && !write_.of_face.empty() ? write_.of_face[0] : write_.distance;
     request.fit_tolerance = write_.fit_tolerance;
+    request.samples = 0;  // what counts is the file, as it is read again
     if (!is_even())
       request.distance_at = [&, first_face](int face, double, double) {
         return distance_of(first_face + body.source.face_numbers[static_cast<std::size_t>(face)]);
@@ -211,6 +247,35 @@ class OffsetWriter {
   io::CadWritten written_;
 };
 
+/// Does work in a process of its own. Nothing if that is ended by a signal or an exception; `gap` then says so.
+std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, std::string& gap) {
+  const MemoryFile reply;
+  const pid_t child = ::fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, addresses() + kMostMemory);
+    if (kMayLimit) ::setrlimit(RLIMIT_AS, &limit);
+    try {
+      reply.write(io::pack(work()));
+    } catch (const Standard_Failure&) {
+      ::_exit(kFailed);
+    } catch (const std::exception&) {
+      ::_exit(kFailed);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+  if (status == 0) return io::unpack_written(reply.bytes());
+  gap = WIFSIGNALED(status) ? "OpenCASCADE is ended by signal " + std::to_string(WTERMSIG(status)) + " by the result"
+                            : std::string("OpenCASCADE fails with the result");
+  return std::nullopt;
+}
+
 }  // namespace
 
 io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
@@ -219,7 +284,21 @@ io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
   if (!write.of_face.empty() && write.of_face.size() != faces)
     throw InvalidCad("expected distances of " + std::to_string(faces) + " faces, got " +
                      std::to_string(write.of_face.size()));
-  return OffsetWriter(model, write).run();
+  std::vector<std::string> gaps;
+  for (const Attempt attempt : {Attempt::Whole, Attempt::Rest, Attempt::Facets}) {
+    if (attempt == Attempt::Facets && !write.faceted) break;
+    std::string gap;
+    auto written = in_own_process([&] { return OffsetWriter(model, write).run(attempt); }, gap);
+    if (!written) {
+      gaps.push_back(std::move(gap));
+      continue;
+    }
+    written->gaps.insert(written->gaps.begin(), gaps.begin(), gaps.end());
+    return std::move(*written);
+  }
+  io::CadWritten nothing;
+  nothing.gaps = std::move(gaps);
+  return nothing;
 }
 
 }  // namespace vdb_offset::cad
