@@ -7,8 +7,10 @@
 #include <GeomAPI.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_Circle.hxx>
+#include <Geom_ElementarySurface.hxx>
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
+#include <Geom_TrimmedCurve.hxx>
 #include <Precision.hxx>
 #include <algorithm>
 #include <cmath>
@@ -188,8 +190,40 @@ Handle(Geom2d_Curve) straight(const std::vector<double>& t, const std::vector<gp
     const double part = (t[i] - t.front()) / length;
     if (uv.front().Translated(along * part).Distance(uv[i]) > 1e-9 * (1 + length)) return {};
   }
-  const gp_Dir2d direction(along);
+  gp_Dir2d direction(along);
+  if (std::abs(direction.X()) < 1e-8) direction = gp_Dir2d(0, direction.Y());
+  if (std::abs(direction.Y()) < 1e-8) direction = gp_Dir2d(direction.X(), 0);
   return new Geom2d_Line(uv.front().Translated(gp_Vec2d(direction) * -t.front()), direction);
+}
+
+// The line or circle of an elementary surface under a line along u or v: exact, so that a reader that projects it on
+// the surface does not find it to both sides of a seam.
+Handle(Geom_Curve) iso_along(const Handle(Geom_Surface) & surface, const Handle(Geom2d_Curve) & pcurve) {
+  const auto line = Handle(Geom2d_Line)::DownCast(pcurve);
+  if (line.IsNull() || !surface->IsKind(STANDARD_TYPE(Geom_ElementarySurface)) ||
+      surface->IsKind(STANDARD_TYPE(Geom_Plane)))
+    return {};
+  const gp_Dir2d d = line->Direction();
+  const gp_Pnt2d at = line->Location();
+  const bool along_u = std::abs(d.Y()) < 1e-12;
+  if (!along_u && std::abs(d.X()) >= 1e-12) return {};
+  Handle(Geom_Curve) curve = along_u ? surface->VIso(at.Y()) : surface->UIso(at.X());
+  while (const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(curve)) curve = trimmed->BasisCurve();
+  curve = Handle(Geom_Curve)::DownCast(curve->Copy());
+  // The curve's parameter is u or v: start + t or start - t.
+  double shift = along_u ? at.X() : at.Y();
+  if ((along_u ? d.X() : d.Y()) < 0) {
+    shift = curve->ReversedParameter(shift);
+    curve->Reverse();
+  }
+  if (const auto l = Handle(Geom_Line)::DownCast(curve)) {
+    curve->Translate(gp_Vec(l->Lin().Direction()) * shift);
+    return curve;
+  }
+  const auto c = Handle(Geom_Circle)::DownCast(curve);
+  if (c.IsNull() || c->Radius() < 1e-7) return {};
+  curve->Rotate(c->Circ().Axis(), shift);
+  return curve;
 }
 
 std::vector<gp_Pnt2d> uv_of(const Trace& t, int side) {
@@ -242,6 +276,15 @@ EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& tr
   }
   r.first = t.front();
   r.last = t.back();
+  for (int i = 0; i < 2; i++) {
+    const HalfEdge* h = tracer.side(i);
+    if (!h) continue;
+    const Handle(Geom2d_Curve) p = keeps_pcurve(e, *h) ? h->pcurve : straight(t, uv_of(trace, i));
+    const Handle(Geom_Curve) iso = iso_along(tracer.surface(i), p);
+    if (iso.IsNull()) continue;
+    r.curve = iso;
+    break;
+  }
   for (int i = 0; i < 2; i++) {
     const HalfEdge* h = tracer.side(i);
     if (!h) continue;

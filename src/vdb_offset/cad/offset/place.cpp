@@ -200,11 +200,15 @@ void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   }
   if (is_smooth) {
     // All faces touch here: the vertex is the offset of the source's, and no curve changes its range.
+    const auto at = [&](int half) {
+      const HalfEdge& h = model.halves[half];
+      return model.faces[h.face].offset.surface->Value(h.origin.X(), h.origin.Y());
+    };
     gp_XYZ sum(0, 0, 0);
-    for (int h : v.ring) sum += moved_start(model, h).XYZ();
+    for (int h : v.ring) sum += at(h).XYZ();
     v.point = gp_Pnt(sum / static_cast<double>(v.ring.size()));
     v.residual = 0;
-    for (int h : v.ring) v.residual = std::max(v.residual, v.point.Distance(moved_start(model, h)));
+    for (int h : v.ring) v.residual = std::max(v.residual, v.point.Distance(at(h)));
     // But at the tip of a cone, where curves meet beyond their ends.
     if (v.residual <= tolerances.gap || v.ring.size() < 2) {
       spread_vertex(model, vertex);
