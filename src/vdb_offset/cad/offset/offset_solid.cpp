@@ -7,6 +7,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,12 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
   std::vector<TopoDS_Shape> pieces;
   for (TopExp_Explorer s(request.source, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
   for (TopExp_Explorer s(request.source, TopAbs_SHELL, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
+  for (TopExp_Explorer f(request.source, TopAbs_FACE, TopAbs_SHELL); f.More(); f.Next()) {
+    TopoDS_Shell shell;
+    builder.MakeShell(shell);
+    builder.Add(shell, f.Current());
+    pieces.push_back(shell);
+  }
   int first_face = 0, made = 0;
   TopoDS_Shape last;
   for (const TopoDS_Shape& piece : pieces) {
