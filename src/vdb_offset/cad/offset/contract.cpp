@@ -77,6 +77,7 @@ bool join(Model& model, std::vector<int> vertices) {
     model.vertices[vertices[i]].is_gone = true;
     model.vertices[vertices[i]].ring.clear();
   }
+  model.vertices[vertices.front()].has_near = false;
   return rebuild_ring(model, vertices.front());
 }
 

@@ -46,8 +46,10 @@ struct ModelVertex {
   std::vector<int> ring;  ///< Half-edges that start here, each with its face to the left, in turn; poles left out.
   gp_Pnt source;          ///< Where it is in the source.
   gp_Pnt point;           ///< Where it is in the offset.
-  double residual = 0;    ///< How far the faces miss the point.
-  bool is_open = false;   ///< On the border of a shell: the ring starts at one end of the border.
+  gp_Pnt near;            ///< Where to look for it first, if `has_near`: faces may meet in more than one point.
+  bool has_near = false;
+  double residual = 0;   ///< How far the faces miss the point.
+  bool is_open = false;  ///< On the border of a shell: the ring starts at one end of the border.
   bool is_gone = false;
 };
 

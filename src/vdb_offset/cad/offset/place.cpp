@@ -220,6 +220,11 @@ void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   v.point = mitre_point(model, v.source, v.ring);
   // Another try starts from the source, not from where the last one ended.
   for (int h : v.ring) model.halves[h].start = model.halves[h].origin;
+  if (v.has_near) {
+    v.point = v.near;
+    for (Support& s : supports)
+      if (s.curve.IsNull()) s.uv = project(*s.surface, v.point, s.uv);
+  }
   // Curves begin where the mitre's foot is, not at the source's vertex: fillets are about as small as the distance.
   v.residual = meet(supports, v.point);
   std::size_t at = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <gp_Ax3.hxx>
+#include <map>
 #include <optional>
 
 namespace vdb_offset::cad {
@@ -15,6 +16,9 @@ using Triangulation = std::vector<Triangle>;
 
 // More corners have too many triangulations (429 of nine).
 constexpr int kMostCorners = 9;
+
+// What a border that seems to cross itself counts, in distances.
+constexpr double kCrossing = 1e4;
 
 // Faces that miss each other at a vertex by no more, in distances, are joined there where there is no better way.
 constexpr double kCloseEnough = 0.015;
@@ -72,7 +76,6 @@ class Splitter {
 
   struct Point {
     gp_Pnt point;
-    std::vector<double> t;  // Of its smooth sides, as they come.
     bool is_good;
   };
 
@@ -86,12 +89,22 @@ class Splitter {
 
   Point point_of(const Triangle& t) {
     const std::vector<int> corners = {ring_[t[0]], ring_[t[1]], ring_[t[2]]};
-    std::vector<Support> supports = supports_of(model_, corners, sides_of(t));
+    const std::vector<int> sides = sides_of(t);
+    gp_Vec along(0, 0, 0);
+    for (int side : sides) along += direction(side);
+    if (along.Magnitude() > 1e-9) along.Normalize();
     Point p;
-    p.point = mitre_point(model_, source_, corners);
-    p.is_good = meet(supports, p.point) < tolerances_.gap;
-    for (const Support& s : supports)
-      if (!s.curve.IsNull()) p.t.push_back(s.t);
+    // Where the three touch each other at the vertex, they meet to both sides of it: the point is wanted that lies on
+    // the side of the triangle's own edges.
+    for (double way : {0.0, 0.5, 1.5, 4.0}) {
+      std::vector<Support> supports = supports_of(model_, corners, sides);
+      p.point = mitre_point(model_, source_, corners).Translated(along * (way * tolerances_.distance));
+      for (Support& s : supports)
+        if (s.curve.IsNull()) s.uv = project(*s.surface, p.point, s.uv);
+      p.is_good = meet(supports, p.point) < tolerances_.gap;
+      if (p.is_good) break;
+    }
+    start_[t] = p.point;
     return p;
   }
 
@@ -112,7 +125,8 @@ class Splitter {
       const std::vector<int> chain = chain_of(t, corner);
       std::vector<gp_Pnt> line;
       for (int k : chain) line.push_back(points[k].point);
-      if (!is_simple(line, corner)) return -1;
+      // Only if there is no other: directions in the source tell less of the offset the farther it is.
+      if (!is_simple(line, corner)) length += kCrossing * tolerances_.distance;
       for (std::size_t i = 0; i + 1 < line.size(); i++) length += line[i].Distance(line[i + 1]) / 2;
     }
     return length;
@@ -184,6 +198,7 @@ class Splitter {
   std::vector<gp_Vec> normals_;
   gp_Pnt source_;
   int n_ = 0;
+  std::map<Triangle, gp_Pnt> start_;  // Of what was tried, where its point was found.
 };
 
 void Splitter::apply(const Triangulation& t) {
@@ -255,7 +270,11 @@ void Splitter::apply(const Triangulation& t) {
       model_.halves[h].vertex = vertex[k];
     }
   }
-  for (int v : vertex) place_vertex(model_, v, tolerances_);
+  for (std::size_t k = 0; k < t.size(); k++) {
+    model_.vertices[vertex[k]].near = start_[t[k]];
+    model_.vertices[vertex[k]].has_near = true;
+    place_vertex(model_, vertex[k], tolerances_);
+  }
 }
 
 }  // namespace

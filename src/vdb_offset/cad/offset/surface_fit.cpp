@@ -15,7 +15,7 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr std::size_t kMostKnots = 400;
-constexpr int kMostRoundsInVain = 3;
+constexpr int kMostRoundsInVain = 5;
 
 TColStd_Array1OfReal sequence_of(const Knots& k) {
   int n = 0;
