@@ -24,7 +24,7 @@ double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
 void judge(const OffsetCadRequest& request, OffsetCadResult& result) {
   if (result.shape.IsNull()) return;
   if (!result.gaps.empty()) result.kind = CadKind::Faces;
-  else if (request.distance_at) {
+  else if (request.distance_at || !request.of_face.empty()) {
     if (!BRepCheck_Analyzer(result.shape).IsValid()) result.gaps.push_back("the topology is not valid");
   } else if (request.samples > 0) {
     JudgeOptions options;
@@ -68,7 +68,9 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
       for (std::size_t f = 0; f < model.faces.size(); f++) {
         ModelFace& face = model.faces[f];
         const int number = first_face + static_cast<int>(f);
-        face.distance.constant = face.sign * request.distance;
+        const double own =
+            request.of_face.empty() ? request.distance : request.of_face[static_cast<std::size_t>(number)];
+        face.distance.constant = face.sign * own;
         if (request.distance_at)
           face.distance.at = [&request, number, sign = face.sign](double u, double v) {
             return sign * request.distance_at(number, u, v);

@@ -13,8 +13,9 @@ struct OffsetCadRequest {
   double distance = 0;  ///< Towards the outside of the material; below 0 inward.
   /// Along the outside of a face (numbered as TopExp_Explorer meets them) at its (u, v), in place of `distance`.
   std::function<double(int face, double u, double v)> distance_at;
-  double fit_tolerance = 0;  ///< 0: 1e-4 |distance|.
-  int samples = 10000;       ///< Of the judge's; 0: not judged.
+  std::vector<double> of_face;  ///< In place of `distance`: of each face, by the same numbers; or empty.
+  double fit_tolerance = 0;     ///< 0: 1e-4 |distance|.
+  int samples = 10000;          ///< Of the judge's; 0: not judged.
 };
 
 enum class CadKind { Solid, Shells, Faces };

@@ -128,9 +128,7 @@ class OffsetWriter {
     request.fit_tolerance = write_.fit_tolerance;
     request.samples = 0;  // what counts is the file, as it is read again
     if (!is_even())
-      request.distance_at = [&, first_face](int face, double, double) {
-        return distance_of(first_face + body.source.face_numbers[static_cast<std::size_t>(face)]);
-      };
+      for (const std::size_t face : body.source.face_numbers) request.of_face.push_back(distance_of(first_face + face));
     try {
       body.result = offset_cad(request);
     } catch (const Standard_Failure& failure) {

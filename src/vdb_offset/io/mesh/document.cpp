@@ -18,8 +18,8 @@ void Document::read_attributes(const MeshFile&, Attributes&) const {}
 FaceNames Document::face_names() const { return {}; }
 
 std::vector<std::uint8_t> Document::select(const MeshFile& source, const Selector& selector) const {
-  throw InvalidOption(fmt::format("{}: expected a CAD model to choose '{}' of, got another file", source.path,
-                                  selector.name));
+  throw InvalidOption(
+      fmt::format("{}: expected a CAD model to choose '{}' of, got another file", source.path, selector.name));
 }
 
 std::vector<double> Document::vertex_numbers(const MeshFile& source, const std::string& name) const {
