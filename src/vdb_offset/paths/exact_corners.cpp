@@ -26,18 +26,22 @@ ExactCorners::ExactCorners(const ExactSurface& exact, PolygonView mesh, const Su
         if (surface.welded[mesh.corners[c]] == surface.triangles[t][k])
           normals_[3 * t + k] = exact.corner_normals()[c] * (surface.is_turned(t) ? -1.0 : 1.0);
   }
-  known_.assign(surface.vertices.size(), 1);
+  find_known(mesh);
+}
+
+void ExactCorners::find_known(PolygonView mesh) {
+  known_.assign(surface_.vertices.size(), 1);
   for (std::uint32_t v = 0; v < known_.size(); ++v)
-    for (const auto t : surface.triangles_around(v))
-      if (normal(t, v).lengthSqr() == 0 && surface.triangle_normals[t].lengthSqr() > 0) known_[v] = 0;
+    for (const auto t : surface_.triangles_around(v))
+      if (normal(t, v).lengthSqr() == 0 && surface_.triangle_normals[t].lengthSqr() > 0) known_[v] = 0;
+  for (std::uint32_t v = 0; v < surface_.welded.size(); ++v)
+    if (const auto w = surface_.welded[v]; w != kNone && surface_.representative[w] != v) known_[w] = 0;
   // Those at the edge of a part that moves are held by faces that stay.
   std::vector<std::uint8_t> moves(mesh.face_count(), 0);
-  for (const std::uint32_t f : surface.face) moves[f] = 1;
+  for (const std::uint32_t f : surface_.face) moves[f] = 1;
   for (std::size_t f = 0; f < moves.size(); ++f)
     for (const std::uint32_t v : mesh.face(f))
-      if (const auto w = surface.welded[v]; !moves[f] && w != kNone) known_[w] = 0;
-  for (std::uint32_t v = 0; v < surface.welded.size(); ++v)
-    if (const auto w = surface.welded[v]; w != kNone && surface.representative[w] != v) known_[w] = 0;
+      if (const auto w = surface_.welded[v]; !moves[f] && w != kNone) known_[w] = 0;
 }
 
 bool ExactCorners::is_sharp(std::uint32_t vertex) const {

@@ -36,6 +36,8 @@ class ExactCorners {
                           std::span<Vec3d> points) const;
 
  private:
+  void find_known(PolygonView mesh);
+
   const ExactSurface& exact_;
   const Surface& surface_;
   std::vector<Vec3d> normals_;       // three for each triangle

@@ -30,6 +30,7 @@ std::vector<double> distances_of_faces(const std::string& path, const CadMesh& m
     of_face = here;
   }
   std::vector<double> of_face;
+  of_face.reserve(found.size());
   for (const std::optional<double>& each : found) of_face.push_back(each.value_or(0));
   return of_face;
 }
