@@ -26,8 +26,8 @@ VDB_OFFSET_API bool is_cad_output(const std::string& path);
 /// over the same (u, v), and where these do not make a valid solid, faces or triangles. The file is read again before.
 /// \param distance towards the outside, world units; negative is inward
 /// \param positions of the offset mesh
-/// \throw InvalidInput if the source is no CAD model, only a part of one of its faces is offset, or nothing could be
-/// made; WriteError
+/// \throw InvalidInput if the source is no CAD model, or only a part of one of its faces is offset; Error if nothing
+/// could be made; WriteError
 VDB_OFFSET_API CadFileFacts write_cad(const std::string& path, const MeshFile& source, double distance,
                                       std::span<const Vec3d> positions, const CadWriting& how = {});
 

@@ -78,7 +78,7 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, double d
   }
   CadWritten written = model->write(write);
   if (written.made == CadMade::Nothing)
-    throw InvalidInput(
+    throw Error(
         fmt::format("{}: expected faces of a CAD model that can be offset, got none{}{} (--faceted writes "
                     "triangles)",
                     path, written.gaps.empty() ? "" : ": ", written.gaps.empty() ? "" : written.gaps.front()));
