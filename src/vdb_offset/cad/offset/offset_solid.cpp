@@ -34,9 +34,7 @@ void judge(const OffsetCadRequest& request, OffsetCadResult& result) {
   if (!result.gaps.empty()) result.kind = CadKind::Faces;
 }
 
-}  // namespace
-
-OffsetCadResult offset_cad(const OffsetCadRequest& request) {
+OffsetCadResult offset_all(const OffsetCadRequest& request) {
   OffsetCadResult result;
   Tolerances tolerances;
   tolerances.distance = std::abs(request.distance);
@@ -114,6 +112,18 @@ OffsetCadResult offset_cad(const OffsetCadRequest& request) {
   else if (made > 1) result.shape = all;
   judge(request, result);
   return result;
+}
+
+}  // namespace
+
+OffsetCadResult offset_cad(const OffsetCadRequest& request) {
+  try {
+    return offset_all(request);
+  } catch (const Standard_Failure& failure) {
+    OffsetCadResult result;
+    result.gaps.push_back(std::string("the offset failed: ") + failure.GetMessageString());
+    return result;
+  }
 }
 
 }  // namespace vdb_offset::cad

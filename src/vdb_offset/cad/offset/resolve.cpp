@@ -98,11 +98,13 @@ class Splitter {
     // the side of the triangle's own edges.
     for (double way : {0.0, 0.5, 1.5, 4.0}) {
       std::vector<Support> supports = supports_of(model_, corners, sides);
-      p.point = mitre_point(model_, source_, corners).Translated(along * (way * tolerances_.distance));
+      const gp_Pnt mitre = mitre_point(model_, source_, corners);
+      p.point = mitre.Translated(along * (way * tolerances_.distance));
       for (Support& s : supports)
         if (s.curve.IsNull()) s.uv = project(*s.surface, p.point, s.uv);
       p.is_good = meet(supports, p.point) < tolerances_.gap;
-      if (p.is_good) break;
+      const gp_Vec moved(mitre, p.point);
+      if (p.is_good && (moved.Magnitude() < 0.5 * tolerances_.distance || moved.Dot(along) > 0)) break;
     }
     start_[t] = p.point;
     return p;
@@ -159,7 +161,8 @@ class Splitter {
     const ModelEdge& e = model_.edges[h.edge];
     if (e.curve.IsNull()) {
       const int end = end_vertex(model_, half);
-      return gp_Vec(source_, model_.vertices[end].source).Normalized();
+      const gp_Vec way(source_, model_.vertices[end].source);
+      return way.Magnitude() < 1e-12 ? way : way.Normalized();
     }
     gp_Pnt p;
     gp_Vec d;
@@ -186,7 +189,26 @@ class Splitter {
     for (std::size_t i = 0; i + 1 < line.size(); i++)
       for (std::size_t k = i + 2; k + 1 < line.size(); k++)
         if (cross_each_other(line[i], line[i + 1], line[k], line[k + 1])) return false;
-    return true;
+    return !is_turned_cusp(points, corner);
+  }
+
+  // Where the two spokes of a face leave in one direction the face is a cusp: its border comes in to the left of where
+  // it goes out, before and after.
+  bool is_turned_cusp(const std::vector<gp_Pnt>& points, int corner) const {
+    const int out = ring_[corner], in = ring_[(corner + 1) % n_];
+    const gp_Vec along = direction(out);
+    if (along.Magnitude() < 0.5 || along.Angle(direction(in)) > 0.2) return false;
+    const gp_Vec left = normals_[corner].Crossed(along);
+    const gp_Vec apart(point_along(out), point_along(in));
+    return apart.Dot(left) > 0 && gp_Vec(points.front(), points.back()).Dot(left) < 0;
+  }
+
+  // A point of the source's spoke, a third of the way.
+  gp_Pnt point_along(int half) const {
+    const HalfEdge& h = model_.halves[half];
+    const ModelEdge& e = model_.edges[h.edge];
+    if (e.curve.IsNull()) return model_.vertices[end_vertex(model_, half)].source;
+    return e.curve->Value(e.first + (e.last - e.first) * (h.forward ? 1.0 / 3 : 2.0 / 3));
   }
 
   void apply(const Triangulation& t);
@@ -283,7 +305,10 @@ bool resolve_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   place_vertex(model, vertex, tolerances);
   const ModelVertex& v = model.vertices[vertex];
   const int n = static_cast<int>(v.ring.size());
-  if (v.residual <= tolerances.gap) return true;
+  // Of more than three faces that touch each other at the vertex the offsets may meet far off, to one side of it.
+  const bool is_far =
+      n > 3 && !v.is_open && v.point.Distance(mitre_point(model, v.source, v.ring)) > tolerances.distance;
+  if (v.residual <= tolerances.gap && !is_far) return true;
   const bool is_close = v.residual <= kCloseEnough * tolerances.distance;
   if (n < 4 || n > kMostCorners || v.is_open) return is_close;
   if (!Splitter(model, vertex, tolerances).split()) return is_close;
