@@ -235,15 +235,16 @@ bool remove_face(Model& model, int face) {
   const double longest = *std::max_element(lengths.begin(), lengths.end());
   const double shortest = *std::min_element(lengths.begin(), lengths.end());
   const bool is_ring = n == 2 && !inner.empty();
-  if (n > 2 && (n == 3 ? longest < 3 * kLong * shortest : longest < kLong * shortest)) {
+  if (n == 1) return false;
+  const std::array<int, 2> pair = n == 2 ? std::array<int, 2>{0, 1} : sides_that_meet(model, face, round, lengths);
+  const int a = pair[0], b = pair[1];
+  // Of four sides those that meet become one however short they are: a fillet in a shallow pocket.
+  const bool is_short = n == 3 ? longest < 3 * kLong * shortest : n > 4 && longest < kLong * shortest;
+  if (n > 2 && (is_short || b < 0)) {
     std::vector<int> all = round;
     all.insert(all.end(), inner.begin(), inner.end());
     return contract_edges(model, all);
   }
-  if (n == 1) return false;
-  const std::array<int, 2> pair = n == 2 ? std::array<int, 2>{0, 1} : sides_that_meet(model, face, round, lengths);
-  const int a = pair[0], b = pair[1];
-  if (b < 0) return false;
   // The sides between them become vertices.
   if (!is_ring) {
     for (int from : {a, b}) {
