@@ -25,8 +25,9 @@ add_library(vdb_offset_cad_objects OBJECT)
 set(cad_sources read/document read/read_model surface/face_surface surface/offset_points tessellate/append_body
   tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
-  offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/judge offset/model offset/offset_solid
-  offset/offset_surface offset/place offset/resolve offset/soup offset/surface_fit
+  offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/model offset/offset_solid
+  offset/offset_surface offset/place offset/resolve offset/surface_fit
+  judge/judge judge/soup
   write/body_shape write/faceted write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/offset/offset_solid.h"
 
-#include <BRepCheck_Analyzer.hxx>
 #include <BRep_Builder.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
@@ -14,24 +13,24 @@
 
 #include "vdb_offset/cad/offset/arrange.h"
 #include "vdb_offset/cad/offset/build.h"
-#include "vdb_offset/cad/offset/judge.h"
 
 namespace vdb_offset::cad {
 namespace {
 
 double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
 
-void judge(const OffsetCadRequest& request, OffsetCadResult& result) {
-  if (result.shape.IsNull()) return;
-  if (!result.gaps.empty()) result.kind = CadKind::Faces;
-  else if (request.distance_at || !request.of_face.empty()) {
-    if (!BRepCheck_Analyzer(result.shape).IsValid()) result.gaps.push_back("the topology is not valid");
-  } else if (request.samples > 0) {
-    JudgeOptions options;
-    options.samples = request.samples;
-    result.gaps = judge_offset(request.source, result.shape, request.distance, options).faults;
+/// Tells how each face of a model was made, and which face it became; of those from `first` on.
+void tell_faces(const Model& model, const std::vector<TopoDS_Face>& built, std::size_t first, OffsetCadResult& result) {
+  for (std::size_t f = 0; f < model.faces.size(); f++) {
+    if (f < built.size()) result.made_of[first + f] = built[f];
+    if (model.faces[f].is_gone) result.faces[first + f] = CadFace::Swallowed;
   }
-  if (!result.gaps.empty()) result.kind = CadKind::Faces;
+}
+
+std::size_t count_faces(const TopoDS_Shape& shell) {
+  std::size_t count = 0;
+  for (TopExp_Explorer face(shell, TopAbs_FACE); face.More(); face.Next()) ++count;
+  return count;
 }
 
 OffsetCadResult offset_all(const OffsetCadRequest& request) {
@@ -53,19 +52,22 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
     builder.Add(shell, f.Current());
     pieces.push_back(shell);
   }
-  int first_face = 0, made = 0;
+  int made = 0;
   TopoDS_Shape last;
   for (const TopoDS_Shape& piece : pieces) {
     std::vector<TopoDS_Shape> shells;
     for (TopExp_Explorer s(piece, TopAbs_SHELL); s.More(); s.Next()) {
       Model model = read_model(s.Current());
+      const std::size_t first_face = result.faces.size();
       if (!model.failure.empty()) {
         result.gaps.push_back(model.failure);
+        result.faces.resize(first_face + count_faces(s.Current()), CadFace::Missing);
+        result.made_of.resize(result.faces.size());
         continue;
       }
       for (std::size_t f = 0; f < model.faces.size(); f++) {
         ModelFace& face = model.faces[f];
-        const int number = first_face + static_cast<int>(f);
+        const int number = static_cast<int>(first_face + f);
         const double own =
             request.of_face.empty() ? request.distance : request.of_face[static_cast<std::size_t>(number)];
         face.distance.constant = face.sign * own;
@@ -80,7 +82,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
                                : face.offset.made == FaceMade::Fitted ? CadFace::Fitted
                                                                       : CadFace::Swallowed);
       }
-      first_face += static_cast<int>(model.faces.size());
+      result.made_of.resize(result.faces.size());
       const std::size_t gaps_before = result.gaps.size();
       classify_edges(model, tolerances);
       arrange(model, tolerances, result.gaps);
@@ -92,6 +94,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       }
       Built built = build_shell(model, tolerances);
       result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
+      tell_faces(model, built.faces, first_face, result);
       if (!built.shell.IsNull()) shells.push_back(built.shell);
     }
     if (shells.empty()) continue;
@@ -110,7 +113,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
   }
   if (made == 1) result.shape = last;
   else if (made > 1) result.shape = all;
-  judge(request, result);
+  if (!result.gaps.empty()) result.kind = CadKind::Faces;
   return result;
 }
 

@@ -15,7 +15,6 @@ struct OffsetCadRequest {
   std::function<double(int face, double u, double v)> distance_at;
   std::vector<double> of_face;  ///< In place of `distance`: of each face, by the same numbers; or empty.
   double fit_tolerance = 0;     ///< 0: 1e-4 |distance|.
-  int samples = 10000;          ///< Of the judge's; 0: not judged.
 };
 
 enum class CadKind { Solid, Shells, Faces };
@@ -31,9 +30,6 @@ struct OffsetCadResult {
   std::vector<std::string> gaps;      ///< What is missing or not good, in words.
 };
 
-/// What a result is: a solid only if the judge finds it good (see judge.h; distances that vary are not sampled), else
-/// faces, with the reasons among the gaps.
-///
 /// Offsets solids and shells as B-Rep: each face becomes a surface over the same (u, v), sharp edges are cut anew where
 /// two offset faces meet (mitred).
 OffsetCadResult offset_cad(const OffsetCadRequest& request);

@@ -24,7 +24,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "vdb_offset/cad/offset/judge.h"
+#include "vdb_offset/cad/judge/judge.h"
 #include "vdb_offset/cad/offset/offset_solid.h"
 #include "vdb_offset/cad/write/body_shape.h"
 #include "vdb_offset/cad/write/faceted.h"
@@ -126,7 +126,6 @@ class OffsetWriter {
     request.source = body.source.shape;
     request.distance = is_even() && !write_.of_face.empty() ? write_.of_face[0] : write_.distance;
     request.fit_tolerance = write_.fit_tolerance;
-    request.samples = 0;  // what counts is the file, as it is read again
     if (!is_even())
       for (const std::size_t face : body.source.face_numbers) request.of_face.push_back(distance_of(first_face + face));
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/cad/offset/judge.h"
+#include "vdb_offset/cad/judge/judge.h"
 
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepCheck_Analyzer.hxx>
@@ -20,8 +20,8 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_surface.h"
-#include "vdb_offset/cad/offset/soup.h"
 
 namespace vdb_offset::cad {
 namespace {
