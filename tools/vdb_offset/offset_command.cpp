@@ -84,7 +84,11 @@ bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
 bool tell_cad_gaps(const Job& job, std::span<const Products> made) {
   bool any = false;
   for (std::size_t i = 0; i < made.size(); ++i) {
-    if (!made[i].cad || made[i].cad->made != CadFileFacts::Made::Faces) continue;
+    if (!made[i].cad) continue;
+    if (made[i].cad->made == CadFileFacts::Made::Facets && !job.request.quiet)
+      tell(fmt::format("{}: of triangles, as no other model could be made: {}", job.outputs[i].mesh,
+                       fmt::join(made[i].cad->gaps, "; ")));
+    if (made[i].cad->made != CadFileFacts::Made::Faces) continue;
     any = true;
     tell(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)", job.outputs[i].mesh,
                      fmt::join(made[i].cad->gaps, "; ")));

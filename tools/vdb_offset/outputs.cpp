@@ -149,6 +149,8 @@ double distance_of_model(const Job& job, const Destination& to) {
   if (!distances.uniform())
     throw InvalidInput(fmt::format(
         "{}: expected a distance that is a number, for an output that is a CAD model, got {}", to.mesh, to.distance));
+  if (distances[0] == 0)
+    throw InvalidInput(to.mesh + ": expected a distance other than 0, for an output that is a CAD model, got 0");
   return distances[0];
 }
 
@@ -264,10 +266,11 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   if (io::is_lines_file(to.paths)) io::write_path_lines(to.paths, result.paths, states);
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteResult written;
-  if (io::is_cad_output(to.mesh))
+  if (io::is_cad_output(to.mesh)) {
     made.cad = io::write_cad(to.mesh, *job.source.file, distance_of_model(job, to), result.positions,
                              {request.fit_tolerance, job.options.only, request.faceted});
-  else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
+    written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
+  } else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   write_report_and_page(job, outcome, made, start);
   tell_losses(request, to.mesh, written);

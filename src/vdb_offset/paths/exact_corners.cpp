@@ -16,11 +16,14 @@ constexpr double kMostBend = 0.9;
 
 }  // namespace
 
-ExactCorners::ExactCorners(const ExactSurface& exact, PolygonView mesh, const Surface& surface)
+ExactCorners::ExactCorners(const ExactSurface& exact, PolygonView mesh, std::span<const std::uint8_t> only,
+                           const Surface& surface)
     : exact_(exact), surface_(surface), normals_(3 * surface.triangles.size(), Vec3d(0.0)) {
   VDB_OFFSET_ASSERT(exact.corner_normals().size() == mesh.corners.size());
+  for (std::uint32_t f = 0; f < only.size(); ++f)
+    if (only[f]) marked_.push_back(f);
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    const std::uint32_t f = surface.face[t];
+    const std::uint32_t f = face_of(t);
     for (std::uint32_t k = 0; k < 3; ++k)
       for (std::uint32_t c = mesh.face_begin[f]; c < mesh.face_begin[f + 1]; ++c)
         if (surface.welded[mesh.corners[c]] == surface.triangles[t][k])
@@ -38,7 +41,7 @@ void ExactCorners::find_known(PolygonView mesh) {
     if (const auto w = surface_.welded[v]; w != kNone && surface_.representative[w] != v) known_[w] = 0;
   // Those at the edge of a part that moves are held by faces that stay.
   std::vector<std::uint8_t> moves(mesh.face_count(), 0);
-  for (const std::uint32_t f : surface_.face) moves[f] = 1;
+  for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) moves[face_of(t)] = 1;
   for (std::size_t f = 0; f < moves.size(); ++f)
     for (const std::uint32_t v : mesh.face(f))
       if (const auto w = surface_.welded[v]; !moves[f] && w != kNone) known_[w] = 0;
@@ -48,7 +51,7 @@ bool ExactCorners::is_sharp(std::uint32_t vertex) const {
   const auto piece = exact_.piece_of_face();
   const auto around = surface_.triangles_around(vertex);
   return std::any_of(around.begin(), around.end(),
-                     [&](auto t) { return piece[surface_.face[t]] != piece[surface_.face[around[0]]]; });
+                     [&](auto t) { return piece[face_of(t)] != piece[face_of(around[0])]; });
 }
 
 const Vec3d& ExactCorners::normal(std::uint32_t triangle, std::uint32_t vertex) const {
@@ -59,14 +62,14 @@ const Vec3d& ExactCorners::normal(std::uint32_t triangle, std::uint32_t vertex) 
 bool ExactCorners::is_own(std::uint32_t vertex, const Vec3d& end, double distance, std::uint32_t triangle,
                           const Vec3d& point) const {
   const auto piece = exact_.piece_of_face();
-  const auto own = piece[surface_.face[triangle]];
+  const auto own = piece[face_of(triangle)];
   // With t across and h along the normal, and bend b of the surface: |t|^2 <= 2 d h where the point is nearer than d,
   // and h <= b |t|^2 / 2 + deflection.
   const double most = 2 * std::abs(distance) * exact_.deflection() / (1 - kMostBend);
   const auto around = surface_.triangles_around(vertex);
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
     const Vec3d foot = end - normal(t, vertex) * distance;
-    return piece[surface_.face[t]] == own && (point - foot).lengthSqr() <= most;
+    return piece[face_of(t)] == own && (point - foot).lengthSqr() <= most;
   });
 }
 

@@ -14,8 +14,15 @@ namespace vdb_offset {
 /// What is known of the exact surface at the corners of a Surface's triangles.
 class ExactCorners {
  public:
-  /// Keeps references to both surfaces. \pre `surface` is of faces of `mesh`, which `exact` is of
-  ExactCorners(const ExactSurface& exact, PolygonView mesh, const Surface& surface);
+  /// Keeps references to both surfaces. \pre `surface` is of the faces of `mesh` that `only` marks (of all, if it is
+  /// empty), and `exact` is of that mesh
+  ExactCorners(const ExactSurface& exact, PolygonView mesh, std::span<const std::uint8_t> only, const Surface& surface);
+
+  /// The mesh's face that a triangle is of.
+  std::uint32_t face_of(std::uint32_t triangle) const {
+    const std::uint32_t f = surface_.face[triangle];
+    return marked_.empty() ? f : marked_[f];
+  }
 
   /// Whether the exact normals around a vertex are known; of one at which several of the mesh's vertices meet, they
   /// are not.
@@ -40,8 +47,9 @@ class ExactCorners {
 
   const ExactSurface& exact_;
   const Surface& surface_;
-  std::vector<Vec3d> normals_;       // three for each triangle
-  std::vector<std::uint8_t> known_;  // of each vertex
+  std::vector<std::uint32_t> marked_;  // faces of the mesh; empty: all
+  std::vector<Vec3d> normals_;         // three for each triangle
+  std::vector<std::uint8_t> known_;    // of each vertex
 };
 
 }  // namespace vdb_offset

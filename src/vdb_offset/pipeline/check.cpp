@@ -214,7 +214,8 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
     return;
   }
   std::optional<ExactCorners> exact;
-  if (options.exact && options.metric.even()) exact.emplace(*options.exact, space.view(), parts.moving_part);
+  if (options.exact && options.metric.even())
+    exact.emplace(*options.exact, space.view(), options.only, parts.moving_part);
   const WantedMiters miters =
       find_miters(parts, query, constrained.obstacles, exact ? &*exact : nullptr, distances, options);
   constrained.farther = miters.farther;

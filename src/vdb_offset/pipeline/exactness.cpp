@@ -53,7 +53,7 @@ ExactFacts measure_exactness(const PreparedMesh& mesh, const PreparedMesh::March
       if (is_on_sharp_edge(part, exact, t, foot.feature)) continue;
       to = &near;
       near.feet.push_back(foot.point + part.origin);
-      near.of.push_back(part.face[t]);
+      near.of.push_back(exact.face_of(t));
     } else {
       along.of.push_back(v);
     }

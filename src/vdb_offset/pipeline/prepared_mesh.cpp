@@ -93,7 +93,8 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
   if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
   if (moves) query_.emplace(parts_.moving_part);
-  if (moves && options.exact && options.metric.even()) exact_.emplace(*options.exact, mesh_, parts_.moving_part);
+  if (moves && options.exact && options.metric.even())
+    exact_.emplace(*options.exact, mesh_, options.only, parts_.moving_part);
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
   if (parts_.obstacles) surroundings_.emplace(parts_, source_, options.clearance);
   if (moves && options.border == Border::Slide && parts_.rest) slides_.emplace(parts_, *query_);

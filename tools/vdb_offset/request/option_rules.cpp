@@ -91,10 +91,12 @@ void require_for_mesh(const Request& request) {
   const bool is_model = io::is_cad_output(request.output);
   require(is_model || (!request.faceted && request.fit_tolerance == 0),
           "--faceted and --fit-tolerance: expected an output that ends in .step, .stp or .brep");
-  require(!is_model || !(request.shell || request.layers || request.iso || request.tolerance || request.axes),
+  require(!is_model || !(request.shell || request.layers || request.iso || request.tolerance || request.axes ||
+                         !request.obstacles.empty() || !request.fit.empty() || !request.symmetry_texts.empty() ||
+                         request.miter_limit),
           request.output +
-              ": expected a mesh, as this is for --shell, --layers, --mode iso, --tolerance and "
-              "--distance-xy");
+              ": expected a mesh, as a CAD model has no place for --shell, --layers, --mode iso, "
+              "--tolerance, --distance-xy, --obstacle, --fit, --symmetry and --miter-limit");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }

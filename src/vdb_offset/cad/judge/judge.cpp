@@ -108,6 +108,7 @@ Counts counts_of(const TopoDS_Shape& s) {
 
 // How much nearer than the distance a tessellation may make a point seem.
 constexpr double kDoubtful = 0.1;
+constexpr double kNoVolume = 1e-9;  // of the source's
 
 // Without solids: a point in one is at no distance from it.
 TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
@@ -173,12 +174,14 @@ class Judge {
   Verdict judge() {
     check_topology();
     if (!verdict_.faults.empty()) return verdict_;
-    const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.1 * far_, 0.3);
+    const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.02 * far_, 0.3);
     if (!result.is_complete()) fault("a face has no triangles");
     if (result.triangles().empty()) return verdict_;
     verdict_.volume = result.volume();
     if (is_closed_ && (verdict_.volume > source.volume()) != (distance_ > 0))
       fault("the volume is not on the right side");
+    if (is_closed_ && verdict_.volume >= 0 && verdict_.volume < kNoVolume * std::abs(source.volume()))
+      fault("the result encloses nothing");
     if (is_closed_ && verdict_.volume < 0) fault("the result is turned inside out");
     check_points(source, result);
     check_cover(source, result);

@@ -121,8 +121,9 @@ Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflectio
     : deflection_(deflection) {
   const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape).Shape();
   IMeshTools_Parameters parameters;
-  parameters.Deflection = border_deflection;
-  parameters.DeflectionInterior = deflection;
+  constexpr double kLeast = 2e-7;  // OpenCASCADE refuses what is below its own tolerance
+  parameters.Deflection = std::max(kLeast, border_deflection);
+  parameters.DeflectionInterior = std::max(kLeast, deflection);
   parameters.Angle = angle;
   parameters.AngleInterior = angle;
   BRepMesh_IncrementalMesh(copy, parameters);

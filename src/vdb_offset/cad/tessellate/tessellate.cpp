@@ -19,6 +19,7 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr int kSamples = 4;            // steps across a face, for the model's size
+constexpr double kLeast = 2e-7;        // OpenCASCADE refuses what is below its own tolerance of 1e-7
 constexpr std::size_t kMostNamed = 5;  // faces that a remark names
 constexpr double kLeastShare = 1e-7;   // of the diagonal: a finer deflection is refused as numberless triangles
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/write/write_model.h"
 
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <Interface_Static.hxx>
@@ -15,26 +16,14 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_LayerTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
-#include <cmath>
+#include <gp.hxx>
+#include <gp_Trsf.hxx>
 
 #include "vdb_offset/cad/read/cad_model.h"
 #include "vdb_offset/cad/read/document.h"
 
 namespace vdb_offset::cad {
 namespace {
-
-/// OpenCASCADE's word for a unit of STEP; millimetres where it has none.
-const char* word_of(double micrometres) {
-  struct Unit {
-    double micrometres;
-    const char* word;
-  };
-  constexpr Unit kUnits[] = {{1000, "MM"}, {1e6, "M"}, {25400, "INCH"}, {1e4, "CM"},    {304800, "FT"},
-                             {1e9, "KM"},  {1, "UM"},  {25.4, "MIL"},   {0.0254, "UIN"}};
-  for (const Unit& unit : kUnits)
-    if (std::abs(unit.micrometres - micrometres) < 1e-6 * micrometres) return unit.word;
-  return "MM";
-}
 
 TCollection_ExtendedString text_of(const std::string& utf8) { return {utf8.c_str(), Standard_True}; }
 
@@ -62,16 +51,12 @@ void fill(const WrittenModel& model, const opencascade::handle<TDocStd_Document>
 }
 
 void write_step(const WrittenModel& model, const std::string& path) {
-  const char* const unit = word_of(model.unit_micrometres);
-  // The same unit for what is in memory and what is written: numbers stay as they are.
   STEPCAFControl_Writer writer;
-  Interface_Static::SetCVal("xstep.cascade.unit", unit);
-  Interface_Static::SetCVal("write.step.unit", unit);
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
   Interface_Static::SetIVal("write.surfacecurve.mode", 1);
-  UnitsMethods::SetCasCadeLengthUnit(model.unit_micrometres / 1000);
-  const auto document = make_document(model.unit_micrometres / 1000);
+  UnitsMethods::SetCasCadeLengthUnit(1.0);
+  const auto document = make_document(1);
   fill(model, document);
   writer.SetColorMode(true);
   writer.SetNameMode(true);
@@ -92,6 +77,11 @@ void write_model(const WrittenModel& model, const std::string& format, const std
     builder.MakeCompound(all);
     for (const TopoDS_Shape& each : model.shapes) builder.Add(all, each);
     shape = all;
+  }
+  if (model.millimetres != 1) {
+    gp_Trsf scale;
+    scale.SetScale(gp::Origin(), 1 / model.millimetres);
+    shape = BRepBuilderAPI_Transform(shape, scale, Standard_True).Shape();
   }
   if (!BRepTools::Write(shape, path.c_str()))
     throw InvalidCad("expected a model that OpenCASCADE can write as BREP, got one that it cannot");

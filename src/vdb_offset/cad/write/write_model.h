@@ -15,11 +15,11 @@ struct WrittenModel {
   std::vector<TopoDS_Shape> shapes;
   std::vector<std::string> names;  ///< Of each shape; may be empty.
   std::vector<std::pair<TopoDS_Shape, io::CadFaceFacts>> faces;
-  double unit_micrometres = 1000;
+  double millimetres = 1;  ///< Of the unit of a BREP file, which tells none; the shapes are in millimetres.
 };
 
-/// Writes a STEP file (AP214) with the names of shapes and faces, colours and layers, in the unit of the coordinates;
-/// or a BREP file, which has a place for none of these. `format` is step or brep. \throw InvalidCad if it cannot
+/// Writes a STEP file (AP214) in millimetres, with the names of shapes and faces, colours and layers; or a BREP file,
+/// which has a place for none of these. `format` is step or brep. \throw InvalidCad if it cannot
 void write_model(const WrittenModel& model, const std::string& format, const std::string& path);
 
 }  // namespace vdb_offset::cad

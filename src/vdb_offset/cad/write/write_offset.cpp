@@ -7,12 +7,17 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
+#include <GProp_GProps.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <gp.hxx>
+#include <gp_Trsf.hxx>
 
 #include <algorithm>
 #include <cerrno>
@@ -25,6 +30,7 @@
 #include <system_error>
 
 #include "vdb_offset/cad/judge/judge.h"
+#include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_solid.h"
 #include "vdb_offset/cad/write/body_shape.h"
 #include "vdb_offset/cad/write/faceted.h"
@@ -86,16 +92,44 @@ class MemoryFile {
 /// What is tried: the whole model, and if that is not good its faces or triangles; these alone; or triangles alone.
 enum class Attempt { Whole, Rest, Facets };
 
-/// A body of the source, and its offset.
+/// OpenCASCADE's tolerances are lengths, and meant for millimetres: models in other units are brought to these.
+TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor) {
+  if (factor == 1 || shape.IsNull()) return shape;
+  gp_Trsf scale;
+  scale.SetScale(gp::Origin(), factor);
+  return BRepBuilderAPI_Transform(shape, scale, Standard_True).Shape();
+}
+
+/// A body of the source, in millimetres, and its offset.
 struct OffsetBody {
   const Body& body;
   BodyShape source;
   OffsetCadResult result;
 };
 
+/// Writes a file in a process of its own: what OpenCASCADE's writer sets for units, its reader would take for its own.
+void write_apart(const WrittenModel& model, const std::string& format, const std::string& path) {
+  const pid_t child = ::fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    try {
+      write_model(model, format, path);
+    } catch (...) {
+      ::_exit(kFailed);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+  if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
+}
+
 class OffsetWriter {
  public:
-  OffsetWriter(const CadModel& model, const io::WriteCad& write) : model_(model), write_(write) {}
+  OffsetWriter(const CadModel& model, const io::WriteCad& write)
+      : model_(model), write_(write), millimetres_(model.has_unit ? model.unit_micrometres / 1000 : 1) {}
 
   io::CadWritten run(Attempt attempt) {
     if (attempt == Attempt::Facets) {
@@ -105,6 +139,7 @@ class OffsetWriter {
     std::size_t first_face = 0;
     for (const Body& body : model_.bodies) {
       bodies_.push_back({body, shape_of(body), {}});
+      bodies_.back().source.shape = scaled(bodies_.back().source.shape, millimetres_);
       make(bodies_.back(), first_face);
       first_face += body.faces.size();
     }
@@ -116,7 +151,10 @@ class OffsetWriter {
   }
 
  private:
-  double distance_of(std::size_t face) const { return write_.of_face.empty() ? write_.distance : write_.of_face[face]; }
+  /// Millimetres.
+  double distance_of(std::size_t face) const {
+    return millimetres_ * (write_.of_face.empty() ? write_.distance : write_.of_face[face]);
+  }
   bool is_even() const {
     return std::all_of(write_.of_face.begin(), write_.of_face.end(), [&](double d) { return d == write_.of_face[0]; });
   }
@@ -124,8 +162,8 @@ class OffsetWriter {
   void make(OffsetBody& body, std::size_t first_face) {
     OffsetCadRequest request;
     request.source = body.source.shape;
-    request.distance = is_even() && !write_.of_face.empty() ? write_.of_face[0] : write_.distance;
-    request.fit_tolerance = write_.fit_tolerance;
+    request.distance = is_even() ? distance_of(0) : millimetres_ * write_.distance;
+    request.fit_tolerance = millimetres_ * write_.fit_tolerance;
     if (!is_even())
       for (const std::size_t face : body.source.face_numbers) request.of_face.push_back(distance_of(first_face + face));
     try {
@@ -139,7 +177,7 @@ class OffsetWriter {
          : made == CadFace::Fitted  ? written_.fitted
          : made == CadFace::Missing ? written_.missing
                                     : written_.swallowed);
-    written_.fit_error = std::max(written_.fit_error, body.result.fit_error);
+    written_.fit_error = std::max(written_.fit_error, body.result.fit_error / millimetres_);
     for (const std::string& gap : body.result.gaps) written_.gaps.push_back(gap);
   }
 
@@ -152,7 +190,7 @@ class OffsetWriter {
 
   WrittenModel empty_model() const {
     WrittenModel model;
-    model.unit_micrometres = model_.unit_micrometres;
+    model.millimetres = millimetres_;
     return model;
   }
   static std::string name_of(const Body& body) { return body.faces.empty() ? "" : body.faces.front().facts.solid; }
@@ -169,7 +207,7 @@ class OffsetWriter {
       all_solid = all_solid && body.body.is_solid;
     }
     const MemoryFile file;
-    write_model(model, write_.format, file.path());
+    write_apart(model, write_.format, file.path());
     const CadModel again = read_model(file.path(), write_.format);
     if (again.bodies.size() != bodies_.size()) {
       written_.gaps.push_back("read again, the file has " + std::to_string(again.bodies.size()) + " bodies and not " +
@@ -178,38 +216,85 @@ class OffsetWriter {
     }
     written_.least = INFINITY;
     for (std::size_t i = 0; i < bodies_.size(); ++i)
-      if (!is_good(bodies_[i], again.bodies[i])) return false;
+      if (!is_good(bodies_[i], again.bodies[i], in_millimetres(again))) return false;
     if (!is_even()) written_.least = 0;
+    if (bodies_.size() > 1 && crosses(again)) {
+      written_.gaps.emplace_back("bodies get into each other");
+      return false;
+    }
     written_.bytes = file.bytes();
     written_.made = all_solid ? io::CadMade::Solid : io::CadMade::Shells;
     return true;
   }
 
-  bool is_good(const OffsetBody& body, const Body& again) {
-    const TopoDS_Shape shape = shape_of(again).shape;
+  /// The length of the unit of a file that is read again.
+  double in_millimetres(const CadModel& again) const {
+    return again.has_unit ? again.unit_micrometres / 1000 : millimetres_;
+  }
+
+  bool is_good(const OffsetBody& body, const Body& again, double millimetres) {
+    const TopoDS_Shape shape = scaled(shape_of(again).shape, millimetres);
     if (!is_even()) {
-      const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid;
-      if (!is_valid) written_.gaps.emplace_back("read again, the solid is not valid");
+      const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid &&
+                            soup_of(shape).crossings(1).empty();
+      if (!is_valid) written_.gaps.emplace_back("read again, the result is not valid, or crosses itself");
+      if (is_valid) add_volume(again, shape);
       return is_valid;
     }
     const Verdict verdict = judge_offset(body.source.shape, shape, distance_of(0), {});
     written_.least = std::min(written_.least, verdict.least);
     written_.most = std::max(written_.most, verdict.most);
-    written_.volume += verdict.volume;
+    if (verdict.is_good) add_volume(again, shape);
     written_.gaps.insert(written_.gaps.end(), verdict.faults.begin(), verdict.faults.end());
     return verdict.is_good;
   }
 
+  void add_volume(const Body& again, const TopoDS_Shape& shape) {
+    if (!again.is_solid) return;
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(shape, properties);
+    written_.volume += properties.Mass() / std::pow(millimetres_, 3);
+  }
+
+  Soup soup_of(const TopoDS_Shape& shape) const {
+    const double far = millimetres_ * std::abs(write_.distance);
+    return {shape, 0.01 * far, 0.02 * far, 0.3};
+  }
+
+  /// Whether bodies cross.
+  bool crosses(const CadModel& again) const {
+    TopoDS_Compound all;
+    BRep_Builder builder;
+    builder.MakeCompound(all);
+    for (const Body& body : again.bodies) builder.Add(all, scaled(shape_of(body).shape, in_millimetres(again)));
+    return !soup_of(all).crossings(1).empty();
+  }
+
   void write_facets() {
+    written_.kept = written_.fitted = written_.swallowed = written_.missing = 0;
     WrittenModel model = empty_model();
-    model.shapes.push_back(faceted_shape(write_.positions, write_.triangles));
+    model.shapes.push_back(scaled(faceted_shape(write_.positions, write_.triangles), millimetres_));
     model.names.emplace_back();
     finish(model, io::CadMade::Facets);
+  }
+
+  /// Counts the faces of the source by what is written of them.
+  void count_made() {
+    written_.kept = written_.fitted = written_.missing = 0;
+    for (const OffsetBody& body : bodies_)
+      for (std::size_t k = 0; k < body.result.faces.size(); ++k) {
+        const CadFace made = body.result.faces[k];
+        if (made == CadFace::Swallowed) continue;
+        const bool is_there = !body.result.shape.IsNull() && k < body.result.made_of.size() &&
+                              !body.result.made_of[k].IsNull() && BRepCheck_Analyzer(body.result.made_of[k]).IsValid();
+        ++(!is_there ? written_.missing : made == CadFace::Fitted ? written_.fitted : written_.kept);
+      }
   }
 
   /// Writes the faces that there are, as none of a solid.
   void write_faces() {
     WrittenModel model = empty_model();
+    count_made();
     for (const OffsetBody& body : bodies_) {
       TopoDS_Compound faces;
       BRep_Builder builder;
@@ -231,7 +316,7 @@ class OffsetWriter {
 
   void finish(const WrittenModel& model, io::CadMade made) {
     const MemoryFile file;
-    write_model(model, write_.format, file.path());
+    write_apart(model, write_.format, file.path());
     read_model(file.path(), write_.format);
     written_.bytes = file.bytes();
     written_.made = made;
@@ -240,6 +325,7 @@ class OffsetWriter {
 
   const CadModel& model_;
   const io::WriteCad& write_;
+  const double millimetres_;  // of the file's unit
   std::vector<OffsetBody> bodies_;
   io::CadWritten written_;
 };
