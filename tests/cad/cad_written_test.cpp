@@ -129,6 +129,22 @@ TEST_CASE("cad written: some faces go, and the others stay", "[cad]") {
         Approx(volume_of_block(0) * 22 / 20).epsilon(2e-3));
 }
 
+TEST_CASE("cad written: a model in inches becomes one in millimetres", "[cad]") {
+  const Written written = write("inch.stp", 0.1, "inch.step");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.volume == Approx(2.2 * 3.2 * 4.2));
+  CHECK(written.again.unit_micrometres == 1000.0);
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(2.2 * 3.2 * 4.2 * std::pow(25.4, 3)));
+  CHECK(volume_of_mesh(write("inch.stp", 0.1, "inch.brep").again.polygons) == Approx(2.2 * 3.2 * 4.2));
+}
+
+TEST_CASE("cad written: bodies that would get into each other are not called whole", "[cad]") {
+  const Written written = write("touching.step", 1, "into.step");
+  CHECK(written.facts.made == Made::Faces);
+  REQUIRE_FALSE(written.facts.gaps.empty());
+  CHECK(written.facts.gaps.back() == "bodies get into each other");
+}
+
 TEST_CASE("cad written: triangles where they are asked for and nothing else is to be had", "[cad]") {
   // So far inward that nothing of the hole's wall is left of the block.
   const Written written = write("block.step", -6, "facets.step", {0, {}, true});

@@ -178,6 +178,17 @@ TEST_CASE("exact surface: miters are those of its faces", "[exact]") {
   CHECK(most_off(cylinder, inward.positions, -0.3) < 1e-10);
 }
 
+TEST_CASE("exact surface: of a part, its own faces are measured", "[exact]") {
+  const Cylinder cylinder(40);
+  OffsetOptions options = options_for(&cylinder, 0.3);
+  for (const std::uint32_t piece : cylinder.pieces) options.only.push_back(piece == 2);
+  const OffsetResult result = offset(cylinder.mesh.view(), options);
+  CHECK(result.positions.back().z() == Approx(kHalf + 0.3).epsilon(1e-12));
+  REQUIRE(result.statistics.exact);
+  CHECK(result.statistics.exact->vertices > 0);
+  CHECK(result.statistics.exact->worst < 1e-9);
+}
+
 TEST_CASE("exact surface: what something else is nearer to does not count as reached", "[exact]") {
   // The hole of the torus is 1.3 wide from the axis: at 1.4, its vertices meet those from the other side.
   const Torus torus(60, 24);

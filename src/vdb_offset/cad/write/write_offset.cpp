@@ -218,7 +218,7 @@ class OffsetWriter {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (!is_good(bodies_[i], again.bodies[i], in_millimetres(again))) return false;
     if (!is_even()) written_.least = 0;
-    if (bodies_.size() > 1 && crosses(again)) {
+    if (bodies_.size() > 1 && get_into_each_other(again)) {
       written_.gaps.emplace_back("bodies get into each other");
       return false;
     }
@@ -261,13 +261,33 @@ class OffsetWriter {
     return {shape, 0.01 * far, 0.02 * far, 0.3};
   }
 
-  /// Whether bodies cross.
-  bool crosses(const CadModel& again) const {
+  /// Whether bodies get into each other: faces cross, or points just inside of one are inside of another.
+  bool get_into_each_other(const CadModel& again) const {
     TopoDS_Compound all;
     BRep_Builder builder;
     builder.MakeCompound(all);
-    for (const Body& body : again.bodies) builder.Add(all, scaled(shape_of(body).shape, in_millimetres(again)));
-    return !soup_of(all).crossings(1).empty();
+    std::vector<Soup> soups;
+    for (const Body& body : again.bodies) {
+      const TopoDS_Shape shape = scaled(shape_of(body).shape, in_millimetres(again));
+      builder.Add(all, shape);
+      if (body.is_solid) soups.push_back(soup_of(shape));
+    }
+    if (!soup_of(all).crossings(1).empty()) return true;
+    for (const Soup& one : soups)
+      for (const Soup& other : soups)
+        if (&one != &other && reaches_into(one, other)) return true;
+    return false;
+  }
+
+  bool reaches_into(const Soup& one, const Soup& other) const {
+    constexpr std::size_t kMostPoints = 200;
+    const double inward = 1e-3 * millimetres_ * std::abs(write_.distance);
+    const std::size_t count = one.triangles().size(), step = std::max<std::size_t>(1, count / kMostPoints);
+    for (std::size_t t = 0; t < count; t += step) {
+      const SoupPoint at = one.on_triangle(static_cast<int>(t), 1.0 / 3, 1.0 / 3);
+      if (other.contains(at.point.Translated(one.outside(at) * -inward))) return true;
+    }
+    return false;
   }
 
   void write_facets() {
