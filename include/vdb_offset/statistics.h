@@ -112,7 +112,7 @@ struct ExactFacts {
 /// What of a CAD model's faces became faces of a file.
 struct CadFileFacts {
   enum class Made {
-    Solid,   ///< As many solids as the source has: valid, closed and at the distance as far as 10,000 samples tell.
+    Solid,   ///< As many solids as the source has: valid, closed and at the distance as far as samples tell.
     Shells,  ///< The same of a source that is no solid.
     Faces,   ///< Faces that are good, and not all of the source's offset.
     Facets,  ///< Solids of triangles.
@@ -122,7 +122,8 @@ struct CadFileFacts {
   /// distance swallows, and that could not be made.
   std::size_t kept = 0, fitted = 0, swallowed = 0, missing = 0;
   double fit_error = 0;           ///< Of fitted faces, the most, world units.
-  double least = 0, most = 0;     ///< Distances of its points from the source, as shares; 0: not sampled.
+  std::size_t samples = 0;        ///< Points of it that were measured; 0: none.
+  double least = 0, most = 0;     ///< Their distances from the source, as shares, to 1 %; 0: not measured.
   double volume = 0;              ///< Of solids; 0: not known.
   std::vector<std::string> gaps;  ///< What is not as it should be, in words.
 };

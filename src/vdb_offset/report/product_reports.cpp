@@ -32,6 +32,7 @@ Json cad_json(const CadFileFacts& cad) {
           {"faces_swallowed", cad.swallowed},
           {"faces_missing", cad.missing},
           {"fit_error", cad.fit_error},
+          {"samples", cad.samples},
           {"least_distance", cad.least},
           {"most_distance", cad.most},
           {"volume", cad.volume},

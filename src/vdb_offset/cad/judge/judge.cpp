@@ -206,6 +206,7 @@ class Judge {
 
   void check_points(const Soup& source, const Soup& result) {
     const std::vector<SoupPoint> points = spread(result, options_.samples);
+    verdict_.samples = points.size();
     int near = 0, far = 0, doubts = 0, wrong_side = 0, n = 0;
     std::string place;
     verdict_.least = 1e300;

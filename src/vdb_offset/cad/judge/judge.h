@@ -2,6 +2,7 @@
 #pragma once
 
 #include <TopoDS_Shape.hxx>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Verdict {
   std::vector<std::string> faults;  ///< In words; empty if it is good.
   double least = 0, most = 0;       ///< Sampled distances of the result to the source, as shares of |distance|.
   double volume = 0;
+  std::size_t samples = 0;  ///< How many points these are of.
 };
 
 /// Judges an offset by what it is, not by how it was made: valid topology; as many solids and shells as the source, and

@@ -215,9 +215,10 @@ class OffsetWriter {
       return false;
     }
     written_.least = INFINITY;
+    written_.samples = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (!is_good(bodies_[i], again.bodies[i], in_millimetres(again))) return false;
-    if (!is_even()) written_.least = 0;
+    if (!is_even()) written_.least = 0;  // not sampled
     if (bodies_.size() > 1 && get_into_each_other(again)) {
       written_.gaps.emplace_back("bodies get into each other");
       return false;
@@ -242,6 +243,7 @@ class OffsetWriter {
       return is_valid;
     }
     const Verdict verdict = judge_offset(body.source.shape, shape, distance_of(0), {});
+    written_.samples += verdict.samples;
     written_.least = std::min(written_.least, verdict.least);
     written_.most = std::max(written_.most, verdict.most);
     if (verdict.is_good) add_volume(again, shape);
@@ -341,6 +343,7 @@ class OffsetWriter {
     written_.bytes = file.bytes();
     written_.made = made;
     written_.least = written_.most = written_.volume = 0;
+    written_.samples = 0;
   }
 
   const CadModel& model_;

@@ -46,6 +46,7 @@ CadFileFacts facts_of(CadWritten&& written) {
   facts.swallowed = written.swallowed;
   facts.missing = written.missing;
   facts.fit_error = written.fit_error;
+  facts.samples = written.samples;
   facts.least = written.least;
   facts.most = written.most;
   facts.volume = written.volume;

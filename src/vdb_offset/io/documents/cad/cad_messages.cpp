@@ -156,7 +156,7 @@ WriteCad unpack_write(std::string_view bytes) {
 std::string pack(const CadWritten& written) {
   Packer packer;
   packer.text(written.bytes).value(written.made);
-  for (const std::uint64_t count : {written.kept, written.fitted, written.swallowed, written.missing})
+  for (const std::uint64_t count : {written.kept, written.fitted, written.swallowed, written.missing, written.samples})
     packer.value(count);
   for (const double value : {written.fit_error, written.least, written.most, written.volume}) packer.value(value);
   put_texts(packer, written.gaps);
@@ -169,7 +169,7 @@ CadWritten unpack_written(std::string_view bytes) {
   written.bytes = unpacker.text();
   written.made = unpacker.value<CadMade>();
   require(written.made <= CadMade::Facets, "a file of no kind");
-  for (std::uint64_t* count : {&written.kept, &written.fitted, &written.swallowed, &written.missing})
+  for (std::uint64_t* count : {&written.kept, &written.fitted, &written.swallowed, &written.missing, &written.samples})
     *count = unpacker.value<std::uint64_t>();
   for (double* value : {&written.fit_error, &written.least, &written.most, &written.volume})
     *value = unpacker.value<double>();

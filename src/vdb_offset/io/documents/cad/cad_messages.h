@@ -84,6 +84,7 @@ struct CadWritten {
   std::string bytes;
   CadMade made = CadMade::Nothing;
   std::uint64_t kept = 0, fitted = 0, swallowed = 0, missing = 0;  ///< Faces of the source.
+  std::uint64_t samples = 0;                                       ///< Points of the result that were measured.
   double fit_error = 0;                                            ///< In the file's unit.
   double least = 0, most = 0;     ///< Distances of the result's points from the source, as shares; 0: not sampled.
   double volume = 0;              ///< Of solids; 0: not known.
