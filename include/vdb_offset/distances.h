@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +41,21 @@ class VDB_OFFSET_API Distances {
   double uniform_ = 0, outward_ = 0, inward_ = 0;
   std::vector<double> each_;
 };
+
+/// Distances that faces ask for at their corners, which may be different ones at a vertex that they share.
+struct FaceDistances {
+  std::vector<double> at_corner;     ///< World units: one for each corner of the mesh, face by face.
+  std::vector<std::uint32_t> part;   ///< Of each face: faces of one part ask for the same where they meet.
+  std::vector<std::uint32_t> piece;  ///< Of each face: parts of one piece are blended with each other; empty: all are.
+  double blend = 0;                  ///< World units, 0 or more: see vertex_distances().
+};
+
+/// One distance for each vertex of a mesh. At a distance s from the edge of another part, that part's distance at the
+/// closest point of its edge has the weight S(1 - s / blend) beside the vertex's own part with a weight of 1, where S
+/// rises from 0 to 1 with two derivatives of 0 at both ends: on the edge both count the same, and beyond `blend` only
+/// the own. Where parts, or pieces, meet at a vertex, it has their mean. Vertices at one position have the same.
+/// 	hrow InvalidInput if there is not a distance for each corner, or not a part for each face
+VDB_OFFSET_API Distances vertex_distances(PolygonView mesh, const FaceDistances& faces);
 
 /// How lengths count along the axes: distances are those of a space in which coordinates are so many times as large.
 /// A ball of radius d is an ellipsoid of half axes d / scale in the file's units.
@@ -84,6 +101,10 @@ class VDB_OFFSET_API DistanceExpression {
   /// \throw InvalidInput if what is used was not given for every vertex, or names the first vertex (an index, counted
   /// from 0) at which the result is a NaN or an infinity.
   std::vector<double> operator()(const VertexVariables& at) const;
+
+  /// The distance at single points, of which the position, the unit normal and (u, v) are given: for many calls from one
+  /// thread. What is returned throws InvalidInput where the result is a NaN or an infinity.
+  std::function<double(const Vec3d&, const Vec3d&, const Vec2d&)> at_points(double diagonal) const;
 
  private:
   std::string text_;

@@ -25,10 +25,10 @@ add_library(vdb_offset_cad_objects OBJECT)
 set(cad_sources read/document read/read_model surface/face_surface surface/offset_points tessellate/append_body
   tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
-  offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/model offset/offset_solid
+  offset/arrange offset/blended_faces offset/build offset/contact offset/contract offset/edge_curve offset/model offset/offset_solid
   offset/offset_surface offset/place offset/resolve offset/surface_fit
-  judge/judge judge/soup
-  write/body_shape write/faceted write/write_model write/write_offset
+  judge/judge judge/parameters judge/soup
+  write/body_shape write/face_distances write/faceted write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)
@@ -38,11 +38,18 @@ target_include_directories(vdb_offset_cad_objects PUBLIC include src)
 target_include_directories(vdb_offset_cad_objects SYSTEM PUBLIC ${OPENCASCADE_HEADERS})
 target_link_libraries(vdb_offset_cad_objects PUBLIC OpenVDB::openvdb ${OPENCASCADE_LIBRARIES} PRIVATE vdb_offset_build)
 
-add_executable(vdb_offset_cad src/vdb_offset/cad/worker/main.cpp $<TARGET_OBJECTS:vdb_offset_cad_objects>
+set(cad_expressions without_expressions)
+if(VDB_OFFSET_EXPRESSIONS)
+  set(cad_expressions distance_expression)
+endif()
+add_executable(vdb_offset_cad src/vdb_offset/cad/worker/main.cpp src/vdb_offset/mesh/${cad_expressions}.cpp $<TARGET_OBJECTS:vdb_offset_cad_objects>
   src/vdb_offset/io/documents/cad/cad_messages.cpp src/vdb_offset/io/documents/cad/message_channel.cpp)
 target_include_directories(vdb_offset_cad PRIVATE include src)
 target_include_directories(vdb_offset_cad SYSTEM PRIVATE ${OPENCASCADE_HEADERS})
 target_link_libraries(vdb_offset_cad PRIVATE OpenVDB::openvdb ${OPENCASCADE_LIBRARIES} vdb_offset_build)
+if(VDB_OFFSET_EXPRESSIONS)
+  target_link_libraries(vdb_offset_cad PRIVATE muparser::muparser fmt::fmt TBB::tbb)
+endif()
 target_link_options(vdb_offset_cad PRIVATE -Wl,--as-needed)
 foreach(target IN ITEMS vdb_offset_cad_objects vdb_offset_cad)
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)

@@ -3,8 +3,11 @@
 // are not linked to OpenCASCADE, as the library is not.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -12,6 +15,8 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <Geom2d_Circle.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
@@ -21,6 +26,9 @@
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array2OfPnt.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
@@ -50,6 +58,28 @@ void write_step(const TopoDS_Shape& shape, const char* name, const char* unit) {
   writer.Transfer(shape, STEPControl_AsIs);
   writer.Write(file(name).c_str());
   Interface_Static::SetCVal("write.step.unit", "MM");
+}
+
+/// A spline with three spans each way, (40 u, 30 v, 8 u^2 - 6 v^2), less the disc of radius 1/4 around (1/2, 1/2) in (u, v).
+TopoDS_Shape patch_with_hole() {
+  TColgp_Array2OfPnt poles(1, 3, 1, 3);
+  // Bezier points of t^2 over 0 .. 1 are 0, 0, 1.
+  for (int i = 1; i <= 3; ++i)
+    for (int k = 1; k <= 3; ++k)
+      poles(i, k) = gp_Pnt(20 * (i - 1), 15 * (k - 1), (i == 3 ? 8 : 0) - (k == 3 ? 6 : 0));
+  TColStd_Array1OfReal knots(1, 2);
+  TColStd_Array1OfInteger multiplicities(1, 2);
+  knots(1) = 0, knots(2) = 1;
+  multiplicities(1) = multiplicities(2) = 3;
+  const Handle(Geom_BSplineSurface) surface =
+      new Geom_BSplineSurface(poles, knots, knots, multiplicities, multiplicities, 2, 2);
+  for (const double knot : {0.35, 0.6}) surface->InsertUKnot(knot, 1, 0), surface->InsertVKnot(knot, 1, 0);
+  // The other way round than the border, as a hole goes.
+  const Handle(Geom2d_Circle) circle = new Geom2d_Circle(gp_Ax22d(gp_Pnt2d(0.5, 0.5), gp_Dir2d(1, 0), gp_Dir2d(0, -1)), 0.25);
+  BRepBuilderAPI_MakeFace face(surface, 1e-7);
+  face.Add(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle, surface)).Wire());
+  BRepLib::BuildCurves3d(face.Face());
+  return face.Face();
 }
 
 /// A block of 40 x 30 x 20 with a hole of radius 5, and an upright edge rounded by 4.
@@ -148,6 +178,7 @@ int main(int count, char** words) {
   write_step(block(), "block.step", "MM");
   write_brep(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape(), "sphere.brep");
   write_brep(BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape()).Shape(), "spline.brep");
+  write_brep(patch_with_hole(), "patch.brep");
   write_brep(BRepPrimAPI_MakeCone(6, 0, 8).Shape(), "cone.brep");
   write_brep(BRepPrimAPI_MakeTorus(10, 3).Shape(), "torus.brep");
   // Coordinates are written as they are, whatever the unit.

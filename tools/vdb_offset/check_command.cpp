@@ -74,7 +74,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.repeated("--only", "PART",
                 "The part that was offset: 'group=NAME', 'material=NAME', 'faces=FILE', 'face=N', 'name=NAME' or "
                 "'color=RRGGBB'; may be repeated",
-                [&made](const std::string& text) { made.only.push_back(parse_part(text)); });
+                [&made](const std::string& text) { made.only.push_back(parse_part("--only", text)); });
   line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
               [&made](const std::string& text) { made.border = parse_border(text); });
   line.repeated("--obstacle", "FILE", "Another mesh that nothing may touch; repeatable",
@@ -110,6 +110,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.option("--flatten", "TOL",
               "How far straight segments were from the curved ones of a drawing, as it was for the offset [0.001%]",
               [&made](const std::string& text) { made.flatten = parse_flatten(text); });
+  declare_part_distances(line, made);
   declare_cad(line, made);
   line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }
@@ -161,8 +162,8 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
 void take_distances_of_meshes(CheckRequest& request) {
   Request& made = request.made;
   if (!request.distance.empty()) made.distances.push_back(parse_distance_of("--distance", request.distance, made));
-  if (request.distance_from.empty()) return;
-  made.distances.push_back(parse_distance_from(request.distance_from, made));
+  if (!request.distance_from.empty()) made.distances.push_back(parse_distance_from(request.distance_from, made));
+  complete_part_distances(made);
   made.distance_option = "--distance-from";
 }
 
@@ -279,6 +280,7 @@ CheckResult measure_curves(const CheckRequest& request) {
   for (const auto& [name, given] : {std::pair{"--weld", made.weld_text != "auto"},
                                     {"--orient", made.orient_text != "keep"},
                                     {"--only", !made.only.empty()},
+                                    {"--distance-of", !made.distances_of.empty()},
                                     {"--obstacle", !made.obstacles.empty()},
                                     {"--tolerance", made.tolerance.has_value()},
                                     {"--distance-from", !request.distance_from.empty()}})

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "distances/part_distances.h"
 #include "messages.h"
 #include "page/run_pages.h"
 #include "vdb_offset/distance_field.h"
@@ -58,6 +59,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
   const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
   return {{"unit", request.unit},
           {"distance", to.distance},
+          {"distance-of", fmt::format("{}", fmt::join(request.distance_of_texts, " "))},
+          {"blend", request.blend_text},
           {"metric", fmt::format("{}", fmt::join(std::vector{options.metric.scale[0], options.metric.scale[1],
                                                              options.metric.scale[2]},
                                                  " "))},
@@ -142,16 +145,10 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   return {};
 }
 
-/// The one distance of an output that is a CAD model.
-double distance_of_model(const Job& job, const Destination& to) {
+/// The distances of an output that is a CAD model.
+io::CadDistances distances_of_model(const Job& job, const Destination& to) {
   const auto number = static_cast<std::size_t>(&to - job.outputs.data());
-  const Distances& distances = job.distances[number];
-  if (!distances.uniform())
-    throw InvalidInput(fmt::format(
-        "{}: expected a distance that is a number, for an output that is a CAD model, got {}", to.mesh, to.distance));
-  if (distances[0] == 0)
-    throw InvalidInput(to.mesh + ": expected a distance other than 0, for an output that is a CAD model, got 0");
-  return distances[0];
+  return cad_distances(job, job.asked[number], job.distances[number]);
 }
 
 /// Writes each path as a curve.
@@ -267,7 +264,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteResult written;
   if (io::is_cad_output(to.mesh)) {
-    made.cad = io::write_cad(to.mesh, *job.source.file, distance_of_model(job, to), result.positions,
+    made.cad = io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions,
                              {request.fit_tolerance, job.options.only, request.faceted});
     written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
   } else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));

@@ -3,18 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <string_view>
 #include <utility>
 
+#include "distances/evaluate.h"
+#include "distances/heights.h"
+#include "distances/part_distances.h"
 #include "job.h"
 #include "outputs.h"
 #include "request/option_values.h"
-#include "vdb_offset/curves.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/cad_file.h"
-#include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/mesh_facts.h"
 
@@ -92,98 +91,6 @@ void settle_surroundings(Job& job) {
   options.clearance = clearance_of(job);
 }
 
-Distances read_distances(const Source& source, const std::string& from) {
-  if (names_property(from)) {
-    if (!source.file)
-      throw InvalidInput(
-          fmt::format("expected a mesh from a file for '{}', as curves and scenes have no properties", from));
-    const std::size_t kind = from.find(':') + 1;  // one is for PLY, the other for files that hold more than a mesh
-    if (source.file->document.operator bool() != from.starts_with("vtk:"))
-      throw InvalidInput(fmt::format("{}: expected 'ply:NAME' for a PLY file and 'vtk:NAME' for one of VTK's, got '{}'",
-                                     source.file->path, from));
-    return Distances(io::vertex_property(*source.file, from.substr(kind)));
-  }
-  return Distances(io::read_vertex_numbers(from, source.view().positions.size()));
-}
-
-Distances evaluate(const Job& job, const DistanceRequest& request) {
-  const Source& source = job.source;
-  if (!request.from.empty()) return read_distances(source, request.from);
-  const auto texture_of = [&] {
-    if (!source.file)
-      throw InvalidInput(job.request.input +
-                         ": expected texture coordinates (u, v), which a scene and curves have none of");
-    return io::vertex_texture(*source.file);
-  };
-  const auto normals_of = [&] {
-    return source.curves ? curve_normals(source.view())
-                         : vertex_normals(source.view(), job.options.weld, job.options.orient);
-  };
-  return scene::distances_of(request.distance, source.view(), normals_of, texture_of);
-}
-
-/// Multiplies all distances by a factor.
-Distances scaled(const Distances& distances, double factor) {
-  if (distances.uniform()) return factor * distances[0];
-  std::vector<double> each(distances.count());
-  for (std::size_t v = 0; v < each.size(); ++v) each[v] = factor * distances[v];
-  return Distances(std::move(each));
-}
-
-/// The heights of layers whose thickness grows by a factor from one to the next.
-std::vector<Distances> geometric_heights(const Job& job) {
-  const LayersRequest& layers = *job.request.layers;
-  std::vector<double> factors;  // of each layer: its height as a multiple of the first layer's
-  factors.reserve(layers.count);
-  double sum = 0, step = 1;
-  for (std::size_t k = 0; k < layers.count; ++k, step *= layers.growth) factors.push_back(sum += step);
-  const Distances given = evaluate(job, layers.first ? *layers.first : *layers.total);
-  std::vector<Distances> heights;
-  heights.reserve(factors.size());
-  for (const double factor : factors) heights.push_back(scaled(given, layers.first ? factor : factor / sum));
-  return heights;
-}
-
-constexpr std::size_t kLongestHeight = 4096;  // bytes: twice the longest expression, or the longest path
-
-/// Reads a file of heights: one a line; empty lines, and text behind a #, are ignored. Files that it names are looked
-/// for in its own folder.
-std::vector<Distances> read_heights(Job& job) {
-  const LayersRequest& layers = *job.request.layers;
-  const std::string& path = layers.heights;
-  std::error_code unknown;
-  if (std::filesystem::is_directory(path, unknown)) throw ReadError(path + ": expected a file, got a folder");
-  const io::FileBytes bytes = io::FileBytes::open(path);
-  std::string_view rest = bytes.view();
-  std::vector<Distances> heights;
-  for (std::size_t number = 1; !rest.empty(); ++number) {
-    const std::string_view whole = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(whole.size() + 1, rest.size()));
-    std::string_view text = whole.substr(0, whole.find('#'));
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    if (first == std::string::npos) continue;
-    text = text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-    if (text.size() > kLongestHeight)
-      throw InvalidInput(fmt::format("{}: line {}: expected a height of at most {} characters, got {}", path, number,
-                                     kLongestHeight, text.size()));
-    const std::string line(text);
-    try {
-      DistanceRequest request = parse_distance_request(line);
-      if (line.starts_with('@')) {
-        request.from = (std::filesystem::path(path).parent_path() / request.from).string();
-        job.files_of_heights.push_back(request.from);
-      }
-      heights.push_back(evaluate(job, request));
-    } catch (const Error& error) {
-      throw InvalidInput(fmt::format("{}: line {}: {}", path, number, error.what()));
-    }
-  }
-  if (heights.empty()) throw InvalidInput(path + ": expected a height on each line, got none");
-  if (layers.count > 0 && heights.size() != layers.count)
-    throw InvalidInput(fmt::format("{}: expected {} heights, got {}", path, layers.count, heights.size()));
-  return heights;
-}
-
 /// The distances of all outputs, then those of the inner skin.
 std::vector<Distances> distances_of(Job& job) {
   const Request& request = job.request;
@@ -195,7 +102,8 @@ std::vector<Distances> distances_of(Job& job) {
     return {distance};
   }
   std::vector<Distances> distances;
-  for (const DistanceRequest& each : job.asked) distances.push_back(evaluate(job, each));
+  for (const DistanceRequest& each : job.asked)
+    distances.push_back(are_of_parts(job, each) ? distances_of_parts(job, each) : evaluate(job, each));
   if (!request.inner) return distances;
   for (const Distances& outer : distances)
     if (outer.inward() > 0)
@@ -243,7 +151,7 @@ Job resolve_options(const Request& request, const Source& source) {
     throw InvalidOption("--miter-limit needs --corners miter, or a scene with mitred corners");
   settle_surroundings(job);
   if (!request.layers) job.distances = distances_of(job);
-  else job.distances = request.layers->heights.empty() ? geometric_heights(job) : read_heights(job);
+  else job.distances = heights_of_layers(job);
   return job;
 }
 

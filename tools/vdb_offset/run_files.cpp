@@ -166,6 +166,9 @@ std::vector<RunFile> surroundings_of(const Request& request) {
   for (const std::string& path : request.obstacles) add(files, "--obstacle", path);
   for (const io::Selector& part : request.only)
     if (part.by == io::Selector::By::File) add(files, "--only", part.name);
+  for (const PartDistance& each : request.distances_of)
+    if (each.part.by == io::Selector::By::File) add(files, "--distance-of", each.part.name);
+  for (const PartDistance& each : request.distances_of) add_source_of(files, "--distance-of", each.distance);
   for (const DistanceRequest& each : request.distances) add_source_of(files, request.distance_option, each);
   return files;
 }

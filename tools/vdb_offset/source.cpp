@@ -80,6 +80,7 @@ io::CadReading cad_reading(const Request& request) {
   how.most_share = kMost;
   std::vector<const DistanceRequest*> asked;
   for (const DistanceRequest& each : request.distances) asked.push_back(&each);
+  for (const PartDistance& each : request.distances_of) asked.push_back(&each.distance);
   if (request.inner) asked.push_back(&*request.inner);
   if (request.layers && request.layers->first) asked.push_back(&*request.layers->first);
   if (request.layers && request.layers->total) asked.push_back(&*request.layers->total);

@@ -3,15 +3,36 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "vdb_offset/api.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/statistics.h"
 
 namespace vdb_offset::io {
+
+/// How far faces of a CAD model are offset: by a number of world units, or by an expression, in which u and v are those
+/// of the face, scaled to its range.
+struct CadDistance {
+  double number = 0;
+  std::optional<DistanceExpression> expression;  ///< Counts in place of the number.
+};
+
+/// The distances of the faces of a CAD model, towards the outside; negative is inward.
+struct VDB_OFFSET_API CadDistances {
+  CadDistances() = default;
+  CadDistances(double number);  // NOLINT(google-explicit-constructor): one for all is the usual case
+
+  std::vector<CadDistance> each;
+  std::vector<std::uint32_t> of_face;  ///< Of each face of the mesh, which of them is its own. Empty: the first.
+  double scale = 0;                    ///< The largest of them without its sign, world units, > 0.
+  double diagonal = 0;                 ///< What percentages in expressions refer to, world units.
+  double blend = 0;  ///< Over how far distances change across smooth edges, world units: as FaceDistances::blend.
+};
 
 struct CadWriting {
   double fit_tolerance = 0;  ///< The most distance of a fitted face from its offset, world units; 0: 1e-4 distances.
@@ -22,13 +43,15 @@ struct CadWriting {
 /// Whether a file of that name is a CAD model that can be written: .step, .stp or .brep.
 VDB_OFFSET_API bool is_cad_output(const std::string& path);
 
+/// Of each face of the mesh the face of the CAD model that it is of, counted from 0. Empty for other files.
+VDB_OFFSET_API std::span<const std::uint32_t> cad_face_of(const MeshFile& source);
+
 /// Writes the offset of a CAD model as one, through a temporary file that is renamed at the end: each face becomes one
 /// over the same (u, v), and where these do not make a valid solid, faces or triangles. The file is read again before.
-/// \param distance towards the outside, world units; negative is inward
 /// \param positions of the offset mesh
-/// \throw InvalidInput if the source is no CAD model, or only a part of one of its faces is offset; Error if nothing
+/// \throw InvalidInput if the source is no CAD model, or a part of one of its faces has another distance; Error if nothing
 /// could be made; WriteError
-VDB_OFFSET_API CadFileFacts write_cad(const std::string& path, const MeshFile& source, double distance,
+VDB_OFFSET_API CadFileFacts write_cad(const std::string& path, const MeshFile& source, const CadDistances& distances,
                                       std::span<const Vec3d> positions, const CadWriting& how = {});
 
 }  // namespace vdb_offset::io

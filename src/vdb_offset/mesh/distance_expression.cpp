@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 
 #include "vdb_offset/base/parallel.h"
@@ -331,6 +332,23 @@ std::vector<double> DistanceExpression::operator()(const VertexVariables& at) co
     throw InvalidInput(fmt::format("distance '{}': expected a finite number at vertex {} (counted from 0), got {}",
                                    text_, first_unusable.load(), distance[first_unusable]));
   return distance;
+}
+
+std::function<double(const Vec3d&, const Vec3d&, const Vec2d&)> DistanceExpression::at_points(double diagonal) const {
+  return [evaluator = std::make_shared<Evaluator>(code_), text = text_, is_share = percent_, diagonal](
+             const Vec3d& position, const Vec3d& normal, const Vec2d& texture) {
+    auto& value = evaluator->value;
+    for (std::size_t k = 0; k < 3; ++k) {
+      value[k] = position[static_cast<int>(k)];
+      value[3 + k] = normal[static_cast<int>(k)];
+      if (k < 2) value[6 + k] = texture[static_cast<int>(k)];
+    }
+    const double distance = is_share ? (*evaluator)() / 100 * diagonal : (*evaluator)();
+    if (!std::isfinite(distance))
+      throw InvalidInput(fmt::format("distance '{}': expected a finite number at u = {:g}, v = {:g}, got {}", text,
+                                     texture[0], texture[1], distance));
+    return distance;
+  };
 }
 
 }  // namespace vdb_offset

@@ -16,4 +16,8 @@ std::vector<double> DistanceExpression::operator()(const VertexVariables& at) co
   return std::vector<double>(at.positions.size());
 }
 
+std::function<double(const Vec3d&, const Vec3d&, const Vec2d&)> DistanceExpression::at_points(double) const {
+  return {};
+}
+
 }  // namespace vdb_offset

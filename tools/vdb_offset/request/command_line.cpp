@@ -25,7 +25,7 @@ namespace {
 // Options whose values are lengths.
 constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",   "inner",     "clearance",
                                     "first-height", "total-thickness", "voxel-size",   "tolerance", "weld",
-                                    "flatten",      "deflection",      "fit-tolerance"};
+                                    "flatten",      "deflection",      "fit-tolerance", "blend"};
 
 /// The words behind the name of a program or subcommand in reverse order, as CLI11 takes them. Words behind `--` are
 /// names of files, whatever they begin with.
@@ -175,6 +175,10 @@ std::string CommandLine::text_of(const CLI::Option& option, const std::string& g
     const CLI::Option* const format = app_->get_option_no_throw("--format");
     return unit_of_file(*measured_, format && format->count() > 0 ? format->results().front() : std::string());
   };
+  if (unit_ && name == "distance-of") {
+    const std::size_t at = given.rfind(':') + 1;
+    return given.substr(0, at) + in_file_units("--" + name, given.substr(at), file_unit);
+  }
   return unit_ && is_length ? in_file_units("--" + name, given, file_unit) : given;
 }
 

@@ -71,6 +71,7 @@ void declare_distances(CommandLine& line, Draft& draft) {
       [&request](const std::string& text) {
         request.distances.push_back(parse_distance_of("--distance", text, request));
       });
+  declare_part_distances(line, request);
   line.option("--mode", "MODE",
               "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "
               "closed and manifold, for which INPUT may be anything [topology]",
@@ -154,7 +155,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
                 "'name=NAME' or 'color=RRGGBB'; may be repeated",
                 [&request](const std::string& text) {
                   request.only_texts.push_back(text);
-                  request.only.push_back(parse_part(text));
+                  request.only.push_back(parse_part("--only", text));
                 });
   line.option("--border", "MODE",
               "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]",
@@ -225,6 +226,27 @@ void declare_products(CommandLine& line, Draft& draft) {
 }
 
 }  // namespace
+
+void declare_part_distances(CommandLine& line, Request& request) {
+  line.repeated("--distance-of", "PART:D",
+                "The distance of a part, as --distance, in place of that of all: PART as for --only, as in face=3:0.4; "
+                "may be repeated, and the last that names a face counts",
+                [&request](const std::string& text) {
+                  request.distance_of_texts.push_back(text);
+                  request.distances_of.push_back(parse_distance_of_part(text, request));
+                });
+  line.option("--blend", "L",
+              "With --distance-of, or a CAD model and distances in u and v: distances of parts change into each other "
+              "over this length on both sides of their edges: world units, or percent of the diagonal [they do not]",
+              [&request](const std::string& text) {
+                request.blend_text = text;
+                request.blend = parse_blend(text);
+              });
+}
+
+void complete_part_distances(Request& request) {
+  if (request.distances.empty() && !request.distances_of.empty()) request.distances.push_back({"0", {}, {}});
+}
 
 void declare_cad(CommandLine& line, Request& request) {
   line.option(
@@ -361,6 +383,7 @@ void complete(const CommandLine& line, Draft& draft) {
   if (request.axes)
     request.distances.push_back({draft.distance_xy + " xy " + draft.distance_z + " z", request.axes->xy, {}});
   if (!request.fit.empty()) request.distances.push_back({"fit", {}, {}});
+  complete_part_distances(request);
 }
 
 }  // namespace

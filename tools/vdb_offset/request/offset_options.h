@@ -12,6 +12,11 @@ namespace vdb_offset::tool {
 /// Declares the options that say how CAD models become meshes.
 void declare_cad(CommandLine& line, Request& request);
 
+/// Declares the options that give parts distances of their own.
+void declare_part_distances(CommandLine& line, Request& request);
+/// Where parts alone have distances, the rest stays.
+void complete_part_distances(Request& request);
+
 /// A request that is being made, and values that become part of it only if another option says so.
 struct Draft {
   Request request;

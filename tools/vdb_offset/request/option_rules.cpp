@@ -63,6 +63,7 @@ void require_for_curves(const Request& request) {
   require_structured(request);
   require_none("a mesh", {{"--only", !request.only.empty()},
                           {"--border", request.border.has_value()},
+                          {"--distance-of", !request.distances_of.empty()},
                           {"--symmetry", !request.symmetry_texts.empty()},
                           {"--obstacle", !request.obstacles.empty()},
                           {"--shell", request.shell},
@@ -169,6 +170,8 @@ void require_together(const CommandLine& line, bool is_iso) {
     require(!is_given || !layers, fmt::format("--layers and {} exclude each other", by));
     require_without(line, is_given, by, {"--shell", "--obstacle", "--save-vdb"});
   };
+  require_without(line, is_iso || layers || axes || fit, "--mode iso, --layers, --distance-xy or --fit",
+                  {"--distance-of", "--blend"});
   instead_of_distance(axes, "--distance-xy");
   require_without(line, axes, "--distance-xy", {"--fit"});
   instead_of_distance(fit, "--fit");
@@ -211,8 +214,8 @@ void require_sound(const Request& request) {
   require(request.output != "-" || request.distances.size() < 2, "OUTPUT: expected a file for each distance, got '-'");
   require_even(request);
   require_sound_tolerance(request);
-  require(request.only.empty() || !scene::is_scene(request.input),
-          "--only: expected a mesh, as a scene names its own part");
+  require((request.only.empty() && request.distances_of.empty()) || !scene::is_scene(request.input),
+          "--only and --distance-of: expected a mesh, as a scene names its own part");
   require(request.fit.empty() || request.clearance.value > 0,
           fmt::format("--clearance: expected one above 0 with --fit, got '{}'", request.clearance_text));
 }

@@ -88,6 +88,22 @@ DistanceRequest parse_distance_from(const std::string& text, const Request& requ
   return parse_distance_of("--distance-from", names_property(text) ? text : "@" + text, request);
 }
 
+PartDistance parse_distance_of_part(const std::string& text, const Request& request) {
+  constexpr const char* kOption = "--distance-of";
+  // Names may have colons, and so may expressions: of all colons, the first behind which there is a distance.
+  std::optional<UsageError> first_error;
+  for (std::size_t at = text.find(':'); at != std::string::npos; at = text.find(':', at + 1)) try {
+      DistanceRequest distance = parse_distance_of(kOption, text.substr(at + 1), request);
+      return {parse_part(kOption, text.substr(0, at)), std::move(distance)};
+    } catch (const UsageError& error) {
+      if (!first_error) first_error = error;
+    } catch (const Error& error) {
+      if (!first_error) first_error = UsageError(fmt::format("{}: {}", kOption, error.what()));
+    }
+  if (first_error) throw *first_error;
+  throw UsageError(fmt::format("{}: expected a part and its distance, as in face=3:0.4, got '{}'", kOption, text));
+}
+
 DistanceRequest parse_inner(const std::string& text, const Request& request) {
   DistanceRequest inner = parse_distance_of("--inner", text, request);
   require(inner.distance.expression || !inner.from.empty() || inner.distance.value > 0,
@@ -123,11 +139,11 @@ io::TransportRequest parse_transport(const std::string& text) {
   return request;
 }
 
-io::Selector parse_part(const std::string& text) {
+io::Selector parse_part(const char* option, const std::string& text) {
   try {
     return io::parse_selector(text);
   } catch (const InvalidOption& error) {
-    throw UsageError(std::string("--only: ") + error.what());
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
   }
 }
 
@@ -195,6 +211,8 @@ scene::Distance parse_fineness(const char* option, const std::string& text) {
 }  // namespace
 
 scene::Distance parse_flatten(const std::string& text) { return parse_fineness("--flatten", text); }
+
+scene::Distance parse_blend(const std::string& text) { return parse_fineness("--blend", text); }
 
 scene::Distance parse_deflection(const std::string& text) { return parse_fineness("--deflection", text); }
 

@@ -45,6 +45,8 @@ DistanceRequest parse_distance_request(const std::string& text);
 DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request);
 /// The file, ply:NAME or vtk:NAME that --distance-from was given.
 DistanceRequest parse_distance_from(const std::string& text, const Request& request);
+/// PART:D of --distance-of.
+PartDistance parse_distance_of_part(const std::string& text, const Request& request);
 /// The distance of an inner skin, above 0 if it is one for all vertices.
 DistanceRequest parse_inner(const std::string& text, const Request& request);
 
@@ -55,8 +57,10 @@ std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mes
 
 /// --deflection: a length above 0, or a percentage.
 scene::Distance parse_deflection(const std::string& text);
+/// --blend: a length above 0, or a percentage.
+scene::Distance parse_blend(const std::string& text);
 /// group=NAME, material=NAME, faces=FILE, and of CAD models face=N, name=NAME or color=RRGGBB.
-io::Selector parse_part(const std::string& text);
+io::Selector parse_part(const char* option, const std::string& text);
 
 /// 'slide', 'fixed' or 'free'.
 Border parse_border(const std::string& text);

@@ -29,6 +29,12 @@ struct DistanceRequest {
   std::string from;  ///< Then each vertex's own: a file of numbers, or ply:NAME or vtk:NAME, a property of the input.
 };
 
+/// The distance of a part of the mesh, in place of what the others have.
+struct PartDistance {
+  io::Selector part;
+  DistanceRequest distance;
+};
+
 /// Distances in the plane of x and y and along z, of one sign.
 struct AxisDistances {
   scene::Distance xy, z;
@@ -65,6 +71,8 @@ struct Request {
   std::string input, output;
   std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.
   const char* distance_option = "--distance";  ///< The option that they were given with.
+  std::vector<PartDistance> distances_of;      ///< Of parts; where several name a face, the last counts.
+  scene::Distance blend;                       ///< Over how far distances of parts change into each other; 0: not.
   std::optional<AxisDistances> axes;           ///< Then the only distance is that in the plane.
   std::optional<DistanceRequest> inner;        ///< The distance of a shell's inner skin, above 0.
   std::string fit;                             ///< Another mesh that INPUT is to keep the clearance from; empty: none.
@@ -99,7 +107,8 @@ struct Request {
 
   std::string unit;  ///< Of the file's numbers; empty: not said.
   // Texts as given, for the report.
-  std::vector<std::string> only_texts, symmetry_texts;
+  std::vector<std::string> only_texts, symmetry_texts, distance_of_texts;
+  std::string blend_text;
   std::string clearance_text, weld_text = "auto", orient_text = "keep";
 
   std::string report, states, paths, html, vdb;  ///< Files to write; empty: not asked for.

@@ -19,6 +19,13 @@ namespace {
 
 double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
 
+/// A distance along Su x Sv, of one towards the outside.
+FaceDistance towards(const FaceDistance& outside, double sign) {
+  FaceDistance along{sign * outside.constant, {}};
+  if (outside.at) along.at = [at = outside.at, sign](double u, double v) { return sign * at(u, v); };
+  return along;
+}
+
 /// Tells how each face of a model was made, and which face it became; of those from `first` on.
 void tell_faces(const Model& model, const std::vector<TopoDS_Face>& built, std::size_t first, OffsetCadResult& result) {
   for (std::size_t f = 0; f < model.faces.size(); f++) {
@@ -67,14 +74,8 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       }
       for (std::size_t f = 0; f < model.faces.size(); f++) {
         ModelFace& face = model.faces[f];
-        const int number = static_cast<int>(first_face + f);
-        const double own =
-            request.of_face.empty() ? request.distance : request.of_face[static_cast<std::size_t>(number)];
-        face.distance.constant = face.sign * own;
-        if (request.distance_at)
-          face.distance.at = [&request, number, sign = face.sign](double u, double v) {
-            return sign * request.distance_at(number, u, v);
-          };
+        face.distance.constant = face.sign * request.distance;
+        if (!request.of_face.empty()) face.distance = towards(request.of_face[first_face + f], face.sign);
         face.offset = offset_surface(face.surface, face.box, face.distance, sharp_sides(model, static_cast<int>(f)),
                                      vertex_margin(request.distance), tolerances.fit);
         result.fit_error = std::max(result.fit_error, face.offset.error);

@@ -2,19 +2,19 @@
 #pragma once
 
 #include <TopoDS_Shape.hxx>
-#include <functional>
 #include <string>
 #include <vector>
+
+#include "vdb_offset/cad/offset/offset_surface.h"
 
 namespace vdb_offset::cad {
 
 struct OffsetCadRequest {
   TopoDS_Shape source;  ///< Solids or shells.
-  double distance = 0;  ///< Towards the outside of the material; below 0 inward.
-  /// Along the outside of a face (numbered as TopExp_Explorer meets them) at its (u, v), in place of `distance`.
-  std::function<double(int face, double u, double v)> distance_at;
-  std::vector<double> of_face;  ///< In place of `distance`: of each face, by the same numbers; or empty.
-  double fit_tolerance = 0;     ///< 0: 1e-4 |distance|.
+  double distance = 0;  ///< Towards the outside of the material; below 0 inward. Of uneven ones, the largest.
+  /// In place of `distance`: towards the outside, of each face as TopExp_Explorer meets them; or empty.
+  std::vector<FaceDistance> of_face;
+  double fit_tolerance = 0;  ///< 0: 1e-4 |distance|.
 };
 
 enum class CadKind { Solid, Shells, Faces };

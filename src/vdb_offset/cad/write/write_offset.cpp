@@ -30,11 +30,14 @@
 #include <system_error>
 
 #include "vdb_offset/cad/judge/judge.h"
+#include "vdb_offset/cad/judge/parameters.h"
 #include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_solid.h"
 #include "vdb_offset/cad/write/body_shape.h"
+#include "vdb_offset/cad/write/face_distances.h"
 #include "vdb_offset/cad/write/faceted.h"
 #include "vdb_offset/cad/write/write_model.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -105,6 +108,7 @@ struct OffsetBody {
   const Body& body;
   BodyShape source;
   OffsetCadResult result;
+  std::vector<FaceDistance> distances;  // of each face; empty: all have the same
 };
 
 /// Writes a file in a process of its own: what OpenCASCADE's writer sets for units, its reader would take for its own.
@@ -151,26 +155,24 @@ class OffsetWriter {
   }
 
  private:
-  /// Millimetres.
-  double distance_of(std::size_t face) const {
-    return millimetres_ * (write_.of_face.empty() ? write_.distance : write_.of_face[face]);
-  }
-  bool is_even() const {
-    return std::all_of(write_.of_face.begin(), write_.of_face.end(), [&](double d) { return d == write_.of_face[0]; });
-  }
+  bool is_even() const { return write_.of_face.size() == 1; }
+  double largest() const { return millimetres_ * write_.distance; }
 
   void make(OffsetBody& body, std::size_t first_face) {
     OffsetCadRequest request;
     request.source = body.source.shape;
-    request.distance = is_even() ? distance_of(0) : millimetres_ * write_.distance;
+    request.distance = largest();
     request.fit_tolerance = millimetres_ * write_.fit_tolerance;
-    if (!is_even())
-      for (const std::size_t face : body.source.face_numbers) request.of_face.push_back(distance_of(first_face + face));
     try {
+      if (!is_even()) request.of_face = distances_of(write_, first_face, body.source, millimetres_);
+      body.distances = request.of_face;
       body.result = offset_cad(request);
     } catch (const Standard_Failure& failure) {
       body.result = {};
       body.result.gaps.push_back(std::string("OpenCASCADE fails: ") + failure.DynamicType()->Name());
+    } catch (const Error& error) {
+      body.result = {};
+      body.result.gaps.emplace_back(error.what());
     }
     for (const CadFace made : body.result.faces)
       ++(made == CadFace::Kept      ? written_.kept
@@ -218,7 +220,6 @@ class OffsetWriter {
     written_.samples = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (!is_good(bodies_[i], again.bodies[i], in_millimetres(again))) return false;
-    if (!is_even()) written_.least = 0;  // not sampled
     if (bodies_.size() > 1 && get_into_each_other(again)) {
       written_.gaps.emplace_back("bodies get into each other");
       return false;
@@ -239,16 +240,39 @@ class OffsetWriter {
       const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid &&
                             soup_of(shape).crossings(1).empty();
       if (!is_valid) written_.gaps.emplace_back("read again, the result is not valid, or crosses itself");
-      if (is_valid) add_volume(again, shape);
-      return is_valid;
+      if (!is_valid || !is_at_distances(body)) return false;
+      add_volume(again, shape);
+      return true;
     }
-    const Verdict verdict = judge_offset(body.source.shape, shape, distance_of(0), {});
+    const Verdict verdict = judge_offset(body.source.shape, shape, largest(), {});
     written_.samples += verdict.samples;
     written_.least = std::min(written_.least, verdict.least);
     written_.most = std::max(written_.most, verdict.most);
     if (verdict.is_good) add_volume(again, shape);
     written_.gaps.insert(written_.gaps.end(), verdict.faults.begin(), verdict.faults.end());
     return verdict.is_good;
+  }
+
+  /// Whether the faces of an uneven offset are where they ought to be at the same (u, v), to 1 % of the largest distance.
+  bool is_at_distances(const OffsetBody& body) {
+    constexpr std::size_t kSamples = 10000;  // of all faces
+    constexpr double kMostOff = 0.01;
+    AtParameters all;
+    const OffsetCadResult& result = body.result;
+    std::size_t k = 0;
+    for (TopExp_Explorer face(body.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k) {
+      if (result.made_of[k].IsNull()) continue;
+      const AtParameters here = measure_at_parameters(TopoDS::Face(face.Current()), TopoDS::Face(result.made_of[k]),
+                                                      body.distances[k], kSamples / result.made_of.size() + 1);
+      all = {all.samples + here.samples, std::min(all.least, here.least), std::max(all.most, here.most),
+             std::max(all.worst, here.worst)};
+    }
+    written_.samples += all.samples;
+    written_.least = std::min(written_.least, all.least);
+    written_.most = std::max(written_.most, all.most);
+    if (all.worst <= kMostOff * std::abs(largest())) return true;
+    written_.gaps.push_back("a face is off its distance by up to " + std::to_string(all.worst / millimetres_));
+    return false;
   }
 
   void add_volume(const Body& again, const TopoDS_Shape& shape) {
@@ -387,7 +411,7 @@ std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten(
 io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
   std::size_t faces = 0;
   for (const Body& body : model.bodies) faces += body.faces.size();
-  if (!write.of_face.empty() && write.of_face.size() != faces)
+  if (write.of_face.size() != 1 && write.of_face.size() != faces)
     throw InvalidCad("expected distances of " + std::to_string(faces) + " faces, got " +
                      std::to_string(write.of_face.size()));
   std::vector<std::string> gaps;

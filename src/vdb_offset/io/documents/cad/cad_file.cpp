@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/documents/cad/cad_surface.h"
@@ -17,22 +19,42 @@ namespace {
 
 constexpr double kFitShare = 1e-4;  // of the distance
 
-/// The distance of each face of the model, of which some stay. \throw InvalidInput if only a part of one does
-std::vector<double> distances_of_faces(const std::string& path, const CadMesh& mesh, double distance,
-                                       std::span<const std::uint8_t> only) {
-  std::vector<std::optional<double>> found(mesh.faces.size());
+/// Which of the distances each face of the model has; one that stays has none. \throw InvalidInput if a part of one has
+/// another than the rest of it
+std::vector<std::optional<std::size_t>> rules_of_faces(const std::string& path, const CadMesh& mesh,
+                                                       const CadDistances& distances,
+                                                       std::span<const std::uint8_t> only) {
+  std::vector<std::optional<std::size_t>> rules(mesh.faces.size());
+  std::vector<std::uint8_t> is_known(mesh.faces.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const double here = only[t] ? distance : 0;
-    std::optional<double>& of_face = found[mesh.face_of[t]];
-    if (of_face && *of_face != here)
-      throw InvalidInput(fmt::format("{}: expected whole faces of a CAD model to be offset, got a part of face {}",
-                                     path, mesh.face_of[t] + 1));
-    of_face = here;
+    std::optional<std::size_t> here = distances.of_face.empty() ? 0 : distances.of_face[t];
+    if (!only.empty() && !only[t]) here.reset();
+    const std::uint32_t face = mesh.face_of[t];
+    if (is_known[face] && rules[face] != here)
+      throw InvalidInput(fmt::format("{}: expected whole faces of a CAD model to be offset alike, got a part of face {}",
+                                     path, face + 1));
+    rules[face] = here;
+    is_known[face] = 1;
   }
-  std::vector<double> of_face;
-  of_face.reserve(found.size());
-  for (const std::optional<double>& each : found) of_face.push_back(each.value_or(0));
-  return of_face;
+  return rules;
+}
+
+/// The distances as the worker takes them: none of their own where all faces have one number.
+std::vector<CadFaceDistance> distances_of_faces(const CadDistances& distances,
+                                                std::span<const std::optional<std::size_t>> rules) {
+  std::vector<CadFaceDistance> of_faces;
+  for (const std::optional<std::size_t>& rule : rules) {
+    CadFaceDistance& own = of_faces.emplace_back();
+    if (!rule) continue;
+    const CadDistance& each = distances.each[*rule];
+    own.number = each.number;
+    if (each.expression) own.expression = each.expression->text();
+  }
+  const auto is_first = [&](const CadFaceDistance& own) {
+    return own.expression.empty() && own.number == of_faces.front().number;
+  };
+  if (std::all_of(of_faces.begin(), of_faces.end(), is_first)) of_faces.resize(1);
+  return of_faces;
 }
 
 CadFileFacts facts_of(CadWritten&& written) {
@@ -61,17 +83,29 @@ bool is_cad_output(const std::string& path) {
   return format == Format::Step || format == Format::Brep;
 }
 
-CadFileFacts write_cad(const std::string& path, const MeshFile& source, double distance,
+CadDistances::CadDistances(double number) : scale(std::abs(number)) { each.push_back({number, {}}); }
+
+std::span<const std::uint32_t> cad_face_of(const MeshFile& source) {
+  const auto* const model = dynamic_cast<const CadSurface*>(source.exact.get());
+  if (!model) return {};
+  return model->mesh().face_of;
+}
+
+CadFileFacts write_cad(const std::string& path, const MeshFile& source, const CadDistances& distances,
                        std::span<const Vec3d> positions, const CadWriting& how) {
   const auto* const model = dynamic_cast<const CadSurface*>(source.exact.get());
   if (!model)
     throw InvalidInput(
         fmt::format("{}: expected an input that is a CAD model, for an output that is one, got {}", path, source.path));
+  VDB_OFFSET_ASSERT(distances.scale > 0 && !distances.each.empty());
   WriteCad write;
   write.format = name(*format_of(path));
-  write.distance = distance;
-  if (!how.only.empty()) write.of_face = distances_of_faces(path, model->mesh(), distance, how.only);
-  write.fit_tolerance = how.fit_tolerance > 0 ? how.fit_tolerance : kFitShare * std::abs(write.distance);
+  write.of_face =
+      distances_of_faces(distances, rules_of_faces(path, model->mesh(), distances, how.only));
+  write.distance = write.of_face.size() == 1 ? write.of_face.front().number : distances.scale;
+  write.diagonal = distances.diagonal;
+  write.blend = distances.blend;
+  write.fit_tolerance = how.fit_tolerance > 0 ? how.fit_tolerance : kFitShare * distances.scale;
   write.faceted = how.faceted;
   if (how.faceted) {
     write.positions.assign(positions.begin(), positions.end());

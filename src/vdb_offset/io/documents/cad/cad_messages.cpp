@@ -22,6 +22,20 @@ std::vector<std::string> take_texts(Unpacker& unpacker) {
   return texts;
 }
 
+void put_distances(Packer& packer, const std::vector<CadFaceDistance>& distances) {
+  packer.value(std::uint64_t{distances.size()});
+  for (const CadFaceDistance& each : distances) packer.value(each.number).text(each.expression);
+}
+
+std::vector<CadFaceDistance> take_distances(Unpacker& unpacker) {
+  std::vector<CadFaceDistance> distances(unpacker.count(sizeof(double) + sizeof(std::uint64_t)));
+  for (CadFaceDistance& each : distances) {
+    each.number = unpacker.value<double>();
+    each.expression = unpacker.text();
+  }
+  return distances;
+}
+
 void put_face(Packer& packer, const CadFaceFacts& face) {
   packer.text(face.name).text(face.layer).text(face.solid).text(face.kind);
   packer.value(std::uint8_t{face.colour.has_value()}).value(face.colour.value_or(Numbers{}));
@@ -132,7 +146,9 @@ CadMesh unpack_mesh(std::string_view bytes) {
 
 std::string pack(const WriteCad& write) {
   Packer packer;
-  packer.text(write.format).value(write.distance).list(write.of_face).value(write.fit_tolerance);
+  packer.text(write.format);
+  put_distances(packer, write.of_face);
+  packer.value(write.distance).value(write.diagonal).value(write.blend).value(write.fit_tolerance);
   packer.value(std::uint8_t{write.faceted}).list(write.positions).list(write.triangles);
   return packer.take();
 }
@@ -141,8 +157,10 @@ WriteCad unpack_write(std::string_view bytes) {
   Unpacker unpacker(bytes);
   WriteCad write;
   write.format = unpacker.text();
+  write.of_face = take_distances(unpacker);
   write.distance = unpacker.value<double>();
-  write.of_face = unpacker.list<double>();
+  write.diagonal = unpacker.value<double>();
+  write.blend = unpacker.value<double>();
   write.fit_tolerance = unpacker.value<double>();
   write.faceted = unpacker.value<std::uint8_t>() != 0;
   write.positions = unpacker.list<Vec3d>();

@@ -60,11 +60,19 @@ struct CadPlace {
   std::uint64_t face = 0;  ///< An index of CadMesh::faces.
 };
 
-/// The model's offset as a file.
+/// How far a face is offset, towards the outside of the material; negative is inward.
+struct CadFaceDistance {
+  double number = 0;
+  std::string expression;  ///< Counts in place of the number, unless it is empty.
+};
+
+/// The model's offset as a file. Lengths are in the file's unit.
 struct WriteCad {
-  std::string format;            ///< step or brep
-  double distance = 0;           ///< Towards the outside of the material; negative is inward.
-  std::vector<double> of_face;   ///< In place of it, of each face; or empty.
+  std::string format;                    ///< step or brep
+  std::vector<CadFaceDistance> of_face;  ///< A number for all, or one for each face.
+  double distance = 0;                   ///< That number, or the largest without its sign.
+  double diagonal = 0;                   ///< What percentages in expressions refer to.
+  double blend = 0;                      ///< Over how far distances change across smooth edges; 0: they do not.
   double fit_tolerance = 0;      ///< In the file's unit, > 0.
   bool faceted = false;          ///< Write the triangles as faces where no solid comes of the faces.
   std::vector<Vec3d> positions;  ///< Of the offset mesh, for that, with its triangles; else empty.

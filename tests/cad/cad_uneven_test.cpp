@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// CAD models that are written with distances that are not the same everywhere, against closed forms.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "cad/cad_files.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/cad_file.h"
+
+using namespace vdb_offset;
+using Made = CadFileFacts::Made;
+
+namespace {
+
+std::string place_of(const std::string& name) { return (test::cad_files().folder() / name).string(); }
+
+io::MeshFile model(const std::string& name) {
+  REQUIRE(test::cad_files().is_made());
+  io::ReadOptions reading;
+  reading.cad.deflection = 0.01;
+  return io::read_mesh(place_of(name), reading);
+}
+
+/// Marks the faces of the mesh that are on a plane across an axis.
+std::vector<std::uint32_t> on_plane(const io::MeshFile& file, int axis, double at) {
+  std::vector<std::uint32_t> marks;
+  for (std::size_t f = 0; f < file.polygons.face_count(); ++f) {
+    const auto face = file.polygons.view().face(f);
+    marks.push_back(
+        std::all_of(face.begin(), face.end(), [&](auto v) { return file.polygons.positions[v][axis] == at; }) ? 1 : 0);
+  }
+  return marks;
+}
+
+/// The distance of those faces, in place of what the others have.
+io::CadDistances with_face(std::vector<std::uint32_t> marks, double others, double own, double blend = 0) {
+  io::CadDistances distances;
+  distances.each = {{others, {}}, {own, {}}};
+  distances.of_face = std::move(marks);
+  distances.scale = std::max(std::abs(others), std::abs(own));
+  distances.blend = blend;
+  return distances;
+}
+
+}  // namespace
+
+TEST_CASE("cad uneven: a trimmed patch goes by its own u, and keeps its trimming curves", "[cad]") {
+  const io::MeshFile patch = model("patch.brep");
+  io::CadDistances distances(0);
+  distances.each[0].expression.emplace("0.5 + 0.2*sin(2*pi*u)");
+  distances.scale = 0.7;
+  const CadFileFacts facts = io::write_cad(place_of("wavy.brep"), patch, distances, {});
+  CHECK(facts.made == Made::Shells);
+  CHECK(facts.fitted == 1);
+  CHECK(facts.samples > 1000);
+  CHECK(facts.least == Approx(1).margin(1e-4));
+  CHECK(facts.most == Approx(1).margin(1e-4));
+
+  const io::MeshFile wavy = model("wavy.brep");
+  const auto texture = io::read_attributes(wavy).texture;
+  double worst = 0, off_circle = 0;
+  std::size_t on_circle = 0;
+  for (std::size_t c = 0; c < wavy.polygons.corners.size(); ++c) {
+    const Vec2d uv = texture.value[texture.index(c, wavy.polygons.corners[c])];
+    const double u = uv[0], v = uv[1], distance = 0.5 + 0.2 * std::sin(2 * std::numbers::pi * u);
+    const Vec3d source(40 * u, 30 * v, 8 * u * u - 6 * v * v);
+    const Vec3d normal = Vec3d(40, 0, 16 * u).cross(Vec3d(0, 30, -12 * v)).unit();
+    // Which side is outward of an open shell is what its face says.
+    const Vec3d moved = wavy.polygons.positions[wavy.polygons.corners[c]] - source;
+    const double side = moved.dot(normal) < 0 ? -1 : 1;
+    worst = std::max(worst, (moved - normal * (side * distance)).length());
+    const double radius = std::hypot(u - 0.5, v - 0.5);
+    if (radius > 0.26) continue;
+    ++on_circle;
+    off_circle = std::max(off_circle, std::abs(radius - 0.25));
+  }
+  CHECK(worst < 1e-4 * 0.7);
+  CHECK(on_circle > 20);
+  CHECK(off_circle < 1e-7);
+}
+
+TEST_CASE("cad uneven: a face has a distance of its own, and sharp edges follow", "[cad]") {
+  const io::MeshFile block = model("block.step");
+  for (const double top : {2.0, -3.0, 0.0}) {
+    const CadFileFacts facts =
+        io::write_cad(place_of("taller.step"), block, with_face(on_plane(block, 2, 20), 0.5, top), {});
+    CHECK(facts.made == Made::Solid);
+    CHECK(facts.kept == 8);
+    const double round = 4.5, hole = 4.5;
+    const double across = 41 * 31 - std::numbers::pi * hole * hole - round * round * (1 - std::numbers::pi / 4);
+    CHECK(facts.volume == Approx(across * (20 + 0.5 + top)).epsilon(1e-9));
+    CHECK(facts.least == Approx(1).margin(1e-9));
+    CHECK(facts.most == Approx(1).margin(1e-9));
+  }
+}
+
+TEST_CASE("cad uneven: distances change over a length where faces are joined smoothly", "[cad]") {
+  const io::MeshFile block = model("block.step");
+  // The plane that the round edge goes over into.
+  std::vector<std::uint32_t> side;
+  for (const auto& [axis, at] : {std::pair{0, 0.0}, {0, 40.0}, {1, 0.0}, {1, 30.0}}) {
+    side = on_plane(block, axis, at);
+    double widest = 0;
+    for (std::size_t f = 0; f < side.size(); ++f)
+      for (const std::uint32_t v : block.polygons.view().face(f))
+        for (const std::uint32_t w : block.polygons.view().face(f))
+          if (side[f])
+            widest = std::max(widest, std::abs(block.polygons.positions[v][1 - axis] - block.polygons.positions[w][1 - axis]));
+    if (widest < (axis == 0 ? 29 : 39)) break;
+  }
+  const CadFileFacts sharp = io::write_cad(place_of("step.step"), block, with_face(side, 0.5, 1), {});
+  CHECK(sharp.made == Made::Faces);
+  CHECK_FALSE(sharp.gaps.empty());
+  const CadFileFacts blended = io::write_cad(place_of("blended.step"), block, with_face(side, 0.5, 1, 3), {});
+  CHECK(blended.made == Made::Solid);
+  CHECK(blended.fitted == 2);
+  CHECK(blended.samples > 1000);
+  CHECK(blended.least == Approx(1).margin(1e-3));
+  CHECK(blended.most == Approx(1).margin(1e-3));
+  const CadFileFacts all = io::write_cad(place_of("all.step"), block, 0.5, {});
+  CHECK(blended.volume > all.volume + 0.45 * 20 * 20);
+  CHECK(blended.volume < all.volume + 0.55 * 20 * 40);
+}
+
+TEST_CASE("cad uneven: an expression that has no value is told", "[cad]") {
+  const io::MeshFile patch = model("patch.brep");
+  io::CadDistances distances(0);
+  distances.each[0].expression.emplace("1/(u - 0.5)^0.5");
+  distances.scale = 1;
+  try {
+    io::write_cad(place_of("none.brep"), patch, distances, {});
+    FAIL("nothing was told");
+  } catch (const Error& error) {
+    CHECK(std::string(error.what()).find("expected a finite number") != std::string::npos);
+  }
+}

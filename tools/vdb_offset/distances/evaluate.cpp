@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "distances/evaluate.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "request/option_values.h"
+#include "vdb_offset/curves.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/mesh_facts.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+Distances read_distances(const Source& source, const std::string& from) {
+  if (names_property(from)) {
+    if (!source.file)
+      throw InvalidInput(
+          fmt::format("expected a mesh from a file for '{}', as curves and scenes have no properties", from));
+    const std::size_t kind = from.find(':') + 1;  // one is for PLY, the other for files that hold more than a mesh
+    if (source.file->document.operator bool() != from.starts_with("vtk:"))
+      throw InvalidInput(fmt::format("{}: expected 'ply:NAME' for a PLY file and 'vtk:NAME' for one of VTK's, got '{}'",
+                                     source.file->path, from));
+    return Distances(io::vertex_property(*source.file, from.substr(kind)));
+  }
+  return Distances(io::read_vertex_numbers(from, source.view().positions.size()));
+}
+
+}  // namespace
+
+Distances evaluate(const Job& job, const DistanceRequest& request) {
+  const Source& source = job.source;
+  if (!request.from.empty()) return read_distances(source, request.from);
+  const auto texture_of = [&] {
+    if (!source.file)
+      throw InvalidInput(job.request.input +
+                         ": expected texture coordinates (u, v), which a scene and curves have none of");
+    return io::vertex_texture(*source.file);
+  };
+  const auto normals_of = [&] {
+    return source.curves ? curve_normals(source.view())
+                         : vertex_normals(source.view(), job.options.weld, job.options.orient);
+  };
+  return scene::distances_of(request.distance, source.view(), normals_of, texture_of);
+}
+
+Distances scaled(const Distances& distances, double factor) {
+  if (distances.uniform()) return factor * distances[0];
+  std::vector<double> each(distances.count());
+  for (std::size_t v = 0; v < each.size(); ++v) each[v] = factor * distances[v];
+  return Distances(std::move(each));
+}
+
+}  // namespace vdb_offset::tool
