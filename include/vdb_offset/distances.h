@@ -21,11 +21,18 @@ class VDB_OFFSET_API Distances {
   Distances(double uniform = 0);  // NOLINT(google-explicit-constructor): one number is the usual case
   /// One number a vertex. \throw InvalidInput for one that is not finite, by its index.
   explicit Distances(std::vector<double> each);
+  /// And a number for each corner of the mesh's faces, for those whose distance at a vertex is another than the vertex's,
+  /// as beside a sharp edge between faces of different distances: miters are of these. Empty: none has.
+  Distances(std::vector<double> each, std::vector<double> at_corner);
 
   double operator[](std::size_t vertex) const { return each_.empty() ? uniform_ : each_[vertex]; }
   bool uniform() const { return each_.empty(); }
   /// How many vertices have a distance of their own; 0 if all have the same.
   std::size_t count() const { return each_.size(); }
+  /// The same without those of corners.
+  Distances of_vertices() const { return each_.empty() ? Distances(uniform_) : Distances(each_); }
+  /// One number for each corner of the mesh, or none: the distances of vertices are those of faces.
+  std::span<const double> at_corner() const { return at_corner_; }
 
   /// The largest distance outward, and inward; both at least 0.
   double outward() const { return outward_; }
@@ -39,7 +46,7 @@ class VDB_OFFSET_API Distances {
   void extend(double distance);
 
   double uniform_ = 0, outward_ = 0, inward_ = 0;
-  std::vector<double> each_;
+  std::vector<double> each_, at_corner_;
 };
 
 /// Distances that faces ask for at their corners, which may be different ones at a vertex that they share.
@@ -53,7 +60,8 @@ struct FaceDistances {
 /// One distance for each vertex of a mesh. At a distance s from the edge of another part, that part's distance at the
 /// closest point of its edge has the weight S(1 - s / blend) beside the vertex's own part with a weight of 1, where S
 /// rises from 0 to 1 with two derivatives of 0 at both ends: on the edge both count the same, and beyond `blend` only
-/// the own. Where parts, or pieces, meet at a vertex, it has their mean. Vertices at one position have the same.
+/// the own. Where parts, or pieces, meet at a vertex, it has their mean, and corners their own (Distances::at_corner()) but
+/// where they are joined. Vertices at one position have the same.
 /// 	hrow InvalidInput if there is not a distance for each corner, or not a part for each face
 VDB_OFFSET_API Distances vertex_distances(PolygonView mesh, const FaceDistances& faces);
 

@@ -30,12 +30,15 @@ class VDB_OFFSET_API ExactSurface {
   /// point can be.
   /// \param vertices of the mesh
   /// \param distances of each of them, world units; negative is inward
+  /// \param at_corner of each corner of the mesh the distance from its face that counts in place of the vertex's; or
+  /// empty
   /// \param points of each of them: where to begin, and where it ends
   virtual void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                                  std::span<Vec3d> points) const = 0;
-  /// Of each point, the most by which its distance from one of these faces is another than the vertex's, world units.
+                                  std::span<const double> at_corner, std::span<Vec3d> points) const = 0;
+  /// Of each point, the most by which its distance from one of these faces is another than the vertex's, or the corner's,
+  /// world units.
   virtual std::vector<double> distance_errors(std::span<const std::uint32_t> vertices,
-                                              std::span<const double> distances,
+                                              std::span<const double> distances, std::span<const double> at_corner,
                                               std::span<const Vec3d> points) const = 0;
   /// Of each point, by how much its distance from the model's face that a face of the mesh is of is another than asked,
   /// world units.

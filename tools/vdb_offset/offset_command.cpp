@@ -15,6 +15,7 @@
 #include "summary.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
@@ -80,18 +81,31 @@ bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
   return any;
 }
 
+/// Writes what one distance gives. Nothing, and says why, if no CAD model could be made of it, and others are to be.
+std::optional<Products> try_outputs(const Job& job, const Outcome& outcome, const Timing& timing) {
+  try {
+    return write_outputs(job, outcome, timing.start);
+  } catch (const io::NoCadModel& error) {
+    if (job.outputs.size() == 1) throw;
+    tell(error.what());
+    return std::nullopt;
+  }
+}
+
 /// Names the CAD models of which not all could be made. Returns false if there are none.
-bool tell_cad_gaps(const Job& job, std::span<const Products> made) {
+bool tell_cad_gaps(const Job& job, std::span<const std::optional<Products>> all) {
   bool any = false;
-  for (std::size_t i = 0; i < made.size(); ++i) {
-    if (!made[i].cad) continue;
-    if (made[i].cad->made == CadFileFacts::Made::Facets && !job.request.quiet)
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    any |= !all[i];
+    if (!all[i] || !all[i]->cad) continue;
+    const CadFileFacts& cad = *all[i]->cad;
+    if (cad.made == CadFileFacts::Made::Facets && !job.request.quiet)
       tell(fmt::format("{}: of triangles, as no other model could be made: {}", job.outputs[i].mesh,
-                       fmt::join(made[i].cad->gaps, "; ")));
-    if (made[i].cad->made != CadFileFacts::Made::Faces) continue;
+                       fmt::join(cad.gaps, "; ")));
+    if (cad.made != CadFileFacts::Made::Faces) continue;
     any = true;
     tell(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)", job.outputs[i].mesh,
-                     fmt::join(made[i].cad->gaps, "; ")));
+                     fmt::join(cad.gaps, "; ")));
   }
   return any;
 }
@@ -122,18 +136,18 @@ ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const Refine
                 ProgressBar& bar) {
   const Request& request = job.request;
   const OffsetResult* const inner = request.inner ? &results.back() : nullptr;
-  std::vector<Products> made;
+  std::vector<std::optional<Products>> made;
   OutputFiles outputs(request.sync);
   if (refined) write_refinement(request, *refined);
   for (std::size_t i = 0; i < job.outputs.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
-    made.push_back(write_outputs(job, {job.outputs[i], results[i], inner}, timing.start));
+    made.push_back(try_outputs(job, {job.outputs[i], results[i], inner}, timing));
   }
   outputs.commit(ignore_interrupts);
   bar.clear();
   for (std::size_t i = 0; i < job.outputs.size() && !request.quiet; ++i)
-    print_summary(job, {job.outputs[i], results[i], inner}, made[i], seconds_since(timing.start));
-  const ExitCode judged = judge(job, results, made.back().shell);
+    if (made[i]) print_summary(job, {job.outputs[i], results[i], inner}, *made[i], seconds_since(timing.start));
+  const ExitCode judged = judge(job, results, made.back() ? made.back()->shell : std::nullopt);
   return tell_cad_gaps(job, made) ? kProcessing : judged;
 }
 

@@ -263,9 +263,9 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   if (io::is_lines_file(to.paths)) io::write_path_lines(to.paths, result.paths, states);
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteResult written;
-  if (io::is_cad_output(to.mesh)) {
+  if (is_cad_output(to.mesh, request)) {
     made.cad = io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions,
-                             {request.fit_tolerance, job.options.only, request.faceted});
+                             {request.format, request.fit_tolerance, job.options.only, request.faceted});
     written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
   } else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);

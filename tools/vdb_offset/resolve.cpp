@@ -104,6 +104,9 @@ std::vector<Distances> distances_of(Job& job) {
   std::vector<Distances> distances;
   for (const DistanceRequest& each : job.asked)
     distances.push_back(are_of_parts(job, each) ? distances_of_parts(job, each) : evaluate(job, each));
+  // Where faces are split, their corners are others.
+  if (request.tolerance)
+    for (Distances& each : distances) each = each.of_vertices();
   if (!request.inner) return distances;
   for (const Distances& outer : distances)
     if (outer.inward() > 0)
@@ -119,7 +122,7 @@ Precision precision_of(const Job& job) {
   const bool cells =
       request.layers && (io::volume_format_of(request.output) || io::structured_format_of(request.output));
   if (cells || !(job.curves() || job.source.file)) return {};
-  if (io::is_cad_output(request.output)) return {};
+  if (is_cad_output(request.output, request)) return {};
   const std::string path = request.layers ? name_of_layer(request.output, 1, job.distances.size()) : request.output;
   const io::WriteOptions writing = write_options(request, path);
   if (job.curves()) return io::precision_of_curves(writing);
@@ -138,7 +141,7 @@ Job resolve_options(const Request& request, const Source& source) {
           .asked = request.distances};
   if (source.scene) settle_scene(job);
   // With a tolerance faces are split, and fitting goes by rounds of distances: both by the triangles alone.
-  if (io::is_cad_output(request.output) && !(source.file && io::is_cad(source.file->format)))
+  if (is_cad_output(request.output, request) && !(source.file && io::is_cad(source.file->format)))
     throw InvalidInput(request.output + ": expected an input that is a CAD model, for an output that is one, got " +
                        request.input);
   if (source.file && !request.tolerance && request.fit.empty()) job.options.exact = source.file->exact.get();

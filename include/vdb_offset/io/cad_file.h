@@ -10,6 +10,7 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/statistics.h"
 
@@ -34,14 +35,20 @@ struct VDB_OFFSET_API CadDistances {
   double blend = 0;  ///< Over how far distances change across smooth edges, world units: as FaceDistances::blend.
 };
 
+/// No face of the offset of a CAD model could be made.
+struct VDB_OFFSET_API NoCadModel : Error {
+  using Error::Error;
+};
+
 struct CadWriting {
+  std::optional<Format> format;  ///< Step or Brep, of a file with another ending.
   double fit_tolerance = 0;  ///< The most distance of a fitted face from its offset, world units; 0: 1e-4 distances.
   std::vector<std::uint8_t> only;  ///< Of each face of the mesh: 1 if it is offset; the others stay. Empty: all are.
   bool faceted = false;            ///< Where no solid comes of the faces, write one of triangles.
 };
 
-/// Whether a file of that name is a CAD model that can be written: .step, .stp or .brep.
-VDB_OFFSET_API bool is_cad_output(const std::string& path);
+/// Whether a CAD model can be written in a format: in Step and Brep.
+VDB_OFFSET_API bool is_cad_output(Format format);
 
 /// Of each face of the mesh the face of the CAD model that it is of, counted from 0. Empty for other files.
 VDB_OFFSET_API std::span<const std::uint32_t> cad_face_of(const MeshFile& source);
@@ -49,8 +56,8 @@ VDB_OFFSET_API std::span<const std::uint32_t> cad_face_of(const MeshFile& source
 /// Writes the offset of a CAD model as one, through a temporary file that is renamed at the end: each face becomes one
 /// over the same (u, v), and where these do not make a valid solid, faces or triangles. The file is read again before.
 /// \param positions of the offset mesh
-/// \throw InvalidInput if the source is no CAD model, or a part of one of its faces has another distance; Error if nothing
-/// could be made; WriteError
+/// \throw InvalidInput if the source is no CAD model, or a part of one of its faces has another distance; NoCadModel
+/// if nothing could be made; WriteError
 VDB_OFFSET_API CadFileFacts write_cad(const std::string& path, const MeshFile& source, const CadDistances& distances,
                                       std::span<const Vec3d> positions, const CadWriting& how = {});
 

@@ -73,11 +73,22 @@ class VertexBlend {
     if (faces.blend > 0) find_edges();
   }
 
-  std::vector<double> of_vertices() const {
-    std::vector<double> of_place(share_begin_.size() - 1, 0.0), each(mesh_.positions.size(), 0.0);
-    for_each_index(of_place.size(), [&](std::size_t place) { of_place[place] = at_place(place); }, 64);
+  Distances distances() const {
+    std::vector<double> of_place(position_.size(), 0.0), of_share(shares_.size(), 0.0), each(place_.size(), 0.0);
+    for_each_index(of_place.size(), [&](std::size_t place) { of_place[place] = settle(place, of_share); }, 64);
     for (std::size_t v = 0; v < each.size(); ++v) each[v] = of_place[place_[v]];
-    return each;
+    std::vector<double> at_corner(mesh_.corners.size());
+    bool differ = false;
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f)
+      for (std::uint32_t c = mesh_.face_begin[f]; c < mesh_.face_begin[f + 1]; ++c) {
+        const std::uint32_t place = place_[mesh_.corners[c]];
+        at_corner[c] = of_share[share_of(place, zone_of_[f])];
+        differ |= at_corner[c] != of_place[place];
+      }
+    if (differ) return {std::move(each), std::move(at_corner)};
+    if (!each.empty() && std::all_of(each.begin(), each.end(), [&](double d) { return d == each.front(); }))
+      return each.front();
+    return Distances(std::move(each));
   }
 
  private:
@@ -124,6 +135,12 @@ class VertexBlend {
       shares_.insert(shares_.end(), own.begin(), own.end());
       share_begin_.push_back(shares_.size());
     }
+  }
+
+  std::size_t share_of(std::size_t place, std::uint32_t zone) const {
+    std::size_t at = share_begin_[place];
+    while (shares_[at].zone != zone) ++at;
+    return at;
   }
 
   std::span<const Share> shares(std::size_t place) const {
@@ -189,17 +206,23 @@ class VertexBlend {
     return closest;
   }
 
-  double at_place(std::size_t place) const {
+  /// The distance of a place, and those of the corners that zones have there.
+  double settle(std::size_t place, std::vector<double>& of_share) const {
     const auto own = shares(place);
     if (own.empty()) return 0;
+    // Where no pieces are told, parts may meet at a sharp edge as well.
+    const bool may_part = faces_.piece.empty() && faces_.blend == 0;
     double sum = 0;
     std::size_t pieces = 0;
     for (std::size_t i = 0; i < own.size(); ++i) {
       const std::uint32_t piece = zones_[own[i].zone].piece;
       const auto is_of_piece = [&](const Share& share) { return zones_[share.zone].piece == piece; };
       if (std::any_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(i), is_of_piece)) continue;
-      sum += blended(place, piece);
+      const double of_piece = blended(place, piece);
+      sum += of_piece;
       ++pieces;
+      for (std::size_t k = i; k < own.size(); ++k)
+        if (is_of_piece(own[k])) of_share[share_begin_[place] + k] = may_part ? own[k].mean() : of_piece;
     }
     return sum / static_cast<double>(pieces);
   }
@@ -244,10 +267,7 @@ Distances vertex_distances(PolygonView mesh, const FaceDistances& faces) {
   if (!faces.piece.empty()) require_for_all("a piece", mesh.face_count(), faces.piece.size());
   if (!(faces.blend >= 0) || !std::isfinite(faces.blend))
     throw InvalidInput(fmt::format("face distances: expected a blend of 0 or more, got {}", faces.blend));
-  std::vector<double> each = VertexBlend(mesh, faces).of_vertices();
-  if (!each.empty() && std::all_of(each.begin(), each.end(), [&](double d) { return d == each.front(); }))
-    return each.front();
-  return Distances(std::move(each));
+  return VertexBlend(mesh, faces).distances();
 }
 
 }  // namespace vdb_offset

@@ -23,6 +23,14 @@ Distances::Distances(std::vector<double> each) : each_(std::move(each)) {
   }
 }
 
+Distances::Distances(std::vector<double> each, std::vector<double> at_corner) : Distances(std::move(each)) {
+  at_corner_ = std::move(at_corner);
+  for (const double distance : at_corner_) {
+    if (!std::isfinite(distance)) throw InvalidInput("distance: expected a finite number for each corner");
+    extend(distance);
+  }
+}
+
 void Distances::extend(double distance) {
   outward_ = std::max(outward_, distance);
   inward_ = std::max(inward_, -distance);

@@ -104,7 +104,7 @@ Distances distances_on_parts(const MeshParts& parts, Border border, const Distan
   disagreeing += mean.disagreeing;
   for (std::size_t w = 0; w < mean.each.size() && !all_move; ++w)
     if (parts.part_vertex[w] == kNone || (border == Border::Fixed && parts.at_border[w])) mean.each[w] = 0;
-  return Distances(std::move(mean.each));
+  return {std::move(mean.each), {of_input.at_corner().begin(), of_input.at_corner().end()}};
 }
 
 Distances distances_of_input(const Surface& surface, const Distances& distances) {
@@ -112,7 +112,7 @@ Distances distances_of_input(const Surface& surface, const Distances& distances)
   std::vector<double> each(surface.welded.size(), 0.0);
   for (std::size_t v = 0; v < each.size(); ++v)
     if (surface.welded[v] != kNone) each[v] = distances[surface.welded[v]];
-  return Distances(std::move(each));
+  return {std::move(each), {distances.at_corner().begin(), distances.at_corner().end()}};
 }
 
 Distances distances_of_part(const MeshParts& parts, const Distances& of_all) {
@@ -120,7 +120,7 @@ Distances distances_of_part(const MeshParts& parts, const Distances& of_all) {
   std::vector<double> each(parts.moving_part.vertices.size(), 0.0);
   for (std::size_t w = 0; w < parts.part_vertex.size(); ++w)
     if (parts.part_vertex[w] != kNone) each[parts.part_vertex[w]] = of_all[w];
-  return Distances(std::move(each));
+  return {std::move(each), {of_all.at_corner().begin(), of_all.at_corner().end()}};
 }
 
 }  // namespace vdb_offset

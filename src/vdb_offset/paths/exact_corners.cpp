@@ -74,13 +74,13 @@ bool ExactCorners::is_own(std::uint32_t vertex, const Vec3d& end, double distanc
 }
 
 void ExactCorners::bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                                      std::span<Vec3d> points) const {
+                                      std::span<const double> at_corner, std::span<Vec3d> points) const {
   std::vector<std::uint32_t> of_mesh(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     of_mesh[i] = surface_.representative[vertices[i]];
     points[i] += surface_.origin;
   }
-  exact_.bring_to_distances(of_mesh, distances, points);
+  exact_.bring_to_distances(of_mesh, distances, at_corner, points);
   for (Vec3d& point : points) point -= surface_.origin;
 }
 

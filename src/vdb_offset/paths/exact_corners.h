@@ -40,7 +40,7 @@ class ExactCorners {
 
   /// As ExactSurface's, for vertices and points of the Surface.
   void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                          std::span<Vec3d> points) const;
+                          std::span<const double> at_corner, std::span<Vec3d> points) const;
 
  private:
   void find_known(PolygonView mesh);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -26,6 +27,9 @@ constexpr double kOnePlaneSine = 1e-4;
 constexpr double kDetail = 0.1;
 // A miter with which a plane would go farther than the distance by more than this share of it is none. Not measured.
 constexpr double kMostExcess = 0.5;
+// Planes that are closer to each other, as the length between their normals, and have different distances of their own
+// meet nowhere near the vertex. Reasoned: the miter would be ten times as long as the distances differ.
+constexpr double kTooAlike = 0.1;
 // Share by which exact distances may differ that ought to be the same. Reasoned: far below the promised 1e-6, far above
 // rounding.
 constexpr double kSameMiterDistance = 1e-9;
@@ -65,6 +69,39 @@ void keep_to_walls(std::span<const Vec3d> walls, std::vector<Vec3d>& normals) {
     n -= first * first.dot(n);
     if (second) n -= *second * second->dot(n);
   }
+}
+
+/// Planes around a vertex that move by distances of their own.
+struct OwnPlanes {
+  std::vector<Vec3d> staying, moving;  ///< Normals.
+  double least = std::numeric_limits<double>::infinity();
+};
+
+/// The planes around a vertex that have distances of their own: normals of those that stay, and of others, shortened so
+/// that their sum of products with the miter is the least distance. Nothing if they have no common miter.
+template <class Shape>
+std::optional<OwnPlanes> own_planes_around(const Shape& shape, std::uint32_t vertex, int side, const ExactCorners* exact,
+                                           const OwnDistances& own) {
+  std::vector<std::pair<Vec3d, double>> planes;
+  OwnPlanes result;
+  for (const auto t : shape.triangles_around(vertex)) {
+    if (shape.triangle_normals[t].lengthSqr() == 0) continue;
+    const Vec3d& normal = exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
+    const double distance = side * own.at(t, vertex);
+    if (distance < 0) return std::nullopt;
+    const auto alike = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) {
+      return (plane.first - normal).lengthSqr() < (plane.second == distance ? kOnePlaneSine * kOnePlaneSine
+                                                                            : kTooAlike * kTooAlike);
+    });
+    if (alike == planes.end()) planes.emplace_back(normal, distance);
+    else if (alike->second != distance) return std::nullopt;
+    if (distance > 0) result.least = std::min(result.least, distance);
+  }
+  for (const auto& [normal, distance] : planes)
+    if (distance == 0) result.staying.push_back(normal);
+    else result.moving.push_back(normal * (result.least / distance));
+  if (result.moving.empty() || result.staying.size() > 2) return std::nullopt;
+  return result;
 }
 
 /// Distance of a point from the faces around a vertex alone.
@@ -145,7 +182,7 @@ typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::unit_miter(std::uint3
       std::lower_bound(walls.begin(), walls.end(), vertex,
                        [](const MiterWalls& each, std::uint32_t other) { return each.vertex < other; });
   const bool has_walls = own_walls != walls.end() && own_walls->vertex == vertex;
-  UnitMiter miter{vertex, Vec3d(0.0), 0, {}, on_crease, exact_ && exact_->knows(vertex) && !has_walls};
+  UnitMiter miter{vertex, Vec3d(0.0), 0, {}, on_crease, exact_ && exact_->knows(vertex) && !has_walls, has_walls};
   const ExactCorners* const exact = miter.is_exact ? exact_ : nullptr;
   std::vector<Vec3d> planes = planes_around(shape, vertex, exact);
   if (has_walls) keep_to_walls(own_walls->normals, planes);
@@ -160,6 +197,44 @@ typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::unit_miter(std::uint3
   return miter;
 }
 
+/// The miter of a vertex whose faces have distances of their own, as a multiple of the vertex's.
+template <class Query>
+typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::own_miter(const UnitMiter& even, double distance,
+                                                                     const OwnDistances& own) const {
+  UnitMiter miter = even;
+  miter.is_own = true;
+  miter.end = Vec3d(0.0);
+  miter.is_above_face = {};
+  if (corners_ == Corners::Round) return miter;
+  const auto& shape = query_.surface();
+  const int side = distance < 0 ? -1 : 1;
+  auto planes = own_planes_around(shape, even.vertex, side, even.is_exact ? exact_ : nullptr, own);
+  if (!planes) return miter;
+  if (!planes->staying.empty()) keep_to_walls(planes->staying, planes->moving);
+  for (Vec3d& plane : planes->moving) plane = shape.along_border(even.vertex, plane);
+  const auto point = miter_point(planes->moving);
+  if (!point || point->excess > kMostExcess) return miter;
+  miter.end = point->position * (planes->least / std::abs(distance));
+  miter.excess = point->excess;
+  return miter;
+}
+
+/// The unit miters, of which those of vertices with faces that have distances of their own are of these.
+template <class Query>
+std::vector<typename MiterFinder<Query>::UnitMiter> MiterFinder<Query>::unit_miters_of(const Asked& asked) const {
+  std::vector<UnitMiter> units = miters_;
+  if (!asked.own) return units;
+  for_each_index(
+      units.size(),
+      [&](std::size_t i) {
+        const double distance = asked.distances[units[i].vertex];
+        if (asked.own->differ(units[i].vertex) && !units[i].at_walls && distance != 0)
+          units[i] = own_miter(units[i], distance, *asked.own);
+      },
+      kMitersTogether);
+  return units;
+}
+
 template <class Query>
 std::pair<Vec3d, bool> MiterFinder<Query>::end_of(const UnitMiter& miter, double distance) const {
   if (miter.is_above_face[distance > 0]) return {miter.end, false};
@@ -170,15 +245,16 @@ std::pair<Vec3d, bool> MiterFinder<Query>::end_of(const UnitMiter& miter, double
 }
 
 template <class Query>
-bool MiterFinder<Query>::is_proven(const Miter& miter, bool is_exact, const Vec3d& end, const Closest& closest,
-                                   double distance) const {
+bool MiterFinder<Query>::is_proven(const Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
+                                   const Asked& from) const {
   const auto& shape = query_.surface();
   const Vec3d& start = shape.vertices[miter.vertex];
-  const double asked = std::abs(distance);
+  const double distance = from.distances[miter.vertex];
+  const double asked = unit.is_own ? from.own->least(miter.vertex) : std::abs(distance);
   // Nearer as triangles are flat, where the surface is not.
-  if (is_exact && closest.distance < asked * (1 - kReachedTolerance))
+  if (unit.is_exact && closest.distance < asked * (1 - kReachedTolerance))
     return closest.distance >= asked - exact_->deflection() &&
-           exact_->is_own(miter.vertex, end, distance, closest.triangle, closest.point) &&
+           exact_->is_own(miter.vertex, end, distance < 0 ? -asked : asked, closest.triangle, closest.point) &&
            (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
   const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
                       (closest.point - start).length() <= kDetail * asked || goes_on(shape, miter.vertex, closest);
@@ -188,27 +264,34 @@ bool MiterFinder<Query>::is_proven(const Miter& miter, bool is_exact, const Vec3
 
 /// Moves the ends of those miters of which the exact surface is known to where they are at the distance from it.
 template <class Query>
-void MiterFinder<Query>::bring_to_exact(const Distances& distances, std::span<Miter> miters) const {
+void MiterFinder<Query>::bring_to_exact(std::span<const UnitMiter> units, const Asked& asked,
+                                        std::span<Miter> miters) const {
   if (!exact_) return;
   const auto& shape = query_.surface();
-  std::vector<std::size_t> some;
-  std::vector<std::uint32_t> vertices;
-  std::vector<double> asked;
-  std::vector<Vec3d> points;
-  for (std::size_t i = 0; i < miters.size(); ++i) {
-    if (!miters_[i].is_exact || miters[i].displacement == Vec3d(0.0) || miters[i].state == VertexState::Cut) continue;
-    some.push_back(i);
-    vertices.push_back(miters[i].vertex);
-    asked.push_back(distances[miters[i].vertex]);
-    points.push_back(shape.vertices[miters[i].vertex] + miters[i].displacement);
+  for (const bool of_own : {false, true}) {
+    if (of_own && !asked.own) continue;
+    std::vector<std::size_t> some;
+    std::vector<std::uint32_t> vertices;
+    std::vector<double> distances;
+    std::vector<Vec3d> points;
+    for (std::size_t i = 0; i < miters.size(); ++i) {
+      if (!units[i].is_exact || units[i].is_own != of_own || miters[i].displacement == Vec3d(0.0) ||
+          miters[i].state == VertexState::Cut)
+        continue;
+      some.push_back(i);
+      vertices.push_back(miters[i].vertex);
+      distances.push_back(asked.distances[miters[i].vertex]);
+      points.push_back(shape.vertices[miters[i].vertex] + miters[i].displacement);
+    }
+    exact_->bring_to_distances(vertices, distances, of_own ? asked.own->at_corner() : std::span<const double>(), points);
+    for (std::size_t i = 0; i < some.size(); ++i)
+      miters[some[i]].displacement =
+          round_displacement(points[i] - shape.vertices[vertices[i]], std::abs(distances[i]));
   }
-  exact_->bring_to_distances(vertices, asked, points);
-  for (std::size_t i = 0; i < some.size(); ++i)
-    miters[some[i]].displacement = round_displacement(points[i] - shape.vertices[vertices[i]], std::abs(asked[i]));
 }
 
 template <class Query>
-void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances& distances, std::span<Miter> miters,
+void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Asked& from, std::span<Miter> miters,
                                std::span<std::uint8_t> proven) const {
   const auto& shape = query_.surface();
   std::vector<Vec3d> ends;
@@ -220,13 +303,13 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances&
   std::vector<Closest> closest(ends.size());
   query_.answer_together(ends, hints, closest);
   for (std::size_t i = 0; i < some.size(); ++i) {
-    const double distance = distances[some[i].vertex], asked = std::abs(distance);
+    const double asked = std::abs(from.distances[some[i].vertex]);
     Miter& miter = miters[i];
     miter.distance = closest[i].distance;
     miter.closest = closest[i].triangle;
     const bool is_proven_now =
-        miter.displacement != Vec3d(0.0) && is_proven(miter, some[i].is_exact, ends[i], closest[i], distance);
-    if (some[i].is_exact && is_proven_now && miter.distance < asked) {
+        miter.displacement != Vec3d(0.0) && is_proven(miter, some[i], ends[i], closest[i], from);
+    if ((some[i].is_exact || some[i].is_own) && is_proven_now && miter.distance < asked) {
       if (miter.distance < asked * (1 - kReachedTolerance)) miter.nearer = miter.distance;
       miter.distance = asked;
     }
@@ -237,22 +320,23 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Distances&
 }
 
 template <class Query>
-std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(const Distances& distances) const {
-  std::vector<Miter> miters(miters_.size());
-  std::vector<std::uint8_t> proven(miters_.size(), 0);
+std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(const Asked& asked) const {
+  const std::vector<UnitMiter> units = unit_miters_of(asked);
+  std::vector<Miter> miters(units.size());
+  std::vector<std::uint8_t> proven(units.size(), 0);
   for (std::size_t i = 0; i < miters.size(); ++i) {
-    const double distance = distances[miters_[i].vertex];
-    const auto [end, is_cut] = end_of(miters_[i], distance);
+    const double distance = asked.distances[units[i].vertex];
+    const auto [end, is_cut] = end_of(units[i], distance);
     const Vec3d displacement = distance == 0 ? Vec3d(0.0) : round_displacement(end * distance, std::abs(distance));
-    miters[i] = {miters_[i].vertex, displacement, 0, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitred,
-                 miters_[i].excess};
+    miters[i] = {units[i].vertex, displacement, 0, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitred,
+                 units[i].excess};
   }
-  bring_to_exact(distances, miters);
-  for_each_index((miters_.size() + kMitersTogether - 1) / kMitersTogether,
+  bring_to_exact(units, asked, miters);
+  for_each_index((units.size() + kMitersTogether - 1) / kMitersTogether,
                  [&](std::size_t block) {
                    const std::size_t begin = block * kMitersTogether,
-                                     count = std::min(kMitersTogether, miters_.size() - begin);
-                   prove(std::span(miters_).subspan(begin, count), distances, std::span(miters).subspan(begin, count),
+                                     count = std::min(kMitersTogether, units.size() - begin);
+                   prove(std::span(units).subspan(begin, count), asked, std::span(miters).subspan(begin, count),
                          std::span(proven).subspan(begin, count));
                  },
                  1);
@@ -260,18 +344,20 @@ std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::pro
 }
 
 template <class Query>
-std::vector<Miter> MiterFinder<Query>::all(const Distances& distances) const {
-  std::vector<Miter> miters = prove(distances).first;
+std::vector<Miter> MiterFinder<Query>::all(const Distances& distances, const OwnDistances* own) const {
+  std::vector<Miter> miters = prove({distances, own}).first;
   std::erase_if(miters, [&](const Miter& miter) {
+    const bool is_own = own && own->differ(miter.vertex);
     return miter.displacement == Vec3d(0.0) ||
-           miter.distance < std::abs(distances[miter.vertex]) * (1 - kReachedTolerance);
+           (!is_own && miter.distance < std::abs(distances[miter.vertex]) * (1 - kReachedTolerance));
   });
   return miters;
 }
 
 template <class Query>
-std::vector<Miter> MiterFinder<Query>::operator()(const Distances& distances, MiterFacts& facts) const {
-  const auto [miters, proven] = prove(distances);
+std::vector<Miter> MiterFinder<Query>::operator()(const Distances& distances, MiterFacts& facts,
+                                                  const OwnDistances* own) const {
+  const auto [miters, proven] = prove({distances, own});
   std::vector<Miter> kept;
   for (std::size_t i = 0; i < miters.size(); ++i) {
     if (distances[miters[i].vertex] == 0) continue;
@@ -285,86 +371,7 @@ std::vector<Miter> MiterFinder<Query>::operator()(const Distances& distances, Mi
   return kept;
 }
 
-const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex) {
-  const auto at = std::lower_bound(miters.begin(), miters.end(), vertex,
-                                   [](const Miter& miter, std::uint32_t v) { return miter.vertex < v; });
-  return at != miters.end() && at->vertex == vertex ? &*at : nullptr;
-}
-
 template class MiterFinder<ClosestQuery>;
 template class MiterFinder<CurveQuery>;
-
-void count_miters(std::span<const Miter> miters, std::span<const VertexState> states, MiterFacts& facts) {
-  for (const Miter& miter : miters) {
-    const VertexState state = states[miter.vertex];
-    facts.mitred += state == VertexState::Mitred;
-    facts.cut += state == VertexState::Cut;
-    facts.taken_back += state != miter.state;
-    if (state == VertexState::Mitred) facts.excess = std::max(facts.excess, miter.excess);
-  }
-}
-
-MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {
-  if (miters.empty()) return;
-  farther_.assign(paths.displacement.size(), 0.0);
-  nearer_ = farther_;
-  Indices all;
-  for (const Miter& miter : miters) {
-    all.push_back(miter.vertex);
-    others_.push_back({miter.vertex,
-                       miter.displacement,
-                       miter.distance,
-                       miter.state,
-                       miter.closest,
-                       {},
-                       miter.distance,
-                       miter.nearer,
-                       miter.displacement,
-                       false});
-  }
-  exchange(all, paths, false);
-}
-
-std::vector<MitredPaths::Other>::const_iterator MitredPaths::find(std::uint32_t vertex) const {
-  const auto at = std::lower_bound(others_.begin(), others_.end(), vertex,
-                                   [](const Other& other, std::uint32_t v) { return other.vertex < v; });
-  return at != others_.end() && at->vertex == vertex ? at : others_.end();
-}
-
-bool MitredPaths::is_mitred(std::uint32_t vertex) const {
-  const auto at = find(vertex);
-  return at != others_.end() && at->is_mitred;
-}
-
-bool MitredPaths::is_miter(std::uint32_t vertex, const Vec3d& displacement) const {
-  const auto at = find(vertex);
-  return at != others_.end() && at->miter == displacement;
-}
-
-Indices MitredPaths::taken_back() const {
-  Indices vertices;
-  for (const Other& other : others_)
-    if (!other.is_mitred) vertices.push_back(other.vertex);
-  return vertices;
-}
-
-Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitred) {
-  Indices exchanged;
-  for (const auto v : vertices) {
-    const auto at = find(v);
-    if (at == others_.end() || at->is_mitred != are_mitred) continue;
-    Other& other = others_[static_cast<std::size_t>(at - others_.begin())];
-    std::swap(paths.displacement[v], other.displacement);
-    std::swap(paths.achieved[v], other.achieved);
-    std::swap(paths.state[v], other.state);
-    std::swap(paths.closest[v], other.closest);
-    if (!paths.trace.empty()) std::swap(paths.trace[v], other.trace);
-    other.is_mitred = !are_mitred;
-    farther_[v] = are_mitred ? 0 : other.farther;
-    nearer_[v] = are_mitred ? 0 : other.nearer;
-    exchanged.push_back(v);
-  }
-  return exchanged;
-}
 
 }  // namespace vdb_offset

@@ -13,6 +13,7 @@
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/paths/exact_corners.h"
+#include "vdb_offset/paths/own_distances.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/query/obstacles.h"
@@ -54,6 +55,8 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 /// Where the exact surface is known, its normals are the planes, and all vertices have miters: one that is not on a
 /// crease goes along the normal. There, what is nearest to the end may be nearer than the distance by the deflection,
 /// if it is of the surface around the vertex.
+///
+/// Where faces have distances of their own, of one sign, each plane moves by its own, or stays if that is 0.
 template <class Query>
 class MiterFinder {
  public:
@@ -67,10 +70,11 @@ class MiterFinder {
 
   /// The miters that are proven for some distances of the surface's vertices, sorted by vertex. `facts` receives how
   /// many were tried and why others were not kept. The result does not depend on the number of threads.
-  std::vector<Miter> operator()(const Distances& distances, MiterFacts& facts) const;
+  /// \param own of the surface's triangles, if faces have distances of their own
+  std::vector<Miter> operator()(const Distances& distances, MiterFacts& facts, const OwnDistances* own = nullptr) const;
   /// All miters that are no nearer to the surface than the distance, proven or not: to tell where somebody else has put
   /// vertices.
-  std::vector<Miter> all(const Distances& distances) const;
+  std::vector<Miter> all(const Distances& distances, const OwnDistances* own = nullptr) const;
 
  private:
   struct UnitMiter {
@@ -80,17 +84,28 @@ class MiterFinder {
     std::array<bool, 2> is_above_face;  // inward, outward: the end is at the distance, as far as its own faces tell
     bool on_crease;
     bool is_exact;  // its planes are those of the exact surface
+    bool at_walls = false;
+    bool is_own = false;  // of its faces' own distances
+  };
+
+  /// What is asked of the vertices.
+  struct Asked {
+    const Distances& distances;
+    const OwnDistances* own;  // nullptr without any
   };
 
   /// Where a miter ends for a distance of 1 to the side of `distance`, and whether it is cut there; zero if nowhere.
   std::pair<Vec3d, bool> end_of(const UnitMiter& miter, double distance) const;
 
   /// Miters, and of each whether it is proven.
-  std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(const Distances& distances) const;
-  void prove(std::span<const UnitMiter> some, const Distances& distances, std::span<Miter> miters,
+  std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(const Asked& asked) const;
+  void prove(std::span<const UnitMiter> some, const Asked& asked, std::span<Miter> miters,
              std::span<std::uint8_t> proven) const;
-  bool is_proven(const Miter& miter, bool is_exact, const Vec3d& end, const Closest& closest, double distance) const;
-  void bring_to_exact(const Distances& distances, std::span<Miter> miters) const;
+  bool is_proven(const Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
+                 const Asked& asked) const;
+  void bring_to_exact(std::span<const UnitMiter> units, const Asked& asked, std::span<Miter> miters) const;
+  std::vector<UnitMiter> unit_miters_of(const Asked& asked) const;
+  UnitMiter own_miter(const UnitMiter& even, double distance, const OwnDistances& own) const;
   UnitMiter unit_miter(std::uint32_t vertex, bool on_crease, std::span<const MiterWalls> walls) const;
 
   const Query& query_;

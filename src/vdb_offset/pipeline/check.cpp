@@ -99,13 +99,16 @@ struct WantedMiters {
 };
 
 WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
-                         const ExactCorners* exact, const Distances& distances, const CheckOptions& options) {
+                         const ExactCorners* exact, const Distances& distances, PolygonView mesh,
+                         const CheckOptions& options) {
   if (options.corners == Corners::Round && !exact) return {};
   const auto walls =
       options.corners == Corners::Miter ? walls_at_edge(parts, options.border) : std::vector<MiterWalls>();
   const MiterFinder finder(query, options.corners, options.miter_limit, obstacles, walls, exact);
   const std::size_t count = parts.surface().vertices.size();
-  WantedMiters miters{miters_of_all(parts, finder.all(distances_of_part(parts, distances))),
+  const Distances on_part = distances_of_part(parts, distances);
+  const auto own = OwnDistances::of(on_part, mesh, options.only, parts.moving_part);
+  WantedMiters miters{miters_of_all(parts, finder.all(on_part, own ? &*own : nullptr)),
                       std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   for (const Miter& miter : miters.of_vertex) {
     miters.farther[miter.vertex] = miter.distance;
@@ -217,7 +220,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   if (options.exact && options.metric.even())
     exact.emplace(*options.exact, space.view(), options.only, parts.moving_part);
   const WantedMiters miters =
-      find_miters(parts, query, constrained.obstacles, exact ? &*exact : nullptr, distances, options);
+      find_miters(parts, query, constrained.obstacles, exact ? &*exact : nullptr, distances, mesh, options);
   constrained.farther = miters.farther;
   constrained.nearer = miters.nearer;
   std::optional<SelfCrossings> source_crossings;
@@ -229,7 +232,8 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   std::vector<VertexState> states(source.size(), VertexState::Reached);
   for (std::size_t w = 0; w < states.size(); ++w)
     if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];
-  const MeasuredFaces faces{constrained, in_offset, distances, source, states};
+  const auto own = OwnDistances::of(distances, mesh, {}, surface);
+  const MeasuredFaces faces{constrained, in_offset, distances, source, states, own ? &*own : nullptr};
   result.faces = measure_faces(faces);
   if (options.keep_face_errors) {
     result.face_errors = measure_each_face(faces, mesh.face_count());

@@ -62,7 +62,7 @@ ExactFacts measure_exactness(const PreparedMesh& mesh, const PreparedMesh::March
   }
   const ExactSurface& surface = *mesh.options().exact;
   ExactFacts facts;
-  add(surface.distance_errors(along.of, along.distances, along.points), facts);
+  add(surface.distance_errors(along.of, along.distances, result.distances.at_corner(), along.points), facts);
   add(surface.distance_errors_near(near.of, near.feet, near.distances, near.points), facts);
   facts.mean /= static_cast<double>(std::max<std::size_t>(1, facts.vertices));
   return facts;

@@ -132,7 +132,8 @@ void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> 
   for (std::size_t i = 0; i < marched.size(); ++i) {
     Marched& each = marched[i];
     MiterFacts facts;
-    std::vector<Miter> found = miters_of_all(parts_, miters(on_part[i], facts));
+    const auto own = OwnDistances::of(on_part[i], mesh_, options_.only, parts_.moving_part);
+    std::vector<Miter> found = miters_of_all(parts_, miters(on_part[i], facts, own ? &*own : nullptr));
     // What is bound to its path stays there, but for the edge of a part where that slides.
     facts.unproven += std::erase_if(found, [&](const Miter& miter) {
       const std::uint32_t v = miter.vertex;

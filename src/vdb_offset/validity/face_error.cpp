@@ -133,7 +133,7 @@ class FaceMeter {
       Vec3d point(0.0);
       for (std::size_t k = 0; k < 3; ++k) {
         point += faces_.positions[corners[k]] * shares[k];
-        asked[i] += faces_.distances[corners[k]] * shares[k];
+        asked[i] += asked_at(t, k) * shares[k];
       }
       off_plane[i] = kNotMeasured;
       if (!faces_.source.empty() && surface_.triangle_normals[t].lengthSqr() > 0)
@@ -148,9 +148,19 @@ class FaceMeter {
       const double wanted = std::abs(asked[i]);
       if (!(wanted > least_asked_)) continue;
       double off = closest[i].distance - wanted;
-      if (off > 0 && off_plane[i] >= 0) off = std::min(off, off_plane[i]);
+      if (off_plane[i] >= 0 && differs(of_[begin + i])) off = off_plane[i];
+      else if (off > 0 && off_plane[i] >= 0) off = std::min(off, off_plane[i]);
       error_[begin + i] = std::abs(off) / wanted;
     }
+  }
+
+  double asked_at(std::uint32_t t, std::size_t k) const {
+    return faces_.own ? faces_.own->at_corner_of(t, k) : faces_.distances[surface_.triangles[t][k]];
+  }
+  /// Whether faces have distances of their own at a corner of a triangle.
+  bool differs(std::uint32_t t) const {
+    const auto& corners = surface_.triangles[t];
+    return faces_.own && std::any_of(corners.begin(), corners.end(), [&](auto v) { return faces_.own->differ(v); });
   }
 
   /// The triangle at the middle of a sample's share of the area, or each for as many samples as the others.
@@ -165,7 +175,7 @@ class FaceMeter {
   /// not mitred, or a miter with which the plane goes too far, as more planes meet there than one point can be on. By
   /// less than area may be off that counts as at the distance, no corner makes a mean worth telling.
   bool is_off_plane(std::uint32_t t, std::uint32_t v) const {
-    const double asked = faces_.distances[v],
+    const double asked = faces_.own ? faces_.own->at(t, v) : faces_.distances[v],
                  moved = surface_.triangle_normals[t].dot(faces_.positions[v] - faces_.source[v]);
     return std::abs(moved - asked) > kAtDistance * std::abs(asked);
   }

@@ -6,6 +6,7 @@
 
 #include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
+#include "vdb_offset/paths/own_distances.h"
 #include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
@@ -24,12 +25,14 @@ struct MeasuredFaces {
   /// Of the vertices in the source, world coordinates; empty where the faces are not those of the source, moved.
   std::span<const Vec3d> source;
   std::span<const VertexState> states;  ///< Of the vertices; empty: none falls short.
+  const OwnDistances* own = nullptr;    ///< Of the triangles of the constrained surface, if faces have their own.
 };
 
 /// Measures how far the faces of the moving part are off their distance: at points evenly spread over the area that
 /// they have in the offset, where the distance asked for is that of the corners, interpolated. A point is at its
 /// distance if the moving part is as far, or where it is farther, as beside a miter, if the plane of its own face in
-/// the source is. Where nearly nothing is asked for, nothing is measured. The result does not depend on the number of
+/// the source is. Of a triangle with a vertex at which faces have distances of their own, that plane counts alone. Where
+/// nearly nothing is asked for, nothing is measured. The result does not depend on the number of
 /// threads.
 FaceError measure_faces(const MeasuredFaces& faces);
 

@@ -325,7 +325,7 @@ void declare_files(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.option("--format", "NAME",
               "Format of '-' and of files with another ending: 'obj', 'ply', 'stl', 'off', "
-              "'3mf', 'glb', 'gltf', 'vtp', 'vtk' or 'vtu'",
+              "'3mf', 'glb', 'gltf', 'vtp', 'vtk', 'vtu', 'step', 'iges' or 'brep'",
               [&request](const std::string& text) { request.format = parse_format(text); });
   line.option(
       "--normals", "MODE", "Normals of the file where faces moved: 'recompute' or 'keep' them as they are [recompute]",

@@ -89,7 +89,7 @@ void require_for_mesh(const Request& request) {
   require(!volume || request.layers || format_of(request.output, request),
           request.output + ": expected a mesh, as this is for --layers");
   require_structured(request);
-  const bool is_model = io::is_cad_output(request.output);
+  const bool is_model = is_cad_output(request.output, request);
   require(is_model || (!request.faceted && request.fit_tolerance == 0),
           "--faceted and --fit-tolerance: expected an output that ends in .step, .stp or .brep");
   require(!is_model || !(request.shell || request.layers || request.iso || request.tolerance || request.axes ||
@@ -123,8 +123,8 @@ void require_together_with_tolerance(const CommandLine& line, bool is_iso) {
   require_with(line, is_given, "--tolerance", {"--max-faces", "--refined-source", "--map"});
   require(!is_given || !is_iso, "--tolerance and --mode iso exclude each other");
   require_without(line, is_given, "--tolerance",
-                  {"--distance-xy", "--distance-z", "--fit", "--shell", "--layers", "--heights", "--paths",
-                   "--save-vdb", "--dry-run"});
+                  {"--distance-xy", "--distance-z", "--distance-of", "--blend", "--fit", "--shell", "--layers",
+                   "--heights", "--paths", "--save-vdb", "--dry-run"});
 }
 
 /// Requires one distance, and names for files that can hold what is to be written.
@@ -228,6 +228,11 @@ void require_for_input(const Request& request, bool curves) {
 std::optional<io::Format> format_of(const std::string& path, const Request& request) {
   const auto format = io::format_of(path);
   return format ? format : request.format;
+}
+
+bool is_cad_output(const std::string& path, const Request& request) {
+  const auto format = format_of(path, request);
+  return format && io::is_cad_output(*format);
 }
 
 io::WriteOptions write_options(const Request& request, const std::string& path) {

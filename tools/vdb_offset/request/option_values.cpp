@@ -113,10 +113,10 @@ DistanceRequest parse_inner(const std::string& text, const Request& request) {
 
 io::Format parse_format(const std::string& text) {
   const auto format = io::format_of("." + text);
-  require(format && io::is_written(*format) && text.find('.') == std::string::npos,
-          fmt::format(
-              "--format: expected 'obj', 'ply', 'stl', 'off', '3mf', 'glb', 'gltf', 'vtp', 'vtk' or 'vtu', got '{}'",
-              text));
+  require(format && (io::is_written(*format) || io::is_cad(*format)) && text.find('.') == std::string::npos,
+          fmt::format("--format: expected 'obj', 'ply', 'stl', 'off', '3mf', 'glb', 'gltf', 'vtp', 'vtk', 'vtu', "
+                      "'step', 'iges' or 'brep', got '{}'",
+                      text));
   return *format;
 }
 

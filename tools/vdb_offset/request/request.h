@@ -130,6 +130,9 @@ void require_for_input(const Request& request, bool curves);
 /// The format of a mesh by its name, or else the one that was given.
 std::optional<io::Format> format_of(const std::string& path, const Request& request);
 
+/// Whether an output is to be a CAD model.
+bool is_cad_output(const std::string& path, const Request& request);
+
 /// How meshes are written, in the format of a file of that name.
 io::WriteOptions write_options(const Request& request, const std::string& path);
 

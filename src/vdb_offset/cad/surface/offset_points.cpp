@@ -49,7 +49,7 @@ gp_Vec shortest_step(std::span<const std::pair<gp_Vec, double>> wanted) {
   return step;
 }
 
-std::optional<Residue> residue_at(std::span<const SidedSurface> surfaces, const gp_Pnt& point, double distance,
+std::optional<Residue> residue_at(std::span<const SidedSurface> surfaces, const gp_Pnt& point,
                                   std::span<io::CadPlace> places) {
   std::vector<std::pair<gp_Vec, double>> wanted;
   Residue residue;
@@ -60,7 +60,7 @@ std::optional<Residue> residue_at(std::span<const SidedSurface> surfaces, const 
     place.v = foot.v;
     const auto normal = face.surface.normal(foot.u, foot.v);
     if (!normal) return std::nullopt;
-    const double lack = distance - face.side * foot.distance;
+    const double lack = place.distance - face.side * foot.distance;
     wanted.emplace_back(*normal * face.side, lack);
     residue.most = std::max(residue.most, std::abs(lack));
   }
@@ -73,13 +73,13 @@ gp_Pnt offset_point(std::span<const SidedSurface> surfaces, const io::CadAim& ai
   gp_Pnt best = start, point = start;
   double least = INFINITY;
   for (int i = 0; i < kMostSteps; ++i) {
-    const auto residue = residue_at(surfaces, point, aim.distance, places);
+    const auto residue = residue_at(surfaces, point, places);
     if (!residue || !(residue->most < least)) break;
     best = point;
     least = residue->most;
-    if (least <= kRounding * std::abs(aim.distance)) break;
+    if (least <= kRounding * aim.scale) break;
     point.Translate(residue->step);
-    if (point.Distance(start) > kFarthest * std::abs(aim.distance)) break;
+    if (point.Distance(start) > kFarthest * aim.scale) break;
   }
   return best;
 }

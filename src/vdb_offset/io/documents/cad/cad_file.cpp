@@ -78,10 +78,7 @@ CadFileFacts facts_of(CadWritten&& written) {
 
 }  // namespace
 
-bool is_cad_output(const std::string& path) {
-  const auto format = format_of(path);
-  return format == Format::Step || format == Format::Brep;
-}
+bool is_cad_output(Format format) { return format == Format::Step || format == Format::Brep; }
 
 CadDistances::CadDistances(double number) : scale(std::abs(number)) { each.push_back({number, {}}); }
 
@@ -99,7 +96,10 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Ca
         fmt::format("{}: expected an input that is a CAD model, for an output that is one, got {}", path, source.path));
   VDB_OFFSET_ASSERT(distances.scale > 0 && !distances.each.empty());
   WriteCad write;
-  write.format = name(*format_of(path));
+  const std::optional<Format> format = format_of(path) ? format_of(path) : how.format;
+  if (!format || !is_cad_output(*format))
+    throw InvalidInput(path + ": expected a name that ends in .step, .stp or .brep");
+  write.format = name(*format);
   write.of_face =
       distances_of_faces(distances, rules_of_faces(path, model->mesh(), distances, how.only));
   write.distance = write.of_face.size() == 1 ? write.of_face.front().number : distances.scale;
@@ -113,7 +113,7 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Ca
   }
   CadWritten written = model->write(write);
   if (written.made == CadMade::Nothing)
-    throw Error(
+    throw NoCadModel(
         fmt::format("{}: expected faces of a CAD model that can be offset, got none{}{} (--faceted writes "
                     "triangles)",
                     path, written.gaps.empty() ? "" : ": ", written.gaps.empty() ? "" : written.gaps.front()));

@@ -47,16 +47,17 @@ struct CadPoint {
   std::uint64_t face = 0;  ///< An index of CadMesh::faces.
 };
 
-/// A point that is to be at a distance from faces, and how many of the places that come with it are its own.
+/// A point that is to be at distances from faces, and how many of the places that come with it are its own.
 struct CadAim {
   double x = 0, y = 0, z = 0;  ///< Where to begin.
-  double distance = 0;         ///< Negative is inward.
+  double scale = 0;            ///< What is small is small compared to this.
   std::uint64_t places = 0;
 };
 
-/// Where on a face such a point comes from.
+/// Where on a face such a point comes from, and how far it is to be from that.
 struct CadPlace {
   double u = 0, v = 0;
+  double distance = 0;     ///< Negative is inward.
   std::uint64_t face = 0;  ///< An index of CadMesh::faces.
 };
 

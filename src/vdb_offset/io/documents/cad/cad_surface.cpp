@@ -44,7 +44,8 @@ void CadSurface::find_places() {
   std::vector<std::pair<std::uint32_t, Place>> all;
   for (std::size_t t = 0; t < mesh_->triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
-      all.push_back({mesh_->triangles[t][k], {mesh_->face_of[t], mesh_->corner_parameters[3 * t + k]}});
+      all.push_back({mesh_->triangles[t][k],
+                     {mesh_->face_of[t], mesh_->corner_parameters[3 * t + k], static_cast<std::uint32_t>(3 * t + k)}});
   const auto key = [](const auto& each) { return std::pair(each.first, each.second.face); };
   std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   all.erase(std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); }),
@@ -62,13 +63,15 @@ std::span<const CadSurface::Place> CadSurface::places_of(std::uint32_t vertex) c
 }
 
 void CadSurface::bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                                    std::span<Vec3d> points) const {
+                                    std::span<const double> at_corner, std::span<Vec3d> points) const {
   std::vector<CadAim> aims;
   std::vector<CadPlace> places;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const auto own = places_of(vertices[i]);
-    aims.push_back({points[i].x(), points[i].y(), points[i].z(), distances[i], own.size()});
-    for (const Place& place : own) places.push_back({place.parameters[0], place.parameters[1], place.face});
+    aims.push_back({points[i].x(), points[i].y(), points[i].z(), std::abs(distances[i]), own.size()});
+    for (const Place& place : own)
+      places.push_back({place.parameters[0], place.parameters[1],
+                        at_corner.empty() ? distances[i] : at_corner[place.corner], place.face});
   }
   const std::lock_guard lock(one_at_a_time_);
   const std::vector<Vec3d> ends = worker_.offset_points(aims, places);
@@ -76,13 +79,13 @@ void CadSurface::bring_to_distances(std::span<const std::uint32_t> vertices, std
 }
 
 std::vector<double> CadSurface::distance_errors(std::span<const std::uint32_t> vertices,
-                                                std::span<const double> distances,
+                                                std::span<const double> distances, std::span<const double> at_corner,
                                                 std::span<const Vec3d> points) const {
   std::vector<CadPoint> of_faces;
   for (std::size_t i = 0; i < vertices.size(); ++i)
     for (const Place& place : places_of(vertices[i]))
       of_faces.push_back({points[i].x(), points[i].y(), points[i].z(), place.parameters[0], place.parameters[1],
-                          distances[i], place.face});
+                          at_corner.empty() ? distances[i] : at_corner[place.corner], place.face});
   const std::lock_guard lock(one_at_a_time_);
   const std::vector<double> found = worker_.distance_errors(of_faces);
   std::vector<double> errors;

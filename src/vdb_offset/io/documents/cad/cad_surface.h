@@ -22,10 +22,10 @@ class CadSurface : public ExactSurface {
   std::span<const std::uint32_t> piece_of_face() const override { return piece_of_face_; }
   double deflection() const override { return mesh_->deflection; }
   void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                          std::span<Vec3d> points) const override;
+                          std::span<const double> at_corner, std::span<Vec3d> points) const override;
   std::vector<double> distance_errors(std::span<const std::uint32_t> vertices, std::span<const double> distances,
+                                      std::span<const double> at_corner,
                                       std::span<const Vec3d> points) const override;
-
   std::vector<double> distance_errors_near(std::span<const std::uint32_t> faces, std::span<const Vec3d> feet,
                                            std::span<const double> distances,
                                            std::span<const Vec3d> points) const override;
@@ -38,6 +38,7 @@ class CadSurface : public ExactSurface {
   struct Place {
     std::uint32_t face;
     std::array<double, 2> parameters;
+    std::uint32_t corner;  // of the mesh
   };
 
   void find_pieces();
