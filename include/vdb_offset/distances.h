@@ -21,8 +21,8 @@ class VDB_OFFSET_API Distances {
   Distances(double uniform = 0);  // NOLINT(google-explicit-constructor): one number is the usual case
   /// One number a vertex. \throw InvalidInput for one that is not finite, by its index.
   explicit Distances(std::vector<double> each);
-  /// And a number for each corner of the mesh's faces, for those whose distance at a vertex is another than the vertex's,
-  /// as beside a sharp edge between faces of different distances: miters are of these. Empty: none has.
+  /// And a number for each corner of the mesh's faces, for those whose distance at a vertex is another than the
+  /// vertex's, as beside a sharp edge between faces of different distances: miters are of these. Empty: none has.
   Distances(std::vector<double> each, std::vector<double> at_corner);
 
   double operator[](std::size_t vertex) const { return each_.empty() ? uniform_ : each_[vertex]; }
@@ -60,9 +60,9 @@ struct FaceDistances {
 /// One distance for each vertex of a mesh. At a distance s from the edge of another part, that part's distance at the
 /// closest point of its edge has the weight S(1 - s / blend) beside the vertex's own part with a weight of 1, where S
 /// rises from 0 to 1 with two derivatives of 0 at both ends: on the edge both count the same, and beyond `blend` only
-/// the own. Where parts, or pieces, meet at a vertex, it has their mean, and corners their own (Distances::at_corner()) but
-/// where they are joined. Vertices at one position have the same.
-/// 	hrow InvalidInput if there is not a distance for each corner, or not a part for each face
+/// the own. Where parts, or pieces, meet at a vertex, it has their mean, and corners their own (Distances::at_corner())
+/// but where they are joined. Vertices at one position have the same. 	hrow InvalidInput if there is not a distance for
+/// each corner, or not a part for each face
 VDB_OFFSET_API Distances vertex_distances(PolygonView mesh, const FaceDistances& faces);
 
 /// How lengths count along the axes: distances are those of a space in which coordinates are so many times as large.
@@ -110,8 +110,8 @@ class VDB_OFFSET_API DistanceExpression {
   /// from 0) at which the result is a NaN or an infinity.
   std::vector<double> operator()(const VertexVariables& at) const;
 
-  /// The distance at single points, of which the position, the unit normal and (u, v) are given: for many calls from one
-  /// thread. What is returned throws InvalidInput where the result is a NaN or an infinity.
+  /// The distance at single points, of which the position, the unit normal and (u, v) are given: for many calls from
+  /// one thread. What is returned throws InvalidInput where the result is a NaN or an infinity.
   std::function<double(const Vec3d&, const Vec3d&, const Vec2d&)> at_points(double diagonal) const;
 
  private:

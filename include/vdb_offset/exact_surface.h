@@ -35,8 +35,8 @@ class VDB_OFFSET_API ExactSurface {
   /// \param points of each of them: where to begin, and where it ends
   virtual void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
                                   std::span<const double> at_corner, std::span<Vec3d> points) const = 0;
-  /// Of each point, the most by which its distance from one of these faces is another than the vertex's, or the corner's,
-  /// world units.
+  /// Of each point, the most by which its distance from one of these faces is another than the vertex's, or the
+  /// corner's, world units.
   virtual std::vector<double> distance_errors(std::span<const std::uint32_t> vertices,
                                               std::span<const double> distances, std::span<const double> at_corner,
                                               std::span<const Vec3d> points) const = 0;

@@ -28,7 +28,7 @@ set(cad_sources read/document read/read_model surface/face_surface surface/offse
   offset/arrange offset/blended_faces offset/build offset/contact offset/contract offset/edge_curve offset/model offset/offset_solid
   offset/offset_surface offset/place offset/resolve offset/surface_fit
   judge/judge judge/parameters judge/soup
-  write/body_shape write/face_distances write/faceted write/write_model write/write_offset
+  write/body_shape write/face_distances write/faceted write/own_process write/thick_solids write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)

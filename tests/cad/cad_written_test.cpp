@@ -40,6 +40,12 @@ Written write(const std::string& name, double distance, const std::string& outpu
   return written;
 }
 
+io::CadWriting faceted() {
+  io::CadWriting how;
+  how.faceted = true;
+  return how;
+}
+
 double volume_of_mesh(const Polygons& mesh) {
   double six = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -129,12 +135,13 @@ TEST_CASE("cad written: some faces go, and the others stay", "[cad]") {
         Approx(volume_of_block(0) * 22 / 20).epsilon(2e-3));
 }
 
-TEST_CASE("cad written: a model in inches becomes one in millimetres", "[cad]") {
+TEST_CASE("cad written: a model in inches stays one", "[cad]") {
   const Written written = write("inch.stp", 0.1, "inch.step");
   CHECK(written.facts.made == Made::Solid);
   CHECK(written.facts.volume == Approx(2.2 * 3.2 * 4.2));
-  CHECK(written.again.unit_micrometres == 1000.0);
-  CHECK(volume_of_mesh(written.again.polygons) == Approx(2.2 * 3.2 * 4.2 * std::pow(25.4, 3)));
+  CHECK(written.again.unit_micrometres == 25400.0);
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(2.2 * 3.2 * 4.2));
+  CHECK(write("metre.step", 0.1, "again.step").again.unit_micrometres == 1e6);
   CHECK(volume_of_mesh(write("inch.stp", 0.1, "inch.brep").again.polygons) == Approx(2.2 * 3.2 * 4.2));
 }
 
@@ -147,7 +154,7 @@ TEST_CASE("cad written: bodies that would get into each other are not called who
 
 TEST_CASE("cad written: triangles where they are asked for and nothing else is to be had", "[cad]") {
   // So far inward that nothing of the hole's wall is left of the block.
-  const Written written = write("block.step", -6, "facets.step", {0, {}, true});
+  const Written written = write("block.step", -6, "facets.step", faceted());
   CHECK(written.facts.made != Made::Faces);
   CHECK(written.again.polygons.face_count() > 0);
 }
@@ -160,7 +167,8 @@ TEST_CASE("cad written: what cannot be is told in a line", "[cad]") {
   io::CadWriting some;
   some.only.assign(block.polygons.face_count(), 0);
   some.only[0] = 1;
-  CHECK_THROWS_WITH(io::write_cad(path_of("no.step"), block, 1, block.polygons.positions, some),
-                    Catch::Contains("no.step: expected whole faces of a CAD model to be offset, got a part of face "));
+  CHECK_THROWS_WITH(
+      io::write_cad(path_of("no.step"), block, 1, block.polygons.positions, some),
+      Catch::Contains("no.step: expected whole faces of a CAD model to be offset alike, got a part of face "));
   CHECK_FALSE(std::filesystem::exists(path_of("no.step")));
 }

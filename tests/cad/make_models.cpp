@@ -60,13 +60,13 @@ void write_step(const TopoDS_Shape& shape, const char* name, const char* unit) {
   Interface_Static::SetCVal("write.step.unit", "MM");
 }
 
-/// A spline with three spans each way, (40 u, 30 v, 8 u^2 - 6 v^2), less the disc of radius 1/4 around (1/2, 1/2) in (u, v).
+/// A spline with three spans each way, (40 u, 30 v, 8 u^2 - 6 v^2), less the disc of radius 1/4 around (1/2, 1/2) in
+/// (u, v).
 TopoDS_Shape patch_with_hole() {
   TColgp_Array2OfPnt poles(1, 3, 1, 3);
   // Bezier points of t^2 over 0 .. 1 are 0, 0, 1.
   for (int i = 1; i <= 3; ++i)
-    for (int k = 1; k <= 3; ++k)
-      poles(i, k) = gp_Pnt(20 * (i - 1), 15 * (k - 1), (i == 3 ? 8 : 0) - (k == 3 ? 6 : 0));
+    for (int k = 1; k <= 3; ++k) poles(i, k) = gp_Pnt(20 * (i - 1), 15 * (k - 1), (i == 3 ? 8 : 0) - (k == 3 ? 6 : 0));
   TColStd_Array1OfReal knots(1, 2);
   TColStd_Array1OfInteger multiplicities(1, 2);
   knots(1) = 0, knots(2) = 1;
@@ -75,7 +75,8 @@ TopoDS_Shape patch_with_hole() {
       new Geom_BSplineSurface(poles, knots, knots, multiplicities, multiplicities, 2, 2);
   for (const double knot : {0.35, 0.6}) surface->InsertUKnot(knot, 1, 0), surface->InsertVKnot(knot, 1, 0);
   // The other way round than the border, as a hole goes.
-  const Handle(Geom2d_Circle) circle = new Geom2d_Circle(gp_Ax22d(gp_Pnt2d(0.5, 0.5), gp_Dir2d(1, 0), gp_Dir2d(0, -1)), 0.25);
+  const Handle(Geom2d_Circle) circle =
+      new Geom2d_Circle(gp_Ax22d(gp_Pnt2d(0.5, 0.5), gp_Dir2d(1, 0), gp_Dir2d(0, -1)), 0.25);
   BRepBuilderAPI_MakeFace face(surface, 1e-7);
   face.Add(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle, surface)).Wire());
   BRepLib::BuildCurves3d(face.Face());

@@ -20,7 +20,8 @@ struct Strip {
   explicit Strip(bool shared = true) {
     for (int i = 0; i < 10; ++i) {
       std::vector<std::uint32_t> corners;
-      for (const auto& [x, y] : {std::pair{i, 0}, {i + 1, 0}, {i + 1, 1}, {i, 1}}) corners.push_back(vertex(x - 5, y, shared));
+      for (const auto& [x, y] : {std::pair{i, 0}, {i + 1, 0}, {i + 1, 1}, {i, 1}})
+        corners.push_back(vertex(x - 5, y, shared));
       mesh.add_face({corners[0], corners[1], corners[2], corners[3]});
       faces.part.push_back(i < 5 ? 0 : 1);
       faces.at_corner.insert(faces.at_corner.end(), 4, i < 5 ? 1.0 : 3.0);
@@ -88,7 +89,8 @@ TEST_CASE("face distances: the distance of the closest point of an edge counts b
   strip.faces.blend = 2;
   // Of the second part: 3 at y = 0, and 5 at y = 1.
   for (std::size_t c = 0; c < strip.mesh.corners.size(); ++c)
-    if (strip.faces.part[c / 4] == 1 && strip.mesh.positions[strip.mesh.corners[c]].y() == 1) strip.faces.at_corner[c] = 5;
+    if (strip.faces.part[c / 4] == 1 && strip.mesh.positions[strip.mesh.corners[c]].y() == 1)
+      strip.faces.at_corner[c] = 5;
   const Distances distances = vertex_distances(strip.mesh.view(), strip.faces);
   for (std::size_t v = 0; v < strip.mesh.positions.size(); ++v) {
     const Vec3d& p = strip.mesh.positions[v];

@@ -22,14 +22,14 @@ class Implicit : public ExactSurface {
   std::span<const std::uint32_t> piece_of_face() const override { return pieces; }
   double deflection() const override { return most_off; }
   void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                          std::span<Vec3d> points) const override {
+                          std::span<const double>, std::span<Vec3d> points) const override {
     for (std::size_t i = 0; i < vertices.size(); ++i)
       for (int turn = 0; turn < 5; ++turn)
         for (const int piece : pieces_at[vertices[i]])
           points[i] += gradient(piece, points[i]) * (distances[i] - value(piece, points[i]));
   }
   std::vector<double> distance_errors(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                                      std::span<const Vec3d> points) const override {
+                                      std::span<const double>, std::span<const Vec3d> points) const override {
     std::vector<double> errors(vertices.size(), 0.0);
     for (std::size_t i = 0; i < vertices.size(); ++i)
       for (const int piece : pieces_at[vertices[i]])

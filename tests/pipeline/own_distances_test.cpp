@@ -69,8 +69,10 @@ double off_planes(const Polygons& cube, std::span<const Vec3d> positions, const 
 
 TEST_CASE("own distances: each face of a cube goes to its own plane, and others may stay") {
   for (const int n : {1, 3})
-    for (const auto& sides : {std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.0}, {0.3, 0.4, 0.5, 0.6, 0.7, 0.8},
-                              {-0.3, -0.4, -0.2, -0.6, -0.7, -0.8}, {0.0, 0.0, 0.0, 0.0, 0.0, 1.0},
+    for (const auto& sides : {std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.0},
+                              {0.3, 0.4, 0.5, 0.6, 0.7, 0.8},
+                              {-0.3, -0.4, -0.2, -0.6, -0.7, -0.8},
+                              {0.0, 0.0, 0.0, 0.0, 0.0, 1.0},
                               {0.2, 0.0, 0.3, 0.0, 0.4, 0.0}}) {
       const Polygons cube = divided_cube(n);
       OffsetOptions options;

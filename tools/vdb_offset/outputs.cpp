@@ -249,7 +249,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   const auto writing = Clock::now();
   std::optional<Shell> shell;
   Products made;
-  if (job.shell) {
+  if (job.shell && !is_cad_output(to.mesh, request)) {
     shell = shell_of(mesh, outcome.result, job.options, outcome.inner);
     tell_states(*shell, outcome.result);
     made.shell = shell->facts;
@@ -265,7 +265,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   io::WriteResult written;
   if (is_cad_output(to.mesh, request)) {
     made.cad = io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions,
-                             {request.format, request.fit_tolerance, job.options.only, request.faceted});
+                             {request.format, request.fit_tolerance, job.options.only, job.shell, request.faceted});
     written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
   } else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);

@@ -44,6 +44,7 @@ struct CadWriting {
   std::optional<Format> format;  ///< Step or Brep, of a file with another ending.
   double fit_tolerance = 0;  ///< The most distance of a fitted face from its offset, world units; 0: 1e-4 distances.
   std::vector<std::uint8_t> only;  ///< Of each face of the mesh: 1 if it is offset; the others stay. Empty: all are.
+  bool thick = false;              ///< Write the solids between the source and its offset.
   bool faceted = false;            ///< Where no solid comes of the faces, write one of triangles.
 };
 

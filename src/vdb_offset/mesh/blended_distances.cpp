@@ -75,7 +75,8 @@ class VertexBlend {
 
   Distances distances() const {
     std::vector<double> of_place(position_.size(), 0.0), of_share(shares_.size(), 0.0), each(place_.size(), 0.0);
-    for_each_index(of_place.size(), [&](std::size_t place) { of_place[place] = settle(place, of_share); }, 64);
+    for_each_index(
+        of_place.size(), [&](std::size_t place) { of_place[place] = settle(place, of_share); }, 64);
     for (std::size_t v = 0; v < each.size(); ++v) each[v] = of_place[place_[v]];
     std::vector<double> at_corner(mesh_.corners.size());
     bool differ = false;
@@ -189,7 +190,8 @@ class VertexBlend {
     zones_[side.zone].edge.push_back({position_[a], position_[b], own(a), own(b)});
   }
 
-  /// How far a point is from the edge of a zone, and the zone's distance at the closest point; nothing beyond the blend.
+  /// How far a point is from the edge of a zone, and the zone's distance at the closest point; nothing beyond the
+  /// blend.
   std::optional<std::array<double, 2>> closest_on_edge(const Zone& zone, const Vec3d& p) const {
     if (zone.edge.empty()) return std::nullopt;
     std::optional<std::array<double, 2>> closest;
@@ -199,7 +201,8 @@ class VertexBlend {
         const Vec3d way = end - start;
         const double along = std::clamp(way.dot(p - start) / std::max(way.lengthSqr(), 1e-300), 0.0, 1.0);
         const double away = (start + way * along - p).length();
-        if (away <= reach && (!closest || away < (*closest)[0])) closest = {{away, at_start + (at_end - at_start) * along}};
+        if (away <= reach && (!closest || away < (*closest)[0]))
+          closest = {{away, at_start + (at_end - at_start) * along}};
       });
       if (reach == faces_.blend) break;
     }

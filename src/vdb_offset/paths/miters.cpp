@@ -80,8 +80,8 @@ struct OwnPlanes {
 /// The planes around a vertex that have distances of their own: normals of those that stay, and of others, shortened so
 /// that their sum of products with the miter is the least distance. Nothing if they have no common miter.
 template <class Shape>
-std::optional<OwnPlanes> own_planes_around(const Shape& shape, std::uint32_t vertex, int side, const ExactCorners* exact,
-                                           const OwnDistances& own) {
+std::optional<OwnPlanes> own_planes_around(const Shape& shape, std::uint32_t vertex, int side,
+                                           const ExactCorners* exact, const OwnDistances& own) {
   std::vector<std::pair<Vec3d, double>> planes;
   OwnPlanes result;
   for (const auto t : shape.triangles_around(vertex)) {
@@ -90,8 +90,8 @@ std::optional<OwnPlanes> own_planes_around(const Shape& shape, std::uint32_t ver
     const double distance = side * own.at(t, vertex);
     if (distance < 0) return std::nullopt;
     const auto alike = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) {
-      return (plane.first - normal).lengthSqr() < (plane.second == distance ? kOnePlaneSine * kOnePlaneSine
-                                                                            : kTooAlike * kTooAlike);
+      return (plane.first - normal).lengthSqr() <
+             (plane.second == distance ? kOnePlaneSine * kOnePlaneSine : kTooAlike * kTooAlike);
     });
     if (alike == planes.end()) planes.emplace_back(normal, distance);
     else if (alike->second != distance) return std::nullopt;
@@ -283,7 +283,8 @@ void MiterFinder<Query>::bring_to_exact(std::span<const UnitMiter> units, const 
       distances.push_back(asked.distances[miters[i].vertex]);
       points.push_back(shape.vertices[miters[i].vertex] + miters[i].displacement);
     }
-    exact_->bring_to_distances(vertices, distances, of_own ? asked.own->at_corner() : std::span<const double>(), points);
+    exact_->bring_to_distances(vertices, distances, of_own ? asked.own->at_corner() : std::span<const double>(),
+                               points);
     for (std::size_t i = 0; i < some.size(); ++i)
       miters[some[i]].displacement =
           round_displacement(points[i] - shape.vertices[vertices[i]], std::abs(distances[i]));
@@ -307,8 +308,7 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Asked& fro
     Miter& miter = miters[i];
     miter.distance = closest[i].distance;
     miter.closest = closest[i].triangle;
-    const bool is_proven_now =
-        miter.displacement != Vec3d(0.0) && is_proven(miter, some[i], ends[i], closest[i], from);
+    const bool is_proven_now = miter.displacement != Vec3d(0.0) && is_proven(miter, some[i], ends[i], closest[i], from);
     if ((some[i].is_exact || some[i].is_own) && is_proven_now && miter.distance < asked) {
       if (miter.distance < asked * (1 - kReachedTolerance)) miter.nearer = miter.distance;
       miter.distance = asked;

@@ -15,13 +15,13 @@ namespace vdb_offset {
 /// The distances of triangles at their corners, where faces have others than the vertices that they share.
 class OwnDistances {
  public:
-  /// \pre `surface` is of the faces of `mesh` that `only` marks (of all, if it is empty), and there is a number for each
-  /// corner of the mesh
+  /// \pre `surface` is of the faces of `mesh` that `only` marks (of all, if it is empty), and there is a number for
+  /// each corner of the mesh
   OwnDistances(std::span<const double> at_corner, PolygonView mesh, std::span<const std::uint8_t> only,
                const Surface& surface);
   /// Nothing if the distances have none for corners.
-  static std::optional<OwnDistances> of(const Distances& distances, PolygonView mesh, std::span<const std::uint8_t> only,
-                                        const Surface& surface);
+  static std::optional<OwnDistances> of(const Distances& distances, PolygonView mesh,
+                                        std::span<const std::uint8_t> only, const Surface& surface);
 
   /// Whether the triangles around a vertex have different ones there.
   bool differ(std::uint32_t vertex) const { return differ_[vertex] != 0; }

@@ -108,8 +108,8 @@ WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, cons
   const std::size_t count = parts.surface().vertices.size();
   const Distances on_part = distances_of_part(parts, distances);
   const auto own = OwnDistances::of(on_part, mesh, options.only, parts.moving_part);
-  WantedMiters miters{miters_of_all(parts, finder.all(on_part, own ? &*own : nullptr)),
-                      std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  WantedMiters miters{miters_of_all(parts, finder.all(on_part, own ? &*own : nullptr)), std::vector<double>(count, 0.0),
+                      std::vector<double>(count, 0.0)};
   for (const Miter& miter : miters.of_vertex) {
     miters.farther[miter.vertex] = miter.distance;
     miters.nearer[miter.vertex] = miter.nearer;

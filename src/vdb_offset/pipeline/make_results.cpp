@@ -192,8 +192,8 @@ class ResultMaker {
       const StageTimer timer(result.statistics.seconds, Stage::Measure);
       if (mesh_.surroundings()) result.statistics.obstacles = mesh_.surroundings()->facts(positions);
       const auto own = OwnDistances::of(draft.distances, mesh_.mesh(), {}, mesh_.surface());
-      const MeasuredFaces faces{draft.constrained,    positions,
-                                draft.distances,      mesh_.source(),
+      const MeasuredFaces faces{draft.constrained,         positions,
+                                draft.distances,           mesh_.source(),
                                 draft.marched.paths.state, own ? &*own : nullptr};
       result.statistics.faces = measure_faces(faces);
       if (options_.keep_face_errors) result.face_errors = measure_each_face(faces, mesh_.mesh().face_count());

@@ -31,9 +31,8 @@ struct MeasuredFaces {
 /// Measures how far the faces of the moving part are off their distance: at points evenly spread over the area that
 /// they have in the offset, where the distance asked for is that of the corners, interpolated. A point is at its
 /// distance if the moving part is as far, or where it is farther, as beside a miter, if the plane of its own face in
-/// the source is. Of a triangle with a vertex at which faces have distances of their own, that plane counts alone. Where
-/// nearly nothing is asked for, nothing is measured. The result does not depend on the number of
-/// threads.
+/// the source is. Of a triangle with a vertex at which faces have distances of their own, that plane counts alone.
+/// Where nearly nothing is asked for, nothing is measured. The result does not depend on the number of threads.
 FaceError measure_faces(const MeasuredFaces& faces);
 
 /// Measures each of the input's `count` faces by itself: the mean error of a few points of it, as a share of the

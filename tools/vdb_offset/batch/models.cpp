@@ -18,9 +18,8 @@ namespace fs = std::filesystem;
 
 // Of meshes and curves. Not .txt and .json: most such files in a folder of models are notes and reports;
 // nor what cannot be written, as outputs have the endings of models by default.
-constexpr std::string_view kEndings[] = {".obj", ".ply", ".stl", ".off", ".3mf", ".glb", ".gltf",
-                                         ".vtp", ".vtk", ".vtu", ".step", ".stp", ".brep", ".svg", ".dxf",
-                                         ".dat", ".xy"};
+constexpr std::string_view kEndings[] = {".obj", ".ply",  ".stl", ".off",  ".3mf", ".glb", ".gltf", ".vtp", ".vtk",
+                                         ".vtu", ".step", ".stp", ".brep", ".svg", ".dxf", ".dat",  ".xy"};
 
 std::string lower(std::string text) {
   for (char& c : text)

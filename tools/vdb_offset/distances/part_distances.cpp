@@ -97,7 +97,8 @@ class CornerVariables {
 
 /// What a rule asks of the corners of those faces that it is the rule of.
 void add_corners(const Job& job, const DistanceRequest& rule, std::uint32_t number,
-                 std::span<const std::uint32_t> rule_of, const CornerVariables& variables, std::vector<double>& at_corner) {
+                 std::span<const std::uint32_t> rule_of, const CornerVariables& variables,
+                 std::vector<double>& at_corner) {
   const PolygonView mesh = job.source.view();
   const auto for_each_corner = [&](auto&& distance_at) {
     for (std::size_t f = 0; f < rule_of.size(); ++f)
@@ -106,9 +107,8 @@ void add_corners(const Job& job, const DistanceRequest& rule, std::uint32_t numb
   };
   if (rule.distance.expression) {
     const auto at_point = rule.distance.expression->at_points(variables.diagonal());
-    for_each_corner([&](std::size_t c) {
-      return at_point(variables.position(c), variables.normal(c), variables.texture(c));
-    });
+    for_each_corner(
+        [&](std::size_t c) { return at_point(variables.position(c), variables.normal(c), variables.texture(c)); });
   } else {
     const Distances of_vertices = evaluate(job, rule);
     for_each_corner([&](std::size_t c) { return of_vertices[mesh.corners[c]]; });
@@ -134,8 +134,7 @@ Distances distances_of_parts(const Job& job, const DistanceRequest& asked) {
   const auto model_face = io::cad_face_of(file);
   // Each face of a CAD model has a u and a v of its own.
   for (std::size_t f = 0; f < model_face.size(); ++f)
-    if (uses_texture(*rules[faces.part[f]]))
-      faces.part[f] = static_cast<std::uint32_t>(rules.size()) + model_face[f];
+    if (uses_texture(*rules[faces.part[f]])) faces.part[f] = static_cast<std::uint32_t>(rules.size()) + model_face[f];
   if (file.exact) faces.piece.assign(file.exact->piece_of_face().begin(), file.exact->piece_of_face().end());
   faces.blend = blend_of(job);
   return vertex_distances(file.polygons.view(), faces);
@@ -146,16 +145,15 @@ io::CadDistances cad_distances(const Job& job, const DistanceRequest& asked, con
   const double diagonal = used_diagonal(job.source.view());
   for (const DistanceRequest* const rule : rules_of(job, asked)) {
     if (!rule->from.empty())
-      throw InvalidInput(fmt::format(
-          "{}: expected a number or an expression, for an output that is a CAD model, got '{}'", job.request.output,
-          rule->text));
+      throw InvalidInput(
+          fmt::format("{}: expected a number or an expression, for an output that is a CAD model, got '{}'",
+                      job.request.output, rule->text));
     if (rule->distance.expression) distances.each.push_back({0, rule->distance.expression});
     else distances.each.push_back({rule->distance.in_world_units(diagonal), {}});
   }
   if (!job.request.distances_of.empty()) distances.of_face = rule_of_faces(job);
   distances.scale = of_vertices.scale();
-  for (const io::CadDistance& each : distances.each)
-    distances.scale = std::max(distances.scale, std::abs(each.number));
+  for (const io::CadDistance& each : distances.each) distances.scale = std::max(distances.scale, std::abs(each.number));
   if (distances.scale == 0)
     throw InvalidInput(job.request.output +
                        ": expected a distance other than 0, for an output that is a CAD model, got 0");

@@ -10,7 +10,8 @@ namespace vdb_offset::tool {
 /// Whether vertices get their distances from faces: parts have their own, or faces of a CAD model by their u and v.
 bool are_of_parts(const Job& job, const DistanceRequest& asked);
 
-/// The distances of vertices, of which some parts may have their own. \pre are_of_parts() \throw ReadError, InvalidInput
+/// The distances of vertices, of which some parts may have their own. \pre are_of_parts() \throw ReadError,
+/// InvalidInput
 Distances distances_of_parts(const Job& job, const DistanceRequest& asked);
 
 /// The distances of the faces of a CAD model. \param of_vertices what is asked of these

@@ -23,8 +23,8 @@ namespace vdb_offset::tool {
 namespace {
 
 // Options whose values are lengths.
-constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",   "inner",     "clearance",
-                                    "first-height", "total-thickness", "voxel-size",   "tolerance", "weld",
+constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",    "inner",     "clearance",
+                                    "first-height", "total-thickness", "voxel-size",    "tolerance", "weld",
                                     "flatten",      "deflection",      "fit-tolerance", "blend"};
 
 /// The words behind the name of a program or subcommand in reverse order, as CLI11 takes them. Words behind `--` are

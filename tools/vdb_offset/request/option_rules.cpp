@@ -92,11 +92,13 @@ void require_for_mesh(const Request& request) {
   const bool is_model = is_cad_output(request.output, request);
   require(is_model || (!request.faceted && request.fit_tolerance == 0),
           "--faceted and --fit-tolerance: expected an output that ends in .step, .stp or .brep");
-  require(!is_model || !(request.shell || request.layers || request.iso || request.tolerance || request.axes ||
+  require(!is_model || !request.shell || (request.distances_of.empty() && request.only.empty() && !request.faceted),
+          request.output + ": --shell excludes --distance-of, --only and --faceted for a CAD model");
+  require(!is_model || !(request.inner || request.layers || request.iso || request.tolerance || request.axes ||
                          !request.obstacles.empty() || !request.fit.empty() || !request.symmetry_texts.empty() ||
                          request.miter_limit),
           request.output +
-              ": expected a mesh, as a CAD model has no place for --shell, --layers, --mode iso, "
+              ": expected a mesh, as a CAD model has no place for --inner, --layers, --mode iso, "
               "--tolerance, --distance-xy, --obstacle, --fit, --symmetry and --miter-limit");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));

@@ -10,7 +10,8 @@
 namespace vdb_offset::cad {
 namespace {
 
-// Steps that spread points evenly over a square: the reciprocals of the plastic number and of its square (M. Roberts, 2018).
+// Steps that spread points evenly over a square: the reciprocals of the plastic number and of its square (M. Roberts,
+// 2018).
 constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
 
 double fraction(double x) { return x - std::floor(x); }
@@ -27,7 +28,8 @@ AtParameters measure_at_parameters(const TopoDS_Face& source, const TopoDS_Face&
   BRepTopAdaptor_FClass2d in_source(source, 0), in_made(made, 0);
   for (std::size_t i = 1; i <= count; ++i) {
     const auto k = static_cast<double>(i);
-    const gp_Pnt2d uv(box.u0 + (box.u1 - box.u0) * fraction(k * kStepU), box.v0 + (box.v1 - box.v0) * fraction(k * kStepV));
+    const gp_Pnt2d uv(box.u0 + (box.u1 - box.u0) * fraction(k * kStepU),
+                      box.v0 + (box.v1 - box.v0) * fraction(k * kStepV));
     if (in_source.Perform(uv) != TopAbs_IN || in_made.Perform(uv) != TopAbs_IN) continue;
     const gp_Vec normal = unit_normal(*from, uv.X(), uv.Y(), box) * sign;
     if (normal.Magnitude() < 0.5) continue;

@@ -223,7 +223,8 @@ double blended_distance(const Blend& blend, std::size_t face, const std::vector<
 
 }  // namespace
 
-std::vector<FaceDistance> blended_faces(const TopoDS_Shape& shape, const std::vector<PartOfFace>& faces, double length) {
+std::vector<FaceDistance> blended_faces(const TopoDS_Shape& shape, const std::vector<PartOfFace>& faces,
+                                        double length) {
   const BlendFinder finder(shape, faces, length);
   const std::shared_ptr<const Blend> blend = finder.blend();
   std::vector<FaceDistance> blended;
@@ -236,6 +237,7 @@ std::vector<FaceDistance> blended_faces(const TopoDS_Shape& shape, const std::ve
       if (part.part != faces[f].part && part.piece == finder.piece(f) && is_near) others.push_back(k);
     }
     if (others.empty()) continue;
+    blended.back().detail = length;
     blended.back().at = [blend, f, others](double u, double v) { return blended_distance(*blend, f, others, u, v); };
   }
   return blended;

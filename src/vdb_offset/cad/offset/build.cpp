@@ -122,7 +122,7 @@ class ShellBuilder {
     TopoDS_Edge e;
     if (m.kind == EdgeKind::Pole) return pole(m);
     const EdgeCurves& c = curves_[number];
-    const double tolerance = std::max(1e-7, 1.01 * c.tolerance);
+    const double tolerance = std::max(1e-7, 1.05 * c.tolerance);
     builder_.MakeEdge(e, c.curve, tolerance);
     const auto at = [&](int i) { return model_.faces[model_.halves[m.half[i]].face].offset.surface; };
     if (m.half[0] >= 0 && m.half[1] >= 0 && model_.halves[m.half[0]].face == model_.halves[m.half[1]].face) {

@@ -297,10 +297,13 @@ EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& tr
       r.pcurves[i] = straight(t, uv);
       if (r.pcurves[i].IsNull()) r.pcurves[i] = interpolate(every_other(t), every_other(uv));
     }
-    for (std::size_t k = 0; k < t.size(); k++) {
-      const gp_Pnt2d uv = r.pcurves[i]->Value(t[k]);
-      r.tolerance = std::max(r.tolerance, tracer.surface(i)->Value(uv.X(), uv.Y()).Distance(r.curve->Value(t[k])));
-    }
+    // Between the points as well: the curve and its trimming curve are splines of different kinds.
+    for (std::size_t k = 0; k + 1 < t.size(); k++)
+      for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        const double at = t[k] + (t[k + 1] - t[k]) * part;
+        const gp_Pnt2d uv = r.pcurves[i]->Value(at);
+        r.tolerance = std::max(r.tolerance, tracer.surface(i)->Value(uv.X(), uv.Y()).Distance(r.curve->Value(at)));
+      }
   }
   for (std::size_t k = 0; k < t.size(); k++)
     r.tolerance = std::max(r.tolerance, r.curve->Value(t[k]).Distance(trace.contacts[k].point));

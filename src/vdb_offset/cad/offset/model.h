@@ -38,6 +38,7 @@ struct ModelEdge {
   Handle(Geom_Curve) curve;              ///< The source's, untrimmed.
   double first = 0, last = 0;            ///< The range of the source's edge.
   std::array<double, 2> range = {0, 0};  ///< The range found for the offset, in the same parameter.
+  bool is_step = false;                  ///< The faces are joined smoothly, and their distances differ.
   double gap = 0;                        ///< Between the two faces' offsets along a smooth edge.
   bool is_gone = false;
 };

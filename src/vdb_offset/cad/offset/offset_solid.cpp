@@ -21,7 +21,7 @@ double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
 
 /// A distance along Su x Sv, of one towards the outside.
 FaceDistance towards(const FaceDistance& outside, double sign) {
-  FaceDistance along{sign * outside.constant, {}};
+  FaceDistance along{sign * outside.constant, {}, outside.detail};
   if (outside.at) along.at = [at = outside.at, sign](double u, double v) { return sign * at(u, v); };
   return along;
 }
@@ -86,6 +86,8 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       result.made_of.resize(result.faces.size());
       const std::size_t gaps_before = result.gaps.size();
       classify_edges(model, tolerances);
+      if (std::any_of(model.edges.begin(), model.edges.end(), [](const ModelEdge& e) { return e.is_step; }))
+        result.gaps.emplace_back("distances of faces that are joined smoothly differ where they meet (--blend)");
       arrange(model, tolerances, result.gaps);
       result.steps.insert(result.steps.end(), model.steps.begin(), model.steps.end());
       if (result.gaps.size() > gaps_before) continue;

@@ -225,6 +225,21 @@ Handle(Geom_Surface) surface_of(const TopoDS_Face& face) {
 
 namespace {
 
+// How long spans of a fit may be at first, in u or v, so that no change of a distance is passed over between the points
+// that are looked at. Not measured.
+double longest_span(const Geom_Surface& surface, const Box2& box, double detail, bool along_u) {
+  constexpr double kLeastSpans = 8, kMostSpans = 64;
+  const double range = along_u ? box.u1 - box.u0 : box.v1 - box.v0;
+  double spans = kLeastSpans;
+  for (const double part : {0.1, 0.5, 0.9}) {
+    gp_Pnt p;
+    gp_Vec du, dv;
+    surface.D1(box.u0 + part * (box.u1 - box.u0), box.v0 + part * (box.v1 - box.v0), p, du, dv);
+    if (detail > 0) spans = std::max(spans, (along_u ? du : dv).Magnitude() * range / detail);
+  }
+  return range / std::min(spans, kMostSpans);
+}
+
 OffsetSurface fitted(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,
                      const Sides& drawn_sides, double margin, double tolerance) {
   const bool is_constant = !distance.at;
@@ -261,8 +276,12 @@ OffsetSurface fitted(const Handle(Geom_Surface) & surface, const Box2& box, cons
       return result;
     }
   }
-  const FittedSurface fit = fit_surface(map, knots_along(surface, true, wide.u0, wide.u1),
-                                        knots_along(surface, false, wide.v0, wide.v1), tolerance);
+  Knots u = knots_along(surface, true, wide.u0, wide.u1), v = knots_along(surface, false, wide.v0, wide.v1);
+  if (!is_constant) {
+    u = divided(u, longest_span(*surface, box, distance.detail, true));
+    v = divided(v, longest_span(*surface, box, distance.detail, false));
+  }
+  const FittedSurface fit = fit_surface(map, u, v, tolerance);
   result.surface = fit.surface;
   result.error = fit.error;
   return result;

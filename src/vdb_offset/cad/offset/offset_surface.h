@@ -20,6 +20,7 @@ gp_Vec unit_normal(const Geom_Surface& surface, double u, double v, const Box2& 
 struct FaceDistance {
   double constant = 0;
   std::function<double(double, double)> at;  ///< Empty: constant.
+  double detail = 0;  ///< Over what length it may change much, in the shape's unit; 0: not known.
 
   double operator()(double u, double v) const { return at ? at(u, v) : constant; }
 };

@@ -61,6 +61,10 @@ void classify_edges(Model& model, const Tolerances& tolerances) {
     const bool is_smooth = angle < kSmoothAngle && gap <= source_gap + tolerances.gap;
     e.kind = is_smooth || a.face == b.face ? EdgeKind::Smooth : EdgeKind::Sharp;
     e.gap = e.kind == EdgeKind::Smooth ? gap : 0;
+    const double middle = (e.first + e.last) / 2;
+    const double apart =
+        distance_at(fa, a.pcurve->Value(middle)) * fa.sign - distance_at(fb, b.pcurve->Value(middle)) * fb.sign;
+    e.is_step = e.kind == EdgeKind::Sharp && angle < kSmoothAngle && std::abs(apart) > tolerances.gap;
   }
 }
 

@@ -146,6 +146,22 @@ Knots offset_knots(int degree, const std::vector<double>& knots, const std::vect
   return k;
 }
 
+Knots divided(const Knots& knots, double longest) {
+  Knots more{knots.degree, {}, {}};
+  for (std::size_t i = 0; i < knots.knots.size(); i++) {
+    more.knots.push_back(knots.knots[i]);
+    more.multiplicities.push_back(knots.multiplicities[i]);
+    if (i + 1 == knots.knots.size()) break;
+    const double span = knots.knots[i + 1] - knots.knots[i];
+    const int parts = static_cast<int>(std::ceil(span / longest));
+    for (int part = 1; part < parts; part++) {
+      more.knots.push_back(knots.knots[i] + span * part / parts);
+      more.multiplicities.push_back(1);
+    }
+  }
+  return more;
+}
+
 FittedSurface fit_surface(const std::function<gp_Pnt(double, double)>& map, Knots u, Knots v, double tolerance) {
   double last_error = 0;
   int rounds_in_vain = 0;

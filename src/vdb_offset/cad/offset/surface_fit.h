@@ -21,6 +21,9 @@ struct Knots {
 Knots offset_knots(int degree, const std::vector<double>& knots, const std::vector<int>& multiplicities, double first,
                    double last);
 
+/// The same with spans divided into equal parts, so that none is longer than `longest`.
+Knots divided(const Knots& knots, double longest);
+
 struct FittedSurface {
   Handle(Geom_BSplineSurface) surface;
   double error;  ///< The largest distance found between the map and the surface at the same (u, v).

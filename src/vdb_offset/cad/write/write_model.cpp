@@ -10,6 +10,8 @@
 #include <TCollection_ExtendedString.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <UnitsMethods.hxx>
 #include <XCAFDoc_ColorTool.hxx>
@@ -18,6 +20,9 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <gp.hxx>
 #include <gp_Trsf.hxx>
+
+#include <cmath>
+#include <utility>
 
 #include "vdb_offset/cad/read/cad_model.h"
 #include "vdb_offset/cad/read/document.h"
@@ -50,11 +55,38 @@ void fill(const WrittenModel& model, const opencascade::handle<TDocStd_Document>
   }
 }
 
+/// OpenCASCADE's name of a unit; that of millimetres for one that it does not know.
+const char* unit_of(double millimetres) {
+  constexpr std::pair<double, const char*> kUnits[] = {
+      {1e-3, "UM"}, {10, "CM"}, {1000, "M"}, {25.4, "INCH"}, {304.8, "FT"}};
+  for (const auto& [length, name] : kUnits)
+    if (std::abs(millimetres - length) < 1e-9 * length) return name;
+  return "MM";
+}
+
+/// The model in the file's own unit: OpenCASCADE names the unit, and writes coordinates as they are.
+WrittenModel in_file_unit(const WrittenModel& model) {
+  WrittenModel scaled = model;
+  if (model.millimetres == 1) return scaled;
+  gp_Trsf scale;
+  scale.SetScale(gp::Origin(), 1 / model.millimetres);
+  for (TopoDS_Shape& shape : scaled.shapes) {
+    BRepBuilderAPI_Transform transform(shape, scale, Standard_True);
+    TopTools_IndexedMapOfShape faces;
+    TopExp::MapShapes(shape, TopAbs_FACE, faces);
+    for (std::size_t f = 0; f < model.faces.size(); ++f)
+      if (faces.Contains(model.faces[f].first)) scaled.faces[f].first = transform.ModifiedShape(model.faces[f].first);
+    shape = transform.Shape();
+  }
+  return scaled;
+}
+
 void write_step(const WrittenModel& model, const std::string& path) {
   STEPCAFControl_Writer writer;
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
   Interface_Static::SetIVal("write.surfacecurve.mode", 1);
+  Interface_Static::SetCVal("write.step.unit", unit_of(model.millimetres));
   UnitsMethods::SetCasCadeLengthUnit(1.0);
   const auto document = make_document(1);
   fill(model, document);
@@ -69,19 +101,15 @@ void write_step(const WrittenModel& model, const std::string& path) {
 }  // namespace
 
 void write_model(const WrittenModel& model, const std::string& format, const std::string& path) {
-  if (format == "step") return write_step(model, path);
-  TopoDS_Shape shape = model.shapes.front();
-  if (model.shapes.size() > 1) {
+  const WrittenModel scaled = in_file_unit(model);
+  if (format == "step") return write_step(scaled, path);
+  TopoDS_Shape shape = scaled.shapes.front();
+  if (scaled.shapes.size() > 1) {
     TopoDS_Compound all;
     BRep_Builder builder;
     builder.MakeCompound(all);
-    for (const TopoDS_Shape& each : model.shapes) builder.Add(all, each);
+    for (const TopoDS_Shape& each : scaled.shapes) builder.Add(all, each);
     shape = all;
-  }
-  if (model.millimetres != 1) {
-    gp_Trsf scale;
-    scale.SetScale(gp::Origin(), 1 / model.millimetres);
-    shape = BRepBuilderAPI_Transform(shape, scale, Standard_True).Shape();
   }
   if (!BRepTools::Write(shape, path.c_str()))
     throw InvalidCad("expected a model that OpenCASCADE can write as BREP, got one that it cannot");

@@ -15,10 +15,10 @@ struct WrittenModel {
   std::vector<TopoDS_Shape> shapes;
   std::vector<std::string> names;  ///< Of each shape; may be empty.
   std::vector<std::pair<TopoDS_Shape, io::CadFaceFacts>> faces;
-  double millimetres = 1;  ///< Of the unit of a BREP file, which tells none; the shapes are in millimetres.
+  double millimetres = 1;  ///< Of the file's unit; the shapes are in millimetres.
 };
 
-/// Writes a STEP file (AP214) in millimetres, with the names of shapes and faces, colours and layers; or a BREP file,
+/// Writes a STEP file (AP214), with the names of shapes and faces, colours and layers; or a BREP file,
 /// which has a place for none of these. `format` is step or brep. \throw InvalidCad if it cannot
 void write_model(const WrittenModel& model, const std::string& format, const std::string& path);
 

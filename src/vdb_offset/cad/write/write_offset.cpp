@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/write/write_offset.h"
 
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
@@ -20,14 +14,8 @@
 #include <gp_Trsf.hxx>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <fstream>
-#include <functional>
 #include <optional>
-#include <string_view>
-#include <system_error>
 
 #include "vdb_offset/cad/judge/judge.h"
 #include "vdb_offset/cad/judge/parameters.h"
@@ -36,6 +24,8 @@
 #include "vdb_offset/cad/write/body_shape.h"
 #include "vdb_offset/cad/write/face_distances.h"
 #include "vdb_offset/cad/write/faceted.h"
+#include "vdb_offset/cad/write/own_process.h"
+#include "vdb_offset/cad/write/thick_solids.h"
 #include "vdb_offset/cad/write/write_model.h"
 #include "vdb_offset/error.h"
 
@@ -43,54 +33,6 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr std::size_t kMostGaps = 8;  // that are told
-// Of faces that fold over, OpenCASCADE makes triangles without end. Models of 400 faces take a tenth of this.
-constexpr rlim_t kMostMemory = rlim_t{2} << 30;
-constexpr int kFailed = 3;   // an exit code
-#ifdef __SANITIZE_ADDRESS__  // which has terabytes of addresses
-constexpr bool kMayLimit = false;
-#else
-constexpr bool kMayLimit = true;
-#endif
-
-rlim_t addresses() {
-  std::uint64_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
-
-/// A file in memory, which has a name for as long as this lives.
-class MemoryFile {
- public:
-  MemoryFile() : descriptor_(::memfd_create("offset", MFD_CLOEXEC)) {
-    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
-  }
-  ~MemoryFile() { ::close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-  void write(std::string_view all) const {
-    while (!all.empty()) {
-      const ssize_t put = ::write(descriptor_, all.data(), all.size());
-      if (put <= 0) throw std::system_error(errno, std::generic_category(), "write");
-      all.remove_prefix(static_cast<std::size_t>(put));
-    }
-  }
-  std::string bytes() const {
-    struct stat facts {};
-    if (::fstat(descriptor_, &facts) != 0) throw std::system_error(errno, std::generic_category(), "fstat");
-    std::string all(static_cast<std::size_t>(facts.st_size), '\0');
-    for (std::size_t at = 0; at < all.size();) {
-      const ssize_t got = ::pread(descriptor_, all.data() + at, all.size() - at, static_cast<off_t>(at));
-      if (got <= 0) throw std::system_error(errno, std::generic_category(), "pread");
-      at += static_cast<std::size_t>(got);
-    }
-    return all;
-  }
-
- private:
-  int descriptor_;
-};
 
 /// What is tried: the whole model, and if that is not good its faces or triangles; these alone; or triangles alone.
 enum class Attempt { Whole, Rest, Facets };
@@ -110,25 +52,6 @@ struct OffsetBody {
   OffsetCadResult result;
   std::vector<FaceDistance> distances;  // of each face; empty: all have the same
 };
-
-/// Writes a file in a process of its own: what OpenCASCADE's writer sets for units, its reader would take for its own.
-void write_apart(const WrittenModel& model, const std::string& format, const std::string& path) {
-  const pid_t child = ::fork();
-  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  if (child == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    try {
-      write_model(model, format, path);
-    } catch (...) {
-      ::_exit(kFailed);
-    }
-    ::_exit(0);
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
-  if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
-}
 
 class OffsetWriter {
  public:
@@ -155,7 +78,7 @@ class OffsetWriter {
   }
 
  private:
-  bool is_even() const { return write_.of_face.size() == 1; }
+  bool is_even() const { return write_.is_even(); }
   double largest() const { return millimetres_ * write_.distance; }
 
   void make(OffsetBody& body, std::size_t first_face) {
@@ -226,7 +149,54 @@ class OffsetWriter {
     }
     written_.bytes = file.bytes();
     written_.made = all_solid ? io::CadMade::Solid : io::CadMade::Shells;
+    return !write_.thick || make_thick();
+  }
+
+  /// Writes the solids between source and offset in place of the offset, which is good; false if they are not.
+  bool make_thick() {
+    WrittenModel model = empty_model();
+    double volume = 0;
+    for (const OffsetBody& body : bodies_) {
+      const std::vector<TopoDS_Shape> solids = thick_solids(body.source.shape, body.result.shape, write_.distance > 0);
+      if (!body.body.is_solid || solids.empty()) {
+        written_.gaps.emplace_back("a shell of the source has no offset, or is not closed");
+        return false;
+      }
+      for (const TopoDS_Shape& solid : solids) {
+        model.shapes.push_back(solid);
+        model.names.push_back(name_of(body.body));
+      }
+      name_faces(body, model);
+      std::size_t k = 0;
+      for (TopExp_Explorer face(body.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
+        model.faces.emplace_back(face.Current(), body.body.faces[body.source.face_numbers[k]].facts);
+      volume += std::abs(volume_of(body.result.shape) - volume_of(body.source.shape));
+    }
+    const MemoryFile file;
+    write_apart(model, write_.format, file.path());
+    const CadModel again = read_model(file.path(), write_.format);
+    double found = 0;
+    bool is_valid = again.bodies.size() == model.shapes.size();
+    for (const Body& body : again.bodies) {
+      const TopoDS_Shape shape = scaled(shape_of(body).shape, in_millimetres(again));
+      is_valid =
+          is_valid && body.is_solid && BRepCheck_Analyzer(shape).IsValid() && soup_of(shape).crossings(1).empty();
+      found += volume_of(shape);
+    }
+    constexpr double kMostOff = 1e-3;  // of the volume, as it is found by numbers
+    if (!is_valid || !(std::abs(found - volume) <= kMostOff * volume)) {
+      written_.gaps.emplace_back("read again, the thick solid is not valid, or crosses itself");
+      return false;
+    }
+    written_.bytes = file.bytes();
+    written_.volume = found / std::pow(millimetres_, 3);
     return true;
+  }
+
+  static double volume_of(const TopoDS_Shape& shape) {
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(shape, properties);
+    return properties.Mass();
   }
 
   /// The length of the unit of a file that is read again.
@@ -253,7 +223,8 @@ class OffsetWriter {
     return verdict.is_good;
   }
 
-  /// Whether the faces of an uneven offset are where they ought to be at the same (u, v), to 1 % of the largest distance.
+  /// Whether the faces of an uneven offset are where they ought to be at the same (u, v), to 1 % of the largest
+  /// distance.
   bool is_at_distances(const OffsetBody& body) {
     constexpr std::size_t kSamples = 10000;  // of all faces
     constexpr double kMostOff = 0.01;
@@ -276,10 +247,7 @@ class OffsetWriter {
   }
 
   void add_volume(const Body& again, const TopoDS_Shape& shape) {
-    if (!again.is_solid) return;
-    GProp_GProps properties;
-    BRepGProp::VolumeProperties(shape, properties);
-    written_.volume += properties.Mass() / std::pow(millimetres_, 3);
+    if (again.is_solid) written_.volume += volume_of(shape) / std::pow(millimetres_, 3);
   }
 
   Soup soup_of(const TopoDS_Shape& shape) const {
@@ -376,35 +344,6 @@ class OffsetWriter {
   std::vector<OffsetBody> bodies_;
   io::CadWritten written_;
 };
-
-/// Does work in a process of its own. Nothing if that is ended by a signal or an exception; `gap` then says so.
-std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, std::string& gap) {
-  const MemoryFile reply;
-  const pid_t child = ::fork();
-  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  if (child == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    rlimit limit{};
-    ::getrlimit(RLIMIT_AS, &limit);
-    limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, addresses() + kMostMemory);
-    if (kMayLimit) ::setrlimit(RLIMIT_AS, &limit);
-    try {
-      reply.write(io::pack(work()));
-    } catch (const Standard_Failure&) {
-      ::_exit(kFailed);
-    } catch (const std::exception&) {
-      ::_exit(kFailed);
-    }
-    ::_exit(0);
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
-  if (status == 0) return io::unpack_written(reply.bytes());
-  gap = WIFSIGNALED(status) ? "OpenCASCADE is ended by signal " + std::to_string(WTERMSIG(status)) + " by the result"
-                            : std::string("OpenCASCADE fails with the result");
-  return std::nullopt;
-}
 
 }  // namespace
 

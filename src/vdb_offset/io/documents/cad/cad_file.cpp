@@ -31,8 +31,8 @@ std::vector<std::optional<std::size_t>> rules_of_faces(const std::string& path, 
     if (!only.empty() && !only[t]) here.reset();
     const std::uint32_t face = mesh.face_of[t];
     if (is_known[face] && rules[face] != here)
-      throw InvalidInput(fmt::format("{}: expected whole faces of a CAD model to be offset alike, got a part of face {}",
-                                     path, face + 1));
+      throw InvalidInput(fmt::format(
+          "{}: expected whole faces of a CAD model to be offset alike, got a part of face {}", path, face + 1));
     rules[face] = here;
     is_known[face] = 1;
   }
@@ -100,12 +100,12 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Ca
   if (!format || !is_cad_output(*format))
     throw InvalidInput(path + ": expected a name that ends in .step, .stp or .brep");
   write.format = name(*format);
-  write.of_face =
-      distances_of_faces(distances, rules_of_faces(path, model->mesh(), distances, how.only));
-  write.distance = write.of_face.size() == 1 ? write.of_face.front().number : distances.scale;
+  write.of_face = distances_of_faces(distances, rules_of_faces(path, model->mesh(), distances, how.only));
+  write.distance = write.is_even() ? write.of_face.front().number : distances.scale;
   write.diagonal = distances.diagonal;
   write.blend = distances.blend;
   write.fit_tolerance = how.fit_tolerance > 0 ? how.fit_tolerance : kFitShare * distances.scale;
+  write.thick = how.thick;
   write.faceted = how.faceted;
   if (how.faceted) {
     write.positions.assign(positions.begin(), positions.end());

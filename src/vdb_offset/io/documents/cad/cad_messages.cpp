@@ -149,7 +149,10 @@ std::string pack(const WriteCad& write) {
   packer.text(write.format);
   put_distances(packer, write.of_face);
   packer.value(write.distance).value(write.diagonal).value(write.blend).value(write.fit_tolerance);
-  packer.value(std::uint8_t{write.faceted}).list(write.positions).list(write.triangles);
+  packer.value(std::uint8_t{write.thick})
+      .value(std::uint8_t{write.faceted})
+      .list(write.positions)
+      .list(write.triangles);
   return packer.take();
 }
 
@@ -162,6 +165,7 @@ WriteCad unpack_write(std::string_view bytes) {
   write.diagonal = unpacker.value<double>();
   write.blend = unpacker.value<double>();
   write.fit_tolerance = unpacker.value<double>();
+  write.thick = unpacker.value<std::uint8_t>() != 0;
   write.faceted = unpacker.value<std::uint8_t>() != 0;
   write.positions = unpacker.list<Vec3d>();
   write.triangles = unpacker.list<std::array<std::uint32_t, 3>>();

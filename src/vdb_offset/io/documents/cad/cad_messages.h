@@ -72,9 +72,11 @@ struct WriteCad {
   std::string format;                    ///< step or brep
   std::vector<CadFaceDistance> of_face;  ///< A number for all, or one for each face.
   double distance = 0;                   ///< That number, or the largest without its sign.
-  double diagonal = 0;                   ///< What percentages in expressions refer to.
-  double blend = 0;                      ///< Over how far distances change across smooth edges; 0: they do not.
+  bool is_even() const { return of_face.size() == 1 && of_face.front().expression.empty(); }
+  double diagonal = 0;           ///< What percentages in expressions refer to.
+  double blend = 0;              ///< Over how far distances change across smooth edges; 0: they do not.
   double fit_tolerance = 0;      ///< In the file's unit, > 0.
+  bool thick = false;            ///< Write the solids between the source and its offset.
   bool faceted = false;          ///< Write the triangles as faces where no solid comes of the faces.
   std::vector<Vec3d> positions;  ///< Of the offset mesh, for that, with its triangles; else empty.
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -24,8 +24,7 @@ class CadSurface : public ExactSurface {
   void bring_to_distances(std::span<const std::uint32_t> vertices, std::span<const double> distances,
                           std::span<const double> at_corner, std::span<Vec3d> points) const override;
   std::vector<double> distance_errors(std::span<const std::uint32_t> vertices, std::span<const double> distances,
-                                      std::span<const double> at_corner,
-                                      std::span<const Vec3d> points) const override;
+                                      std::span<const double> at_corner, std::span<const Vec3d> points) const override;
   std::vector<double> distance_errors_near(std::span<const std::uint32_t> faces, std::span<const Vec3d> feet,
                                            std::span<const double> distances,
                                            std::span<const Vec3d> points) const override;
