@@ -341,12 +341,16 @@ AchievedSummary summarise(std::span<const VertexState> states, std::span<const d
   double asked = 0;
   summary.asked_least = std::numeric_limits<double>::infinity();
   summary.asked_most = -summary.asked_least;
+  const auto ask = [&](double distance) {
+    summary.asked_least = std::min(summary.asked_least, distance);
+    summary.asked_most = std::max(summary.asked_most, distance);
+  };
+  std::for_each(distances.at_corner().begin(), distances.at_corner().end(), ask);
   for (std::size_t v = 0; v < states.size(); ++v) {
     if (states[v] == VertexState::Unused) continue;
     achieved.push_back(all_achieved[v]);
     asked += distances[v];
-    summary.asked_least = std::min(summary.asked_least, distances[v]);
-    summary.asked_most = std::max(summary.asked_most, distances[v]);
+    ask(distances[v]);
     reached += !falls_short(states[v]);
     if (states[v] != VertexState::Reached) continue;
     const double target = std::abs(distances[v]);
