@@ -152,6 +152,48 @@ TEST_CASE("cad written: bodies that would get into each other are not called who
   CHECK(written.facts.gaps.back() == "bodies get into each other");
 }
 
+TEST_CASE("cad written: bosses that grow into each other become one", "[cad]") {
+  // Cylinders of radius 5, 9 apart and 6 and 8 high, on a plate of 42 x 22 x 7: what both have counts once.
+  const double both = 50 * std::acos(0.9) - 4.5 * std::sqrt(100 - 81);
+  const double volume = 42 * 22 * 7 + std::numbers::pi * 25 * (6 + 8) - both * 6;
+  const Written written = write("bosses.step", 1, "grown.step");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.gaps.empty());
+  CHECK(written.facts.volume == Approx(volume).epsilon(1e-6));
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(volume).epsilon(1e-3));
+}
+
+TEST_CASE("cad written: a wall that the distance swallows opens a hole to the side", "[cad]") {
+  // A hole of radius 4.75, its axis 4.25 inside of a side: a segment of it lies outside.
+  const double r = 4.75, in = 4.25, segment = r * r * std::acos(in / r) - in * std::sqrt(r * r - in * in);
+  const double volume = (38.5 * 18.5 - std::numbers::pi * r * r + segment) * 3.5;
+  const Written written = write("hole_at_side.step", -0.75, "opened.step");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.volume == Approx(volume).epsilon(1e-6));
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(volume).epsilon(1e-3));
+}
+
+TEST_CASE("cad written: a groove that closes is gone from the floor that it shares with a wider one", "[cad]") {
+  // Two grooves across each other, 2 and 10 wide, 4 deep into a block of 40 x 30 x 10: the narrow one closes.
+  const Written written = write("grooves.step", 1.5, "closed.step");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.volume == Approx(43 * 33 * 13 - 7 * 33 * 4).epsilon(1e-6));
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(written.facts.volume).epsilon(1e-6));
+}
+
+TEST_CASE("cad written: what falls apart is not called whole", "[cad]") {
+  // Two blocks of 10 x 10 x 10 joined by a bar of 2 x 2.
+  const Written written = write("dumbbell.step", -1.5, "apart.step");
+  CHECK(written.facts.made != Made::Solid);
+  CHECK_FALSE(written.facts.gaps.empty());
+}
+
+TEST_CASE("cad written: a trimming curve that leads past its edge is mended", "[cad]") {
+  const Written written = write("crooked.brep", 1, "straight.step");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.volume == Approx(std::numbers::pi * 36 * 22).epsilon(1e-6));
+}
+
 TEST_CASE("cad written: triangles where they are asked for and nothing else is to be had", "[cad]") {
   // So far inward that nothing of the hole's wall is left of the block.
   const Written written = write("block.step", -6, "facets.step", faceted());

@@ -2,6 +2,7 @@
 // Makes the CAD files that the tests read, by OpenCASCADE: make_models FOLDER. A program of its own, so that the tests
 // are not linked to OpenCASCADE, as the library is not.
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -15,6 +16,8 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_Circle.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Controller.hxx>
@@ -28,9 +31,11 @@
 #include <STEPControl_Writer.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array1OfPnt2d.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -105,6 +110,80 @@ TopoDS_Shape touching() {
   builder.Add(both, BRepPrimAPI_MakeBox(1, 1, 1).Shape());
   builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(1, 0, 0), gp_Pnt(2, 1, 1)).Shape());
   return both;
+}
+
+TopoDS_Shape upright(double x, double y, double z, double radius, double height) {
+  return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(x, y, z), gp_Dir(0, 0, 1)), radius, height).Shape();
+}
+
+/// A plate of 40 x 20 x 5 with two bosses of radius 4 and heights 6 and 8, 1 apart.
+TopoDS_Shape bosses() {
+  const TopoDS_Shape one = BRepAlgoAPI_Fuse(BRepPrimAPI_MakeBox(40, 20, 5).Shape(), upright(15.5, 10, 5, 4, 6)).Shape();
+  return BRepAlgoAPI_Fuse(one, upright(24.5, 10, 5, 4, 8)).Shape();
+}
+
+/// The plate with a hole of radius 4 instead, 1 from a side of it.
+TopoDS_Shape hole_at_side() {
+  return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 20, 5).Shape(), upright(20, 5, -1, 4, 7)).Shape();
+}
+
+/// A block of 40 x 30 x 10 with two grooves across each other, 2 and 10 wide, both 4 deep.
+TopoDS_Shape grooves() {
+  const TopoDS_Shape one =
+      BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 10).Shape(), BRepPrimAPI_MakeBox(gp_Pnt(-1, 14, 6), 42, 2, 5).Shape())
+          .Shape();
+  return BRepAlgoAPI_Cut(one, BRepPrimAPI_MakeBox(gp_Pnt(15, -1, 6), 10, 32, 5).Shape()).Shape();
+}
+
+/// Two blocks with a thin bar between them.
+TopoDS_Shape dumbbell() {
+  const TopoDS_Shape bar = BRepPrimAPI_MakeBox(gp_Pnt(9, 4, 4), 12, 2, 2).Shape();
+  const TopoDS_Shape one = BRepAlgoAPI_Fuse(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), bar).Shape();
+  return BRepAlgoAPI_Fuse(one, BRepPrimAPI_MakeBox(gp_Pnt(20, 0, 0), 10, 10, 10).Shape()).Shape();
+}
+
+/// Two halves of a cone about the z axis, with its tip below, as one: they touch along two lines.
+TopoDS_Shape cone_of_halves(double radius, double height) {
+  const auto half = [&](double x) {
+    const gp_Ax2 axes(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1), gp_Dir(x, 0, 0));
+    return BRepPrimAPI_MakeCone(axes, 0, radius, height, std::acos(-1.0)).Shape();
+  };
+  return BRepAlgoAPI_Fuse(half(1), half(-1)).Shape();
+}
+
+/// A block of 20 x 20 x 8.25 with a pit, a cone of splines in two halves. Along a line where these touch, one is
+/// trimmed beside it at the tip, where all of its other parameter is one point: as some programs do.
+TopoDS_Shape pit() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(-10, -10, -6), gp_Pnt(10, 10, 2.25)).Shape();
+  const TopoDS_Shape cut = BRepAlgoAPI_Cut(box, cone_of_halves(3.75, 2.25)).Shape();
+  const TopoDS_Shape all = BRepBuilderAPI_NurbsConvert(cut).Shape();
+  BRep_Builder builder;
+  for (TopExp_Explorer f(all, TopAbs_FACE); f.More(); f.Next())
+    for (TopExp_Explorer e(f.Current(), TopAbs_EDGE); e.More(); e.Next()) {
+      const TopoDS_Face face = TopoDS::Face(f.Current());
+      const TopoDS_Edge edge = TopoDS::Edge(e.Current());
+      const bool starts = BRep_Tool::Pnt(TopExp::FirstVertex(edge)).Distance(gp_Pnt(0, 0, 0)) < 1e-6;
+      const bool ends = BRep_Tool::Pnt(TopExp::LastVertex(edge)).Distance(gp_Pnt(0, 0, 0)) < 1e-6;
+      if (starts == ends) continue;
+      Standard_Real first = 0, last = 0;
+      const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
+      gp_Pnt2d a = curve->Value(first), b = curve->Value(last);
+      const gp_Vec2d aside = std::abs(a.X() - b.X()) < std::abs(a.Y() - b.Y()) ? gp_Vec2d(0.07, 0) : gp_Vec2d(0, 0.07);
+      (starts ? a : b).Translate(aside);
+      TColgp_Array1OfPnt2d poles(1, 2);
+      poles(1) = a;
+      poles(2) = b;
+      TColStd_Array1OfReal knots(1, 2);
+      knots(1) = first;
+      knots(2) = last;
+      TColStd_Array1OfInteger twice(1, 2);
+      twice.Init(2);
+      builder.UpdateEdge(edge, new Geom2d_BSplineCurve(poles, knots, twice, 1), face, 0.08);
+      builder.UpdateVertex(TopExp::FirstVertex(edge), 0.08);
+      builder.UpdateVertex(TopExp::LastVertex(edge), 0.08);
+      return all;
+    }
+  return all;
 }
 
 TopoDS_Shape curves() {
@@ -186,6 +265,11 @@ int main(int count, char** words) {
   write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "inch.stp", "INCH");
   write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "metre.step", "M");
   write_step(touching(), "touching.step", "MM");
+  write_step(bosses(), "bosses.step", "MM");
+  write_step(hole_at_side(), "hole_at_side.step", "MM");
+  write_step(grooves(), "grooves.step", "MM");
+  write_step(dumbbell(), "dumbbell.step", "MM");
+  write_brep(pit(), "pit.brep");
   write_step(curves(), "curves.step", "MM");
   write_brep(open_box(), "open.brep");
   write_brep(inside_out(), "inside_out.brep");

@@ -15,6 +15,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "vdb_offset/cad/offset/contact.h"
 #include "vdb_offset/cad/offset/offset_surface.h"
@@ -97,8 +98,13 @@ bool leaves(const Soup::Triangle& t, const std::array<double, 3>& shares, const 
   return s1 < -1e-9 || s2 < -1e-9 || 1 - s1 - s2 < -1e-9;
 }
 
-// Whether a side of one triangle passes through the inside of the other.
-bool pierces(const Soup::Triangle& a, const Soup::Triangle& b) {
+// Where a side of one triangle passes through the inside of another: (u, v) in each.
+struct Piercing {
+  gp_Pnt point;
+  gp_Pnt2d a, b;
+};
+
+std::optional<Piercing> piercing(const Soup::Triangle& a, const Soup::Triangle& b) {
   const gp_Vec e1(b.points[0], b.points[1]), e2(b.points[0], b.points[2]);
   for (int i = 0; i < 3; i++) {
     const gp_Pnt &p = a.points[i], &q = a.points[(i + 1) % 3];
@@ -110,9 +116,24 @@ bool pierces(const Soup::Triangle& a, const Soup::Triangle& b) {
     const gp_Vec k = s.Crossed(e1);
     const double v = d.Dot(k) / det, t = e2.Dot(k) / det;
     constexpr double kInside = 1e-6;
-    if (u > kInside && v > kInside && u + v < 1 - kInside && t > kInside && t < 1 - kInside) return true;
+    if (u > kInside && v > kInside && u + v < 1 - kInside && t > kInside && t < 1 - kInside)
+      return Piercing{p.Translated(d * t), gp_Pnt2d(a.uv[i].XY() * (1 - t) + a.uv[(i + 1) % 3].XY() * t),
+                      mixed(b.uv, {1 - u - v, u, v})};
   }
-  return false;
+  return std::nullopt;
+}
+
+// Whether two triangles of a face that cross stand for one place of its surface: at a pole, which is a line in (u, v),
+// and one corner of triangles that lie over each other. Where a surface does cross itself, it has two places there.
+bool is_one_place(const Geom_Surface& surface, const Piercing& at, double apart) {
+  constexpr int kSteps = 8;
+  const gp_Pnt2d a = project(surface, at.point, at.a), b = project(surface, at.point, at.b);
+  const gp_Pnt first = surface.Value(a.X(), a.Y());
+  for (int i = 1; i <= kSteps; i++) {
+    const gp_Pnt2d way(a.XY() + (b.XY() - a.XY()) * (static_cast<double>(i) / kSteps));
+    if (surface.Value(way.X(), way.Y()).Distance(first) > apart) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -297,7 +318,10 @@ std::vector<gp_Pnt> Soup::crossings(std::size_t most) const {
         const bool shares_corner = std::any_of(t.nodes.begin(), t.nodes.end(), [&](int v) {
           return std::find(o.nodes.begin(), o.nodes.end(), v) != o.nodes.end();
         });
-        if (!shares_corner && pierces(t, o)) found.push_back(mixed(t.points, {1.0 / 3, 1.0 / 3, 1.0 / 3}));
+        if (shares_corner) continue;
+        const std::optional<Piercing> at = piercing(t, o);
+        if (!at || (t.face == o.face && is_one_place(*faces_[t.face].surface, *at, 1e-3 * deflection_))) continue;
+        found.push_back(mixed(t.points, {1.0 / 3, 1.0 / 3, 1.0 / 3}));
       }
       if (n.count == 0) stack.insert(stack.end(), {n.first, n.first + 1});
     }

@@ -98,18 +98,41 @@ bool remove_swallowed(Model& model, std::vector<std::string>& gaps) {
   return true;
 }
 
+// Places all vertices; those that could not be in words.
+std::vector<std::string> resolve_vertices(Model& model, const Tolerances& tolerances) {
+  std::vector<std::string> missed;
+  for (int v = 0; v < static_cast<int>(model.vertices.size()); v++) {
+    if (model.vertices[v].is_gone || resolve_vertex(model, v, tolerances)) continue;
+    missed.push_back("vertex " + std::to_string(v + 1) + " of " + std::to_string(model.vertices[v].ring.size()) +
+                     " edges: faces miss by " + std::to_string(model.vertices[v].residual));
+  }
+  return missed;
+}
+
+// Lets an edge whose ends have changed places go the other way.
+void turn(Model& model, int edge) {
+  ModelEdge& e = model.edges[edge];
+  std::swap(e.range[0], e.range[1]);
+  std::swap(e.half[0], e.half[1]);
+  for (int h : e.half)
+    if (h >= 0) model.halves[h].forward = !model.halves[h].forward;
+}
+
 }  // namespace
+
+void arrange_turned(Model& model, const Tolerances& tolerances, std::vector<std::string>& gaps) {
+  if (!remove_swallowed(model, gaps) || !remove_lenses(model, gaps)) return;
+  const std::vector<std::string> missed = resolve_vertices(model, tolerances);
+  gaps.insert(gaps.end(), missed.begin(), missed.end());
+  for (int e = 0; e < static_cast<int>(model.edges.size()); e++)
+    if (is_inverted(model, e) && model.edges[e].range[0] > model.edges[e].range[1]) turn(model, e);
+}
 
 void arrange(Model& model, const Tolerances& tolerances, std::vector<std::string>& gaps) {
   if (!remove_swallowed(model, gaps)) return;
   for (int round = 0; round < kMostRounds; round++) {
     if (!remove_lenses(model, gaps)) return;
-    std::vector<std::string> missed;
-    for (int v = 0; v < static_cast<int>(model.vertices.size()); v++) {
-      if (model.vertices[v].is_gone || resolve_vertex(model, v, tolerances)) continue;
-      missed.push_back("vertex " + std::to_string(v + 1) + " of " + std::to_string(model.vertices[v].ring.size()) +
-                       " edges: faces miss by " + std::to_string(model.vertices[v].residual));
-    }
+    const std::vector<std::string> missed = resolve_vertices(model, tolerances);
     const int face = deadest_face(model);
     if (face >= 0) {
       if (remove_dead(model, face, gaps)) continue;

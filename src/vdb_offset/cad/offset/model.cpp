@@ -14,12 +14,14 @@
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
 
+#include "vdb_offset/cad/offset/mend_pcurve.h"
+
 namespace vdb_offset::cad {
 namespace {
 
 // Adds one wire of a face as half-edges. `face` is turned forward, as pcurves are asked for.
 bool add_wire(Model& model, int f, const TopoDS_Wire& wire, const TopoDS_Face& face,
-              const TopTools_IndexedMapOfShape& edges) {
+              const TopTools_IndexedMapOfShape& edges, double off) {
   std::vector<TopoDS_Edge> turns;
   for (BRepTools_WireExplorer e(wire, face); e.More(); e.Next()) turns.push_back(e.Current());
   int n = 0;
@@ -43,6 +45,8 @@ bool add_wire(Model& model, int f, const TopoDS_Wire& wire, const TopoDS_Face& f
     if (edge.curve.IsNull()) {  // A pole has no curve but that in (u, v).
       edge.first = first;
       edge.last = last;
+    } else {
+      h.pcurve = mended_pcurve(h.pcurve, edge.curve, model.faces[f].surface, edge.first, edge.last, off);
     }
     const gp_Pnt2d a = h.pcurve->Value(edge.first), b = h.pcurve->Value(edge.last);
     h.start = h.forward ? a : b;
@@ -129,7 +133,7 @@ int next_drawn(const Model& model, int half) {
 
 int end_vertex(const Model& model, int half) { return model.halves[model.halves[half].next].vertex; }
 
-Model read_model(const TopoDS_Shape& shell) {
+Model read_model(const TopoDS_Shape& shell, double off) {
   Model model;
   TopTools_IndexedMapOfShape edges;
   TopExp::MapShapes(shell, TopAbs_EDGE, edges);
@@ -145,7 +149,7 @@ Model read_model(const TopoDS_Shape& shell) {
     const TopoDS_Face forward = TopoDS::Face(f.source.Oriented(TopAbs_FORWARD));
     int wires = 0;
     for (TopExp_Explorer w(forward, TopAbs_WIRE); w.More(); w.Next(), wires++)
-      if (!add_wire(model, number, TopoDS::Wire(w.Current()), forward, edges)) {
+      if (!add_wire(model, number, TopoDS::Wire(w.Current()), forward, edges, off)) {
         model.failure = "face " + std::to_string(number + 1) + " has a wire that is no closed way round";
         return model;
       }

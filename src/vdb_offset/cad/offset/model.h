@@ -79,8 +79,9 @@ struct Model {
 /// A source edge's curve, drawn out straight beyond its range unless it is a line or a conic.
 void evaluate(const Geom_Curve& curve, double t, gp_Pnt& p, gp_Vec& tangent);
 
-/// Takes a shell apart. `failure` says if it is no manifold, or has faces without wires.
-Model read_model(const TopoDS_Shape& shell);
+/// Takes a shell apart. `failure` says if it is no manifold, or has faces without wires. Trimming curves that lead more
+/// than `off` past their edges are mended.
+Model read_model(const TopoDS_Shape& shell, double off);
 
 /// The half-edge before it round its face, poles left out.
 int previous_drawn(const Model& model, int half);

@@ -64,7 +64,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
   for (const TopoDS_Shape& piece : pieces) {
     std::vector<TopoDS_Shape> shells;
     for (TopExp_Explorer s(piece, TopAbs_SHELL); s.More(); s.Next()) {
-      Model model = read_model(s.Current());
+      Model model = read_model(s.Current(), tolerances.gap / 4);
       const std::size_t first_face = result.faces.size();
       if (!model.failure.empty()) {
         result.gaps.push_back(model.failure);
@@ -88,7 +88,8 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       classify_edges(model, tolerances);
       if (std::any_of(model.edges.begin(), model.edges.end(), [](const ModelEdge& e) { return e.is_step; }))
         result.gaps.emplace_back("distances of faces that are joined smoothly differ where they meet (--blend)");
-      arrange(model, tolerances, result.gaps);
+      if (request.keeps_turned) arrange_turned(model, tolerances, result.gaps);
+      else arrange(model, tolerances, result.gaps);
       result.steps.insert(result.steps.end(), model.steps.begin(), model.steps.end());
       if (result.gaps.size() > gaps_before) continue;
       if (std::all_of(model.faces.begin(), model.faces.end(), [](const ModelFace& f) { return f.is_gone; })) {

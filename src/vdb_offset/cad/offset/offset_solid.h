@@ -15,6 +15,7 @@ struct OffsetCadRequest {
   /// In place of `distance`: towards the outside, of each face as TopExp_Explorer meets them; or empty.
   std::vector<FaceDistance> of_face;
   double fit_tolerance = 0;  ///< 0: 1e-4 |distance|.
+  bool keeps_turned = false;  ///< Leaves what the distance turns round, to be trimmed.
 };
 
 enum class CadKind { Solid, Shells, Faces };

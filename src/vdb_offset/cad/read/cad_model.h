@@ -16,7 +16,7 @@ struct InvalidCad : std::runtime_error {
 };
 
 /// A face of a model, where it is placed.
-struct ModelFace {
+struct BodyFace {
   TopoDS_Face face;
   io::CadFaceFacts facts;
   bool is_left_out = false;  ///< It has no triangles, and its neighbours are sewn to each other.
@@ -25,7 +25,7 @@ struct ModelFace {
 /// Faces that may share edges: those of a solid, or all those of the file that are of none.
 struct Body {
   bool is_solid = false;
-  std::vector<ModelFace> faces;  ///< In the order of the file.
+  std::vector<BodyFace> faces;  ///< In the order of the file.
 };
 
 /// What a CAD file holds.

@@ -158,7 +158,7 @@ class Walk {
     for (TopExp_Explorer face(shape, TopAbs_FACE, not_of); face.More(); face.Next()) {
       if (!seen_.Contains(face.Current()) || body.is_solid) seen_.Add(face.Current());
       else if (++repeated_) continue;
-      ModelFace found{TopoDS::Face(face.Current()), {}};
+      BodyFace found{TopoDS::Face(face.Current()), {}};
       Told without_name = told;
       without_name.name.clear();
       const Told own = part.IsNull() ? without_name : told_of_part_of(face.Current(), part, without_name);

@@ -20,11 +20,11 @@ constexpr double kShares[] = {0, 1e-6, 1e-5, 1e-4};
 /// The body with its faces sewn.
 Body sewn(const Body& body, double tolerance) {
   BRepBuilderAPI_Sewing sewing(tolerance);
-  for (const ModelFace& face : body.faces)
+  for (const BodyFace& face : body.faces)
     if (!face.is_left_out) sewing.Add(face.face);
   sewing.Perform();
   Body result = body;
-  for (ModelFace& face : result.faces) {
+  for (BodyFace& face : result.faces) {
     if (face.is_left_out) continue;
     const TopoDS_Shape& changed = sewing.Modified(face.face);
     // A face that has come to nothing stays as it was.
@@ -38,7 +38,7 @@ Body sewn(const Body& body, double tolerance) {
 std::size_t count_free_edges(const Body& body) {
   TopTools_IndexedMapOfShape edges;
   std::vector<int> uses;
-  for (const ModelFace& face : body.faces)
+  for (const BodyFace& face : body.faces)
     for (TopExp_Explorer found(face.face, TopAbs_EDGE); found.More() && !face.is_left_out; found.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(found.Current());
       const TopAbs_Orientation way = edge.Orientation();

@@ -168,7 +168,7 @@ void part_poles(FaceMesh& face, const std::vector<std::uint8_t>& is_pole) {
     }
 }
 
-FaceMesh take_face(const ModelFace& of_model, Joiner& joiner, std::vector<std::uint8_t>& is_pole) {
+FaceMesh take_face(const BodyFace& of_model, Joiner& joiner, std::vector<std::uint8_t>& is_pole) {
   const TopoDS_Face& face = of_model.face;
   FaceMesh result{FaceSurface(face), 1, of_model.is_left_out, {}, {}};
   if (of_model.is_left_out) return result;

@@ -26,7 +26,7 @@ constexpr double kLeastShare = 1e-7;   // of the diagonal: a finer deflection is
 double diagonal_of(const CadModel& model) {
   Bnd_Box box;
   for (const Body& body : model.bodies)
-    for (const ModelFace& face : body.faces) {
+    for (const BodyFace& face : body.faces) {
       const FaceSurface surface(face.face);
       for (int i = 0; i <= kSamples; ++i)
         for (int j = 0; j <= kSamples; ++j)
@@ -41,7 +41,7 @@ void mesh_by_opencascade(const CadModel& model, double deflection, double angle)
   TopoDS_Compound all;
   builder.MakeCompound(all);
   for (const Body& body : model.bodies)
-    for (const ModelFace& face : body.faces)
+    for (const BodyFace& face : body.faces)
       if (!face.is_left_out) builder.Add(all, face.face);
   BRepTools::Clean(all);  // files may have triangles with them
   IMeshTools_Parameters parameters;
@@ -56,7 +56,7 @@ void mesh_by_opencascade(const CadModel& model, double deflection, double angle)
 /// Leaves out faces that have no triangles, as those that are no wider than a line; whether there are any.
 bool leave_out_empty(Body& body) {
   bool is_any = false;
-  for (ModelFace& face : body.faces) {
+  for (BodyFace& face : body.faces) {
     TopLoc_Location place;
     face.is_left_out = BRep_Tool::Triangulation(face.face, place).IsNull();
     is_any = is_any || face.is_left_out;

@@ -38,7 +38,7 @@ std::string Requests::mesh(const io::ReadCad& read) {
   const io::CadMesh mesh = tessellate_within_memory(*model_, read.fineness);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
-    for (const ModelFace& face : body.faces) surfaces_.push_back({FaceSurface(face.face), 1});
+    for (const BodyFace& face : body.faces) surfaces_.push_back({FaceSurface(face.face), 1});
   // Faces may have been turned: the triangles know which side is outward.
   for (std::size_t c = 0; c < mesh.corner_normals.size(); ++c) {
     SidedSurface& face = surfaces_[mesh.face_of[c / 3]];

@@ -82,7 +82,8 @@ void write_apart(const WrittenModel& model, const std::string& format, const std
   if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
 }
 
-std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, std::string& gap) {
+std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, unsigned seconds,
+                                             std::string& gap) {
   const MemoryFile reply;
   const pid_t child = ::fork();
   if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
@@ -92,6 +93,10 @@ std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten(
     ::getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, addresses() + kMostMemory);
     if (kMayLimit) ::setrlimit(RLIMIT_AS, &limit);
+    if (seconds > 0) {
+      const rlimit time{seconds, seconds};
+      ::setrlimit(RLIMIT_CPU, &time);
+    }
     try {
       reply.write(io::pack(work()));
     } catch (const Standard_Failure&) {

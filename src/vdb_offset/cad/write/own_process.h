@@ -30,7 +30,9 @@ class MemoryFile {
 /// Writes a file in a process of its own: what OpenCASCADE's writer sets for units, its reader would take for its own.
 void write_apart(const WrittenModel& model, const std::string& format, const std::string& path);
 
-/// Does work in a process of its own. Nothing if that is ended by a signal or an exception; `gap` then says so.
-std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, std::string& gap);
+/// Does work in a process of its own, for some seconds of a processor at most unless they are 0. Nothing if that is
+/// ended by a signal or an exception; `gap` then says so.
+std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, unsigned seconds,
+                                             std::string& gap);
 
 }  // namespace vdb_offset::cad

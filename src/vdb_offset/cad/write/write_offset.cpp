@@ -21,6 +21,7 @@
 #include "vdb_offset/cad/judge/parameters.h"
 #include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_solid.h"
+#include "vdb_offset/cad/trim/trim_offset.h"
 #include "vdb_offset/cad/write/body_shape.h"
 #include "vdb_offset/cad/write/face_distances.h"
 #include "vdb_offset/cad/write/faceted.h"
@@ -32,10 +33,15 @@
 namespace vdb_offset::cad {
 namespace {
 
-constexpr std::size_t kMostGaps = 8;  // that are told
+constexpr std::size_t kMostGaps = 8;    // that are told
+constexpr unsigned kMostTrimming = 60;  // seconds, of a trial
 
-/// What is tried: the whole model, and if that is not good its faces or triangles; these alone; or triangles alone.
-enum class Attempt { Whole, Rest, Facets };
+/// What is tried: the whole model, and if that is not good its faces or triangles; the whole model or nothing, trimmed
+/// where faces cross, of edges that have been taken out as far as they are swallowed, or have not; faces or triangles
+/// alone; or triangles alone.
+enum class Attempt { Whole, Trimmed, TrimmedAll, Rest, Facets };
+
+bool is_trial(Attempt attempt) { return attempt == Attempt::Trimmed || attempt == Attempt::TrimmedAll; }
 
 /// OpenCASCADE's tolerances are lengths, and meant for millimetres: models in other units are brought to these.
 TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor) {
@@ -67,10 +73,14 @@ class OffsetWriter {
     for (const Body& body : model_.bodies) {
       bodies_.push_back({body, shape_of(body), {}});
       bodies_.back().source.shape = scaled(bodies_.back().source.shape, millimetres_);
-      make(bodies_.back(), first_face);
+      make(bodies_.back(), first_face, attempt == Attempt::TrimmedAll);
       first_face += body.faces.size();
     }
     if (attempt == Attempt::Whole && try_whole()) return std::move(written_);
+    if (is_trial(attempt)) {
+      if (trim()) try_whole();
+      return std::move(written_);
+    }
     if (write_.faceted) write_facets();
     else write_faces();
     written_.gaps.resize(std::min(written_.gaps.size(), kMostGaps));
@@ -81,8 +91,9 @@ class OffsetWriter {
   bool is_even() const { return write_.is_even(); }
   double largest() const { return millimetres_ * write_.distance; }
 
-  void make(OffsetBody& body, std::size_t first_face) {
+  void make(OffsetBody& body, std::size_t first_face, bool keeps_turned) {
     OffsetCadRequest request;
+    request.keeps_turned = keeps_turned && body.body.is_solid;
     request.source = body.source.shape;
     request.distance = largest();
     request.fit_tolerance = millimetres_ * write_.fit_tolerance;
@@ -106,11 +117,25 @@ class OffsetWriter {
     for (const std::string& gap : body.result.gaps) written_.gaps.push_back(gap);
   }
 
+  /// Trims the solids where their faces cross, and counts faces anew; false if there is nothing to trim.
+  bool trim() {
+    for (const OffsetBody& body : bodies_)
+      if (!is_even() || body.result.shape.IsNull() || !body.result.gaps.empty()) return false;
+    for (OffsetBody& body : bodies_)
+      if (body.body.is_solid) body.result = trim_offset(body.source.shape, body.result, largest());
+    written_.swallowed = 0;
+    for (const OffsetBody& body : bodies_)
+      written_.swallowed +=
+          static_cast<std::size_t>(std::count(body.result.faces.begin(), body.result.faces.end(), CadFace::Swallowed));
+    count_made();
+    return true;
+  }
+
   /// What is told of a body's faces goes with the faces that are made of them.
   void name_faces(const OffsetBody& body, WrittenModel& model) const {
     for (std::size_t k = 0; k < body.result.made_of.size() && k < body.source.face_numbers.size(); ++k)
-      if (!body.result.made_of[k].IsNull())
-        model.faces.emplace_back(body.result.made_of[k], body.body.faces[body.source.face_numbers[k]].facts);
+      for (TopExp_Explorer face(body.result.made_of[k], TopAbs_FACE); face.More(); face.Next())
+        model.faces.emplace_back(face.Current(), body.body.faces[body.source.face_numbers[k]].facts);
   }
 
   WrittenModel empty_model() const {
@@ -345,6 +370,10 @@ class OffsetWriter {
   io::CadWritten written_;
 };
 
+bool is_whole(const io::CadWritten& written) {
+  return written.made == io::CadMade::Solid || written.made == io::CadMade::Shells;
+}
+
 }  // namespace
 
 io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
@@ -354,16 +383,23 @@ io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
     throw InvalidCad("expected distances of " + std::to_string(faces) + " faces, got " +
                      std::to_string(write.of_face.size()));
   std::vector<std::string> gaps;
-  for (const Attempt attempt : {Attempt::Whole, Attempt::Rest, Attempt::Facets}) {
+  std::optional<io::CadWritten> rest;
+  for (const Attempt attempt :
+       {Attempt::Whole, Attempt::Trimmed, Attempt::TrimmedAll, Attempt::Rest, Attempt::Facets}) {
     if (attempt == Attempt::Facets && !write.faceted) break;
+    if (attempt == Attempt::Rest && rest) return std::move(*rest);
     std::string gap;
-    auto written = in_own_process([&] { return OffsetWriter(model, write).run(attempt); }, gap);
+    auto written = in_own_process([&] { return OffsetWriter(model, write).run(attempt); },
+                                  is_trial(attempt) ? kMostTrimming : 0, gap);
+    if (written && is_whole(*written)) return std::move(*written);
+    if (is_trial(attempt)) continue;
     if (!written) {
       gaps.push_back(std::move(gap));
       continue;
     }
     written->gaps.insert(written->gaps.begin(), gaps.begin(), gaps.end());
-    return std::move(*written);
+    if (attempt != Attempt::Whole) return std::move(*written);
+    rest = std::move(written);
   }
   io::CadWritten nothing;
   nothing.gaps = std::move(gaps);
