@@ -177,6 +177,9 @@ class Judge {
     const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.02 * far_, 0.3);
     if (!result.is_complete()) fault("a face has no triangles");
     if (result.triangles().empty()) return verdict_;
+    // Valid by its tolerances, a wire may still be open in (u, v): who makes triangles of the face leaves some out.
+    if (const std::size_t open = result.open_sides(); is_closed_ && open > 0)
+      fault("triangles of the result are open at " + std::to_string(open) + " sides");
     verdict_.volume = result.volume();
     if (is_closed_ && (verdict_.volume > source.volume()) != (distance_ > 0))
       fault("the volume is not on the right side");

@@ -303,6 +303,18 @@ double Soup::volume() const {
   return sum / 6;
 }
 
+std::size_t Soup::open_sides() const {
+  std::map<std::array<int, 2>, int> ways;
+  for (const Triangle& t : triangles_)
+    for (int k = 0; k < 3; k++) {
+      const int a = t.nodes[k], b = t.nodes[(k + 1) % 3];
+      if (a != b) ways[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  std::size_t open = 0;
+  for (const auto& [ends, balance] : ways) open += balance != 0;
+  return open;
+}
+
 std::vector<gp_Pnt> Soup::crossings(std::size_t most) const {
   std::vector<gp_Pnt> found;
   for (std::size_t i = 0; i < triangles_.size() && found.size() < most; i++) {

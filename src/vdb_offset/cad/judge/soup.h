@@ -52,6 +52,8 @@ class Soup {
   bool contains(const gp_Pnt& point) const;
   /// The volume of the tessellation.
   double volume() const;
+  /// How many sides of triangles have not as many other sides the other way: none of a tessellation that is closed.
+  std::size_t open_sides() const;
   /// Corners of triangles that cross others without a common corner, up to `most`.
   std::vector<gp_Pnt> crossings(std::size_t most) const;
 
