@@ -25,11 +25,11 @@ add_library(vdb_offset_cad_objects OBJECT)
 set(cad_sources read/document read/read_model surface/face_surface surface/offset_points tessellate/append_body
   tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
-  offset/arrange offset/blended_faces offset/build offset/contact offset/contract offset/edge_curve offset/mend_pcurve offset/model offset/offset_solid
+  offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/mend_pcurve offset/model offset/offset_solid
   offset/offset_surface offset/place offset/resolve offset/surface_fit
   judge/judge judge/parameters judge/soup
   trim/cut_faces trim/join_pieces trim/point_in_face trim/trim_offset
-  write/body_shape write/face_distances write/faceted write/own_process write/thick_solids write/write_model write/write_offset
+  write/blended_faces write/body_shape write/face_distances write/faceted write/own_process write/thick_solids write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)

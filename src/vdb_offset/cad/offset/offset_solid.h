@@ -14,7 +14,7 @@ struct OffsetCadRequest {
   double distance = 0;  ///< Towards the outside of the material; below 0 inward. Of uneven ones, the largest.
   /// In place of `distance`: towards the outside, of each face as TopExp_Explorer meets them; or empty.
   std::vector<FaceDistance> of_face;
-  double fit_tolerance = 0;  ///< 0: 1e-4 |distance|.
+  double fit_tolerance = 0;   ///< 0: 1e-4 |distance|.
   bool keeps_turned = false;  ///< Leaves what the distance turns round, to be trimmed.
 };
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "vdb_offset/cad/offset/blended_faces.h"
+#include "vdb_offset/cad/write/blended_faces.h"
 #include "vdb_offset/distances.h"
 
 namespace vdb_offset::cad {

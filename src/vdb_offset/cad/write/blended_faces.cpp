@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/cad/offset/blended_faces.h"
+#include "vdb_offset/cad/write/blended_faces.h"
 
 #include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
