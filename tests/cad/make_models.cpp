@@ -135,11 +135,9 @@ TopoDS_Shape grooves() {
   return BRepAlgoAPI_Cut(one, BRepPrimAPI_MakeBox(gp_Pnt(15, -1, 6), 10, 32, 5).Shape()).Shape();
 }
 
-/// Two blocks with a thin bar between them.
-TopoDS_Shape dumbbell() {
-  const TopoDS_Shape bar = BRepPrimAPI_MakeBox(gp_Pnt(9, 4, 4), 12, 2, 2).Shape();
-  const TopoDS_Shape one = BRepAlgoAPI_Fuse(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), bar).Shape();
-  return BRepAlgoAPI_Fuse(one, BRepPrimAPI_MakeBox(gp_Pnt(20, 0, 0), 10, 10, 10).Shape()).Shape();
+/// The plate with a hole of radius 9 in its middle: two halves that hang together by walls of 1.
+TopoDS_Shape waist() {
+  return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 20, 5).Shape(), upright(20, 10, -1, 9, 7)).Shape();
 }
 
 /// Two halves of a cone about the z axis, with its tip below, as one: they touch along two lines.
@@ -268,7 +266,7 @@ int main(int count, char** words) {
   write_step(bosses(), "bosses.step", "MM");
   write_step(hole_at_side(), "hole_at_side.step", "MM");
   write_step(grooves(), "grooves.step", "MM");
-  write_step(dumbbell(), "dumbbell.step", "MM");
+  write_step(waist(), "waist.step", "MM");
   write_brep(pit(), "pit.brep");
   write_step(curves(), "curves.step", "MM");
   write_brep(open_box(), "open.brep");
