@@ -203,7 +203,9 @@ class BlendFinder {
 double blended_distance(const Blend& blend, std::size_t face, const std::vector<std::size_t>& others, double u,
                         double v) {
   const BlendedFace& own = blend.faces[face];
-  const gp_Pnt p = own.surface->Value(u, v);
+  // Beyond the face, where a surface is drawn out to meet others, edges of parts end; what they weigh does not.
+  const gp_Pnt p =
+      own.surface->Value(std::clamp(u, own.range.u0, own.range.u1), std::clamp(v, own.range.v0, own.range.v1));
   double sum = own.distance(u, v), weights = 1;
   for (const std::size_t other : others) {
     const PartEdge* nearest = nullptr;
