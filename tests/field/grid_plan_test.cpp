@@ -110,7 +110,7 @@ TEST_CASE("plan: leaf nodes are estimated within a factor of two", "[plan]") {
     to_local_frame(surface, plan.voxel_size);
     const DistanceField field =
         sweep(rasterise(surface, {plan.voxel_size, plan.band}), surface, {Solver::Closest, plan.reach});
-    const auto truth = static_cast<double>(field.phi->tree().leafCount());
+    const auto truth = static_cast<double>(field.leaves->size());
     CHECK(static_cast<double>(plan.leaf_nodes) > truth / 2);
     CHECK(static_cast<double>(plan.leaf_nodes) < truth * 2.5);
   }
