@@ -147,7 +147,7 @@ Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflectio
   parameters.DeflectionInterior = std::max(kLeast, deflection);
   parameters.Angle = angle;
   parameters.AngleInterior = angle;
-  BRepMesh_IncrementalMesh(copy, parameters);
+  const BRepMesh_IncrementalMesh mesher(copy, parameters);
   std::map<std::array<double, 3>, int> numbers;
   for (TopExp_Explorer e(copy, TopAbs_FACE); e.More(); e.Next()) {
     const TopoDS_Face& f = TopoDS::Face(e.Current());
