@@ -112,6 +112,7 @@ class FileJudge {
     if (findings_.volume <= 0) fault("the result is turned inside out, or encloses nothing");
     if ((findings_.volume > volume_of(source_.shape)) != (distance_ > 0)) fault("the volume is not on its side");
     const FaceComparison& equal = findings_.equal = compare_faces(source_, result_, distance_, points_.equal);
+    if (equal.faces == 0) fault("no face of the result has the name of one of the source");
     if (equal.worst > kOffSurface)
       fault("face " + equal.worst_of + " is off by " + std::to_string(equal.worst) + " distances");
     check_points_of_result();
