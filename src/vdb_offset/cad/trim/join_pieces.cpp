@@ -47,6 +47,7 @@ void join_doubles(std::vector<FacePiece>& pieces, double near) {
     for (TopExp_Explorer e(pieces[i].face, TopAbs_EDGE); e.More(); e.Next())
       sides.emplace(edges.Add(e.Current()), e.Current().Orientation());
     std::vector<int> key;
+    key.reserve(sides.size());
     for (const auto& [edge, turn] : sides) key.push_back(edge);
     for (const std::size_t k : by_edges[key]) {
       if (is_gone[k] || is_gone[i] || !lies_over(pieces[i], pieces[k], near)) continue;
@@ -82,7 +83,7 @@ void sew(std::vector<FacePiece>& pieces, double near) {
   sewing.Perform();
   for (FacePiece& piece : pieces) {
     if (!sewing.IsModified(piece.face)) continue;
-    const TopoDS_Shape sewn = sewing.Modified(piece.face);
+    const TopoDS_Shape& sewn = sewing.Modified(piece.face);
     if (sewn.ShapeType() == TopAbs_FACE) piece.face = TopoDS::Face(sewn.Oriented(piece.face.Orientation()));
   }
 }
