@@ -162,7 +162,7 @@ void Scanner::fail(const std::string& expected, std::size_t at) const {
   fail_with(expected,
             at >= text_.size() ? "the end of the file"
             : end == at        ? "the end of the line"
-                               : "'" + in_short(text_.substr(at, end - at)) + "'",
+                               : fmt::format("'{}'", in_short(text_.substr(at, end - at))),
             at);
 }
 

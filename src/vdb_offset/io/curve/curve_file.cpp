@@ -289,7 +289,7 @@ bool holds_curves(const std::string& path) {
   const FileBytes bytes = FileBytes::open(path);
   const std::string_view text = bytes.view();
   const auto has_line = [&](std::string_view start) {
-    return text.starts_with(start) || text.rfind("\n" + std::string(start)) != std::string_view::npos ||
+    return text.starts_with(start) || text.rfind(fmt::format("\n{}", start)) != std::string_view::npos ||
            text.rfind("\r" + std::string(start)) != std::string_view::npos;
   };
   // The end of the file is searched: that is where a mesh has its faces.

@@ -13,6 +13,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -110,7 +111,7 @@ class SceneReader {
   }
 
  private:
-  void extra(std::string in_words) { file_.extras.push_back(std::move(in_words)); }
+  void extra(std::string_view in_words) { file_.extras.emplace_back(in_words); }
 
   // Children are few levels deep in what Assimp lets through; it walks over them in this way itself.
   void add(const aiNode& node, const aiMatrix4x4& above) {

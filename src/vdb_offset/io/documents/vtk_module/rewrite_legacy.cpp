@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK writes texts of legacy files with fewer digits than numbers have, so that these are rewritten where they stand.
+#include <fmt/format.h>
 #include <vtkDataArray.h>
 #include <vtkPoints.h>
 
@@ -80,7 +81,7 @@ bool append_numbers(std::string_view text, const ChangedArray& array, std::size_
 
 /// Puts the new numbers behind the line of their keyword at which the old ones stand.
 std::optional<std::string> with_array(std::string_view text, bool ascii, const ChangedArray& array) {
-  const std::string start = "\n" + std::string(array.keyword) + " ";
+  const std::string start = fmt::format("\n{} ", array.keyword);
   for (std::size_t line = text.find(start); line != std::string_view::npos; line = text.find(start, line + 1)) {
     std::size_t at = text.find('\n', line + 1);
     if (at == std::string_view::npos) break;
