@@ -53,10 +53,10 @@ class DirectionSampler {
   /// -1 for a node that has to be turned round, 1 else.
   double turn(std::size_t node, const Vec3d& index, int side, double distance) const;
 
-  const DirectionField& field_;
   Nodes nodes_;
-  openvdb::Coord last_origin_ = openvdb::Coord::max();  // of the leaf node that was looked up last
-  std::int32_t last_leaf_ = -1;
+  const DirectionField& field_;
+  std::int32_t last_leaf_ = -1;  // the leaf node that was looked up last, and its origin
+  openvdb::Coord last_origin_ = openvdb::Coord::max();
 };
 
 }  // namespace vdb_offset

@@ -152,7 +152,10 @@ class VertexBlend {
   struct Side {
     std::array<std::uint32_t, 2> places;  // the lower first
     std::uint32_t zone;
-    auto operator<=>(const Side&) const = default;
+    bool operator==(const Side& other) const { return places == other.places && zone == other.zone; }
+    bool operator<(const Side& other) const {
+      return places != other.places ? places < other.places : zone < other.zone;
+    }
   };
 
   void find_edges() {
