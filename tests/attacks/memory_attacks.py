@@ -96,7 +96,7 @@ def endless(place, case):
 @attack_each(BOMBS)
 def decompressed(place, case):
     bomb(place, *case)
-    refused_within(place, 200 * MIB, case[0], 'out.obj', '-d', '0.1')
+    refused_within(place, 150 * MIB, case[0], 'out.obj', '-d', '0.1')
     place.check(place.names() == [case[0]], 'expected no other file')
 
 
