@@ -102,6 +102,9 @@ std::vector<Distances> distances_of(Job& job) {
     return {distance};
   }
   std::vector<Distances> distances;
+  if (request.blend.value > 0 && std::none_of(job.asked.begin(), job.asked.end(),
+                                              [&](const DistanceRequest& each) { return are_of_parts(job, each); }))
+    throw InvalidOption("--blend: expected --distance-of, or a CAD model and a distance in u and v");
   for (const DistanceRequest& each : job.asked)
     distances.push_back(are_of_parts(job, each) ? distances_of_parts(job, each) : evaluate(job, each));
   // Where faces are split, their corners are others.

@@ -12,6 +12,7 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/mesh/part_weight.h"
 
 namespace vdb_offset {
 namespace {
@@ -56,12 +57,6 @@ FloatBox box_around(const Vec3d& a, const Vec3d& b, double reach) {
     box.upper[k] = std::nextafter(static_cast<float>(std::max(a[i], b[i]) + reach), FloatBox::kInfinity);
   }
   return box;
-}
-
-/// How much a zone counts beyond its edge, at a share of the blend.
-double weight_at(double share) {
-  const double s = std::clamp(1 - share, 0.0, 1.0);
-  return s * s * s * (10 - s * (15 - 6 * s));
 }
 
 class VertexBlend {
@@ -243,7 +238,7 @@ class VertexBlend {
         sum += at->mean();
         weights += 1;
       } else if (const auto closest = closest_on_edge(zones_[z], position_[place])) {
-        const double weight = weight_at((*closest)[0] / faces_.blend);
+        const double weight = part_weight((*closest)[0] / faces_.blend);
         sum += weight * (*closest)[1];
         weights += weight;
       }

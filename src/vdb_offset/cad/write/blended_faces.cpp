@@ -23,6 +23,8 @@
 #include <memory>
 #include <numeric>
 
+#include "vdb_offset/mesh/part_weight.h"
+
 namespace vdb_offset::cad {
 namespace {
 
@@ -70,12 +72,6 @@ Found closest_on(const PartEdge& edge, const gp_Pnt& p) {
   const double away = p.Distance(edge.curve->Value(t));
   if (away < best.away) best = {away, t};
   return best;
-}
-
-/// How much a part counts beyond its edge, at a share of the length.
-double weight_of(double share) {
-  const double s = std::clamp(1 - share, 0.0, 1.0);
-  return s * s * s * (10 - s * (15 - 6 * s));
 }
 
 /// The faces of a part that are joined smoothly with each other and with those of other parts.
@@ -216,7 +212,7 @@ double blended_distance(const Blend& blend, std::size_t face, const std::vector<
     }
     if (!nearest || found.away >= blend.length) continue;
     const gp_Pnt2d uv = nearest->parameters->Value(found.along);
-    const double weight = weight_of(found.away / blend.length);
+    const double weight = part_weight(found.away / blend.length);
     sum += weight * blend.faces[static_cast<std::size_t>(nearest->face)].distance(uv.X(), uv.Y());
     weights += weight;
   }
