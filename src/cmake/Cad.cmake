@@ -27,9 +27,10 @@ set(cad_sources read/document read/read_model surface/face_surface surface/offse
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
   offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/mend_pcurve offset/model offset/offset_solid
   offset/offset_surface offset/place offset/resolve offset/surface_fit
-  judge/judge judge/parameters judge/soup
+  hold/held_field hold/hold_back hold/room hold/smooth_edges
+  judge/clearance judge/judge judge/parameters judge/soup judge/soup_crossings
   trim/cut_faces trim/join_pieces trim/point_in_face trim/trim_offset
-  write/blended_faces write/body_shape write/face_distances write/faceted write/own_process write/thick_solids write/write_model write/write_offset
+  write/blended_faces write/body_shape write/face_distances write/faceted write/offset_bodies write/own_process write/thick_solids write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)

@@ -145,6 +145,20 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
   return {};
 }
 
+io::CadWriting cad_writing(const Job& job) {
+  const Request& request = job.request;
+  io::CadWriting how;
+  how.format = request.format;
+  how.fit_tolerance = request.fit_tolerance;
+  how.only = job.options.only;
+  how.thick = job.shell;
+  how.faceted = request.faceted;
+  how.obstacles = job.options.obstacles;
+  how.clearance = job.options.clearance;
+  how.holds_back = request.collision == Collision::Limit || how.obstacles.face_count() > 0;
+  return how;
+}
+
 /// The distances of an output that is a CAD model.
 io::CadDistances distances_of_model(const Job& job, const Destination& to) {
   const auto number = static_cast<std::size_t>(&to - job.outputs.data());
@@ -264,8 +278,8 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteResult written;
   if (is_cad_output(to.mesh, request)) {
-    made.cad = io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions,
-                             {request.format, request.fit_tolerance, job.options.only, job.shell, request.faceted});
+    made.cad =
+        io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions, cad_writing(job));
     written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
   } else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);

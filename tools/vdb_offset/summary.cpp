@@ -257,6 +257,7 @@ void print_cad(std::FILE* out, const std::string& path, const CadFileFacts& cad)
   if (cad.fitted > 0) fmt::print(out, " to {:.2g}", cad.fit_error);
   if (cad.swallowed > 0) fmt::print(out, ", {} swallowed", cad.swallowed);
   if (cad.missing > 0) fmt::print(out, ", {} missing", cad.missing);
+  if (cad.held > 0) fmt::print(out, ", {} held back to {:.3g} of the distance", cad.held, cad.least_held);
   if (cad.samples > 0)
     fmt::print(out, "; read again, {} points at {:.3g} to {:.3g} of the distance", cad.samples, cad.least, cad.most);
   if (cad.volume > 0) fmt::print(out, ", volume {:.6g}", cad.volume);

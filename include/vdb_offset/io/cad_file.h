@@ -12,6 +12,7 @@
 #include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/statistics.h"
 
 namespace vdb_offset::io {
@@ -45,7 +46,12 @@ struct CadWriting {
   double fit_tolerance = 0;  ///< The most distance of a fitted face from its offset, world units; 0: 1e-4 distances.
   std::vector<std::uint8_t> only;  ///< Of each face of the mesh: 1 if it is offset; the others stay. Empty: all are.
   bool thick = false;              ///< Write the solids between the source and its offset.
-  bool faceted = false;            ///< Where no solid comes of the faces, write one of triangles.
+  /// Hold faces back where the fronts of two parts of the model meet, as Collision::Limit does vertices. Else faces
+  /// that meet so are cut along the curves in which they cross.
+  bool holds_back = false;
+  PolygonView obstacles;  ///< With holds_back: meshes that the result must not come nearer to than `clearance`.
+  double clearance = 0;   ///< World units.
+  bool faceted = false;   ///< Where no solid comes of the faces, write one of triangles.
 };
 
 /// Whether a CAD model can be written in a format: in Step and Brep.

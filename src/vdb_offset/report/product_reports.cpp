@@ -31,6 +31,8 @@ Json cad_json(const CadFileFacts& cad) {
           {"faces_fitted", cad.fitted},
           {"faces_swallowed", cad.swallowed},
           {"faces_missing", cad.missing},
+          {"faces_held_back", cad.held},
+          {"least_share", cad.least_held},
           {"fit_error", cad.fit_error},
           {"samples", cad.samples},
           {"least_distance", cad.least},

@@ -291,13 +291,17 @@ void declare_method(CommandLine& line, Draft& draft) {
       "--voxels-per-distance", "N", "Voxel size of the direction field as D / N", [&request](const std::string& text) {
         request.grid.voxels_per_distance = parse_number("--voxels-per-distance", text, "a number above 0", 0, kAny);
       });
-  line.option("--collision", "MODE",
-              "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
-              "far as the distance grows [limit]",
-              [&request](const std::string& text) {
-                request.collision =
-                    parse_word("--collision", text, {"limit", "merge"}) == 1 ? Collision::Merge : Collision::Limit;
-              });
+  line.option(
+      "--collision", "MODE",
+      "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
+      "far as the distance grows; of an OUTPUT that is a CAD model, 'limit' holds faces back where fronts meet, "
+      "and 'cut' cuts them where they cross [limit; of a CAD model cut, or limit with --obstacle]",
+      [&request](const std::string& text) {
+        const std::size_t word = parse_word("--collision", text, {"limit", "merge", "cut"});
+        request.cuts = word == 2;
+        request.collision.reset();
+        if (!request.cuts) request.collision = word == 1 ? Collision::Merge : Collision::Limit;
+      });
   line.option(
       "--solver", "NAME", "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]",
       [&request](const std::string& text) {

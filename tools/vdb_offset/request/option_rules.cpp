@@ -95,11 +95,14 @@ void require_for_mesh(const Request& request) {
   require(!is_model || !request.shell || (request.distances_of.empty() && request.only.empty() && !request.faceted),
           request.output + ": --shell excludes --distance-of, --only and --faceted for a CAD model");
   require(!is_model || !(request.inner || request.layers || request.iso || request.tolerance || request.axes ||
-                         !request.obstacles.empty() || !request.fit.empty() || !request.symmetry_texts.empty() ||
-                         request.miter_limit),
+                         !request.fit.empty() || !request.symmetry_texts.empty() || request.miter_limit),
           request.output +
               ": expected a mesh, as a CAD model has no place for --inner, --layers, --mode iso, "
-              "--tolerance, --distance-xy, --obstacle, --fit, --symmetry and --miter-limit");
+              "--tolerance, --distance-xy, --fit, --symmetry and --miter-limit");
+  require(is_model || !request.cuts, "--collision cut: expected an output that ends in .step, .stp or .brep");
+  require(!is_model || request.collision != Collision::Merge,
+          request.output + ": expected --collision limit or cut for a CAD model, got merge");
+  require(!request.cuts || request.obstacles.empty(), "--collision cut excludes --obstacle");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }

@@ -90,6 +90,7 @@ struct Request {
   std::optional<Border> border;
   std::optional<Solver> solver;
   std::optional<Collision> collision;
+  bool cuts = false;  // --collision cut: of an output that is a CAD model
   std::optional<Corners> corners;
   std::optional<double> miter_limit;
 

@@ -15,8 +15,8 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 
+#include "vdb_offset/cad/judge/triangle_boxes.h"
 #include "vdb_offset/cad/offset/contact.h"
 #include "vdb_offset/cad/offset/offset_surface.h"
 
@@ -53,36 +53,8 @@ std::array<double, 3> closest_shares(const std::array<gp_Pnt, 3>& t, const gp_Pn
   return {va / sum, vb / sum, vc / sum};
 }
 
-double box_distance(const std::array<double, 6>& b, const gp_Pnt& p) {
-  double s = 0;
-  for (int i = 0; i < 3; i++) {
-    const double x = p.Coord(i + 1), out = std::max({b[i] - x, x - b[i + 3], 0.0});
-    s += out * out;
-  }
-  return s;
-}
-
-bool overlap(const std::array<double, 6>& a, const std::array<double, 6>& b) {
-  for (int i = 0; i < 3; i++)
-    if (a[i] > b[i + 3] || b[i] > a[i + 3]) return false;
-  return true;
-}
-
-std::array<double, 6> box_of(const Soup::Triangle& t) {
-  std::array<double, 6> b;
-  for (int i = 0; i < 3; i++) {
-    b[i] = std::min({t.points[0].Coord(i + 1), t.points[1].Coord(i + 1), t.points[2].Coord(i + 1)});
-    b[i + 3] = std::max({t.points[0].Coord(i + 1), t.points[1].Coord(i + 1), t.points[2].Coord(i + 1)});
-  }
-  return b;
-}
-
-gp_Pnt mixed(const std::array<gp_Pnt, 3>& p, const std::array<double, 3>& s) {
-  return gp_Pnt(p[0].XYZ() * s[0] + p[1].XYZ() * s[1] + p[2].XYZ() * s[2]);
-}
-
-gp_Pnt2d mixed(const std::array<gp_Pnt2d, 3>& p, const std::array<double, 3>& s) {
-  return gp_Pnt2d(p[0].XY() * s[0] + p[1].XY() * s[1] + p[2].XY() * s[2]);
+gp_Vec normal_of(const Soup::Triangle& t) {
+  return gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2]));
 }
 
 // Whether a foot on the surface lies beyond the border that the closest point of the tessellation is on.
@@ -96,44 +68,6 @@ bool leaves(const Soup::Triangle& t, const std::array<double, 3>& shares, const 
   if (std::abs(area) < 1e-300) return true;
   const double s1 = p.Crossed(b) / area, s2 = a.Crossed(p) / area;
   return s1 < -1e-9 || s2 < -1e-9 || 1 - s1 - s2 < -1e-9;
-}
-
-// Where a side of one triangle passes through the inside of another: (u, v) in each.
-struct Piercing {
-  gp_Pnt point;
-  gp_Pnt2d a, b;
-};
-
-std::optional<Piercing> piercing(const Soup::Triangle& a, const Soup::Triangle& b) {
-  const gp_Vec e1(b.points[0], b.points[1]), e2(b.points[0], b.points[2]);
-  for (int i = 0; i < 3; i++) {
-    const gp_Pnt &p = a.points[i], &q = a.points[(i + 1) % 3];
-    const gp_Vec d(p, q), h = d.Crossed(e2);
-    const double det = e1.Dot(h);
-    if (std::abs(det) < 1e-9 * e1.Magnitude() * e2.Magnitude() * d.Magnitude()) continue;
-    const gp_Vec s(b.points[0], p);
-    const double u = s.Dot(h) / det;
-    const gp_Vec k = s.Crossed(e1);
-    const double v = d.Dot(k) / det, t = e2.Dot(k) / det;
-    constexpr double kInside = 1e-6;
-    if (u > kInside && v > kInside && u + v < 1 - kInside && t > kInside && t < 1 - kInside)
-      return Piercing{p.Translated(d * t), gp_Pnt2d(a.uv[i].XY() * (1 - t) + a.uv[(i + 1) % 3].XY() * t),
-                      mixed(b.uv, {1 - u - v, u, v})};
-  }
-  return std::nullopt;
-}
-
-// Whether two triangles of a face that cross stand for one place of its surface: at a pole, which is a line in (u, v),
-// and one corner of triangles that lie over each other. Where a surface does cross itself, it has two places there.
-bool is_one_place(const Geom_Surface& surface, const Piercing& at, double apart) {
-  constexpr int kSteps = 8;
-  const gp_Pnt2d a = project(surface, at.point, at.a), b = project(surface, at.point, at.b);
-  const gp_Pnt first = surface.Value(a.X(), a.Y());
-  for (int i = 1; i <= kSteps; i++) {
-    const gp_Pnt2d way(a.XY() + (b.XY() - a.XY()) * (static_cast<double>(i) / kSteps));
-    if (surface.Value(way.X(), way.Y()).Distance(first) > apart) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -188,6 +122,24 @@ Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflectio
       triangles_.push_back(t);
     }
   }
+  build_tree();
+}
+
+Soup::Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles)
+    : deflection_(0) {
+  faces_.push_back({{}, 1});
+  for (const auto& corners : triangles) {
+    Triangle t{};
+    for (int k = 0; k < 3; k++) {
+      t.points[k] = points[corners[k]];
+      t.nodes[k] = static_cast<int>(corners[k]);
+    }
+    triangles_.push_back(t);
+  }
+  build_tree();
+}
+
+void Soup::build_tree() {
   order_.resize(triangles_.size());
   std::iota(order_.begin(), order_.end(), 0);
   nodes_.push_back({});
@@ -206,6 +158,7 @@ void Soup::build(int node, int first, int count) {
   }
   if (count <= kLeaf) {
     nodes_[node] = {box, first, count};
+    bound_normals(nodes_[node]);
     return;
   }
   int axis = 0;
@@ -222,6 +175,29 @@ void Soup::build(int node, int first, int count) {
   nodes_[node] = {box, children, 0};
   build(children, first, count / 2);
   build(children + 1, first + count / 2, count - count / 2);
+  bound_normals(nodes_[node]);
+}
+
+void Soup::bound_normals(Node& node) const {
+  std::vector<std::pair<gp_Vec, double>> parts;  // of triangles, or of children
+  for (int i = node.first; i < node.first + node.count; i++) {
+    const Triangle& t = triangles_[order_[i]];
+    const gp_Vec normal = normal_of(t);
+    if (normal.Magnitude() > 0) parts.emplace_back(normal.Normalized(), 0);
+  }
+  if (node.count == 0)
+    for (const int child : {node.first, node.first + 1}) parts.emplace_back(nodes_[child].axis, nodes_[child].spread);
+  gp_Vec sum(0, 0, 0);
+  for (const auto& [axis, spread] : parts) sum += axis;
+  if (sum.Magnitude() < 0.1) return;
+  double widest = 0;
+  for (const auto& [axis, spread] : parts)
+    widest = std::max(widest, spread + (axis.Magnitude() > 0 ? sum.Angle(axis) : M_PI));
+  node.axis = sum.Normalized();
+  if (widest >= M_PI) return;
+  node.spread = widest;
+  node.cosine = std::cos(widest);
+  node.sine = std::sin(widest);
 }
 
 SoupPoint Soup::closest(const gp_Pnt& point) const {
@@ -262,6 +238,50 @@ SoupPoint Soup::closest(const gp_Pnt& point) const {
     result.uv = uv;
     result.distance = exact;
     result.is_inside = true;
+  }
+  return result;
+}
+
+Soup::Nearest Soup::nearest(const gp_Pnt& point, double reach, const Facing& among) const {
+  return search(point, reach, among, false);
+}
+
+bool Soup::has_near(const gp_Pnt& point, double reach, const Facing& among) const {
+  return search(point, reach, among, true).triangle >= 0;
+}
+
+Soup::Nearest Soup::search(const gp_Pnt& point, double reach, const Facing& among, bool is_any_enough) const {
+  Nearest result{-1, reach};
+  double best = reach * reach;
+  const double direction = among.direction.Magnitude();
+  const bool faces_all = among.most_cosine >= 1 || direction == 0;
+  // Of normals that are all nearer to the direction than this none counts.
+  const double least_angle = faces_all ? 0 : std::acos(among.most_cosine) - 1e-9;
+  const double cosine = std::cos(least_angle), sine = std::sin(least_angle);
+  std::vector<int> stack;
+  if (!triangles_.empty()) stack.push_back(0);
+  while (!stack.empty()) {
+    const Node& n = nodes_[stack.back()];
+    stack.pop_back();
+    if (box_distance(n.box, point) >= best) continue;
+    if (!faces_all && n.spread < least_angle &&
+        n.axis.Dot(among.direction) > direction * (cosine * n.cosine + sine * n.sine))
+      continue;
+    for (int i = n.first; i < n.first + n.count; i++) {
+      const Triangle& t = triangles_[order_[i]];
+      if (among.faces && !(*among.faces)[t.face]) continue;
+      const double d = mixed(t.points, closest_shares(t.points, point)).SquareDistance(point);
+      if (d >= best) continue;
+      const gp_Vec normal = normal_of(t);
+      if (!faces_all && normal.Dot(among.direction) > among.most_cosine * normal.Magnitude() * direction) continue;
+      best = d;
+      result = {order_[i], std::sqrt(d)};
+      if (is_any_enough) return result;
+    }
+    if (n.count > 0) continue;
+    const bool near_first = box_distance(nodes_[n.first].box, point) < box_distance(nodes_[n.first + 1].box, point);
+    stack.push_back(near_first ? n.first + 1 : n.first);
+    stack.push_back(near_first ? n.first : n.first + 1);
   }
   return result;
 }
@@ -313,32 +333,6 @@ std::size_t Soup::open_sides() const {
   std::size_t open = 0;
   for (const auto& [ends, balance] : ways) open += balance != 0;
   return open;
-}
-
-std::vector<gp_Pnt> Soup::crossings(std::size_t most) const {
-  std::vector<gp_Pnt> found;
-  for (std::size_t i = 0; i < triangles_.size() && found.size() < most; i++) {
-    const Triangle& t = triangles_[i];
-    const std::array<double, 6> box = box_of(t);
-    std::vector<int> stack = {0};
-    while (!stack.empty() && found.size() < most) {
-      const Node& n = nodes_[stack.back()];
-      stack.pop_back();
-      if (!overlap(n.box, box)) continue;
-      for (int k = n.first; k < n.first + n.count; k++) {
-        const Triangle& o = triangles_[order_[k]];
-        const bool shares_corner = std::any_of(t.nodes.begin(), t.nodes.end(), [&](int v) {
-          return std::find(o.nodes.begin(), o.nodes.end(), v) != o.nodes.end();
-        });
-        if (shares_corner) continue;
-        const std::optional<Piercing> at = piercing(t, o);
-        if (!at || (t.face == o.face && is_one_place(*faces_[t.face].surface, *at, 1e-3 * deflection_))) continue;
-        found.push_back(mixed(t.points, {1.0 / 3, 1.0 / 3, 1.0 / 3}));
-      }
-      if (n.count == 0) stack.insert(stack.end(), {n.first, n.first + 1});
-    }
-  }
-  return found;
 }
 
 }  // namespace vdb_offset::cad

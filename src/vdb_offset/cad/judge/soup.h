@@ -4,8 +4,12 @@
 #include <Geom_Surface.hxx>
 #include <TopoDS_Shape.hxx>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <gp_Pnt.hxx>
 #include <gp_Pnt2d.hxx>
+#include <gp_Vec.hxx>
 #include <vector>
 
 namespace vdb_offset::cad {
@@ -37,6 +41,8 @@ class Soup {
 
   /// Tessellates a copy of the shape: borders of faces more closely than what lies between them.
   Soup(const TopoDS_Shape& shape, double border_deflection, double deflection, double angle);
+  /// Triangles of one face without a surface: no point of them can be corrected.
+  Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const std::vector<Face>& faces() const { return faces_; }
@@ -44,6 +50,20 @@ class Soup {
 
   /// The closest point of the shape: exact within faces, that of the tessellation on their borders.
   SoupPoint closest(const gp_Pnt& point) const;
+  /// Which triangles are looked for: those of some faces, whose outsides are turned from a direction far enough.
+  struct Facing {
+    const std::vector<char>* faces;  ///< 1 for those; null: all.
+    gp_Vec direction;
+    double most_cosine = 1;
+  };
+  struct Nearest {
+    int triangle = -1;  ///< -1: none is within reach.
+    double distance = 0;
+  };
+  /// The nearest of the triangles, flat as they are, that is within reach.
+  Nearest nearest(const gp_Pnt& point, double reach, const Facing& among) const;
+  /// Whether there is one.
+  bool has_near(const gp_Pnt& point, double reach, const Facing& among) const;
   /// A point of a triangle, on its surface.
   SoupPoint on_triangle(int triangle, double a, double b) const;
   /// The material's outside there.
@@ -56,13 +76,26 @@ class Soup {
   std::size_t open_sides() const;
   /// Corners of triangles that cross others without a common corner, up to `most`.
   std::vector<gp_Pnt> crossings(std::size_t most) const;
+  /// The numbers of faces whose triangles cross so, the smaller first; each pair once, in order.
+  std::vector<std::array<int, 2>> crossing_faces() const;
+  /// Whether a triangle crosses one of another soup.
+  bool crosses(const Soup& other) const;
 
  private:
   struct Node {
     std::array<double, 6> box;  // Least x, y, z, then most.
     int first, count;           // Of order_; count 0: two children at `first` and `first` + 1.
+    // Unit normals of its triangles are within an angle, in radians, of an axis.
+    gp_Vec axis = gp_Vec(0, 0, 0);
+    double spread = M_PI, cosine = -1, sine = 0;  // and of that
   };
+  void build_tree();
   void build(int node, int first, int count);
+  void bound_normals(Node& node) const;
+  Nearest search(const gp_Pnt& point, double reach, const Facing& among, bool is_any_enough) const;
+  /// Calls `found` with every two triangles of this and the other soup that cross, until it returns false.
+  template <class Found>
+  void cross(const Soup& other, Found&& found) const;
 
   std::vector<Triangle> triangles_;
   std::vector<Face> faces_;

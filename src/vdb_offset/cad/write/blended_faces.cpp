@@ -7,31 +7,22 @@
 #include <Bnd_Box.hxx>
 #include <Geom2d_Curve.hxx>
 #include <Geom_Curve.hxx>
-#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
-#include <TopTools_ListOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <gp_Pnt2d.hxx>
 #include <limits>
 #include <memory>
-#include <numeric>
 
+#include "vdb_offset/cad/hold/smooth_edges.h"
 #include "vdb_offset/mesh/part_weight.h"
 
 namespace vdb_offset::cad {
 namespace {
 
-// Normals that are farther apart along an edge make it sharp, in radians. As edges are told apart in place.cpp.
-constexpr double kSmoothBend = 0.06;
-// Where along an edge that is looked at.
-constexpr double kPlacesAlong[] = {0.03, 0.25, 0.5, 0.75, 0.97};
 // Into how many pieces an edge is divided to find where the closest point is. Not measured.
 constexpr int kPieces = 48;
 
@@ -99,8 +90,6 @@ class BlendFinder {
  public:
   BlendFinder(const TopoDS_Shape& shape, const std::vector<PartOfFace>& faces, double length) : faces_(faces) {
     for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
-      // One that is met twice has the number of the first time.
-      if (numbers_.Add(face.Current()) > static_cast<int>(number_.size())) number_.push_back(blend_->faces.size());
       BlendedFace& each = blend_->faces.emplace_back();
       each.surface = surface_of(TopoDS::Face(face.Current()));
       BRepTools::UVBounds(TopoDS::Face(face.Current()), each.range.u0, each.range.u1, each.range.v0, each.range.v1);
@@ -108,69 +97,26 @@ class BlendFinder {
       each.distance = faces[blend_->faces.size() - 1].distance;
     }
     blend_->length = length;
-    piece_.resize(blend_->faces.size());
-    std::iota(piece_.begin(), piece_.end(), std::size_t{0});
-    TopExp::MapShapesAndUniqueAncestors(shape, TopAbs_EDGE, TopAbs_FACE, edges_);
-    for (int pass : {0, 1})
-      for (int e = 1; e <= edges_.Extent(); ++e) take_edge(e, pass == 0);
+    const std::vector<SmoothEdge> edges = smooth_edges(shape);
+    piece_ = smooth_pieces(edges, blend_->faces.size());
+    for (const SmoothEdge& each : edges)
+      for (const int side : {0, 1})
+        if (faces_[each.numbers[0]].part != faces_[each.numbers[1]].part)
+          add(each.edge, each.faces[side], each.numbers[side]);
   }
 
   std::shared_ptr<const Blend> blend() const { return blend_; }
-  std::size_t piece(std::size_t face) const { return piece_of(face); }
+  std::size_t piece(std::size_t face) const { return piece_[face]; }
 
  private:
-  std::size_t piece_of(std::size_t face) const {
-    while (piece_[face] != face) face = piece_[face];
-    return face;
-  }
-
   std::size_t smooth_part(std::size_t face) {
-    const std::size_t piece = piece_of(face), part = faces_[face].part;
+    const std::size_t piece = piece_[face], part = faces_[face].part;
     auto& parts = blend_->parts;
     const auto at = std::find_if(parts.begin(), parts.end(),
                                  [&](const SmoothPart& each) { return each.part == part && each.piece == piece; });
     if (at != parts.end()) return static_cast<std::size_t>(at - parts.begin());
     parts.push_back({part, piece, {}, {}});
     return parts.size() - 1;
-  }
-
-  gp_Vec outside(const TopoDS_Face& face, std::size_t number, const gp_Pnt2d& uv) const {
-    const BlendedFace& own = blend_->faces[number];
-    const gp_Vec n = unit_normal(*own.surface, uv.X(), uv.Y(), own.range);
-    return face.Orientation() == TopAbs_REVERSED ? -n : n;
-  }
-
-  bool is_smooth(const TopoDS_Edge& edge, const std::array<TopoDS_Face, 2>& faces,
-                 const std::array<std::size_t, 2>& numbers) const {
-    double first = 0, last = 0;
-    const Handle(Geom2d_Curve) a = BRep_Tool::CurveOnSurface(edge, faces[0], first, last);
-    const Handle(Geom2d_Curve) b = BRep_Tool::CurveOnSurface(edge, faces[1], first, last);
-    if (a.IsNull() || b.IsNull()) return false;
-    return std::all_of(std::begin(kPlacesAlong), std::end(kPlacesAlong), [&](double part) {
-      const double t = first + part * (last - first);
-      const gp_Vec n = outside(faces[0], numbers[0], a->Value(t)), m = outside(faces[1], numbers[1], b->Value(t));
-      return n.Magnitude() < 0.5 || m.Magnitude() < 0.5 || n.Angle(m) < kSmoothBend;
-    });
-  }
-
-  /// Joins the faces of smooth edges; or adds what such edges are for parts.
-  void take_edge(int e, bool joins) {
-    const TopoDS_Edge edge = TopoDS::Edge(edges_.FindKey(e));
-    const TopTools_ListOfShape& around = edges_(e);
-    if (around.Extent() != 2 || BRep_Tool::Degenerated(edge)) return;
-    const std::array<TopoDS_Face, 2> faces = {TopoDS::Face(around.First()), TopoDS::Face(around.Last())};
-    const auto number = [&](const TopoDS_Face& face) {
-      return number_[static_cast<std::size_t>(numbers_.FindIndex(face) - 1)];
-    };
-    const std::array<std::size_t, 2> numbers = {number(faces[0]), number(faces[1])};
-    if (!is_smooth(edge, faces, numbers)) return;
-    if (joins) {
-      const std::size_t a = piece_of(numbers[0]), b = piece_of(numbers[1]);
-      piece_[std::max(a, b)] = std::min(a, b);
-      return;
-    }
-    if (faces_[numbers[0]].part == faces_[numbers[1]].part) return;
-    for (const int side : {0, 1}) add(edge, faces[side], numbers[side]);
   }
 
   void add(const TopoDS_Edge& edge, const TopoDS_Face& face, std::size_t number) {
@@ -189,9 +135,6 @@ class BlendFinder {
 
   const std::vector<PartOfFace>& faces_;
   std::shared_ptr<Blend> blend_ = std::make_shared<Blend>();
-  TopTools_IndexedMapOfShape numbers_;
-  std::vector<std::size_t> number_;  // of each face of that map
-  TopTools_IndexedDataMapOfShapeListOfShape edges_;
   std::vector<std::size_t> piece_;  // of each face the least of those that it is joined with
 };
 

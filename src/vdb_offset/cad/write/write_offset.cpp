@@ -1,40 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/write/write_offset.h"
 
-#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
-#include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
-#include <gp.hxx>
-#include <gp_Trsf.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "vdb_offset/cad/judge/clearance.h"
 #include "vdb_offset/cad/judge/judge.h"
 #include "vdb_offset/cad/judge/parameters.h"
 #include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_solid.h"
 #include "vdb_offset/cad/trim/trim_offset.h"
 #include "vdb_offset/cad/write/body_shape.h"
-#include "vdb_offset/cad/write/face_distances.h"
 #include "vdb_offset/cad/write/faceted.h"
+#include "vdb_offset/cad/write/offset_bodies.h"
 #include "vdb_offset/cad/write/own_process.h"
 #include "vdb_offset/cad/write/thick_solids.h"
 #include "vdb_offset/cad/write/write_model.h"
-#include "vdb_offset/error.h"
 
 namespace vdb_offset::cad {
 namespace {
 
 constexpr std::size_t kMostGaps = 8;    // that are told
 constexpr unsigned kMostTrimming = 60;  // seconds, of a trial
+constexpr unsigned kMostHolding = 120;  // seconds, of the whole model with its faces held back
 
 /// What is tried: the whole model, and if that is not good its faces or triangles; the whole model or nothing, trimmed
 /// where faces cross, of edges that have been taken out as far as they are swallowed, or have not; faces or triangles
@@ -42,22 +39,6 @@ constexpr unsigned kMostTrimming = 60;  // seconds, of a trial
 enum class Attempt { Whole, Trimmed, TrimmedAll, Rest, Facets };
 
 bool is_trial(Attempt attempt) { return attempt == Attempt::Trimmed || attempt == Attempt::TrimmedAll; }
-
-/// OpenCASCADE's tolerances are lengths, and meant for millimetres: models in other units are brought to these.
-TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor) {
-  if (factor == 1 || shape.IsNull()) return shape;
-  gp_Trsf scale;
-  scale.SetScale(gp::Origin(), factor);
-  return BRepBuilderAPI_Transform(shape, scale, Standard_True).Shape();
-}
-
-/// A body of the source, in millimetres, and its offset.
-struct OffsetBody {
-  const Body& body;
-  BodyShape source;
-  OffsetCadResult result;
-  std::vector<FaceDistance> distances;  // of each face; empty: all have the same
-};
 
 class OffsetWriter {
  public:
@@ -69,13 +50,7 @@ class OffsetWriter {
       write_facets();
       return std::move(written_);
     }
-    std::size_t first_face = 0;
-    for (const Body& body : model_.bodies) {
-      bodies_.push_back({body, shape_of(body), {}});
-      bodies_.back().source.shape = scaled(bodies_.back().source.shape, millimetres_);
-      make(bodies_.back(), first_face, attempt == Attempt::TrimmedAll);
-      first_face += body.faces.size();
-    }
+    make(attempt == Attempt::TrimmedAll);
     if (attempt == Attempt::Whole && try_whole()) return std::move(written_);
     if (is_trial(attempt)) {
       if (trim()) try_whole();
@@ -88,41 +63,31 @@ class OffsetWriter {
   }
 
  private:
-  bool is_even() const { return write_.is_even(); }
-  double largest() const { return millimetres_ * write_.distance; }
+  double largest() const { return millimetres_ * std::abs(write_.distance); }
 
-  void make(OffsetBody& body, std::size_t first_face, bool keeps_turned) {
-    OffsetCadRequest request;
-    request.keeps_turned = keeps_turned && body.body.is_solid;
-    request.source = body.source.shape;
-    request.distance = largest();
-    request.fit_tolerance = millimetres_ * write_.fit_tolerance;
-    try {
-      if (!is_even()) request.of_face = distances_of(write_, first_face, body.source, millimetres_);
-      body.distances = request.of_face;
-      body.result = offset_cad(request);
-    } catch (const Standard_Failure& failure) {
-      body.result = {};
-      body.result.gaps.push_back(std::string("OpenCASCADE fails: ") + failure.DynamicType()->Name());
-    } catch (const Error& error) {
-      body.result = {};
-      body.result.gaps.emplace_back(error.what());
+  void make(bool keeps_turned) {
+    OffsetBodies made = offset_bodies(model_, write_, millimetres_, keeps_turned);
+    written_.held = made.held;
+    written_.least_held = made.least_held;
+    written_.gaps = std::move(made.gaps);
+    for (OffsetBody& each : made.all) bodies_.push_back(std::move(each));
+    for (const OffsetBody& each : bodies_) {
+      for (const CadFace face : each.result.faces)
+        ++(face == CadFace::Kept      ? written_.kept
+           : face == CadFace::Fitted  ? written_.fitted
+           : face == CadFace::Missing ? written_.missing
+                                      : written_.swallowed);
+      written_.fit_error = std::max(written_.fit_error, each.result.fit_error / millimetres_);
+      for (const std::string& gap : each.result.gaps) written_.gaps.push_back(gap);
     }
-    for (const CadFace made : body.result.faces)
-      ++(made == CadFace::Kept      ? written_.kept
-         : made == CadFace::Fitted  ? written_.fitted
-         : made == CadFace::Missing ? written_.missing
-                                    : written_.swallowed);
-    written_.fit_error = std::max(written_.fit_error, body.result.fit_error / millimetres_);
-    for (const std::string& gap : body.result.gaps) written_.gaps.push_back(gap);
   }
 
   /// Trims the solids where their faces cross, and counts faces anew; false if there is nothing to trim.
   bool trim() {
     for (const OffsetBody& body : bodies_)
-      if (!is_even() || body.result.shape.IsNull() || !body.result.gaps.empty()) return false;
+      if (!body.is_even() || body.result.shape.IsNull() || !body.result.gaps.empty()) return false;
     for (OffsetBody& body : bodies_)
-      if (body.body.is_solid) body.result = trim_offset(body.source.shape, body.result, largest());
+      if (body.body.is_solid) body.result = trim_offset(body.source.shape, body.result, millimetres_ * write_.distance);
     written_.swallowed = 0;
     for (const OffsetBody& body : bodies_)
       written_.swallowed +=
@@ -172,6 +137,7 @@ class OffsetWriter {
       written_.gaps.emplace_back("bodies get into each other");
       return false;
     }
+    if (!write_.obstacle_triangles.empty() && !is_clear_of_obstacles(again)) return false;
     written_.bytes = file.bytes();
     written_.made = all_solid ? io::CadMade::Solid : io::CadMade::Shells;
     return !write_.thick || make_thick();
@@ -231,7 +197,7 @@ class OffsetWriter {
 
   bool is_good(const OffsetBody& body, const Body& again, double millimetres) {
     const TopoDS_Shape shape = scaled(shape_of(again).shape, millimetres);
-    if (!is_even()) {
+    if (!body.is_even()) {
       const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid &&
                             soup_of(shape).crossings(1).empty();
       if (!is_valid) written_.gaps.emplace_back("read again, the result is not valid, or crosses itself");
@@ -239,7 +205,7 @@ class OffsetWriter {
       add_volume(again, shape);
       return true;
     }
-    const Verdict verdict = judge_offset(body.source.shape, shape, largest(), {});
+    const Verdict verdict = judge_offset(body.source.shape, shape, millimetres_ * write_.distance, {});
     written_.samples += verdict.samples;
     written_.least = std::min(written_.least, verdict.least);
     written_.most = std::max(written_.most, verdict.most);
@@ -266,7 +232,7 @@ class OffsetWriter {
     written_.samples += all.samples;
     written_.least = std::min(written_.least, all.least);
     written_.most = std::max(written_.most, all.most);
-    if (all.worst <= kMostOff * std::abs(largest())) return true;
+    if (all.worst <= kMostOff * largest()) return true;
     written_.gaps.push_back("a face is off its distance by up to " + std::to_string(all.worst / millimetres_));
     return false;
   }
@@ -275,32 +241,40 @@ class OffsetWriter {
     if (again.is_solid) written_.volume += volume_of(shape) / std::pow(millimetres_, 3);
   }
 
-  Soup soup_of(const TopoDS_Shape& shape) const {
-    const double far = millimetres_ * std::abs(write_.distance);
-    return {shape, 0.01 * far, 0.02 * far, 0.3};
-  }
+  Soup soup_of(const TopoDS_Shape& shape) const { return result_soup(shape, largest()); }
 
   /// Whether bodies get into each other: faces cross, or points just inside of one are inside of another.
   bool get_into_each_other(const CadModel& again) const {
-    TopoDS_Compound all;
-    BRep_Builder builder;
-    builder.MakeCompound(all);
+    const auto shape_in = [&](const Body& body) { return scaled(shape_of(body).shape, in_millimetres(again)); };
     std::vector<Soup> soups;
-    for (const Body& body : again.bodies) {
-      const TopoDS_Shape shape = scaled(shape_of(body).shape, in_millimetres(again));
-      builder.Add(all, shape);
-      if (body.is_solid) soups.push_back(soup_of(shape));
-    }
-    if (!soup_of(all).crossings(1).empty()) return true;
+    for (const Body& body : again.bodies)
+      if (body.is_solid) soups.push_back(soup_of(shape_in(body)));
+    if (!soup_of(together(again.bodies, shape_in)).crossings(1).empty()) return true;
     for (const Soup& one : soups)
       for (const Soup& other : soups)
         if (&one != &other && reaches_into(one, other)) return true;
     return false;
   }
 
+  /// Whether the bodies neither cross obstacles nor come nearer to them than asked, or than the source is.
+  bool is_clear_of_obstacles(const CadModel& again) {
+    const Soup obstacles = obstacle_soup(write_, millimetres_);
+    const double most = millimetres_ * write_.clearance;
+    const Soup before = soup_of(together(bodies_, [](const OffsetBody& each) { return each.source.shape; }));
+    const Soup after = soup_of(
+        together(again.bodies, [&](const Body& body) { return scaled(shape_of(body).shape, in_millimetres(again)); }));
+    constexpr double kOff = 0.01;  // of the distance, as far as triangles tell
+    const double asked = std::min(most, gap_between(before, obstacles, most));
+    if (before.crosses(obstacles) ||
+        (!after.crosses(obstacles) && gap_between(after, obstacles, most) >= asked - kOff * largest()))
+      return true;
+    written_.gaps.emplace_back("the result comes nearer to an obstacle than asked");
+    return false;
+  }
+
   bool reaches_into(const Soup& one, const Soup& other) const {
     constexpr std::size_t kMostPoints = 200;
-    const double inward = 1e-3 * millimetres_ * std::abs(write_.distance);
+    const double inward = 1e-3 * largest();
     const std::size_t count = one.triangles().size(), step = std::max<std::size_t>(1, count / kMostPoints);
     for (std::size_t t = 0; t < count; t += step) {
       const SoupPoint at = one.on_triangle(static_cast<int>(t), 1.0 / 3, 1.0 / 3);
@@ -370,6 +344,12 @@ class OffsetWriter {
   io::CadWritten written_;
 };
 
+/// How long an attempt may take; 0: as long as it takes.
+unsigned seconds_for(Attempt attempt, const io::WriteCad& write) {
+  if (is_trial(attempt)) return kMostTrimming;
+  return write.held && attempt == Attempt::Whole ? kMostHolding : 0;
+}
+
 bool is_whole(const io::CadWritten& written) {
   return written.made == io::CadMade::Solid || written.made == io::CadMade::Shells;
 }
@@ -387,10 +367,11 @@ io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
   for (const Attempt attempt :
        {Attempt::Whole, Attempt::Trimmed, Attempt::TrimmedAll, Attempt::Rest, Attempt::Facets}) {
     if (attempt == Attempt::Facets && !write.faceted) break;
+    if (is_trial(attempt) && write.held) continue;
     if (attempt == Attempt::Rest && rest) return std::move(*rest);
     std::string gap;
-    auto written = in_own_process([&] { return OffsetWriter(model, write).run(attempt); },
-                                  is_trial(attempt) ? kMostTrimming : 0, gap);
+    auto written =
+        in_own_process([&] { return OffsetWriter(model, write).run(attempt); }, seconds_for(attempt, write), gap);
     if (written && is_whole(*written)) return std::move(*written);
     if (is_trial(attempt)) continue;
     if (!written) {

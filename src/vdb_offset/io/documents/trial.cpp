@@ -23,7 +23,7 @@ constexpr unsigned kMostSeconds = 300;
 constexpr int kDone = 0, kTooLarge = 1;
 
 /// Bytes of addresses that this process has now; 0 if the system does not say.
-std::size_t addresses() {
+[[maybe_unused]] std::size_t addresses() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));

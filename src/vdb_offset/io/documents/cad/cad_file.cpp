@@ -12,6 +12,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/base/chunked_output.h"
 #include "vdb_offset/io/documents/cad/cad_surface.h"
+#include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
@@ -67,6 +68,8 @@ CadFileFacts facts_of(CadWritten&& written) {
   facts.fitted = written.fitted;
   facts.swallowed = written.swallowed;
   facts.missing = written.missing;
+  facts.held = written.held;
+  facts.least_held = written.least_held;
   facts.fit_error = written.fit_error;
   facts.samples = written.samples;
   facts.least = written.least;
@@ -106,6 +109,13 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Ca
   write.blend = distances.blend;
   write.fit_tolerance = how.fit_tolerance > 0 ? how.fit_tolerance : kFitShare * distances.scale;
   write.thick = how.thick;
+  write.held = how.holds_back;
+  if (write.held && how.obstacles.face_count() > 0) {
+    write.clearance = how.clearance;
+    write.obstacle_positions.assign(how.obstacles.positions.begin(), how.obstacles.positions.end());
+    for (std::size_t f = 0; f < how.obstacles.face_count(); ++f)
+      triangulate(how.obstacles.positions, how.obstacles.face(f), write.obstacle_triangles);
+  }
   write.faceted = how.faceted;
   if (how.faceted) {
     write.positions.assign(positions.begin(), positions.end());

@@ -59,6 +59,11 @@ void require(bool holds, const char* otherwise) {
 
 bool is_finite(const Vec3d& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
+void require_corners(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::size_t vertices) {
+  for (const auto& triangle : triangles)
+    for (const std::uint32_t vertex : triangle) require(vertex < vertices, "a triangle of no vertices");
+}
+
 void require_edges(const CadMesh& mesh) {
   require(mesh.edge_kinds.size() == mesh.edges.size(), "edges without a kind");
   for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
@@ -153,6 +158,8 @@ std::string pack(const WriteCad& write) {
       .value(std::uint8_t{write.faceted})
       .list(write.positions)
       .list(write.triangles);
+  packer.value(std::uint8_t{write.held}).value(write.clearance);
+  packer.list(write.obstacle_positions).list(write.obstacle_triangles);
   return packer.take();
 }
 
@@ -169,18 +176,24 @@ WriteCad unpack_write(std::string_view bytes) {
   write.faceted = unpacker.value<std::uint8_t>() != 0;
   write.positions = unpacker.list<Vec3d>();
   write.triangles = unpacker.list<std::array<std::uint32_t, 3>>();
+  write.held = unpacker.value<std::uint8_t>() != 0;
+  write.clearance = unpacker.value<double>();
+  write.obstacle_positions = unpacker.list<Vec3d>();
+  write.obstacle_triangles = unpacker.list<std::array<std::uint32_t, 3>>();
   unpacker.end();
-  for (const auto& triangle : write.triangles)
-    for (const std::uint32_t vertex : triangle) require(vertex < write.positions.size(), "a triangle of no vertices");
+  require_corners(write.triangles, write.positions.size());
+  require_corners(write.obstacle_triangles, write.obstacle_positions.size());
   return write;
 }
 
 std::string pack(const CadWritten& written) {
   Packer packer;
   packer.text(written.bytes).value(written.made);
-  for (const std::uint64_t count : {written.kept, written.fitted, written.swallowed, written.missing, written.samples})
+  for (const std::uint64_t count :
+       {written.kept, written.fitted, written.swallowed, written.missing, written.held, written.samples})
     packer.value(count);
-  for (const double value : {written.fit_error, written.least, written.most, written.volume}) packer.value(value);
+  for (const double value : {written.least_held, written.fit_error, written.least, written.most, written.volume})
+    packer.value(value);
   put_texts(packer, written.gaps);
   return packer.take();
 }
@@ -191,9 +204,10 @@ CadWritten unpack_written(std::string_view bytes) {
   written.bytes = unpacker.text();
   written.made = unpacker.value<CadMade>();
   require(written.made <= CadMade::Facets, "a file of no kind");
-  for (std::uint64_t* count : {&written.kept, &written.fitted, &written.swallowed, &written.missing, &written.samples})
+  for (std::uint64_t* count :
+       {&written.kept, &written.fitted, &written.swallowed, &written.missing, &written.held, &written.samples})
     *count = unpacker.value<std::uint64_t>();
-  for (double* value : {&written.fit_error, &written.least, &written.most, &written.volume})
+  for (double* value : {&written.least_held, &written.fit_error, &written.least, &written.most, &written.volume})
     *value = unpacker.value<double>();
   written.gaps = take_texts(unpacker);
   unpacker.end();

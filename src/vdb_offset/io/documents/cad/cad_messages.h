@@ -73,10 +73,14 @@ struct WriteCad {
   std::vector<CadFaceDistance> of_face;  ///< A number for all, or one for each face.
   double distance = 0;                   ///< That number, or the largest without its sign.
   bool is_even() const { return of_face.size() == 1 && of_face.front().expression.empty(); }
-  double diagonal = 0;           ///< What percentages in expressions refer to.
-  double blend = 0;              ///< Over how far distances change across smooth edges; 0: they do not.
-  double fit_tolerance = 0;      ///< In the file's unit, > 0.
-  bool thick = false;            ///< Write the solids between the source and its offset.
+  double diagonal = 0;       ///< What percentages in expressions refer to.
+  double blend = 0;          ///< Over how far distances change across smooth edges; 0: they do not.
+  double fit_tolerance = 0;  ///< In the file's unit, > 0.
+  bool thick = false;        ///< Write the solids between the source and its offset.
+  bool held = false;         ///< Faces are held back where fronts meet, and not cut.
+  double clearance = 0;      ///< How far they stay away from obstacles.
+  std::vector<Vec3d> obstacle_positions;
+  std::vector<std::array<std::uint32_t, 3>> obstacle_triangles;
   bool faceted = false;          ///< Write the triangles as faces where no solid comes of the faces.
   std::vector<Vec3d> positions;  ///< Of the offset mesh, for that, with its triangles; else empty.
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -96,7 +100,9 @@ struct CadWritten {
   CadMade made = CadMade::Nothing;
   std::uint64_t kept = 0, fitted = 0, swallowed = 0, missing = 0;  ///< Faces of the source.
   std::uint64_t samples = 0;                                       ///< Points of the result that were measured.
-  double fit_error = 0;                                            ///< In the file's unit.
+  std::uint64_t held = 0;         ///< Faces of the source that are held back where fronts meet.
+  double least_held = 1;          ///< The least share of its distance that a point of them goes.
+  double fit_error = 0;           ///< In the file's unit.
   double least = 0, most = 0;     ///< Distances of the result's points from the source, as shares; 0: not sampled.
   double volume = 0;              ///< Of solids; 0: not known.
   std::vector<std::string> gaps;  ///< What is not good, in words.

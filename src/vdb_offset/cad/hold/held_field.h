@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <gp_Pnt.hxx>
+#include <unordered_map>
+
+namespace vdb_offset::cad {
+
+/// What share of its distance each point of a surface may go: 1 but near the points that have been told, and never more
+/// than those were told with. It has two derivatives: a uniform cubic B-spline in space, each coefficient of which is
+/// the least share that was told where it counts, so that no sum of them is more.
+class HeldField {
+ public:
+  explicit HeldField(double spacing) : spacing_(spacing) {}
+
+  /// Sides of triangles whose middles are to be told. Middles are then no farther apart than their sides.
+  static constexpr double kSampling = 0.5;  // of the spacing
+  /// A point counts no farther than this: coefficients within its reach, each as far as it counts itself.
+  static constexpr double kFarthest = 8;  // spacings: the diagonal of 4.6
+
+  void tell(const gp_Pnt& point, double share);
+  double operator()(const gp_Pnt& point) const;
+  bool is_empty() const { return coefficients_.empty(); }
+
+ private:
+  static constexpr double kReach = 2.6;  // of a coefficient, and to the next point that was told
+  using Node = std::array<std::int32_t, 3>;
+  struct Hash {
+    std::size_t operator()(const Node& node) const;
+  };
+
+  double spacing_;
+  std::unordered_map<Node, double, Hash> coefficients_;  // those that are not 1
+};
+
+}  // namespace vdb_offset::cad

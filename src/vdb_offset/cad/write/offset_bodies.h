@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <BRep_Builder.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Shape.hxx>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/cad/judge/soup.h"
+#include "vdb_offset/cad/offset/offset_solid.h"
+#include "vdb_offset/cad/offset/offset_surface.h"
+#include "vdb_offset/cad/read/cad_model.h"
+#include "vdb_offset/cad/write/body_shape.h"
+#include "vdb_offset/io/documents/cad/cad_messages.h"
+
+namespace vdb_offset::cad {
+
+/// A body of the source, in millimetres, and its offset.
+struct OffsetBody {
+  const Body& body;
+  BodyShape source;
+  OffsetCadResult result;
+  std::vector<FaceDistance> distances;  ///< Of each face; empty: all have the same.
+  bool is_even() const { return distances.empty(); }
+};
+
+struct OffsetBodies {
+  std::vector<OffsetBody> all;
+  std::size_t held = 0;           ///< Faces that are held back.
+  double least_held = 1;          ///< The least share of its distance that a point of them goes.
+  std::vector<std::string> gaps;  ///< Why nothing was made.
+};
+
+/// OpenCASCADE's tolerances are lengths, and meant for millimetres: models in other units are brought to these.
+TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor);
+
+/// What `shape_in` tells of each, as one shape.
+template <class Bodies, class ShapeIn>
+TopoDS_Shape together(const Bodies& bodies, ShapeIn&& shape_in) {
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const auto& body : bodies) builder.Add(all, shape_in(body));
+  return all;
+}
+
+/// The triangles that are judged of a result. \param distance the largest
+Soup result_soup(const TopoDS_Shape& shape, double distance);
+
+/// The obstacles, in millimetres.
+Soup obstacle_soup(const io::WriteCad& write, double millimetres);
+
+/// Offsets each body by offset_cad(), its faces held back if that is asked for.
+/// \param millimetres how many the model's unit is \param keeps_turned as that of OffsetCadRequest, for solids
+OffsetBodies offset_bodies(const CadModel& model, const io::WriteCad& write, double millimetres, bool keeps_turned);
+
+}  // namespace vdb_offset::cad
