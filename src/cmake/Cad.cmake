@@ -22,7 +22,7 @@ mark_as_advanced(OPENCASCADE_HEADERS)
 
 # What the worker is made of, for the tests of its parts as well.
 add_library(vdb_offset_cad_objects OBJECT)
-set(cad_sources read/document read/read_model surface/face_surface surface/offset_points tessellate/append_body
+set(cad_sources read/document read/name_instances read/read_model surface/face_surface surface/offset_points tessellate/append_body
   tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
   tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
   offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/mend_pcurve offset/model offset/offset_solid
@@ -30,7 +30,8 @@ set(cad_sources read/document read/read_model surface/face_surface surface/offse
   hold/held_field hold/hold_back hold/room hold/smooth_edges
   judge/clearance judge/judge judge/parameters judge/soup judge/soup_crossings
   trim/cut_faces trim/join_pieces trim/point_in_face trim/trim_offset
-  write/blended_faces write/body_shape write/face_distances write/faceted write/offset_bodies write/own_process write/thick_solids write/write_model write/write_offset
+  write/assemblies write/blended_faces write/body_shape write/face_distances write/faceted write/offset_bodies write/own_process
+  write/thick_solids write/write_model write/write_offset
   worker/guard worker/memory_limit worker/requests)
 list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
 list(TRANSFORM cad_sources APPEND .cpp)

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cad/cad_files.h"
+#include "vdb_offset/io/attributes.h"
 
 using namespace vdb_offset;
 using io::CadEdge;
@@ -220,6 +221,57 @@ TEST_CASE("cad: an assembly has its parts where they are placed, with names, col
     CHECK((*other.colour)[1] == Approx(0.5).margin(1e-3));
     CHECK(other.kind == "plane");
   }
+}
+
+TEST_CASE("cad: what is placed has the name and colour of its place, be it meant in one of its assembly's alone",
+          "[cad]") {
+  REQUIRE(test::cad_files().is_made());
+  const CadMesh mesh = open_cad("robot.step").take_mesh();
+  REQUIRE(mesh.faces.size() == 8 * 6);
+  const std::array<double, 3> red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1};
+  struct Pin {
+    const char *instance, *arm;
+    std::array<double, 3> colour;
+  };
+  const Pin pins[] = {{"upper pin", "left arm", red},      {"blue pin", "left arm", blue},
+                      {"lower pin", "left arm", red},      {"left arm", "left arm", red},
+                      {"upper pin", "right arm", red},     {"blue pin", "right arm", blue},
+                      {"the cut pin", "right arm", green}, {"right arm", "right arm", red}};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    INFO(f);
+    const io::CadFaceFacts& face = mesh.faces[f];
+    const Pin& pin = pins[f / 6];
+    CHECK(face.name == (f % 6 == 0 ? "front" : ""));
+    CHECK(face.solid == "pin");
+    CHECK(face.instance == pin.instance);
+    std::set<std::string> within{"robot", "arm", "pin", pin.arm, pin.instance};
+    if (f / 6 == 6) within.insert("lower pin");
+    CHECK(std::set<std::string>(face.within.begin(), face.within.end()) == within);
+    REQUIRE(face.colour);
+    for (std::size_t k = 0; k < 3; ++k) CHECK((*face.colour)[k] == Approx(pin.colour[k]).margin(1e-6));
+  }
+}
+
+TEST_CASE("cad: the name of a place chooses its faces, and is in their groups", "[cad]") {
+  REQUIRE(test::cad_files().is_made());
+  const io::MeshFile robot = io::read_mesh((test::cad_files().folder() / "robot.step").string());
+  const auto chosen = [&](const std::string& name) {
+    std::set<std::size_t> pins;
+    const std::vector<std::uint8_t> marks = io::select_faces(robot, std::vector{io::parse_selector("name=" + name)});
+    for (std::size_t t = 0; t < marks.size(); ++t)
+      if (marks[t]) pins.insert(t / 12);  // two triangles to each side
+    return pins;
+  };
+  using Pins = std::set<std::size_t>;
+  CHECK(chosen("left arm") == Pins{0, 1, 2, 3});
+  CHECK(chosen("upper pin") == Pins{0, 4});
+  CHECK(chosen("lower pin") == Pins{2, 6});
+  CHECK(chosen("the cut pin") == Pins{6});
+  CHECK(chosen("robot").size() == 8);
+  CHECK_THROWS_WITH(chosen("third arm"), Catch::Contains("expected a name among ") && Catch::Contains("left arm"));
+  const std::vector<std::uint8_t> of_group =
+      io::select_faces(robot, std::vector{io::parse_selector("group=face_37_the_cut_pin_front")});
+  CHECK(std::count(of_group.begin(), of_group.end(), 1) == 2);
 }
 
 TEST_CASE("cad: coordinates are those of the file, in its own unit", "[cad]") {

@@ -181,6 +181,23 @@ TEST_CASE("cad written: a groove that closes is gone from the floor that it shar
   CHECK(volume_of_mesh(written.again.polygons) == Approx(written.facts.volume).epsilon(1e-6));
 }
 
+TEST_CASE("cad written: what is placed has its names again", "[cad]") {
+  const Written written = write("robot.step", 0.25, "robots.step");
+  CHECK(written.facts.made == Made::Solid);
+  const auto source = test::open_cad("robot.step").take_mesh(), again = test::open_cad("robots.step").take_mesh();
+  REQUIRE(again.faces.size() == source.faces.size());
+  for (std::size_t f = 0; f < source.faces.size(); ++f) {
+    INFO(f);
+    CHECK(again.faces[f].name == source.faces[f].name);
+    CHECK(again.faces[f].solid == source.faces[f].solid);
+    CHECK(again.faces[f].instance == source.faces[f].instance);
+    REQUIRE(again.faces[f].colour);
+    for (std::size_t k = 0; k < 3; ++k) CHECK((*again.faces[f].colour)[k] == Approx((*source.faces[f].colour)[k]));
+    for (const char* const name : {"robot", "arm", f < 24 ? "left arm" : "right arm"})
+      CHECK(std::count(again.faces[f].within.begin(), again.faces[f].within.end(), name) == 1);
+  }
+}
+
 TEST_CASE("cad written: what falls apart is not called whole", "[cad]") {
   // Two halves of a plate, that hang together by walls of 1.
   const Written written = write("waist.step", -0.75, "apart.step");

@@ -42,11 +42,14 @@
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_GraphNode.hxx>
 #include <XCAFDoc_LayerTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <cmath>
+#include <fstream>
 #include <gp_Ax2.hxx>
 #include <gp_Trsf.hxx>
+#include <iterator>
 #include <string>
 
 namespace {
@@ -239,6 +242,55 @@ void write_assembly(const char* name) {
   writer.Write(file(name).c_str());
 }
 
+TDF_Label place(const opencascade::handle<XCAFDoc_ShapeTool>& shapes, const TDF_Label& assembly, const TDF_Label& what,
+                double x, double y, const char* name) {
+  gp_Trsf moved;
+  moved.SetTranslation(gp_Vec(x, y, 0));
+  const TDF_Label label = shapes->AddComponent(assembly, what, TopLoc_Location(moved));
+  if (name) TDataStd_Name::Set(label, name);
+  else label.ForgetAttribute(TDataStd_Name::GetID());
+  return label;
+}
+
+/// Pins of 2 x 3 x 4: an arm has an upper one, a blue one, a lower one, and one without a name; a robot has a left and
+/// a right arm. Of these, the right one's lower pin is green, and called `the cut pin`.
+void write_robot(const char* name) {
+  opencascade::handle<TDocStd_Document> document;
+  XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
+  const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const auto colours = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(2, 3, 4).Shape();
+  const TDF_Label pin = shapes->AddShape(box, Standard_False), arm = shapes->NewShape(), robot = shapes->NewShape();
+  TDataStd_Name::Set(pin, "pin");
+  TDataStd_Name::Set(arm, "arm");
+  TDataStd_Name::Set(robot, "robot");
+  colours->SetColor(pin, Quantity_Color(1, 0, 0, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  TDataStd_Name::Set(shapes->AddSubShape(pin, TopExp_Explorer(box, TopAbs_FACE).Current()), "front");
+  place(shapes, arm, pin, 0, 0, "upper pin");
+  colours->SetColor(place(shapes, arm, pin, 10, 0, "blue pin"), Quantity_Color(0, 0, 1, Quantity_TOC_sRGB),
+                    XCAFDoc_ColorSurf);
+  const TDF_Label lower = place(shapes, arm, pin, 20, 0, "lower pin");
+  place(shapes, arm, pin, 30, 0, nullptr);
+  place(shapes, robot, arm, 0, 0, "left arm");
+  TDF_LabelSequence right_lower;
+  right_lower.Append(place(shapes, robot, arm, 0, 10, "right arm"));
+  right_lower.Append(lower);
+  shapes->UpdateAssemblies();
+  opencascade::handle<XCAFDoc_GraphNode> nested;
+  shapes->SetSHUO(right_lower, nested);
+  colours->SetColor(nested->Label(), Quantity_Color(0, 1, 0, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  STEPCAFControl_Writer writer;
+  Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
+  writer.Transfer(document, STEPControl_AsIs);
+  writer.Write(file(name).c_str());
+  // OpenCASCADE writes no name of what is in one place alone.
+  std::ifstream written(file(name));
+  std::string text{std::istreambuf_iterator<char>(written), {}};
+  const std::string nameless = "SPECIFIED_HIGHER_USAGE_OCCURRENCE('','',";
+  text.replace(text.find(nameless), nameless.size(), "SPECIFIED_HIGHER_USAGE_OCCURRENCE('','the cut pin',");
+  std::ofstream(file(name)) << text;
+}
+
 void write_iges(const TopoDS_Shape& shape, const char* name) {
   IGESControl_Controller::Init();
   IGESControl_Writer writer("IN", 0);  // inches; each face by itself
@@ -273,5 +325,6 @@ int main(int count, char** words) {
   write_brep(inside_out(), "inside_out.brep");
   write_iges(BRepPrimAPI_MakeBox(25.4, 2 * 25.4, 3 * 25.4).Shape(), "faces.igs");
   write_assembly("assembly.step");
+  write_robot("robot.step");
   return 0;
 }

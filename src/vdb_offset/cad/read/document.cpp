@@ -12,6 +12,7 @@
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_GraphNode.hxx>
 #include <XCAFDoc_LayerTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
@@ -68,7 +69,7 @@ class Walk {
   void walk() {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    for (int k = 1; k <= roots.Length(); ++k) visit(roots.Value(k), TopLoc_Location(), {});
+    for (int k = 1; k <= roots.Length(); ++k) visit(roots.Value(k), TopLoc_Location(), {}, {});
   }
 
   void count_others(const TopoDS_Shape& shape) {
@@ -100,30 +101,73 @@ class Walk {
   }
 
  private:
-  void visit(const TDF_Label& label, const TopLoc_Location& place, const Told& from_above) {
+  void visit(const TDF_Label& label, const TopLoc_Location& location, const Told& from_above,
+             std::optional<std::size_t> above) {
     TDF_Label shape_label = label;
-    TopLoc_Location here = place;
+    TopLoc_Location here = location;
     Told told = told_of(label, from_above);
-    if (XCAFDoc_ShapeTool::IsReference(label)) {
-      here = place * XCAFDoc_ShapeTool::GetLocation(label);
+    Place place{above, {}, {}, {}, false};
+    const bool is_instance = XCAFDoc_ShapeTool::IsReference(label);
+    if (is_instance) {
+      here = location * XCAFDoc_ShapeTool::GetLocation(label);
       XCAFDoc_ShapeTool::GetReferredShape(label, shape_label);
+      path_.push_back(label);
+      place.instance = name_of(label);
+      take_nested(place, told);
       // A placed part's name is the part's own, where it has one; its colour and layer those of the place.
       const Told of_part = told_of(shape_label, {});
       if (!of_part.name.empty()) told.name = of_part.name;
       if (!told.colour) told.colour = of_part.colour;
       if (told.layer.empty()) told.layer = of_part.layer;
     }
-    if (XCAFDoc_ShapeTool::IsAssembly(shape_label)) {
+    place.product = name_of(shape_label);
+    place.is_assembly = XCAFDoc_ShapeTool::IsAssembly(shape_label);
+    model_.places.push_back(std::move(place));
+    visit_shape(shape_label, here, told);
+    if (is_instance) path_.pop_back();
+  }
+
+  /// Visits what is at the last of the places.
+  void visit_shape(const TDF_Label& label, const TopLoc_Location& location, const Told& told) {
+    place_ = model_.places.size() - 1;
+    if (model_.places.back().is_assembly) {
       TDF_LabelSequence components;
-      XCAFDoc_ShapeTool::GetComponents(shape_label, components);
-      for (int k = 1; k <= components.Length(); ++k) visit(components.Value(k), here, told);
+      XCAFDoc_ShapeTool::GetComponents(label, components);
+      const std::size_t assembly = *place_;
+      for (int k = 1; k <= components.Length(); ++k) visit(components.Value(k), location, told, assembly);
       return;
     }
     TopoDS_Shape shape;
-    if (XCAFDoc_ShapeTool::GetShape(shape_label, shape) && !shape.IsNull()) {
-      place_ = here;
-      add_faces(shape.Located(here * shape.Location()), shape_label, told);
-      place_ = TopLoc_Location();
+    if (XCAFDoc_ShapeTool::GetShape(label, shape) && !shape.IsNull()) {
+      location_ = location;
+      add_faces(shape.Located(location * shape.Location()), label, told);
+      location_ = TopLoc_Location();
+    }
+  }
+
+  /// What is told of the last of the placed parts and assemblies as long as it is in those before it. (XCAF calls that
+  /// a specified higher usage occurrence.) What begins farther up tells more of the one place that is meant.
+  void take_nested(Place& place, Told& told) {
+    for (std::size_t first = path_.size() - 1; first-- > 0;) {
+      TDF_LabelSequence labels;
+      for (std::size_t k = first; k < path_.size(); ++k) labels.Append(path_[k]);
+      opencascade::handle<XCAFDoc_GraphNode> nested;
+      if (!XCAFDoc_ShapeTool::FindSHUO(labels, nested) || nested.IsNull()) continue;
+      const Told of_nested = told_of(nested->Label(), {});
+      if (of_nested.colour) told.colour = of_nested.colour;
+      if (of_nested.name.empty()) continue;
+      if (place.usual.empty()) place.usual = place.instance;
+      place.instance = of_nested.name;
+    }
+  }
+
+  /// The names of all that a face is in, and of the innermost place that has one.
+  void name_places(io::CadFaceFacts& facts) const {
+    for (std::optional<std::size_t> at = place_; at; at = model_.places[*at].above) {
+      const Place& place = model_.places[*at];
+      for (const std::string& name : {place.product, place.usual, place.instance})
+        if (!name.empty()) facts.within.push_back(name);
+      if (facts.instance.empty()) facts.instance = place.instance;
     }
   }
 
@@ -147,7 +191,7 @@ class Walk {
   /// Of a solid or face of a part, as the document has them without the part's place.
   Told told_of_part_of(const TopoDS_Shape& shape, const TDF_Label& part, const Told& otherwise) {
     TDF_Label label;
-    const TopoDS_Shape unplaced = shape.Located(place_.Inverted() * shape.Location());
+    const TopoDS_Shape unplaced = shape.Located(location_.Inverted() * shape.Location());
     Told told = shapes_->FindSubShape(part, unplaced, label) ? told_of(label, otherwise) : otherwise;
     if (const auto name = names_.find(shape.TShape().get()); name != names_.end()) told.name = name->second;
     return told;
@@ -158,11 +202,12 @@ class Walk {
     for (TopExp_Explorer face(shape, TopAbs_FACE, not_of); face.More(); face.Next()) {
       if (!seen_.Contains(face.Current()) || body.is_solid) seen_.Add(face.Current());
       else if (++repeated_) continue;
-      BodyFace found{TopoDS::Face(face.Current()), {}};
+      BodyFace found{TopoDS::Face(face.Current()), {}, place_};
       Told without_name = told;
       without_name.name.clear();
       const Told own = part.IsNull() ? without_name : told_of_part_of(face.Current(), part, without_name);
-      found.facts = {own.name, own.layer, own.colour, told.name, {}, {}, {}};
+      found.facts = {own.name, own.layer, own.colour, told.name, {}, {}, {}, {}, {}};
+      name_places(found.facts);
       body.faces.push_back(std::move(found));
     }
   }
@@ -173,8 +218,10 @@ class Walk {
   const Names& names_;
   CadModel& model_;
   Body loose_;
-  TopLoc_Location place_;
-  TopTools_IndexedMapOfShape seen_;  // loose faces and those of solids
+  TopLoc_Location location_;          // of the part at hand
+  std::optional<std::size_t> place_;  // of the part at hand
+  std::vector<TDF_Label> path_;       // the instances that lead to it
+  TopTools_IndexedMapOfShape seen_;   // loose faces and those of solids
   std::size_t curves_ = 0, points_ = 0, repeated_ = 0;
 };
 

@@ -26,6 +26,7 @@
 #include <set>
 
 #include "vdb_offset/cad/read/document.h"
+#include "vdb_offset/cad/read/name_instances.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -98,7 +99,7 @@ CadModel read_step(const std::string& path) {
   reader.SetMatMode(false);
   reader.SetPropsMode(false);
   reader.SetViewMode(false);
-  reader.SetSHUOMode(false);
+  reader.SetSHUOMode(true);  // colours of instances in one of the places of their assembly
   UnitsMethods::SetCasCadeLengthUnit(1.0);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     throw InvalidCad("expected a STEP file, got one that OpenCASCADE cannot read");
@@ -111,6 +112,7 @@ CadModel read_step(const std::string& path) {
   auto document = make_document(unit);
   if (!reader.Transfer(document))
     throw InvalidCad("expected a STEP file with shapes, got one of which OpenCASCADE makes none");
+  name_instances(reader, document);
   add_document(document, step_names(*reader.Reader().WS()), model);
   return model;
 }

@@ -7,25 +7,32 @@
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <StepShape_SolidModel.hxx>
 #include <TCollection_ExtendedString.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TransferBRep.hxx>
+#include <TransferBRep_ShapeMapper.hxx>
+#include <Transfer_FinderProcess.hxx>
 #include <UnitsMethods.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_LayerTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferWriter.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <gp.hxx>
 #include <gp_Trsf.hxx>
 
 #include <cmath>
 #include <utility>
 
-#include "vdb_offset/cad/read/cad_model.h"
 #include "vdb_offset/cad/read/document.h"
+#include "vdb_offset/cad/write/assemblies.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -37,10 +44,13 @@ void fill(const WrittenModel& model, const opencascade::handle<TDocStd_Document>
   const auto colours = XCAFDoc_DocumentTool::ColorTool(document->Main());
   const auto layers = XCAFDoc_DocumentTool::LayerTool(document->Main());
   std::vector<TDF_Label> parts;
+  Assemblies assemblies(shapes, model.places);
   for (std::size_t i = 0; i < model.shapes.size(); ++i) {
     parts.push_back(shapes->AddShape(model.shapes[i], Standard_False));
     TDataStd_Name::Set(parts.back(), text_of(model.names[i].empty() ? "offset" : model.names[i]));
+    assemblies.add(parts.back(), model.place_of[i]);
   }
+  shapes->UpdateAssemblies();
   for (const auto& [face, facts] : model.faces) {
     TDF_Label label;
     for (const TDF_Label& part : parts)
@@ -81,6 +91,18 @@ WrittenModel in_file_unit(const WrittenModel& model) {
   return scaled;
 }
 
+/// Gives solids the names of their parts: OpenCASCADE takes the name of an instance that lies where its part does for
+/// that of the solid.
+void name_solids(const WrittenModel& model, const XSControl_WorkSession& session) {
+  const auto process = session.TransferWriter()->FinderProcess();
+  for (std::size_t i = 0; i < model.shapes.size(); ++i) {
+    opencascade::handle<StepShape_SolidModel> solid;
+    const auto mapper = TransferBRep::ShapeMapper(process, model.shapes[i]);
+    if (process->FindTypedTransient(mapper, STANDARD_TYPE(StepShape_SolidModel), solid))
+      solid->SetName(new TCollection_HAsciiString(model.names[i].c_str()));
+  }
+}
+
 void write_step(const WrittenModel& model, const std::string& path) {
   STEPCAFControl_Writer writer;
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
@@ -94,7 +116,9 @@ void write_step(const WrittenModel& model, const std::string& path) {
   writer.SetNameMode(true);
   writer.SetLayerMode(true);
   writer.SetPropsMode(false);
-  if (!writer.Transfer(document, STEPControl_AsIs) || writer.Write(path.c_str()) != IFSelect_RetDone)
+  const bool is_transferred = writer.Transfer(document, STEPControl_AsIs);
+  name_solids(model, *writer.Writer().WS());
+  if (!is_transferred || writer.Write(path.c_str()) != IFSelect_RetDone)
     throw InvalidCad("expected a model that OpenCASCADE can write as STEP, got one that it cannot");
 }
 

@@ -19,6 +19,7 @@
 #include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_solid.h"
 #include "vdb_offset/cad/trim/trim_offset.h"
+#include "vdb_offset/cad/write/assemblies.h"
 #include "vdb_offset/cad/write/body_shape.h"
 #include "vdb_offset/cad/write/faceted.h"
 #include "vdb_offset/cad/write/offset_bodies.h"
@@ -106,9 +107,15 @@ class OffsetWriter {
   WrittenModel empty_model() const {
     WrittenModel model;
     model.millimetres = millimetres_;
+    model.places = model_.places;
     return model;
   }
-  static std::string name_of(const Body& body) { return body.faces.empty() ? "" : body.faces.front().facts.solid; }
+
+  void add(const TopoDS_Shape& shape, const Body& body, WrittenModel& model) const {
+    model.shapes.push_back(shape);
+    model.names.push_back(body.faces.empty() ? "" : body.faces.front().facts.solid);
+    model.place_of.push_back(place_of(body, model_.places));
+  }
 
   /// Writes all bodies, reads them again and judges them; false if one of them is not good.
   bool try_whole() {
@@ -116,8 +123,7 @@ class OffsetWriter {
     bool all_solid = true;
     for (const OffsetBody& body : bodies_) {
       if (body.result.shape.IsNull() || !body.result.gaps.empty()) return false;
-      model.shapes.push_back(body.result.shape);
-      model.names.push_back(name_of(body.body));
+      add(body.result.shape, body.body, model);
       name_faces(body, model);
       all_solid = all_solid && body.body.is_solid;
     }
@@ -153,10 +159,7 @@ class OffsetWriter {
         written_.gaps.emplace_back("a shell of the source has no offset, or is not closed");
         return false;
       }
-      for (const TopoDS_Shape& solid : solids) {
-        model.shapes.push_back(solid);
-        model.names.push_back(name_of(body.body));
-      }
+      for (const TopoDS_Shape& solid : solids) add(solid, body.body, model);
       name_faces(body, model);
       std::size_t k = 0;
       for (TopExp_Explorer face(body.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
@@ -288,6 +291,7 @@ class OffsetWriter {
     WrittenModel model = empty_model();
     model.shapes.push_back(scaled(faceted_shape(write_.positions, write_.triangles), millimetres_));
     model.names.emplace_back();
+    model.place_of.emplace_back();
     finish(model, io::CadMade::Facets);
   }
 
@@ -320,8 +324,7 @@ class OffsetWriter {
         any = true;
       }
       if (!any) continue;
-      model.shapes.push_back(faces);
-      model.names.push_back(name_of(body.body));
+      add(faces, body.body, model);
       name_faces(body, model);
     }
     if (!model.shapes.empty()) finish(model, io::CadMade::Faces);

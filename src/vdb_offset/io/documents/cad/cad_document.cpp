@@ -34,7 +34,10 @@ std::string as_word(std::string name) {
 }
 
 std::string group_of(const CadFaceFacts& face, std::size_t number) {
-  return fmt::format("face_{}{}{}", number, face.name.empty() ? "" : "_", as_word(face.name));
+  std::string group = fmt::format("face_{}", number);
+  for (const std::string* name : {&face.instance, &face.name})
+    if (!name->empty()) group += "_" + as_word(*name);
+  return group;
 }
 
 class CadDocument : public Document {
@@ -104,9 +107,15 @@ class CadDocument : public Document {
     const CadFaceFacts& face = mesh_->faces[f];
     std::vector<std::string> names;
     if (by == Selector::By::Face) names = {std::to_string(f + 1)};
-    else if (by == Selector::By::Name) names = {face.name, face.layer, face.solid};
+    else if (by == Selector::By::Name) names = names_around(face);
     else if (face.colour) names = {colour_digits(*face.colour)};
     std::erase(names, "");
+    return names;
+  }
+
+  static std::vector<std::string> names_around(const CadFaceFacts& face) {
+    std::vector<std::string> names = face.within;
+    names.insert(names.end(), {face.name, face.layer, face.solid});
     return names;
   }
 

@@ -26,6 +26,8 @@ struct CadFaceFacts {
   std::string solid;                            ///< The name of the solid or the part that it is of.
   std::string kind;                             ///< plane, cylinder, cone, sphere, torus, b-spline, ...
   std::array<double, 2> u{}, v{};               ///< The ranges of its parameters.
+  std::string instance;  ///< What the part, or the innermost assembly that is told, is called where it is placed.
+  std::vector<std::string> within;  ///< The names of all parts and assemblies that it is in, and of their places.
 };
 
 /// How the faces of a CAD model meet along an edge of the tessellation.

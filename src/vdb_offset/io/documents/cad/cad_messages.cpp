@@ -37,14 +37,16 @@ std::vector<CadFaceDistance> take_distances(Unpacker& unpacker) {
 }
 
 void put_face(Packer& packer, const CadFaceFacts& face) {
-  packer.text(face.name).text(face.layer).text(face.solid).text(face.kind);
+  packer.text(face.name).text(face.layer).text(face.solid).text(face.kind).text(face.instance);
+  put_texts(packer, face.within);
   packer.value(std::uint8_t{face.colour.has_value()}).value(face.colour.value_or(Numbers{}));
   packer.value(face.u).value(face.v);
 }
 
 CadFaceFacts take_face(Unpacker& unpacker) {
   CadFaceFacts face;
-  for (std::string* text : {&face.name, &face.layer, &face.solid, &face.kind}) *text = unpacker.text();
+  for (std::string* text : {&face.name, &face.layer, &face.solid, &face.kind, &face.instance}) *text = unpacker.text();
+  face.within = take_texts(unpacker);
   const bool has_colour = unpacker.value<std::uint8_t>() != 0;
   const auto colour = unpacker.value<Numbers>();
   if (has_colour) face.colour = colour;
@@ -134,7 +136,7 @@ CadMesh unpack_mesh(std::string_view bytes) {
   mesh.face_of = unpacker.list<std::uint32_t>();
   mesh.corner_parameters = unpacker.list<std::array<double, 2>>();
   mesh.corner_normals = unpacker.list<Vec3d>();
-  constexpr std::size_t kLeastOfFace = 4 * sizeof(std::uint64_t);
+  constexpr std::size_t kLeastOfFace = 6 * sizeof(std::uint64_t);
   mesh.faces.resize(unpacker.count(kLeastOfFace));
   for (CadFaceFacts& face : mesh.faces) face = take_face(unpacker);
   mesh.edges = unpacker.list<std::array<std::uint32_t, 2>>();
