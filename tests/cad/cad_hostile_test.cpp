@@ -136,11 +136,35 @@ TEST_CASE("cad: a file that takes too long or too much is given up", "[cad]") {
       "ball.brep: expected a CAD file, got one that takes OpenCASCADE longer than 0.25 s (--cad-seconds)");
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
 #ifndef __SANITIZE_ADDRESS__  // where memory has no limit
-  CHECK_THROWS_AS(io::CadWorker("ball.brep", bytes, "brep", {1e-4, 0, 0.5}, 60, 1 << 20), OutOfBudget);
-  CHECK_THROWS_WITH(io::CadWorker("ball.brep", bytes, "brep", {1e-4, 0, 0.5}, 60, 1 << 20),
-                    "ball.brep: expected a CAD file whose model fits into memory, got one that asks for more");
+  CHECK_THROWS_AS(io::CadWorker("ball.brep", bytes, "brep", {1e-4, 0, 0.5}, 60, 8 << 20), OutOfBudget);
+  CHECK_THROWS_WITH(io::CadWorker("ball.brep", bytes, "brep", {1e-4, 0, 0.5}, 60, 8 << 20),
+                    "ball.brep: expected to fit into 8 MiB (--max-memory), got a model that needs more");
 #endif
 }
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("cad: where the memory is too little the file is not blamed", "[cad]") {
+  REQUIRE(cad_files().is_made());
+  std::size_t refused = 0;
+  for (const char* const name : {"block.step", "sphere.brep", "faces.igs"}) {
+    const std::string bytes = cad_files().bytes(name), ending = std::string(name).substr(std::string(name).rfind('.'));
+    const auto read = [&](std::uint64_t memory) { io::CadWorker(name, bytes, ending, coarse(), 60, memory); };
+    CHECK_THROWS_AS(read(1 << 20), OutOfBudget);
+    CHECK_THROWS_WITH(read(1 << 20), Contains("expected to fit into 1 MiB (--max-memory), got at least 3"));
+    read(64 << 20);
+    for (std::uint64_t memory = 1 << 20; memory < 6 << 20; memory += 1 << 18) try {
+        read(memory);
+      } catch (const OutOfBudget&) {
+        ++refused;
+      }
+  }
+  CHECK(refused >= 3 * 8);
+  // A file that is broken is, however much of it would fit.
+  CHECK_THROWS_AS(
+      io::CadWorker("cut.step", cad_files().bytes("block.step").substr(0, 9000), ".step", coarse(), 60, 32 << 20),
+      InvalidInput);
+}
+#endif
 
 TEST_CASE("cad: a worker that is killed is told of, whatever becomes of children", "[cad]") {
   REQUIRE(cad_files().is_made());

@@ -16,6 +16,9 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{1} << 26;
 constexpr double kShare = 0.75;
 
+// The share of what is allowed from which a list that grows to twice its size could have passed it.
+constexpr double kUsedShare = 0.5;
+
 /// The most bytes of addresses that this process has had; 0 if the system does not say.
 std::uint64_t most_addresses() {
   std::ifstream file("/proc/self/status");
@@ -35,6 +38,13 @@ void limit_memory(std::uint64_t more) {
 #else
   (void)more;
 #endif
+}
+
+bool is_memory_used_up(std::uint64_t more) {
+  rlimit limit{};
+  if (more == 0 || ::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return false;
+  const std::uint64_t at_start = limit.rlim_cur - more, most = most_addresses();
+  return most > at_start && static_cast<double>(most - at_start) > kUsedShare * static_cast<double>(more);
 }
 
 bool is_memory_short() {

@@ -19,6 +19,16 @@ bool is_whole(const io::CadMesh& mesh) {
   return std::find(has_triangles.begin(), has_triangles.end(), 0) == has_triangles.end();
 }
 
+/// \throw std::bad_alloc if OpenCASCADE takes the file for a broken one, and had no memory for it
+CadModel read_within_memory(const io::ReadCad& read) {
+  try {
+    return read_model(read.path, read.format);
+  } catch (const InvalidCad&) {
+    if (!is_memory_used_up(read.most_memory)) throw;
+  }
+  throw std::bad_alloc();
+}
+
 /// \throw std::bad_alloc if faces have no triangles as there was no memory for them
 io::CadMesh tessellate_within_memory(CadModel& model, const io::CadFineness& fineness) {
   try {
@@ -34,7 +44,7 @@ io::CadMesh tessellate_within_memory(CadModel& model, const io::CadFineness& fin
 
 std::string Requests::mesh(const io::ReadCad& read) {
   limit_memory(read.most_memory);
-  model_ = read_model(read.path, read.format);
+  model_ = read_within_memory(read);
   const io::CadMesh mesh = tessellate_within_memory(*model_, read.fineness);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
