@@ -181,6 +181,30 @@ TEST_CASE("cad written: a groove that closes is gone from the floor that it shar
   CHECK(volume_of_mesh(written.again.polygons) == Approx(written.facts.volume).epsilon(1e-6));
 }
 
+TEST_CASE("cad written: edges within a plane or a cylinder lead to where its faces meet others", "[cad]") {
+  for (const double d : {0.25, 1.0, 2.5, -0.25, -1.0, -1.75}) {
+    INFO(d);
+    const double side = 10 + 2 * d, radius = 6 + d, x = 0.5 - d;
+    const double segment = radius * radius * std::acos(x / radius) - x * std::sqrt(radius * radius - x * x);
+    const auto check = [&](const char* const name, double volume, bool keeps_vertices) {
+      INFO(name);
+      const Written written = write(name, d, "within.step");
+      CHECK(written.facts.made == Made::Solid);
+      CHECK(written.facts.gaps.empty());
+      CHECK(written.facts.swallowed == 0);
+      CHECK(written.facts.volume == Approx(volume).epsilon(1e-6));
+      CHECK(volume_of_mesh(written.again.polygons) == Approx(volume).epsilon(5e-3));
+      // Borders that go to and fro would have more of them.
+      if (keeps_vertices) CHECK(written.again.polygons.positions.size() == written.source.polygons.positions.size());
+    };
+    check("steps.step", side * side * side + 10 * side * (6 + 2 * d), d > 0);
+    check("tee.step", (20 + 2 * d) * side * (5 + 2 * d) + (7 + 2 * d) * side * 4, d > 0);
+    check("towers.step", side * side * side + 10 * side * (8 + 2 * d) + 10 * side * (6 + 2 * d) + 100 * (4 + 2 * d),
+          false);
+    check("cut_cylinder.step", std::numbers::pi * radius * radius * (5 + 2 * d) + 4 * segment, false);
+  }
+}
+
 TEST_CASE("cad written: what is placed has its names again", "[cad]") {
   const Written written = write("robot.step", 0.25, "robots.step");
   CHECK(written.facts.made == Made::Solid);

@@ -187,6 +187,31 @@ TopoDS_Shape pit() {
   return all;
 }
 
+/// A box from one corner to another.
+TopoDS_Shape box(const gp_Pnt& low, const gp_Pnt& high) { return BRepPrimAPI_MakeBox(low, high).Shape(); }
+
+// What follows is fused of parts whose sides continue each other, and are not made one: edges lie within a plane or a
+// cylinder.
+
+/// Two boxes of 10 x 10, 10 and 6 high, side by side.
+TopoDS_Shape steps() { return BRepAlgoAPI_Fuse(box({0, 0, 0}, {10, 10, 10}), box({10, 0, 0}, {20, 10, 6})).Shape(); }
+
+/// A box of 20 x 10 x 5 with one of 7 x 10 x 4 on it, 5 from an end.
+TopoDS_Shape tee() { return BRepAlgoAPI_Fuse(box({0, 0, 0}, {20, 10, 5}), box({5, 0, 5}, {12, 10, 9})).Shape(); }
+
+/// Four boxes of 10 x 10 around an edge, 10, 8, 4 and 6 high in turn.
+TopoDS_Shape towers() {
+  const TopoDS_Shape two = BRepAlgoAPI_Fuse(box({0, 0, 0}, {10, 10, 10}), box({10, 0, 0}, {20, 10, 8})).Shape();
+  const TopoDS_Shape three = BRepAlgoAPI_Fuse(two, box({10, 10, 0}, {20, 20, 4})).Shape();
+  return BRepAlgoAPI_Fuse(three, box({0, 10, 0}, {10, 20, 6})).Shape();
+}
+
+/// A cylinder of radius 6 that is 5 high, and 4 more where x is above 0.5.
+TopoDS_Shape cut_cylinder() {
+  const TopoDS_Shape upper = BRepAlgoAPI_Cut(upright(0, 0, 5, 6, 4), box({-10, -10, 0}, {0.5, 10, 20})).Shape();
+  return BRepAlgoAPI_Fuse(upright(0, 0, 0, 6, 5), upper).Shape();
+}
+
 TopoDS_Shape curves() {
   BRep_Builder builder;
   TopoDS_Compound all;
@@ -319,6 +344,10 @@ int main(int count, char** words) {
   write_step(hole_at_side(), "hole_at_side.step", "MM");
   write_step(grooves(), "grooves.step", "MM");
   write_step(waist(), "waist.step", "MM");
+  write_step(steps(), "steps.step", "MM");
+  write_step(tee(), "tee.step", "MM");
+  write_step(towers(), "towers.step", "MM");
+  write_step(cut_cylinder(), "cut_cylinder.step", "MM");
   write_brep(pit(), "pit.brep");
   write_step(curves(), "curves.step", "MM");
   write_brep(open_box(), "open.brep");

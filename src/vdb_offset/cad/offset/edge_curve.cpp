@@ -51,8 +51,10 @@ class Tracer {
     const double s0 = guided ? edge_.range[0] : 0, s1 = guided ? edge_.range[1] : 1;
     for (int i = 0; i <= spans; i++) t.s.push_back(s0 + (s1 - s0) * i / spans);
     for (int i = 0; i <= spans; i++)
-      t.contacts.push_back(edge_.kind == EdgeKind::Smooth ? smooth(t.s[i]) : sharp(t, i, guided));
-    if (edge_.kind == EdgeKind::Sharp)
+      t.contacts.push_back(edge_.keeps_curves()             ? smooth(t.s[i])
+                           : edge_.kind == EdgeKind::Smooth ? strayed(t.s[i])
+                                                            : sharp(t, i, guided));
+    if (!edge_.keeps_curves())
       for (int i = 0; i < spans; i++) {
         gp_Pnt p;
         gp_Vec direction;
@@ -100,6 +102,25 @@ class Tracer {
     }
     c.point = gp_Pnt(sum / n);
     if (n == 2) c.residual = points[0].Distance(points[1]) / 2;
+    return c;
+  }
+
+  // Along the trimming curves, and as far from them as the ends are, by their shares of the way.
+  Contact strayed(double s) const {
+    const double share = (s - edge_.range[0]) / (edge_.range[1] - edge_.range[0]);
+    const auto moved = [&](const HalfEdge& h) {
+      gp_Pnt2d uv, first, last;
+      gp_Vec2d tangent;
+      evaluate(*h.pcurve, s, uv, tangent);
+      evaluate(*h.pcurve, edge_.range[0], first, tangent);
+      evaluate(*h.pcurve, edge_.range[1], last, tangent);
+      return uv.Translated(gp_Vec2d(first, h.forward ? h.start : h.end) * (1 - share) +
+                           gp_Vec2d(last, h.forward ? h.end : h.start) * share);
+    };
+    Contact c;
+    c.a = moved(*sides_[0]);
+    c.point = surfaces_[0]->Value(c.a.X(), c.a.Y());
+    c.b = project(*surfaces_[1], c.point, moved(*sides_[1]), &c.residual);
     return c;
   }
 
@@ -240,7 +261,7 @@ std::vector<T> every_other(const std::vector<T>& all) {
 }
 
 bool keeps_pcurve(const ModelEdge& e, const HalfEdge& h) {
-  if (e.kind != EdgeKind::Smooth || h.pcurve.IsNull()) return false;
+  if (!e.keeps_curves() || h.pcurve.IsNull()) return false;
   const double apart = 1e-9 * (e.last - e.first);
   return h.pcurve->IsPeriodic() ||
          (e.range[0] >= h.pcurve->FirstParameter() - apart && e.range[1] <= h.pcurve->LastParameter() + apart);
@@ -256,7 +277,7 @@ EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& tr
   if (line || circle) {
     std::vector<double> own;
     bool is_good = parameters_on(line, circle, trace.contacts, own);
-    if (is_good && e.kind == EdgeKind::Smooth) {
+    if (is_good && e.keeps_curves()) {
       // Trimming curves keep their parameters, so the curve in space has to have the same up to a shift.
       const double shift = own.front() - t.front();
       for (std::size_t i = 0; i < t.size(); i++)

@@ -40,7 +40,12 @@ struct ModelEdge {
   std::array<double, 2> range = {0, 0};  ///< The range found for the offset, in the same parameter.
   bool is_step = false;                  ///< The faces are joined smoothly, and their distances differ.
   double gap = 0;                        ///< Between the two faces' offsets along a smooth edge.
+  bool is_within = false;                ///< Smooth, and the two faces' offsets are one surface.
+  std::array<bool, 2> strays = {false, false};  ///< Of one within a surface: which ends are off its trimming curves.
   bool is_gone = false;
+
+  /// Whether it keeps its trimming curves.
+  bool keeps_curves() const { return kind == EdgeKind::Smooth && !strays[0] && !strays[1]; }
 };
 
 struct ModelVertex {

@@ -2,7 +2,9 @@
 #include "vdb_offset/cad/offset/place.h"
 
 #include <BRep_Tool.hxx>
+#include <Geom_ElementarySurface.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gp_Mat.hxx>
 
@@ -15,6 +17,30 @@ constexpr double kSmoothAngle = 0.06;
 double distance_at(const ModelFace& f, gp_Pnt2d uv) { return f.distance(uv.X(), uv.Y()); }
 
 gp_Vec outside(const ModelFace& f, gp_Pnt2d uv) { return unit_normal(*f.surface, uv.X(), uv.Y(), f.box) * f.sign; }
+
+// Whether the offsets of the two faces of a smooth edge are one surface, as far round the edge as its ends may go.
+bool is_one_surface(const Model& model, const ModelEdge& e, const Tolerances& tolerances) {
+  const HalfEdge &a = model.halves[e.half[0]], &b = model.halves[e.half[1]];
+  const Handle(Geom_Surface)& s = model.faces[a.face].offset.surface, &t = model.faces[b.face].offset.surface;
+  if (a.face == b.face || s->DynamicType() != t->DynamicType() || !s->IsKind(STANDARD_TYPE(Geom_ElementarySurface)))
+    return false;
+  const double reach = 3 * tolerances.distance;
+  for (const double part : {0.0, 0.5, 1.0}) {
+    const double at = e.first + (e.last - e.first) * part;
+    const gp_Pnt2d p = a.pcurve->Value(at), q = b.pcurve->Value(at);
+    gp_Pnt point;
+    gp_Vec du, dv;
+    s->D1(p.X(), p.Y(), point, du, dv);
+    for (const auto& [u, v] : {std::array{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
+      const double speed = (du * std::abs(u) + dv * std::abs(v)).Magnitude();
+      if (speed < 1e-12) continue;
+      double apart = 0;
+      project(*t, s->Value(p.X() + u * reach / speed, p.Y() + v * reach / speed), q, &apart);
+      if (apart > tolerances.gap) return false;
+    }
+  }
+  return true;
+}
 
 // Where a point of a curve lies that is closest to `point`'s plane across the curve, from a start close by.
 double across(const Geom_Curve& curve, const gp_Pnt& point, double start) {
@@ -61,6 +87,7 @@ void classify_edges(Model& model, const Tolerances& tolerances) {
     const bool is_smooth = angle < kSmoothAngle && gap <= source_gap + tolerances.gap;
     e.kind = is_smooth || a.face == b.face ? EdgeKind::Smooth : EdgeKind::Sharp;
     e.gap = e.kind == EdgeKind::Smooth ? gap : 0;
+    e.is_within = e.kind == EdgeKind::Smooth && is_one_surface(model, e, tolerances);
     const double middle = (e.first + e.last) / 2;
     const double apart =
         distance_at(fa, a.pcurve->Value(middle)) * fa.sign - distance_at(fb, b.pcurve->Value(middle)) * fb.sign;
@@ -120,13 +147,34 @@ gp_Pnt mitre_point(const Model& model, const gp_Pnt& source, const std::vector<i
   return source.Translated(gp_Vec(gp_XYZ(b[0], b[1], b[2]).Multiplied(m.Inverted())));
 }
 
+namespace {
+
+// Whether a spoke's end is to be on its trimming curve.
+bool is_on_curve(const Model& model, int half) {
+  const HalfEdge& h = model.halves[half];
+  const ModelEdge& e = model.edges[h.edge];
+  return e.kind == EdgeKind::Smooth && !h.pcurve.IsNull() && !e.strays[h.forward ? 0 : 1];
+}
+
+}  // namespace
+
+bool let_stray(Model& model, const std::vector<int>& spokes, bool may_stray) {
+  bool is_any = false;
+  for (int s : spokes) {
+    ModelEdge& e = model.edges[model.halves[s].edge];
+    e.strays[model.halves[s].forward ? 0 : 1] = may_stray && e.is_within;
+    is_any = is_any || e.is_within;
+  }
+  return is_any;
+}
+
 std::vector<Support> supports_of(const Model& model, const std::vector<int>& faces_of, const std::vector<int>& spokes) {
   std::vector<Support> supports;
   std::vector<int> covered;
   for (int s : spokes) {
     const HalfEdge& h = model.halves[s];
     const ModelEdge& e = model.edges[h.edge];
-    if (e.kind != EdgeKind::Smooth || h.pcurve.IsNull()) continue;
+    if (!is_on_curve(model, s)) continue;
     supports.push_back({model.faces[h.face].offset.surface, h.pcurve, h.origin, h.forward ? e.first : e.last});
     covered.push_back(h.face);
     if (h.twin >= 0) covered.push_back(model.halves[h.twin].face);
@@ -148,13 +196,14 @@ void spread_vertex(Model& model, int vertex) {
     gp_Pnt2d& uv = is_start ? h.start : h.end;
     const Handle(Geom_Surface)& s = model.faces[h.face].offset.surface;
     const int end = h.forward == is_start ? 0 : 1;
-    if (e.kind == EdgeKind::Smooth && !h.pcurve.IsNull()) {
+    const bool strays = e.strays[end];
+    if (e.kind == EdgeKind::Smooth && !h.pcurve.IsNull() && !strays) {
       gp_Vec2d tangent;
       evaluate(*h.pcurve, e.range[end], uv, tangent);
       return;
     }
     uv = project(*s, v.point, uv);
-    if (!e.curve.IsNull() && e.kind == EdgeKind::Sharp)
+    if (!e.curve.IsNull() && (e.kind == EdgeKind::Sharp || strays))
       e.range[end] = across(*e.curve, v.point, end == 0 ? e.first : e.last);
   };
   for (int h : v.ring) {
@@ -190,11 +239,41 @@ bool place_apex(Model& model, ModelVertex& v) {
   return true;
 }
 
+// Finds where all that the vertex lies on meets, and the ends of smooth edges there.
+void meet_at(Model& model, ModelVertex& v, const std::vector<int>& spokes) {
+  std::vector<Support> supports = supports_of(model, v.ring, spokes);
+  v.point = mitre_point(model, v.source, v.ring);
+  // Another try starts from the source, not from where the last one ended.
+  for (int h : v.ring) model.halves[h].start = model.halves[h].origin;
+  if (v.has_near) {
+    v.point = v.near;
+    for (Support& s : supports)
+      if (s.curve.IsNull()) s.uv = project(*s.surface, v.point, s.uv);
+  }
+  // Curves begin where the mitre's foot is, not at the source's vertex: fillets are about as small as the distance.
+  v.residual = meet(supports, v.point);
+  std::size_t at = 0;
+  for (int s : spokes)
+    if (is_on_curve(model, s)) {
+      const HalfEdge& h = model.halves[s];
+      model.edges[h.edge].range[h.forward ? 0 : 1] = supports[at++].t;
+    }
+}
+
 }  // namespace
+
+bool place_astray(Model& model, int vertex, const Tolerances& tolerances) {
+  ModelVertex& v = model.vertices[vertex];
+  if (!let_stray(model, v.ring, true)) return false;
+  meet_at(model, v, v.ring);
+  spread_vertex(model, vertex);
+  return v.residual <= tolerances.gap;
+}
 
 void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   ModelVertex& v = model.vertices[vertex];
   std::vector<int> spokes = v.ring;
+  let_stray(model, spokes, false);
   if (v.is_open) spokes.push_back(previous_drawn(model, v.ring.back()));  // It ends here: see below.
   bool is_smooth = true;
   for (int h : v.ring) is_smooth = is_smooth && model.edges[model.halves[h].edge].kind == EdgeKind::Smooth;
@@ -220,24 +299,7 @@ void place_vertex(Model& model, int vertex, const Tolerances& tolerances) {
     }
   }
   if (v.is_open) spokes.pop_back();
-  std::vector<Support> supports = supports_of(model, v.ring, spokes);
-  v.point = mitre_point(model, v.source, v.ring);
-  // Another try starts from the source, not from where the last one ended.
-  for (int h : v.ring) model.halves[h].start = model.halves[h].origin;
-  if (v.has_near) {
-    v.point = v.near;
-    for (Support& s : supports)
-      if (s.curve.IsNull()) s.uv = project(*s.surface, v.point, s.uv);
-  }
-  // Curves begin where the mitre's foot is, not at the source's vertex: fillets are about as small as the distance.
-  v.residual = meet(supports, v.point);
-  std::size_t at = 0;
-  for (int s : spokes) {
-    const HalfEdge& h = model.halves[s];
-    ModelEdge& e = model.edges[h.edge];
-    if (e.kind != EdgeKind::Smooth || h.pcurve.IsNull()) continue;
-    e.range[h.forward ? 0 : 1] = supports[at++].t;
-  }
+  meet_at(model, v, spokes);
   spread_vertex(model, vertex);
 }
 

@@ -26,12 +26,20 @@ gp_Pnt moved_start(const Model& model, int half);
 /// The material's outside at the start of a half-edge.
 gp_Vec start_normal(const Model& model, int half);
 
+/// Lets the ends of spokes that lie within one surface be off their trimming curves, or has them there again. False if
+/// there are none.
+bool let_stray(Model& model, const std::vector<int>& spokes, bool may_stray);
+
 /// What the offset of the corner lies on: the smooth spokes' curves, and the faces that have none. `spokes` are
 /// half-edges that start at the vertex; only those that are asked for count.
 std::vector<Support> supports_of(const Model& model, const std::vector<int>& faces_of, const std::vector<int>& spokes);
 
 /// Places a vertex where the offsets of its faces meet, and tells its half-edges' (u, v).
 void place_vertex(Model& model, int vertex, const Tolerances& tolerances);
+
+/// Places it where its faces meet if edges within one surface leave their trimming curves. False if there are none, or
+/// the faces do not.
+bool place_astray(Model& model, int vertex, const Tolerances& tolerances);
 
 /// Sets (u, v) and ranges of the half-edges that start or end at a vertex that has its point.
 void spread_vertex(Model& model, int vertex);

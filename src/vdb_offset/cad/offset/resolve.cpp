@@ -56,7 +56,8 @@ class Splitter {
     for (int h : ring_) normals_.push_back(start_normal(model, h));
   }
 
-  bool split() {
+  // Splits the vertex in the way whose new edges are shortest together; false if none has less than `most`.
+  bool split(double most) {
     std::optional<Triangulation> best;
     double best_length = 0;
     for (const Triangulation& t : triangulations(0, n_ - 1)) {
@@ -66,7 +67,7 @@ class Splitter {
         best_length = length;
       }
     }
-    if (!best) return false;
+    if (!best || best_length >= most) return false;
     apply(*best);
     return true;
   }
@@ -128,10 +129,37 @@ class Splitter {
       std::vector<gp_Pnt> line;
       for (int k : chain) line.push_back(points[k].point);
       // Only if there is no other: directions in the source tell less of the offset the farther it is.
-      if (!is_simple(line, corner)) length += kCrossing * tolerances_.distance;
+      if (!is_simple(line, corner) || has_spike(line, across(t, corner), corner))
+        length += kCrossing * tolerances_.distance;
       for (std::size_t i = 0; i + 1 < line.size(); i++) length += line[i].Distance(line[i + 1]) / 2;
     }
     return length;
+  }
+
+  // The corners that are neighbours of one, from that at the side before it to that at the side behind it.
+  std::vector<int> across(const Triangulation& t, int corner) const {
+    std::vector<int> corners = {(corner + n_ - 1) % n_};
+    for (int k : chain_of(t, corner))
+      for (int i : t[k])
+        if (i != corner && i != corners.back()) {
+          corners.push_back(i);
+          break;
+        }
+    return corners;
+  }
+
+  // Whether a border goes back over itself: along two of its edges that lie on one curve, as the faces behind them are
+  // one surface.
+  bool has_spike(const std::vector<gp_Pnt>& line, const std::vector<int>& behind, int corner) const {
+    for (std::size_t i = 0; i + 1 < behind.size() && i < line.size(); i++) {
+      const int a = behind[i], b = behind[i + 1];
+      const int side = (a + 1) % n_ == b ? b : (b + 1) % n_ == a ? a : -1;
+      if (side < 0 || !model_.edges[model_.halves[ring_[side]].edge].is_within) continue;
+      const gp_Vec to = i > 0 ? gp_Vec(line[i - 1], line[i]) : -direction(ring_[corner]);
+      const gp_Vec from = i + 1 < line.size() ? gp_Vec(line[i], line[i + 1]) : direction(ring_[(corner + 1) % n_]);
+      if (to.Dot(from) < 0) return true;
+    }
+    return false;
   }
 
   // The triangles at a corner, from that at the side before it to that at the side behind it.
@@ -296,24 +324,37 @@ void Splitter::apply(const Triangulation& t) {
     model_.vertices[vertex[k]].near = start_[t[k]];
     model_.vertices[vertex[k]].has_near = true;
     place_vertex(model_, vertex[k], tolerances_);
+    if (model_.vertices[vertex[k]].residual > tolerances_.gap) place_astray(model_, vertex[k], tolerances_);
   }
 }
 
 }  // namespace
 
 bool resolve_vertex(Model& model, int vertex, const Tolerances& tolerances) {
+  const int n = static_cast<int>(model.vertices[vertex].ring.size());
+  const auto is_far = [&] {
+    // Of more than three faces that touch each other at the vertex the offsets may meet far off, to one side of it.
+    const ModelVertex& v = model.vertices[vertex];
+    return n > 3 && !v.is_open && v.point.Distance(mitre_point(model, v.source, v.ring)) > tolerances.distance;
+  };
   place_vertex(model, vertex, tolerances);
-  const ModelVertex& v = model.vertices[vertex];
-  const int n = static_cast<int>(v.ring.size());
-  // Of more than three faces that touch each other at the vertex the offsets may meet far off, to one side of it.
-  const bool is_far =
-      n > 3 && !v.is_open && v.point.Distance(mitre_point(model, v.source, v.ring)) > tolerances.distance;
-  if (v.residual <= tolerances.gap && !is_far) return true;
-  const bool is_close = v.residual <= kCloseEnough * tolerances.distance;
-  if (n < 4 || n > kMostCorners || v.is_open) return is_close;
-  if (!Splitter(model, vertex, tolerances).split()) return is_close;
-  model.steps.push_back("vertex " + std::to_string(vertex + 1) + " of " + std::to_string(n) + " faces is split");
-  return true;
+  if (model.vertices[vertex].residual <= tolerances.gap && !is_far()) return true;
+  const bool is_close = model.vertices[vertex].residual <= kCloseEnough * tolerances.distance;
+  const bool may_split = n >= 4 && n <= kMostCorners && !model.vertices[vertex].is_open;
+  const auto split = [&](double most) {
+    if (!may_split || !Splitter(model, vertex, tolerances).split(most)) return false;
+    model.steps.push_back("vertex " + std::to_string(vertex + 1) + " of " + std::to_string(n) + " faces is split");
+    return true;
+  };
+  if (split(kCrossing * tolerances.distance)) return true;
+  // Edges that end at a new edge stay where they are; those within one surface may also leave their trimming curves, as
+  // where a step goes up between two faces of one plane.
+  if (place_astray(model, vertex, tolerances) && !is_far()) return true;
+  place_vertex(model, vertex, tolerances);
+  if (split(INFINITY)) return true;
+  if (let_stray(model, model.vertices[vertex].ring, true) && split(INFINITY)) return true;
+  place_vertex(model, vertex, tolerances);
+  return is_close;
 }
 
 }  // namespace vdb_offset::cad
