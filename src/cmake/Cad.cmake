@@ -28,7 +28,7 @@ set(cad_sources read/document read/name_instances read/read_model surface/face_s
   offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/mend_pcurve offset/model offset/offset_solid
   offset/offset_surface offset/place offset/resolve offset/surface_fit
   hold/held_field hold/hold_back hold/room hold/smooth_edges
-  judge/clearance judge/judge judge/parameters judge/soup judge/soup_crossings
+  judge/clearance judge/edge_points judge/judge judge/parameters judge/soup judge/soup_crossings
   trim/cut_faces trim/join_pieces trim/point_in_face trim/trim_offset
   write/assemblies write/blended_faces write/body_shape write/face_distances write/faceted write/offset_bodies write/own_process
   write/thick_solids write/write_model write/write_offset

@@ -181,6 +181,22 @@ TEST_CASE("cad written: a groove that closes is gone from the floor that it shar
   CHECK(volume_of_mesh(written.again.polygons) == Approx(written.facts.volume).epsilon(1e-6));
 }
 
+TEST_CASE("cad written: walls of a hollow block are good to the last, and not when they are gone", "[cad]") {
+  // Nearly all of each wall's sides lies over the mitres of the other side.
+  for (const double d : {-2.3, -2.4, -2.49}) {
+    INFO(d);
+    const Written written = write("hollow.step", d, "thin.step");
+    CHECK(written.facts.made == Made::Solid);
+    CHECK(
+        written.facts.volume ==
+        Approx((40 + 2 * d) * (30 + 2 * d) * (20 + 2 * d) - (30 - 2 * d) * (20 - 2 * d) * (10 - 2 * d)).epsilon(1e-6));
+  }
+  for (const double d : {-2.5, -2.51, -2.6}) {
+    INFO(d);
+    CHECK(write("hollow.step", d, "gone.step").facts.made == Made::Faces);
+  }
+}
+
 TEST_CASE("cad written: edges within a plane or a cylinder lead to where its faces meet others", "[cad]") {
   for (const double d : {0.25, 1.0, 2.5, -0.25, -1.0, -1.75}) {
     INFO(d);

@@ -190,6 +190,9 @@ TopoDS_Shape pit() {
 /// A box from one corner to another.
 TopoDS_Shape box(const gp_Pnt& low, const gp_Pnt& high) { return BRepPrimAPI_MakeBox(low, high).Shape(); }
 
+/// A block of 40 x 30 x 20 with a cavity: walls of 5 all round.
+TopoDS_Shape hollow() { return BRepAlgoAPI_Cut(box({0, 0, 0}, {40, 30, 20}), box({5, 5, 5}, {35, 25, 15})).Shape(); }
+
 // What follows is fused of parts whose sides continue each other, and are not made one: edges lie within a plane or a
 // cylinder.
 
@@ -344,6 +347,7 @@ int main(int count, char** words) {
   write_step(hole_at_side(), "hole_at_side.step", "MM");
   write_step(grooves(), "grooves.step", "MM");
   write_step(waist(), "waist.step", "MM");
+  write_step(hollow(), "hollow.step", "MM");
   write_step(steps(), "steps.step", "MM");
   write_step(tee(), "tee.step", "MM");
   write_step(towers(), "towers.step", "MM");

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "vdb_offset/cad/judge/edge_points.h"
 #include "vdb_offset/cad/judge/soup.h"
 #include "vdb_offset/cad/offset/offset_surface.h"
 
@@ -166,9 +167,9 @@ class Judge {
         result_(result),
         source_faces_(faces_of(source)),
         result_faces_(faces_of(result)),
-        sharp_edges_(sharp_edges_of(source)),
         distance_(distance),
         far_(std::abs(distance)),
+        mitred_(sharp_edges_of(source), kMitreOverFace * far_),
         options_(options) {}
 
   Verdict judge() {
@@ -217,12 +218,13 @@ class Judge {
     for (const SoupPoint& p : points) {
       SoupPoint foot = source.closest(p.point);
       double share = foot.distance / far_;
+      // Beyond a sharp edge its mitre may lie over the inside of a third face: of much of a thin wall's two sides.
+      const auto is_mitred = [&] { return share > 1 + options_.tolerance && mitred_.has_near(p.point); };
+      foot.is_inside = foot.is_inside && !is_mitred();
       if ((share < 1 - options_.tolerance || (foot.is_inside && share > 1 + options_.tolerance)) &&
           share > 1 - kDoubtful && doubts++ < kMostDoubts) {
         share = exact_distance(source_faces_, p.point, foot.is_inside, foot.distance) / far_;
-        // Beyond a sharp edge its mitre may lie over the inside of a third face.
-        if (foot.is_inside && share > 1 + options_.tolerance)
-          foot.is_inside = exact_distance(sharp_edges_, p.point) > kMitreOverFace * far_;
+        foot.is_inside = foot.is_inside && !is_mitred();
       }
       verdict_.least = std::min(verdict_.least, share);
       verdict_.most = std::max(verdict_.most, share);
@@ -266,12 +268,11 @@ class Judge {
       const double way = result.closest(moved).distance / far_;
       if (way > worst) place = text_of(moved) + place_of(source, p, result, result.closest(moved));
       worst = std::max(worst, way);
-      if (way > options_.tolerance && doubts++ < kMostDoubts)
-        // A mitre may reach over it.
+      if (way <= options_.tolerance || mitred_.has_near(moved)) continue;  // A mitre may reach over it.
+      if (doubts++ < kMostDoubts)
         missing += exact_distance(source_faces_, moved) > far_ * (1 - 1e-3) &&
-                   exact_distance(result_faces_, moved) > far_ * options_.tolerance &&
-                   exact_distance(sharp_edges_, moved) > kMitreOverFace * far_;
-      else missing += way > options_.tolerance;
+                   exact_distance(result_faces_, moved) > far_ * options_.tolerance;
+      else missing++;
     }
     if (missing)
       fault(std::to_string(missing) + " offset points are not in the result (farthest " + number(worst) + ") as at " +
@@ -279,8 +280,9 @@ class Judge {
   }
 
   TopoDS_Shape source_, result_;
-  TopoDS_Shape source_faces_, result_faces_, sharp_edges_;
+  TopoDS_Shape source_faces_, result_faces_;
   double distance_, far_;
+  EdgePoints mitred_;  // the sharp edges
   JudgeOptions options_;
   Verdict verdict_;
   bool is_closed_ = false;

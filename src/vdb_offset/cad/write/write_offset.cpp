@@ -208,6 +208,12 @@ class OffsetWriter {
       add_volume(again, shape);
       return true;
     }
+    // Walls that have passed each other by less than the judge sees: who reads the file takes the inner shell for the
+    // outer one.
+    if (body.body.is_solid && volume_of(body.result.shape) * volume_of(body.source.shape) < 0) {
+      written_.gaps.emplace_back("walls are gone: the result is turned inside out");
+      return false;
+    }
     const Verdict verdict = judge_offset(body.source.shape, shape, millimetres_ * write_.distance, {});
     written_.samples += verdict.samples;
     written_.least = std::min(written_.least, verdict.least);
