@@ -197,6 +197,34 @@ TEST_CASE("cad written: walls of a hollow block are good to the last, and not wh
   }
 }
 
+TEST_CASE("cad written: grooves and flanges of turned parts close, and what they part meets", "[cad]") {
+  using std::numbers::pi;
+  const auto cylinder = [](double radius, double height) { return pi * radius * radius * height; };
+  for (const double d : {0.3, 0.75, 1.5}) {
+    INFO(d);
+    const double width = std::max(0.0, 1 - 2 * d), from = d < 0.5 ? 21 - d : 20 + d;
+    const Written shaft = write("grooved.step", d, "closed_shaft.step");
+    CHECK(shaft.facts.made == Made::Solid);
+    CHECK(shaft.facts.volume == Approx(cylinder(10 + d, 20 + 2 * d) + cylinder(8 + d, width) +
+                                       cylinder(9 + d, 60 + d - from - width) + cylinder(7 + d, width))
+                                    .epsilon(1e-6));
+    CHECK(volume_of_mesh(shaft.again.polygons) == Approx(shaft.facts.volume).epsilon(5e-3));
+    const Written bore = write("bore.step", d, "closed_bore.step");
+    CHECK(bore.facts.made == Made::Solid);
+    CHECK(bore.facts.volume ==
+          Approx(cylinder(20 + d, 30 + 2 * d) - cylinder(5 - d, 30 + 2 * d - width) - cylinder(7 - d, width))
+              .epsilon(1e-6));
+  }
+  for (const double d : {0.3, 0.75, 1.5}) {
+    INFO(-d);
+    const double width = std::max(0.0, 1 - 2 * d), from = d < 0.5 ? 11 - d : 10 + d;
+    const Written flange = write("flange.step", -d, "no_flange.step");
+    CHECK(flange.facts.made == Made::Solid);
+    CHECK(flange.facts.volume ==
+          Approx(cylinder(5 - d, 10) + cylinder(9 - d, width) + cylinder(6 - d, 20 - d - from)).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("cad written: edges within a plane or a cylinder lead to where its faces meet others", "[cad]") {
   for (const double d : {0.25, 1.0, 2.5, -0.25, -1.0, -1.75}) {
     INFO(d);

@@ -45,12 +45,14 @@
 #include <XCAFDoc_GraphNode.hxx>
 #include <XCAFDoc_LayerTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <gp_Ax2.hxx>
 #include <gp_Trsf.hxx>
 #include <iterator>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -192,6 +194,18 @@ TopoDS_Shape box(const gp_Pnt& low, const gp_Pnt& high) { return BRepPrimAPI_Mak
 
 /// A block of 40 x 30 x 20 with a cavity: walls of 5 all round.
 TopoDS_Shape hollow() { return BRepAlgoAPI_Cut(box({0, 0, 0}, {40, 30, 20}), box({5, 5, 5}, {35, 25, 15})).Shape(); }
+
+/// Cylinders on each other: radius and height of each.
+TopoDS_Shape turned(const std::vector<std::array<double, 2>>& steps) {
+  TopoDS_Shape all;
+  double z = 0;
+  for (const auto& [radius, height] : steps) {
+    const TopoDS_Shape step = upright(0, 0, z, radius, height);
+    all = all.IsNull() ? step : BRepAlgoAPI_Fuse(all, step).Shape();
+    z += height;
+  }
+  return all;
+}
 
 // What follows is fused of parts whose sides continue each other, and are not made one: edges lie within a plane or a
 // cylinder.
@@ -348,6 +362,10 @@ int main(int count, char** words) {
   write_step(grooves(), "grooves.step", "MM");
   write_step(waist(), "waist.step", "MM");
   write_step(hollow(), "hollow.step", "MM");
+  // Grooves of a width of 1 in a shaft, beside a shoulder and in one radius; a flange; a groove in a bore.
+  write_step(turned({{10, 20}, {8, 1}, {9, 19}, {7, 1}, {9, 19}}), "grooved.step", "MM");
+  write_step(turned({{5, 10}, {9, 1}, {6, 9}}), "flange.step", "MM");
+  write_step(BRepAlgoAPI_Cut(turned({{20, 30}}), turned({{5, 10}, {7, 1}, {5, 19}})).Shape(), "bore.step", "MM");
   write_step(steps(), "steps.step", "MM");
   write_step(tee(), "tee.step", "MM");
   write_step(towers(), "towers.step", "MM");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "vdb_offset/cad/offset/contract.h"
 #include "vdb_offset/cad/offset/resolve.h"
@@ -65,6 +66,12 @@ std::vector<int> dead_with(const Model& model, int face) {
 bool remove_dead(Model& model, int face, std::vector<std::string>& gaps) {
   const std::string name = "face " + std::to_string(face + 1);
   const std::vector<int> group = dead_with(model, face);
+  if (const std::optional<bool> is_closed = close_neck(model, group)) {
+    model.steps.push_back(name + " is swallowed with " + std::to_string(group.size() - 1) +
+                          " beside it, and what they part");
+    if (!*is_closed) gaps.push_back(name + " is swallowed, and its neighbours do not close the gap");
+    return *is_closed;
+  }
   if (close_hole(model, group)) {
     model.steps.push_back(name + " is swallowed with " + std::to_string(group.size() - 1) +
                           " beside it, and a hole or boss");

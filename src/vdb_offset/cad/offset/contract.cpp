@@ -5,6 +5,7 @@
 #include <GeomAdaptor_Curve.hxx>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "vdb_offset/cad/offset/contact.h"
 
@@ -86,6 +87,134 @@ double length_of(const Model& model, int edge) {
   if (!e.curve.IsNull()) return GCPnts_AbscissaPoint::Length(GeomAdaptor_Curve(e.curve), e.first, e.last);
   const int h = e.half[0];
   return model.vertices[model.halves[h].vertex].source.Distance(model.vertices[end_vertex(model, h)].source);
+}
+
+std::vector<int> loop_of(const Model& model, int half) {
+  std::vector<int> loop = {half};
+  for (int h = model.halves[half].next; h != half; h = model.halves[h].next) loop.push_back(h);
+  return loop;
+}
+
+double length_of_loop(const Model& model, int half) {
+  double length = 0;
+  for (int h : loop_of(model, half)) length += length_of(model, model.halves[h].edge);
+  return length;
+}
+
+// A loop of a face that borders a group of faces with all of its edges.
+struct Rim {
+  int half = -1;     // One of the loop.
+  int other = -1;    // Of the face's other loop, if it has one other.
+  double width = 0;  // Of the face between the two, as a difference of their lengths; without bounds if it has more.
+};
+
+// Finds what the face behind a rim has beside it. `known` are half-edges of rims.
+void measure(const Model& model, const std::vector<int>& known, Rim& rim) {
+  const std::vector<int>& loops = model.faces[model.halves[rim.half].face].loops;
+  for (int l : loops)
+    if (std::find(known.begin(), known.end(), l) == known.end()) rim.other = l;
+  rim.width = loops.size() == 2 && rim.other >= 0
+                  ? std::abs(length_of_loop(model, rim.other) - length_of_loop(model, rim.half))
+                  : INFINITY;
+}
+
+// The rims around a group; none if it has borders of other kinds.
+std::vector<Rim> rims_of(const Model& model, const std::vector<int>& faces) {
+  const auto is_inside = [&](int f) { return std::find(faces.begin(), faces.end(), f) != faces.end(); };
+  std::vector<Rim> rims;
+  std::vector<int> known;
+  for (int face : faces)
+    for (int first : model.faces[face].loops)
+      for (int h : loop_of(model, first)) {
+        const int twin = model.halves[h].twin;
+        if (twin < 0) return {};
+        if (is_inside(model.halves[twin].face) || std::find(known.begin(), known.end(), twin) != known.end()) continue;
+        const std::vector<int> loop = loop_of(model, twin);
+        for (int o : loop)
+          if (model.halves[o].twin < 0 || !is_inside(model.halves[model.halves[o].twin].face)) return {};
+        known.insert(known.end(), loop.begin(), loop.end());
+        rims.push_back({twin});
+      }
+  for (Rim& rim : rims) measure(model, known, rim);
+  return rims;
+}
+
+// Takes a loop from its face, whose half-edges stay.
+void drop_loop(Model& model, int half) {
+  const std::vector<int> loop = loop_of(model, half);
+  std::erase_if(model.faces[model.halves[half].face].loops,
+                [&](int l) { return std::find(loop.begin(), loop.end(), l) != loop.end(); });
+}
+
+// Gives a loop to another face, whose edges it has in common with those behind it from now on.
+void move_loop(Model& model, int half, int face, const gp_Pnt2d& near) {
+  const std::vector<int> loop = loop_of(model, half);
+  drop_loop(model, half);
+  model.faces[face].loops.push_back(half);
+  for (int i : loop) {
+    HalfEdge& h = model.halves[i];
+    ModelEdge& e = model.edges[h.edge];
+    h.face = face;
+    h.pcurve.Nullify();
+    h.origin = h.start = project(*model.faces[face].surface, model.vertices[h.vertex].source, near);
+    e.kind = EdgeKind::Sharp;
+    e.is_within = false;
+    e.strays = {false, false};
+  }
+  for (int i : loop) model.halves[i].end = model.halves[model.halves[i].next].origin;
+}
+
+// How two loops that face each other lie: `one` from i to i + 1 goes along `other` from k + 1 to k, with k for each i.
+// Nothing if they do not lie along each other.
+std::vector<std::size_t> facing_halves(const Model& model, const std::vector<int>& one, const std::vector<int>& other) {
+  const std::size_t n = one.size();
+  const auto start = [&](int h) { return model.vertices[model.halves[h].vertex].source; };
+  double best = INFINITY, length = 0;
+  std::size_t best_shift = 0;
+  for (std::size_t shift = 0; shift < n && other.size() == n; shift++) {
+    double worst = 0;
+    for (std::size_t i = 0; i < n; i++)
+      worst = std::max(worst, start(one[i]).Distance(start(other[(shift + n - i + 1) % n])));
+    if (worst < best) best = worst, best_shift = shift;
+  }
+  for (int h : one) length += length_of(model, model.halves[h].edge);
+  if (!(best < 0.5 * length / static_cast<double>(n))) return {};
+  std::vector<std::size_t> facing;
+  for (std::size_t i = 0; i < n; i++) facing.push_back((best_shift + n - i) % n);
+  return facing;
+}
+
+// Has the faces behind two loops meet each other along one; the loops' own faces lose them. `vertices` are those that
+// become one. False if the loops do not lie along each other.
+bool join_loops(Model& model, int a, int b, std::vector<std::array<int, 2>>& vertices) {
+  const std::vector<int> one = loop_of(model, a), other = loop_of(model, b);
+  for (const std::vector<int>* const loop : {&one, &other})
+    for (int h : *loop)
+      if (model.halves[h].twin < 0) return false;
+  const std::vector<std::size_t> facing = facing_halves(model, one, other);
+  if (facing.empty()) return false;
+  for (int h : {a, b}) drop_loop(model, h);
+  for (std::size_t i = 0; i < one.size(); i++) {
+    HalfEdge &h = model.halves[one[i]], &o = model.halves[other[facing[i]]];
+    vertices.push_back({h.vertex, model.halves[o.next].vertex});
+    const int mine = h.twin, theirs = o.twin;
+    HalfEdge &kept = model.halves[mine], &taken = model.halves[theirs];
+    model.edges[o.edge].is_gone = true;
+    ModelEdge& e = model.edges[h.edge];
+    taken.edge = h.edge;
+    taken.forward = !kept.forward;
+    taken.pcurve.Nullify();
+    kept.pcurve.Nullify();
+    kept.twin = theirs;
+    taken.twin = mine;
+    e.half = {kept.forward ? mine : theirs, kept.forward ? theirs : mine};
+    e.kind = EdgeKind::Sharp;
+    e.is_within = false;
+    e.strays = {false, false};
+  }
+  for (const std::vector<int>* const loop : {&one, &other})
+    for (int h : *loop) model.halves[h].face = -1;
+  return true;
 }
 
 // Merges the two edges of a face that has no others: that of the first side stays, between the two neighbours.
@@ -212,6 +341,36 @@ bool close_hole(Model& model, std::vector<int> faces) {
     model.vertices[v].is_gone = true;
   }
   return true;
+}
+
+std::optional<bool> close_neck(Model& model, const std::vector<int>& faces) {
+  // A face whose radius is used up is a hole or boss that closes.
+  if (std::any_of(faces.begin(), faces.end(), [&](int f) { return model.faces[f].offset.surface.IsNull(); }))
+    return std::nullopt;
+  std::vector<Rim> rims = rims_of(model, faces);
+  if (rims.size() != 2 || model.halves[rims[0].half].face == model.halves[rims[1].half].face) return std::nullopt;
+  if (rims[0].width > rims[1].width) std::swap(rims[0], rims[1]);
+  const Rim &narrow = rims[0], &wide = rims[1];
+  if (narrow.other < 0 || wide.other < 0) return std::nullopt;
+  constexpr double kNarrower = 1 - 1e-6;
+  std::vector<std::array<int, 2>> joined;
+  if (narrow.width < kNarrower * wide.width)
+    move_loop(model, narrow.other, model.halves[wide.half].face, model.halves[wide.half].origin);
+  else if (!std::isfinite(wide.width) || !join_loops(model, narrow.other, wide.other, joined)) return std::nullopt;
+  std::vector<int> edges, vertices;
+  for (int face : faces)
+    for (int first : model.faces[face].loops)
+      for (int h : loop_of(model, first)) {
+        edges.push_back(model.halves[h].edge);
+        vertices.push_back(model.halves[h].vertex);
+      }
+  for (int e : edges)
+    if (!model.edges[e].is_gone) unlink_edge(model, e);
+  for (int v : vertices) {
+    model.vertices[v].ring.clear();
+    model.vertices[v].is_gone = true;
+  }
+  return std::all_of(joined.begin(), joined.end(), [&](const auto& two) { return join(model, {two[0], two[1]}); });
 }
 
 bool remove_face(Model& model, int face) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "vdb_offset/cad/offset/model.h"
 
 namespace vdb_offset::cad {
@@ -16,6 +18,12 @@ bool remove_face(Model& model, int face);
 /// Takes faces out that close a hole (or level a boss): those behind their borders lose whole loops and nothing else,
 /// or go, too, if they have no others. False if it is not so; the model is as it was then.
 bool close_hole(Model& model, std::vector<int> faces);
+
+/// Takes faces out that part two others, which have passed each other: the walls of a groove round a neck, or the sides
+/// of a flange. The narrower of the two goes as well, and what was behind it meets the wider one; if they are as wide
+/// as each other both go, and what was behind them meets. Nothing if it is not so; the model is as it was then. False
+/// if what meets would be more than one fan of faces.
+std::optional<bool> close_neck(Model& model, const std::vector<int>& faces);
 
 /// The edges round a face that have another face behind them, in turn by loops.
 std::vector<int> sides_of_face(const Model& model, int face);
