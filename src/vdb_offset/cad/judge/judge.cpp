@@ -111,6 +111,11 @@ Counts counts_of(const TopoDS_Shape& s) {
 constexpr double kDoubtful = 0.1;
 constexpr double kNoVolume = 1e-9;  // of the source's
 
+// How far beside triangles it is counted how often the result goes round, in distances; and the most triangles that are
+// counted for it, for all points together.
+constexpr double kBeside = 1e-5;
+constexpr std::size_t kMostTurns = 20000000;
+
 // Without solids: a point in one is at no distance from it.
 TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
   TopoDS_Compound all;
@@ -189,6 +194,7 @@ class Judge {
     if (is_closed_ && verdict_.volume < 0) fault("the result is turned inside out");
     check_points(source, result);
     check_cover(source, result);
+    if (is_closed_) check_turns(result);
     if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
     return verdict_;
   }
@@ -242,6 +248,29 @@ class Judge {
       fault(std::to_string(far) + " points are farther than the distance (most " + number(verdict_.most) + ") as at " +
             place);
     if (wrong_side) fault(std::to_string(wrong_side) + " points are on the wrong side");
+  }
+
+  // Faces that lie in what others enclose cross none of them where they end on each other: just outside of a face there
+  // is nothing, and just inside of it material, once.
+  void check_turns(const Soup& result) {
+    const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
+    const std::size_t every = std::max<std::size_t>(1, points.size() * result.triangles().size() / kMostTurns);
+    const auto is_other = [](double turns, double expected) {
+      // Between whole numbers triangles have gaps, or miss each other, which is told elsewhere.
+      return std::abs(turns - std::round(turns)) < 0.05 && std::round(turns) != expected;
+    };
+    for (std::size_t i = 0; i < points.size(); i += every) {
+      const auto& [a, b, c] = result.triangles()[points[i].triangle].points;
+      const gp_Vec across = gp_Vec(a, b).Crossed(gp_Vec(a, c));
+      const gp_Pnt middle((a.XYZ() + b.XYZ() + c.XYZ()) / 3);
+      if (across.Magnitude() < 1e-6 * far_ * far_) continue;
+      const gp_Vec out = across.Normalized() * (kBeside * far_);
+      if (!is_other(result.turns(middle.Translated(out)), 0) && !is_other(result.turns(middle.Translated(-out)), 1))
+        continue;
+      fault("a face lies within others, or is turned, as at " + text_of(middle) + " on face " +
+            std::to_string(result.triangles()[points[i].triangle].face + 1));
+      return;
+    }
   }
 
   // Whether triangles cross, but at edges whose faces miss each other by as much as the topology tells.

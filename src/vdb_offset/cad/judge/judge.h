@@ -24,7 +24,8 @@ struct Verdict {
 /// Judges an offset by what it is, not by how it was made: valid topology; as many solids and shells as the source, and
 /// as closed; every sampled point of the result at least |distance| from the source, on its right side, and no farther
 /// but over edges and vertices; every point of the source whose offset is no nearer to another part of the source has
-/// it in the result; its tessellation is closed if the source is, and no triangles of it cross.
+/// it in the result; its tessellation is closed if the source is, no triangles of it cross, and it goes round its
+/// material once.
 Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance,
                      const JudgeOptions& options);
 

@@ -306,7 +306,7 @@ gp_Vec Soup::outside(const SoupPoint& at) const {
   return unit_normal(*faces_[t.face].surface, at.uv.X(), at.uv.Y(), box) * faces_[t.face].sign;
 }
 
-bool Soup::contains(const gp_Pnt& point) const {
+double Soup::turns(const gp_Pnt& point) const {
   double sum = 0;  // Van Oosterom and Strackee, 1983.
   for (const Triangle& t : triangles_) {
     const gp_XYZ a = t.points[0].XYZ() - point.XYZ(), b = t.points[1].XYZ() - point.XYZ(),
@@ -314,7 +314,7 @@ bool Soup::contains(const gp_Pnt& point) const {
     const double la = a.Modulus(), lb = b.Modulus(), lc = c.Modulus();
     sum += std::atan2(a.Dot(b.Crossed(c)), la * lb * lc + a.Dot(b) * lc + b.Dot(c) * la + c.Dot(a) * lb);
   }
-  return std::abs(sum) > M_PI;
+  return sum / (2 * M_PI);
 }
 
 double Soup::volume() const {

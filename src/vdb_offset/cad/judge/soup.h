@@ -68,8 +68,10 @@ class Soup {
   SoupPoint on_triangle(int triangle, double a, double b) const;
   /// The material's outside there.
   gp_Vec outside(const SoupPoint& at) const;
-  /// Whether the point lies in the closed shape, by the solid angle of all triangles.
-  bool contains(const gp_Pnt& point) const;
+  /// How often the triangles go round a point, by their solid angle: 1 in the material of a closed shape, 0 outside.
+  double turns(const gp_Pnt& point) const;
+  /// Whether the point lies in the closed shape.
+  bool contains(const gp_Pnt& point) const { return std::abs(turns(point)) > 0.5; }
   /// The volume of the tessellation.
   double volume() const;
   /// How many sides of triangles have not as many other sides the other way: none of a tessellation that is closed.

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the worker's judge says of offsets that are right, and of one that looks like it. A program of its own, as it is
+// linked to OpenCASCADE.
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeSolid.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepGProp.hxx>
+#include <BRepLib.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <GProp_GProps.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <cstdio>
+#include <gp_Ax2.hxx>
+
+#include "vdb_offset/cad/judge/judge.h"
+
+namespace {
+
+TopoDS_Shape upright(double from, double to, double radius) {
+  return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, from), gp_Dir(0, 0, 1)), radius, to - from).Shape();
+}
+
+TopoDS_Shape block(double grown) {
+  return BRepPrimAPI_MakeBox(gp_Pnt(-20 - grown, -20 - grown, -grown), gp_Pnt(20 + grown, 20 + grown, 30 + grown))
+      .Shape();
+}
+
+double height_of(const TopoDS_Shape& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  return properties.CentreOfMass().Z();
+}
+
+/// A block with two blind holes from below and above, which end in each other: a bore whose groove has closed is not
+/// that.
+TopoDS_Shape holes_in_each_other(double d) {
+  const TopoDS_Shape lower = BRepAlgoAPI_Cut(block(d), upright(-5, 10 + d, 5 - d)).Shape();
+  const TopoDS_Shape upper = BRepAlgoAPI_Cut(block(d), upright(11 - d, 40, 5 - d)).Shape();
+  BRepBuilderAPI_Sewing sewing(1e-6);
+  for (TopExp_Explorer face(lower, TopAbs_FACE); face.More(); face.Next())
+    if (height_of(face.Current()) < 29) sewing.Add(face.Current());
+  // Of the upper one the top, and what is not the lower one's, or the sides'.
+  for (TopExp_Explorer face(upper, TopAbs_FACE); face.More(); face.Next()) {
+    const double z = height_of(face.Current());
+    if (z > 1 && !(z > 14.9 && z < 15.1)) sewing.Add(face.Current());
+  }
+  sewing.Perform();
+  TopoDS_Solid solid = BRepBuilderAPI_MakeSolid(TopoDS::Shell(sewing.SewedShape())).Solid();
+  BRepLib::OrientClosedSolid(solid);
+  return solid;
+}
+
+bool is_as_expected(const char* what, bool expected, const TopoDS_Shape& source, const TopoDS_Shape& result, double d) {
+  const vdb_offset::cad::Verdict verdict = vdb_offset::cad::judge_offset(source, result, d, {});
+  std::printf("%s: %s\n", what, verdict.is_good ? "good" : "not good");
+  for (const std::string& fault : verdict.faults) std::printf("  %s\n", fault.c_str());
+  return verdict.is_good == expected;
+}
+
+}  // namespace
+
+int main() {
+  constexpr double kDistance = 0.75;
+  const TopoDS_Shape bored = BRepAlgoAPI_Cut(block(0), upright(-5, 40, 5)).Shape();
+  const TopoDS_Shape source = BRepAlgoAPI_Cut(bored, upright(10, 11, 7)).Shape();
+  const TopoDS_Shape right = BRepAlgoAPI_Cut(block(kDistance), upright(-5, 40, 5 - kDistance)).Shape();
+  const bool is_right = is_as_expected("a groove that is closed", true, source, right, kDistance);
+  const bool is_wrong =
+      is_as_expected("two holes in each other", false, source, holes_in_each_other(kDistance), kDistance);
+  return is_right && is_wrong ? 0 : 1;
+}
