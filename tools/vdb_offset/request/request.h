@@ -90,7 +90,6 @@ struct Request {
   std::optional<Border> border;
   std::optional<Solver> solver;
   std::optional<Collision> collision;
-  bool cuts = false;  // --collision cut: of an output that is a CAD model
   std::optional<Corners> corners;
   std::optional<double> miter_limit;
 
@@ -103,6 +102,7 @@ struct Request {
   std::optional<scene::Distance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
   double fit_tolerance = 0;                   ///< Of written CAD models, world units; 0: 1e-4 distances.
   bool faceted = false;                       ///< Write a CAD model of triangles where no other can be made.
+  bool cuts = false;                          ///< --collision cut: of an output that is a CAD model.
   double angle = 15, cad_seconds = 300;       ///< Of CAD models: degrees, and how long reading may take.
   std::optional<scene::Distance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
 

@@ -146,6 +146,7 @@ std::vector<Opposite> HoldBack::opposites_of(std::size_t face, std::map<double, 
     mask[other] = 1;
   }
   std::vector<Opposite> opposites;
+  opposites.reserve(masks.size() + 1);
   for (const auto& [speed, mask] : masks) opposites.push_back({&soup_, &mask, speed, 0, kAside});
   if (request_.obstacles) opposites.push_back({request_.obstacles, nullptr, 0, request_.clearance, 1});
   return opposites;

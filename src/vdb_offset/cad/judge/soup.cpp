@@ -250,30 +250,49 @@ bool Soup::has_near(const gp_Pnt& point, double reach, const Facing& among) cons
   return search(point, reach, among, true).triangle >= 0;
 }
 
+/// What is not turned from a direction far enough.
+class Soup::FacingTest {
+ public:
+  explicit FacingTest(const Facing& among)
+      : among_(among),
+        length_(among.direction.Magnitude()),
+        takes_all_(among.most_cosine >= 1 || length_ == 0),
+        least_angle_(takes_all_ ? 0 : std::acos(among.most_cosine) - 1e-9),
+        cosine_(std::cos(least_angle_)),
+        sine_(std::sin(least_angle_)) {}
+
+  /// All triangles below.
+  bool excludes(const Node& node) const {
+    return !takes_all_ && node.spread < least_angle_ &&
+           node.axis.Dot(among_.direction) > length_ * (cosine_ * node.cosine + sine_ * node.sine);
+  }
+  bool excludes(const gp_Vec& normal) const {
+    return !takes_all_ && normal.Dot(among_.direction) > among_.most_cosine * normal.Magnitude() * length_;
+  }
+
+ private:
+  const Facing& among_;
+  const double length_;
+  const bool takes_all_;
+  const double least_angle_, cosine_, sine_;
+};
+
 Soup::Nearest Soup::search(const gp_Pnt& point, double reach, const Facing& among, bool is_any_enough) const {
   Nearest result{-1, reach};
   double best = reach * reach;
-  const double direction = among.direction.Magnitude();
-  const bool faces_all = among.most_cosine >= 1 || direction == 0;
-  // Of normals that are all nearer to the direction than this none counts.
-  const double least_angle = faces_all ? 0 : std::acos(among.most_cosine) - 1e-9;
-  const double cosine = std::cos(least_angle), sine = std::sin(least_angle);
+  const FacingTest facing(among);
   std::vector<int> stack;
   if (!triangles_.empty()) stack.push_back(0);
   while (!stack.empty()) {
     const Node& n = nodes_[stack.back()];
     stack.pop_back();
     if (box_distance(n.box, point) >= best) continue;
-    if (!faces_all && n.spread < least_angle &&
-        n.axis.Dot(among.direction) > direction * (cosine * n.cosine + sine * n.sine))
-      continue;
+    if (facing.excludes(n)) continue;
     for (int i = n.first; i < n.first + n.count; i++) {
       const Triangle& t = triangles_[order_[i]];
       if (among.faces && !(*among.faces)[t.face]) continue;
       const double d = mixed(t.points, closest_shares(t.points, point)).SquareDistance(point);
-      if (d >= best) continue;
-      const gp_Vec normal = normal_of(t);
-      if (!faces_all && normal.Dot(among.direction) > among.most_cosine * normal.Magnitude() * direction) continue;
+      if (d >= best || facing.excludes(normal_of(t))) continue;
       best = d;
       result = {order_[i], std::sqrt(d)};
       if (is_any_enough) return result;

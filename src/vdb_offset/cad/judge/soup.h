@@ -91,6 +91,7 @@ class Soup {
     gp_Vec axis = gp_Vec(0, 0, 0);
     double spread = M_PI, cosine = -1, sine = 0;  // and of that
   };
+  class FacingTest;
   void build_tree();
   void build(int node, int first, int count);
   void bound_normals(Node& node) const;
