@@ -115,6 +115,18 @@ TEST_CASE("cad held: walls that the distance would break through hold, where cut
   CHECK(facts.swallowed == 0);
 }
 
+TEST_CASE("cad held: what holds a face goes on across its smooth edges", "[cad]") {
+  const io::MeshFile plate = model_of("halves_at_side.step");
+  const CadFileFacts facts = io::write_cad(place_for("halves_held.step"), plate, -1, {}, held());
+  CHECK(facts.made == Made::Solid);
+  // The half at the side, the side, and the other half, as far as it is joined to the first.
+  CHECK(facts.held == 3);
+  CHECK(facts.kept == 5);
+  CHECK(facts.fitted == 3);
+  CHECK(facts.least == Approx(1).margin(1e-2));
+  CHECK(facts.most == Approx(1).margin(1e-2));
+}
+
 TEST_CASE("cad held: bodies that touch stay where they touch", "[cad]") {
   const io::MeshFile touching = model_of("touching.step");
   const CadFileFacts facts = io::write_cad(place_for("touching_held.step"), touching, 0.1, {}, held());

@@ -132,6 +132,16 @@ TopoDS_Shape hole_at_side() {
   return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 20, 5).Shape(), upright(20, 5, -1, 4, 7)).Shape();
 }
 
+/// The plate with a hole of radius 2, 1 from a side: in two halves, joined smoothly across from each other.
+TopoDS_Shape halves_at_side() {
+  const auto half = [](double x) {
+    const gp_Ax2 axes(gp_Pnt(20, 3, -1), gp_Dir(0, 0, 1), gp_Dir(x, 0, 0));
+    return BRepPrimAPI_MakeCylinder(axes, 2, 7, std::acos(-1.0)).Shape();
+  };
+  const TopoDS_Shape one = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 20, 5).Shape(), half(1)).Shape();
+  return BRepAlgoAPI_Cut(one, half(-1)).Shape();
+}
+
 /// A block of 40 x 30 x 10 with two grooves across each other, 2 and 10 wide, both 4 deep.
 TopoDS_Shape grooves() {
   const TopoDS_Shape one =
@@ -359,6 +369,7 @@ int main(int count, char** words) {
   write_step(touching(), "touching.step", "MM");
   write_step(bosses(), "bosses.step", "MM");
   write_step(hole_at_side(), "hole_at_side.step", "MM");
+  write_step(halves_at_side(), "halves_at_side.step", "MM");
   write_step(grooves(), "grooves.step", "MM");
   write_step(waist(), "waist.step", "MM");
   write_step(hollow(), "hollow.step", "MM");

@@ -21,14 +21,19 @@ std::size_t HeldField::Hash::operator()(const Node& node) const {
   return hash ^ (hash >> 29);
 }
 
-void HeldField::tell(const gp_Pnt& point, double share) {
-  if (share >= 1) return;
-  Node first, last;
+HeldField::Reach HeldField::reach_of(const gp_Pnt& point) const {
+  Reach reach;
   for (int k = 0; k < 3; ++k) {
     const double at = point.Coord(k + 1) / spacing_;
-    first[k] = static_cast<std::int32_t>(std::ceil(at - kReach));
-    last[k] = static_cast<std::int32_t>(std::floor(at + kReach));
+    reach.first[k] = static_cast<std::int32_t>(std::ceil(at - kReach));
+    reach.last[k] = static_cast<std::int32_t>(std::floor(at + kReach));
   }
+  return reach;
+}
+
+void HeldField::tell(const gp_Pnt& point, double share) {
+  if (share >= 1) return;
+  const auto [first, last] = reach_of(point);
   Node node;
   for (node[0] = first[0]; node[0] <= last[0]; ++node[0])
     for (node[1] = first[1]; node[1] <= last[1]; ++node[1])
@@ -36,6 +41,18 @@ void HeldField::tell(const gp_Pnt& point, double share) {
         double& coefficient = coefficients_.emplace(node, 1).first->second;
         coefficient = std::min(coefficient, share);
       }
+}
+
+bool HeldField::is_even_around(const gp_Pnt& point, double share) const {
+  const auto [first, last] = reach_of(point);
+  Node node;
+  for (node[0] = first[0]; node[0] <= last[0]; ++node[0])
+    for (node[1] = first[1]; node[1] <= last[1]; ++node[1])
+      for (node[2] = first[2]; node[2] <= last[2]; ++node[2]) {
+        const auto at = coefficients_.find(node);
+        if ((at == coefficients_.end() ? 1 : at->second) != share) return false;
+      }
+  return true;
 }
 
 double HeldField::operator()(const gp_Pnt& point) const {

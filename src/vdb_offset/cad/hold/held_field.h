@@ -23,11 +23,18 @@ class HeldField {
 
   void tell(const gp_Pnt& point, double share);
   double operator()(const gp_Pnt& point) const;
+  /// Whether it is this share at every point that is nearer to this one than to others that were told.
+  bool is_even_around(const gp_Pnt& point, double share) const;
   bool is_empty() const { return coefficients_.empty(); }
 
  private:
   static constexpr double kReach = 2.6;  // of a coefficient, and to the next point that was told
   using Node = std::array<std::int32_t, 3>;
+  /// The nodes that a point counts for.
+  struct Reach {
+    Node first, last;
+  };
+  Reach reach_of(const gp_Pnt& point) const;
   struct Hash {
     std::size_t operator()(const Node& node) const;
   };

@@ -215,19 +215,15 @@ void HoldBack::tell_beyond(const SourcePlace& at, double share, double most, Hel
   }
 }
 
-/// Whether places of other faces of the piece hold a face that has none.
-bool HoldBack::is_reached(std::size_t face, const HeldField& field, const std::vector<HeldFace>& all) const {
+/// Whether places of other faces of the piece may hold a face that has none.
+bool HoldBack::is_reached(std::size_t face, const std::vector<HeldFace>& all) const {
   std::vector<char> mask(triangles_.size(), 0);
   mask[face] = 1;
   const double reach = HeldField::kFarthest * spacing_;
   for (std::size_t other = 0; other < all.size(); ++other) {
     if (piece_[other] != piece_[face]) continue;
     for (const SourcePlace& at : all[other].places) {
-      const Soup::Nearest nearest = soup_.nearest(at.point, reach, {&mask, at.outside, 1});
-      if (nearest.triangle < 0) continue;
-      for (const gp_Pnt& corner : soup_.triangles()[static_cast<std::size_t>(nearest.triangle)].points)
-        if (field(corner) < 1) return true;
-      if (nearest.distance < reach / 2) return true;
+      if (soup_.has_near(at.point, reach, {&mask, at.outside, 1})) return true;
     }
   }
   return false;
@@ -236,9 +232,9 @@ bool HoldBack::is_reached(std::size_t face, const HeldField& field, const std::v
 FaceDistance HoldBack::held_distance(std::size_t face, const std::shared_ptr<const HeldField>& field,
                                      const HeldFace& held) const {
   const FaceDistance& own = request_.distances[face];
-  if (!own.at && held.even == held.least) {
+  if (!own.at && !held.places.empty() && held.even == held.least) {
     const bool is_same = std::all_of(held.places.begin(), held.places.end(), [&](const SourcePlace& at) {
-      return std::abs((*field)(at.point) - held.least) < 1e-12;
+      return field->is_even_around(at.point, held.least);
     });
     if (is_same) return {own.constant * held.least, {}, own.detail};
   }
@@ -263,7 +259,7 @@ std::vector<FaceDistance> HoldBack::distances() {
   }
   for (std::size_t face = 0; face < result.size(); ++face) {
     const std::shared_ptr<HeldField>& field = fields[piece_[face]];
-    if (field->is_empty() || (all[face].places.empty() && !is_reached(face, *field, all))) continue;
+    if (field->is_empty() || (all[face].places.empty() && !is_reached(face, all))) continue;
     result[face] = held_distance(face, field, all[face]);
     ++held_;
     least_ = std::min(least_, all[face].least);

@@ -47,7 +47,7 @@ class HoldBack {
   void tell(std::size_t face, HeldField& field, HeldFace& held);
   double share_at(std::size_t face, const SourcePlace& at, Opposite opposite) const;
   void tell_beyond(const SourcePlace& at, double share, double most, HeldField& field) const;
-  bool is_reached(std::size_t face, const HeldField& field, const std::vector<HeldFace>& all) const;
+  bool is_reached(std::size_t face, const std::vector<HeldFace>& all) const;
   FaceDistance held_distance(std::size_t face, const std::shared_ptr<const HeldField>& field,
                              const HeldFace& held) const;
 
