@@ -223,7 +223,7 @@ TEST_CASE("capture: the judges of soundness reject what is not", "[capture]") {
   CHECK(unsound(pinched) > 0);
 }
 
-TEST_CASE("capture: around a box every vertex is at the closed form's distance", "[capture]") {
+TEST_CASE("capture: around a box every vertex is at the closed form's distance", "[capture][no_races]") {
   const Polygons box = scene::box({1, 0.7, 0.5}, 3, false);
   const double d = GENERATE(0.1, -0.1);
   const IsoResult result = captured(box, d, 0.03);
@@ -253,7 +253,7 @@ TEST_CASE("capture: around a box every vertex is at the closed form's distance",
   CHECK(volume(result.polygons) == Approx(exact).epsilon(0.02));
 }
 
-TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]") {
+TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture][no_races]") {
   // Inward of a box they are its edges and corners, so that all of the smaller box is exact, between vertices, too.
   const IsoResult inner = captured(scene::box({1, 0.7, 0.52}, 3, true), -0.1, 0.03);
   check_sound(inner);
@@ -285,7 +285,7 @@ TEST_CASE("capture: creases are sharp, and vertices stand on them", "[capture]")
   CHECK(most < exact + 0.01);
 }
 
-TEST_CASE("capture: spheres and tori keep their shape", "[capture]") {
+TEST_CASE("capture: spheres and tori keep their shape", "[capture][no_races]") {
   const Polygons sphere = scene::icosphere(1, 3);
   const IsoResult ball = captured(sphere, 0.3, 0.12);
   check_sound(ball);
@@ -328,7 +328,7 @@ TEST_CASE("capture: the result does not depend on the number of threads", "[capt
   check_sound(alone);
 }
 
-TEST_CASE("capture: a sheet gets a tube around it", "[capture]") {
+TEST_CASE("capture: a sheet gets a tube around it", "[capture][no_races]") {
   const Polygons sheet = scene::patch(1, 0, 4);
   const IsoResult tube = captured(sheet, 0.1, 0.04);
   check_sound(tube);
@@ -411,7 +411,7 @@ TEST_CASE("capture: what cannot be is refused", "[capture]") {
   CHECK_THROWS_AS(make_iso_surface(box.view(), options), Cancelled);
 }
 
-TEST_CASE("capture: a voxel coarser than the distance tells the two sides apart", "[capture]") {
+TEST_CASE("capture: a voxel coarser than the distance tells the two sides apart", "[capture][no_races]") {
   const Polygons sphere = scene::icosphere(1, 3);
   const double d = GENERATE(0.02, -0.02);
   const IsoResult result = captured(sphere, d, 0.1);

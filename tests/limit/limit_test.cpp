@@ -213,7 +213,7 @@ TEST_CASE("crossings: as vertices move, those around them are found, or one of e
   CHECK(fewer > 100);
 }
 
-TEST_CASE("limit: what propagation folds and crosses is valid afterwards", "[limit]") {
+TEST_CASE("limit: what propagation folds and crosses is valid afterwards", "[limit][no_races]") {
   struct Case {
     Polygons mesh;
     double distance;
@@ -391,7 +391,7 @@ TEST_CASE("limit: what is short settles where there is room beside it", "[limit]
   }
 }
 
-TEST_CASE("limit: patches around folds are freed at their distance", "[limit][untangle]") {
+TEST_CASE("limit: patches around folds are freed at their distance", "[limit][untangle][no_races]") {
   // Ridges and grooves at whose feet the offset has creases.
   std::size_t folded = 0;
   for (const unsigned seed : {11u, 7u, 3u}) {
@@ -459,7 +459,7 @@ TEST_CASE("limit: what stays is judged as it is in a coarser format", "[limit]")
   check_agreement(mesh, Distances(distances), {.kind = Precision::Kind::Digits, .digits = 7, .rounds_all = true});
 }
 
-TEST_CASE("limit: random scenes are what they say in three formats", "[limit][property][random]") {
+TEST_CASE("limit: random scenes are what they say in three formats", "[limit][property][random][no_races]") {
   const test::Seeds seeds = test::random_seeds(30);
   for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
     test::RandomScene scene = test::random_scene(seed);

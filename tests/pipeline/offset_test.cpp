@@ -132,7 +132,7 @@ TEST_CASE("offset: several distances have a path each, and who stays has none", 
   CHECK(results[2].paths.back().size() == 1);
 }
 
-TEST_CASE("offset: cube, outward, keeps corners and edges in place", "[offset]") {
+TEST_CASE("offset: cube, outward, keeps corners and edges in place", "[offset][no_races]") {
   const Polygons cube = scene::box(Vec3d(0.5), 20, true);
   for (const double h : {0.05, 0.025, 0.0125}) {
     const OffsetResult same = offset(cube.view(), by(0.1, h));
@@ -150,7 +150,7 @@ TEST_CASE("offset: cube, outward, keeps corners and edges in place", "[offset]")
   check_guarantee(cube.view(), result, 0.1, 37);
 }
 
-TEST_CASE("offset: torus, both ways", "[offset]") {
+TEST_CASE("offset: torus, both ways", "[offset][no_races]") {
   const Polygons torus = scene::torus(1, 0.4, 160, 64);
   for (const double distance : {0.15, -0.15}) {
     const OffsetResult result = offset(torus.view(), by(distance));
@@ -164,7 +164,7 @@ TEST_CASE("offset: torus, both ways", "[offset]") {
   }
 }
 
-TEST_CASE("offset: plates that close on each other stop in the middle of their gap", "[offset]") {
+TEST_CASE("offset: plates that close on each other stop in the middle of their gap", "[offset][no_races]") {
   const double gap = 0.1;
   const Polygons plates = scene::plates(1, 0.1, gap, 40);
   const OffsetResult result = offset(plates.view(), by(0.08));
@@ -266,7 +266,8 @@ TEST_CASE("offset: the same bits for any number of threads", "[offset][invariant
   }
 }
 
-TEST_CASE("offset: the same bits after moving by whole voxels or scaling by a power of two", "[offset][invariant]") {
+TEST_CASE("offset: the same bits after moving by whole voxels or scaling by a power of two",
+          "[offset][invariant][no_races]") {
   const Polygons mesh = dyadic(scene::bumpy_sphere(1, 0.35, 1.5, 9, 4));
   const double h = 0x1p-4;
   for (const double distance : {0x1p-4, -0x1p-4}) {

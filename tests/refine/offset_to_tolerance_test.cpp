@@ -182,7 +182,7 @@ RefinedOffset offset_all(const Polygons& mesh, const OffsetOptions& options, dou
 
 }  // namespace
 
-TEST_CASE("tolerance: a cube with round corners, against brute force", "[tolerance]") {
+TEST_CASE("tolerance: a cube with round corners, against brute force", "[tolerance][no_races]") {
   const Polygons mesh = scene::box(Vec3d(1), 1, true);
   for (const double share : {0.05, 0.01, -0.05, -0.01}) {
     CAPTURE(share);
@@ -339,7 +339,7 @@ TEST_CASE("tolerance: the same bits for any number of threads", "[tolerance]") {
   }
 }
 
-TEST_CASE("tolerance: a share of the distance and the length that it is are the same", "[tolerance]") {
+TEST_CASE("tolerance: a share of the distance and the length that it is are the same", "[tolerance][no_races]") {
   const Polygons mesh = scene::icosphere(1, 1);
   Tolerance length;
   length.length = 0.01 * 0.1;
