@@ -17,7 +17,7 @@ std::array<double, 4> cubic_weights(double t) {
 
 std::size_t HeldField::Hash::operator()(const Node& node) const {
   std::size_t hash = 0;
-  for (const std::int32_t index : node) hash = (hash ^ static_cast<std::uint32_t>(index)) * 0x9e3779b97f4a7c15U;
+  for (const std::int64_t index : node) hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15U;
   return hash ^ (hash >> 29);
 }
 
@@ -25,8 +25,8 @@ HeldField::Reach HeldField::reach_of(const gp_Pnt& point) const {
   Reach reach;
   for (int k = 0; k < 3; ++k) {
     const double at = point.Coord(k + 1) / spacing_;
-    reach.first[k] = static_cast<std::int32_t>(std::ceil(at - kReach));
-    reach.last[k] = static_cast<std::int32_t>(std::floor(at + kReach));
+    reach.first[k] = static_cast<std::int64_t>(std::ceil(at - kReach));
+    reach.last[k] = static_cast<std::int64_t>(std::floor(at + kReach));
   }
   return reach;
 }
@@ -60,7 +60,7 @@ double HeldField::operator()(const gp_Pnt& point) const {
   std::array<std::array<double, 4>, 3> weights;
   for (int k = 0; k < 3; ++k) {
     const double at = point.Coord(k + 1) / spacing_, below = std::floor(at);
-    first[k] = static_cast<std::int32_t>(below) - 1;
+    first[k] = static_cast<std::int64_t>(below) - 1;
     weights[k] = cubic_weights(at - below);
   }
   double held = 0;  // by how much it is less than 1

@@ -29,7 +29,7 @@ class HeldField {
 
  private:
   static constexpr double kReach = 2.6;  // of a coefficient, and to the next point that was told
-  using Node = std::array<std::int32_t, 3>;
+  using Node = std::array<std::int64_t, 3>;
   /// The nodes that a point counts for.
   struct Reach {
     Node first, last;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/hold/hold_back.h"
 
+#include <Geom_Plane.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
@@ -19,14 +20,14 @@ namespace {
 // Not measured, but chosen: what they trade is room that is lost near fronts that meet against smooth, small splines.
 constexpr double kSpacing = 1.0 / 3;  // of fields, of the largest distance
 constexpr double kMargin = 0.98;      // of the way to where fronts meet
-constexpr double kSteps = 64;         // shares are rounded down to so many, so that flat parts stay flat
-constexpr double kBeyond = 2;         // how far what holds a face holds it beyond its sharp edges, in its distances
-constexpr double kMostPlaces = 4e6;   // that may be looked at
+constexpr double kSteps = 64;        // from a share to twice as much, to which it is rounded down: flat parts stay flat
+constexpr double kBeyond = 2;        // how far what holds a face holds it beyond its sharp edges, in its distances
+constexpr double kMostPlaces = 1e6;  // that may be looked at
 constexpr double kDeflection = 0.01;  // of the largest distance
 constexpr double kAngle = 0.3;        // between normals at neighbouring corners, in radians
 // Fronts that come towards each other, by the cosine between their outsides: of faces that are told to hold each other
 // as they lie opposite, and where those that do can meet.
-constexpr double kOpposite = -0.5, kAside = 0.5;
+constexpr double kOpposite = -0.5, kAside = 0.2;
 
 std::array<int, 2> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -35,12 +36,35 @@ Soup source_soup(const HoldRequest& request) {
   return {request.source, deflection, deflection, kAngle};
 }
 
-/// So that no more places than may be are looked at.
+bool is_flat(const Soup::Face& face) { return !Handle(Geom_Plane)::DownCast(face.surface).IsNull(); }
+
+double rounded_down(double share) {
+  int exponent = 0;
+  const double part = std::frexp(share, &exponent);  // of 0.5 to 1
+  return std::ldexp(std::floor(kSteps * 2 * part) / (kSteps * 2), exponent);
+}
+
+/// The most that a distance is on a triangle, as far as points all over it tell.
+double most_on(const FaceDistance& distance, const Soup::Triangle& triangle) {
+  constexpr int kDivisions = 12;
+  if (!distance.at) return std::abs(distance.constant);
+  double most = 0;
+  for (int i = 0; i <= kDivisions; ++i)
+    for (int j = 0; i + j <= kDivisions; ++j) {
+      const double a = static_cast<double>(i) / kDivisions, b = static_cast<double>(j) / kDivisions;
+      const gp_XY uv = triangle.uv[0].XY() * (1 - a - b) + triangle.uv[1].XY() * a + triangle.uv[2].XY() * b;
+      most = std::max(most, std::abs(distance(uv.X(), uv.Y())));
+    }
+  return most;
+}
+
+/// So that no more places than may be are looked at: parts of triangles are halved until they are small enough, to a
+/// fourth of the square of their longest side.
 double spacing_for(const Soup& soup, double largest) {
   double area = 0;
   for (const Soup::Triangle& t : soup.triangles())
     area += gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2])).Magnitude() / 2;
-  return std::max(kSpacing * largest, std::sqrt(area / kMostPlaces) / HeldField::kSampling);
+  return std::max(kSpacing * largest, std::sqrt(4 * area / kMostPlaces) / HeldField::kSampling);
 }
 
 }  // namespace
@@ -62,8 +86,7 @@ HoldBack::HoldBack(HoldRequest request)
     const Soup::Triangle& triangle = soup_.triangles()[t];
     const auto face = static_cast<std::size_t>(triangle.face);
     triangles_[face].push_back(static_cast<int>(t));
-    for (const gp_Pnt2d& uv : triangle.uv)
-      most_[face] = std::max(most_[face], std::abs(request_.distances[face](uv.X(), uv.Y())));
+    most_[face] = std::max(most_[face], most_on(request_.distances[face], triangle));
   }
   find_neighbours();
   find_facing();
@@ -105,12 +128,13 @@ void HoldBack::find_facing() {
       const auto a = static_cast<int>(face), b = static_cast<int>(other);
       if (neighbours_.contains(ordered(a, b)) || pairs_.contains(ordered(a, b))) others[other] = 0;
     }
-    const Opposite opposite{&soup_, &others, request_.largest / most_[face], 0, kOpposite};
-    const double far = most_[face] + request_.largest;
+    const double keep = 2 * kDeflection * request_.largest;
+    const Opposite opposite{&soup_, &others, request_.largest / most_[face], keep, kOpposite};
+    const double far = keep + (most_[face] + request_.largest) / kMargin;
     const double sign = sign_of(face);
     for (const int t : triangles_[face])
       visit_triangle(soup_, t, HeldField::kSampling * spacing_, far, opposite, [&](const SourcePlace& at) {
-        const Room room = room_along(at.point, at.outside * sign, at.outside, most_[face], opposite);
+        const Room room = room_along(at.point, at.outside * sign, at.outside, most_[face] / kMargin, opposite);
         if (room.triangle < 0) return;
         const int other = soup_.triangles()[static_cast<std::size_t>(room.triangle)].face;
         pairs_.insert(ordered(static_cast<int>(face), other));
@@ -135,29 +159,34 @@ double HoldBack::sign_of(std::size_t face) const {
 
 /// What holds a face back, and how far it goes itself: faces that are as fast together. \param masks which faces each
 /// is of; has to outlive them
-std::vector<Opposite> HoldBack::opposites_of(std::size_t face, std::map<double, std::vector<char>>& masks) const {
+std::vector<Opposite> HoldBack::opposites_of(std::size_t face, Masks& masks) const {
   for (const std::array<int, 2>& pair : pairs_) {
     const auto own = static_cast<int>(face);
     if (pair[0] != own && pair[1] != own) continue;
     const auto other = static_cast<std::size_t>(pair[0] == own ? pair[1] : pair[0]);
     const bool comes = sign_of(other) == sign_of(face);
-    auto& mask = masks[comes ? most_[other] / most_[face] : 0];
+    // Triangles lie beside curved faces.
+    const int curved = !is_flat(soup_.faces()[face]) + !is_flat(soup_.faces()[other]);
+    auto& mask = masks[{comes ? most_[other] / most_[face] : 0, curved * kDeflection * request_.largest}];
     mask.resize(triangles_.size(), 0);
     mask[other] = 1;
   }
   std::vector<Opposite> opposites;
   opposites.reserve(masks.size() + 1);
-  for (const auto& [speed, mask] : masks) opposites.push_back({&soup_, &mask, speed, 0, kAside});
-  if (request_.obstacles) opposites.push_back({request_.obstacles, nullptr, 0, request_.clearance, 1});
+  for (const auto& [key, mask] : masks) opposites.push_back({&soup_, &mask, key[0], key[1], kAside});
+  if (request_.obstacles) {
+    const double beside = is_flat(soup_.faces()[face]) ? 0 : kDeflection * request_.largest;
+    opposites.push_back({request_.obstacles, nullptr, 0, request_.clearance + beside, 1});
+  }
   return opposites;
 }
 
 /// Tells the field how far the points of a face may go.
 void HoldBack::tell(std::size_t face, HeldField& field, HeldFace& held) {
   if (most_[face] == 0) return;
-  std::map<double, std::vector<char>> masks;
+  Masks masks;
   for (const Opposite& each : opposites_of(face, masks)) {
-    const double far = each.keep + (1 + each.speed) * most_[face];
+    const double far = each.keep + (1 + each.speed) * most_[face] / kMargin;
     bool is_all = true;
     double least = 1, most = 0;  // shares
     std::vector<std::pair<SourcePlace, double>> told;
@@ -172,7 +201,7 @@ void HoldBack::tell(std::size_t face, HeldField& field, HeldFace& held) {
     }
     held.least = std::min(held.least, least);
     // A face that is held back alike, but for the steps of shares, stays what it is.
-    const bool is_even = is_all && most - least < 1.5 / kSteps;
+    const bool is_even = is_all && least * (1 + 2.5 / kSteps) >= most;
     if (is_even) held.even = std::min(held.even, least);
     for (auto& [at, share] : told) {
       if (is_even) share = least;
@@ -188,8 +217,8 @@ double HoldBack::share_at(std::size_t face, const SourcePlace& at, Opposite oppo
   const double distance = request_.distances[face](at.uv.X(), at.uv.Y()), length = std::abs(distance);
   if (length == 0) return 1;
   opposite.speed *= most_[face] / length;
-  const Room room = room_along(at.point, at.outside * (distance < 0 ? -1 : 1), at.outside, length, opposite);
-  return room.length >= length ? 1 : std::floor(kSteps * kMargin * room.length / length) / kSteps;
+  const Room room = room_along(at.point, at.outside * (distance < 0 ? -1 : 1), at.outside, length / kMargin, opposite);
+  return room.length >= length / kMargin ? 1 : rounded_down(kMargin * room.length / length);
 }
 
 /// Goes on where the face ends and is drawn out to meet others.

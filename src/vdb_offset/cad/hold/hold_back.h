@@ -40,10 +40,12 @@ class HoldBack {
 
  private:
   struct HeldFace;  // what has been told of one
+  /// Faces that are opposite to one, by their speed and by how far to stay away from them.
+  using Masks = std::map<std::array<double, 2>, std::vector<char>>;
   void find_neighbours();
   void find_facing();
   double sign_of(std::size_t face) const;
-  std::vector<Opposite> opposites_of(std::size_t face, std::map<double, std::vector<char>>& masks) const;
+  std::vector<Opposite> opposites_of(std::size_t face, Masks& masks) const;
   void tell(std::size_t face, HeldField& field, HeldFace& held);
   double share_at(std::size_t face, const SourcePlace& at, Opposite opposite) const;
   void tell_beyond(const SourcePlace& at, double share, double most, HeldField& field) const;

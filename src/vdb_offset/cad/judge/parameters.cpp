@@ -14,6 +14,8 @@ namespace {
 // 2018).
 constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
 
+constexpr double kMostShare = 0.05;
+
 double fraction(double x) { return x - std::floor(x); }
 
 }  // namespace
@@ -38,7 +40,8 @@ AtParameters measure_at_parameters(const TopoDS_Face& source, const TopoDS_Face&
     const double off = (moved - normal * asked).Magnitude();
     measured.worst = std::max(measured.worst, off);
     ++measured.samples;
-    if (off >= std::abs(asked)) continue;
+    // Of what hardly goes anywhere, the share is that of the rounding of fits.
+    if (off >= kMostShare * std::abs(asked)) continue;
     measured.least = std::min(measured.least, moved.Dot(normal) / asked);
     measured.most = std::max(measured.most, moved.Dot(normal) / asked);
   }

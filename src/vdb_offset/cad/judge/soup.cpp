@@ -292,7 +292,8 @@ Soup::Nearest Soup::search(const gp_Pnt& point, double reach, const Facing& amon
       const Triangle& t = triangles_[order_[i]];
       if (among.faces && !(*among.faces)[t.face]) continue;
       const double d = mixed(t.points, closest_shares(t.points, point)).SquareDistance(point);
-      if (d >= best || facing.excludes(normal_of(t))) continue;
+      // Not of a triangle without area, whose shares are no numbers.
+      if (!(d < best) || facing.excludes(normal_of(t))) continue;
       best = d;
       result = {order_[i], std::sqrt(d)};
       if (is_any_enough) return result;

@@ -142,11 +142,15 @@ Soup result_soup(const TopoDS_Shape& shape, double distance) {
   return {shape, 0.01 * distance, 0.02 * distance, kAngle};
 }
 
-Soup obstacle_soup(const io::WriteCad& write, double millimetres) {
+std::vector<gp_Pnt> obstacle_points(const io::WriteCad& write, double millimetres) {
   std::vector<gp_Pnt> points;
   for (const Vec3d& at : write.obstacle_positions)
     points.emplace_back(millimetres * at.x(), millimetres * at.y(), millimetres * at.z());
-  return {points, write.obstacle_triangles};
+  return points;
+}
+
+Soup obstacle_soup(const io::WriteCad& write, double millimetres) {
+  return {obstacle_points(write, millimetres), write.obstacle_triangles};
 }
 
 OffsetBodies offset_bodies(const CadModel& model, const io::WriteCad& write, double millimetres, bool keeps_turned) {

@@ -48,7 +48,8 @@ TopoDS_Shape together(const Bodies& bodies, ShapeIn&& shape_in) {
 /// The triangles that are judged of a result. \param distance the largest
 Soup result_soup(const TopoDS_Shape& shape, double distance);
 
-/// The obstacles, in millimetres.
+/// The corners of obstacles, in millimetres.
+std::vector<gp_Pnt> obstacle_points(const io::WriteCad& write, double millimetres);
 Soup obstacle_soup(const io::WriteCad& write, double millimetres);
 
 /// Offsets each body by offset_cad(), its faces held back if that is asked for.

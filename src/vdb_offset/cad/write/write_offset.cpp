@@ -151,6 +151,10 @@ class OffsetWriter {
 
   /// Writes the solids between source and offset in place of the offset, which is good; false if they are not.
   bool make_thick() {
+    if (written_.held > 0 && written_.least_held <= 0) {
+      written_.gaps.emplace_back("faces that are held back where they are leave no wall");
+      return false;
+    }
     WrittenModel model = empty_model();
     double volume = 0;
     for (const OffsetBody& body : bodies_) {
@@ -201,10 +205,11 @@ class OffsetWriter {
   bool is_good(const OffsetBody& body, const Body& again, double millimetres) {
     const TopoDS_Shape shape = scaled(shape_of(again).shape, millimetres);
     if (!body.is_even()) {
-      const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid &&
-                            soup_of(shape).crossings(1).empty();
-      if (!is_valid) written_.gaps.emplace_back("read again, the result is not valid, or crosses itself");
-      if (!is_valid || !is_at_distances(body)) return false;
+      const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid;
+      if (!is_valid) written_.gaps.emplace_back("read again, the result is not valid");
+      const bool is_apart = soup_of(shape).crossings(1).empty();
+      if (!is_apart) written_.gaps.emplace_back("read again, the result crosses itself");
+      if (!is_valid || !is_apart || !is_at_distances(body)) return false;
       add_volume(again, shape);
       return true;
     }
@@ -265,20 +270,27 @@ class OffsetWriter {
     return false;
   }
 
-  /// Whether the bodies neither cross obstacles nor come nearer to them than asked, or than the source is.
+  /// Whether the bodies neither cross nor enclose a part of an obstacle, nor come nearer to it than asked, or than the
+  /// source is. A part that goes through the source is in nobody's way.
   bool is_clear_of_obstacles(const CadModel& again) {
-    const Soup obstacles = obstacle_soup(write_, millimetres_);
+    constexpr double kOff = 0.01;  // of the distance, as far as triangles tell
     const double most = millimetres_ * write_.clearance;
     const Soup before = soup_of(together(bodies_, [](const OffsetBody& each) { return each.source.shape; }));
     const Soup after = soup_of(
         together(again.bodies, [&](const Body& body) { return scaled(shape_of(body).shape, in_millimetres(again)); }));
-    constexpr double kOff = 0.01;  // of the distance, as far as triangles tell
-    const double asked = std::min(most, gap_between(before, obstacles, most));
-    if (before.crosses(obstacles) ||
-        (!after.crosses(obstacles) && gap_between(after, obstacles, most) >= asked - kOff * largest()))
-      return true;
-    written_.gaps.emplace_back("the result comes nearer to an obstacle than asked");
-    return false;
+    const auto encloses = [](const Soup& soup, const Soup& part) {
+      return soup.contains(part.triangles().front().points[0]);
+    };
+    for (const Soup& part : connected_parts(obstacle_points(write_, millimetres_), write_.obstacle_triangles)) {
+      if (before.crosses(part)) continue;
+      const bool is_hit = after.crosses(part) || encloses(after, part) != encloses(before, part);
+      if (!is_hit &&
+          (most == 0 || gap_between(after, part, most) >= gap_between(before, part, most) - kOff * largest()))
+        continue;
+      written_.gaps.emplace_back("the result comes nearer to an obstacle than asked, or meets it");
+      return false;
+    }
+    return true;
   }
 
   bool reaches_into(const Soup& one, const Soup& other) const {
@@ -376,8 +388,8 @@ io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
   for (const Attempt attempt :
        {Attempt::Whole, Attempt::Trimmed, Attempt::TrimmedAll, Attempt::Rest, Attempt::Facets}) {
     if (attempt == Attempt::Facets && !write.faceted) break;
-    if (is_trial(attempt) && write.held) continue;
     if (attempt == Attempt::Rest && rest) return std::move(*rest);
+    if (write.held && (is_trial(attempt) || attempt == Attempt::Rest)) continue;
     std::string gap;
     auto written =
         in_own_process([&] { return OffsetWriter(model, write).run(attempt); }, seconds_for(attempt, write), gap);
@@ -385,6 +397,8 @@ io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
     if (is_trial(attempt)) continue;
     if (!written) {
       gaps.push_back(std::move(gap));
+      if (write.held && attempt == Attempt::Whole)
+        gaps.push_back("holding faces back may take " + std::to_string(kMostHolding) + " s, and 2 GiB");
       continue;
     }
     written->gaps.insert(written->gaps.begin(), gaps.begin(), gaps.end());
