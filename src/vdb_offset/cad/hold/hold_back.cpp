@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "vdb_offset/cad/hold/smooth_edges.h"
+#include "vdb_offset/cad/judge/triangle_boxes.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -62,8 +63,7 @@ double most_on(const FaceDistance& distance, const Soup::Triangle& triangle) {
 /// fourth of the square of their longest side.
 double spacing_for(const Soup& soup, double largest) {
   double area = 0;
-  for (const Soup::Triangle& t : soup.triangles())
-    area += gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2])).Magnitude() / 2;
+  for (const Soup::Triangle& t : soup.triangles()) area += normal_of(t).Magnitude() / 2;
   return std::max(kSpacing * largest, std::sqrt(4 * area / kMostPlaces) / HeldField::kSampling);
 }
 
@@ -89,6 +89,7 @@ HoldBack::HoldBack(HoldRequest request)
     most_[face] = std::max(most_[face], most_on(request_.distances[face], triangle));
   }
   find_neighbours();
+  find_mitres();
   find_facing();
 }
 
@@ -108,15 +109,49 @@ void HoldBack::find_neighbours() {
                   b = numbers[static_cast<std::size_t>(faces.FindIndex(other) - 1)];
         if (a < b) neighbours_.insert({a, b});
       }
-  std::map<std::array<int, 2>, int> sides;  // the face that has each
   for (const Soup::Triangle& triangle : soup_.triangles())
     for (int k = 0; k < 3; ++k) {
       if (!triangle.is_border[k]) continue;
       const std::array<int, 2> side = ordered(triangle.nodes[(k + 1) % 3], triangle.nodes[(k + 2) % 3]);
-      const auto [at, is_new] = sides.emplace(side, triangle.face);
-      const auto piece = [&](int face) { return piece_[static_cast<std::size_t>(face)]; };
-      if (!is_new && piece(at->second) == piece(triangle.face)) joints_.insert(side);
+      const auto number = static_cast<int>(&triangle - soup_.triangles().data());
+      const auto [at, is_new] = sides_.emplace(side, std::array{number, -1});
+      if (is_new) continue;
+      at->second[1] = number;
+      const auto piece = [&](int t) { return piece_[static_cast<std::size_t>(soup_.triangles()[t].face)]; };
+      if (piece(at->second[0]) == piece(number)) joints_.insert(side);
     }
+}
+
+/// What the mitres of sharp edges add to the faces: strips within their planes.
+void HoldBack::find_mitres() {
+  std::vector<gp_Pnt> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<int> faces;
+  for (const auto& [side, both] : sides_) {
+    if (both[1] < 0 || joints_.contains(side)) continue;
+    for (const int own : {0, 1}) {
+      const Soup::Triangle& t = soup_.triangles()[static_cast<std::size_t>(both[own])];
+      const Soup::Triangle& other = soup_.triangles()[static_cast<std::size_t>(both[1 - own])];
+      int k = 0;  // the corner across from the side
+      while (ordered(t.nodes[(k + 1) % 3], t.nodes[(k + 2) % 3]) != side) ++k;
+      const gp_Pnt &p = t.points[(k + 1) % 3], &q = t.points[(k + 2) % 3];
+      const gp_Vec n = normal_of(t), m = normal_of(other);
+      const gp_Vec away = gp_Vec(p, q).Crossed(n);
+      if (n.Magnitude() == 0 || m.Magnitude() == 0 || away.Magnitude() == 0) continue;
+      // Two planes that go as far meet at a tangent of half the angle between their outsides.
+      const auto face = static_cast<std::size_t>(t.face), beside = static_cast<std::size_t>(other.face);
+      const bool grows = (away.Dot(m) > 0) == (sign_of(beside) > 0);
+      const double reach = std::min(std::tan(n.Angle(m) / 2), kBeyond) * std::max(most_[face], most_[beside]);
+      if (!grows || most_[beside] == 0 || reach <= 0) continue;
+      const gp_Vec out = away.Normalized() * reach;
+      const auto first = static_cast<std::uint32_t>(points.size());
+      points.insert(points.end(), {p, q, q.Translated(out), p.Translated(out)});
+      triangles.push_back({first, first + 2, first + 1});
+      triangles.push_back({first, first + 3, first + 2});
+      faces.insert(faces.end(), 2, t.face);
+    }
+  }
+  mitres_.emplace(points, triangles, faces);
 }
 
 /// Finds the faces whose fronts come towards each other.
@@ -172,8 +207,9 @@ std::vector<Opposite> HoldBack::opposites_of(std::size_t face, Masks& masks) con
     mask[other] = 1;
   }
   std::vector<Opposite> opposites;
-  opposites.reserve(masks.size() + 1);
-  for (const auto& [key, mask] : masks) opposites.push_back({&soup_, &mask, key[0], key[1], kAside});
+  opposites.reserve(2 * masks.size() + 1);
+  for (const auto& [key, mask] : masks)
+    for (const Soup* const soup : {&soup_, &*mitres_}) opposites.push_back({soup, &mask, key[0], key[1], kAside});
   if (request_.obstacles) {
     const double beside = is_flat(soup_.faces()[face]) ? 0 : kDeflection * request_.largest;
     opposites.push_back({request_.obstacles, nullptr, 0, request_.clearance + beside, 1});

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -43,6 +44,7 @@ class HoldBack {
   /// Faces that are opposite to one, by their speed and by how far to stay away from them.
   using Masks = std::map<std::array<double, 2>, std::vector<char>>;
   void find_neighbours();
+  void find_mitres();
   void find_facing();
   double sign_of(std::size_t face) const;
   std::vector<Opposite> opposites_of(std::size_t face, Masks& masks) const;
@@ -60,6 +62,8 @@ class HoldBack {
   std::vector<double> most_;                 // of each face: how far it goes at most
   std::vector<std::vector<int>> triangles_;  // of each face
   std::set<std::array<int, 2>> neighbours_, pairs_;
+  std::map<std::array<int, 2>, std::array<int, 2>> sides_;  // of faces, by their nodes: the triangles there, or -1
+  std::optional<Soup> mitres_;
   std::set<std::array<int, 2>> joints_;  // sides of triangles across which a face is joined smoothly, by their nodes
   std::size_t held_ = 0;
   double least_ = 1;

@@ -53,10 +53,6 @@ std::array<double, 3> closest_shares(const std::array<gp_Pnt, 3>& t, const gp_Pn
   return {va / sum, vb / sum, vc / sum};
 }
 
-gp_Vec normal_of(const Soup::Triangle& t) {
-  return gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2]));
-}
-
 // Whether a foot on the surface lies beyond the border that the closest point of the tessellation is on.
 bool leaves(const Soup::Triangle& t, const std::array<double, 3>& shares, const gp_Pnt2d& uv) {
   bool is_on_border = false;
@@ -125,11 +121,13 @@ Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflectio
   build_tree();
 }
 
-Soup::Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles)
+Soup::Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles,
+           const std::vector<int>& faces)
     : deflection_(0) {
-  faces_.push_back({{}, 1});
   for (const auto& corners : triangles) {
     Triangle t{};
+    t.face = faces.empty() ? 0 : faces[triangles_.size()];
+    faces_.resize(std::max(faces_.size(), static_cast<std::size_t>(t.face) + 1), {{}, 1});
     for (int k = 0; k < 3; k++) {
       t.points[k] = points[corners[k]];
       t.nodes[k] = static_cast<int>(corners[k]);

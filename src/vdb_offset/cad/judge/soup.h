@@ -41,8 +41,10 @@ class Soup {
 
   /// Tessellates a copy of the shape: borders of faces more closely than what lies between them.
   Soup(const TopoDS_Shape& shape, double border_deflection, double deflection, double angle);
-  /// Triangles of one face without a surface: no point of them can be corrected.
-  Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles);
+  /// Triangles without surfaces: no point of them can be corrected. \param faces of each triangle; empty: all are of
+  /// one
+  Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles,
+       const std::vector<int>& faces = {});
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const std::vector<Face>& faces() const { return faces_; }

@@ -38,6 +38,11 @@ inline Box3 box_of(const Soup::Triangle& t) {
   return b;
 }
 
+/// Towards the outside, of twice the area.
+inline gp_Vec normal_of(const Soup::Triangle& t) {
+  return gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2]));
+}
+
 /// A point by its shares of three corners.
 inline gp_Pnt mixed(const std::array<gp_Pnt, 3>& p, const std::array<double, 3>& s) {
   return gp_Pnt(p[0].XYZ() * s[0] + p[1].XYZ() * s[1] + p[2].XYZ() * s[2]);
