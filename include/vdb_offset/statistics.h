@@ -121,8 +121,10 @@ struct CadFileFacts {
   /// Faces of the source: that stay what they are (plane, cylinder, cone, sphere, torus), that are fitted, that the
   /// distance swallows, and that could not be made.
   std::size_t kept = 0, fitted = 0, swallowed = 0, missing = 0;
-  std::size_t held = 0;           ///< Faces of the source that are held back, as fronts meet or obstacles are near.
-  double least_held = 1;          ///< The least share of its distance that a point of these goes.
+  std::size_t held = 0;   ///< Faces of the source that are held back, as fronts meet or obstacles are near.
+  double least_held = 1;  ///< The least share of its distance that a point of these goes.
+  /// How near it is to obstacles, to 1 % of the distance, world units; none: there are none, or it is not whole.
+  std::optional<double> obstacle_gap;
   double fit_error = 0;           ///< Of fitted faces, the most, world units.
   std::size_t samples = 0;        ///< Points of it that were measured; 0: none.
   double least = 0, most = 0;     ///< Their distances from the source, as shares, to 1 %; 0: not measured.

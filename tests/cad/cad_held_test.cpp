@@ -158,6 +158,8 @@ TEST_CASE("cad held: faces keep clear of an obstacle, and go all the way beside 
       if (away.x() == 0 && away.y() == 0) highest_below = std::max(highest_below, at.z());
     }
     CHECK(gap > clearance);
+    REQUIRE(facts.obstacle_gap);
+    CHECK(*facts.obstacle_gap == Approx(gap).margin(0.03));
     // The way of 3 is rounded down to 64ths, less 2 %.
     CHECK(highest_below > 21.5 - clearance - 0.1);
     CHECK(highest == Approx(23).margin(1e-9));

@@ -222,6 +222,16 @@ void print_obstacles(std::FILE* out, const ObstacleFacts& obstacles, double clea
                obstacles.touching, obstacles.crossing);
 }
 
+/// Gaps of what is written: of a CAD model its own, and not those of the mesh. Nothing where that is not whole.
+std::optional<ObstacleFacts> obstacles_of(const OffsetStatistics& statistics, const Products& made) {
+  std::optional<ObstacleFacts> facts = statistics.obstacles;
+  if (!facts || !made.cad) return facts;
+  if (!made.cad->obstacle_gap) return std::nullopt;
+  facts->gap = *made.cad->obstacle_gap;
+  facts->near = 0;
+  return facts;
+}
+
 void print_fit(std::FILE* out, const FitFacts& fit) {
   fmt::print(out, "gap {:.9g}, {:.6g} at the start: {} of {} triangles are still nearer than {:.6g}", fit.gap,
              fit.starting_gap, fit.near, fit.near_at_start, fit.clearance);
@@ -355,7 +365,8 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
   if (made.cad) print_cad(out, outcome.to.mesh, *made.cad);
   print_disagreeing(out, job, result.statistics);
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
-  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
+  if (const auto obstacles = obstacles_of(result.statistics, made))
+    print_obstacles(out, *obstacles, job.options.clearance);
   print_face_causes(out, job, result.statistics);
   print_doubts(out, job, result.statistics, result.distances);
 }

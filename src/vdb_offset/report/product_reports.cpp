@@ -33,6 +33,7 @@ Json cad_json(const CadFileFacts& cad) {
           {"faces_missing", cad.missing},
           {"faces_held_back", cad.held},
           {"least_share", cad.least_held},
+          {"obstacle_gap", cad.obstacle_gap ? Json(*cad.obstacle_gap) : Json()},
           {"fit_error", cad.fit_error},
           {"samples", cad.samples},
           {"least_distance", cad.least},

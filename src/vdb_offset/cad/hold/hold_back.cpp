@@ -45,16 +45,17 @@ double rounded_down(double share) {
   return std::ldexp(std::floor(kSteps * 2 * part) / (kSteps * 2), exponent);
 }
 
-/// The most that a distance is on a triangle, as far as points all over it tell.
+/// The distance that is farthest from 0 on a triangle, as far as points all over it tell.
 double most_on(const FaceDistance& distance, const Soup::Triangle& triangle) {
   constexpr int kDivisions = 12;
-  if (!distance.at) return std::abs(distance.constant);
+  if (!distance.at) return distance.constant;
   double most = 0;
   for (int i = 0; i <= kDivisions; ++i)
     for (int j = 0; i + j <= kDivisions; ++j) {
       const double a = static_cast<double>(i) / kDivisions, b = static_cast<double>(j) / kDivisions;
       const gp_XY uv = triangle.uv[0].XY() * (1 - a - b) + triangle.uv[1].XY() * a + triangle.uv[2].XY() * b;
-      most = std::max(most, std::abs(distance(uv.X(), uv.Y())));
+      const double here = distance(uv.X(), uv.Y());
+      if (std::abs(here) > std::abs(most)) most = here;
     }
   return most;
 }
@@ -82,11 +83,15 @@ HoldBack::HoldBack(HoldRequest request)
   piece_ = smooth_pieces(smooth_edges(request_.source), faces);
   triangles_.resize(faces);
   most_.resize(faces, 0);
+  sign_.resize(faces, 1);
   for (std::size_t t = 0; t < soup_.triangles().size(); ++t) {
     const Soup::Triangle& triangle = soup_.triangles()[t];
     const auto face = static_cast<std::size_t>(triangle.face);
     triangles_[face].push_back(static_cast<int>(t));
-    most_[face] = std::max(most_[face], most_on(request_.distances[face], triangle));
+    const double most = most_on(request_.distances[face], triangle);
+    if (std::abs(most) <= most_[face]) continue;
+    most_[face] = std::abs(most);
+    sign_[face] = most < 0 ? -1 : 1;
   }
   find_neighbours();
   find_mitres();
@@ -140,7 +145,7 @@ void HoldBack::find_mitres() {
       if (n.Magnitude() == 0 || m.Magnitude() == 0 || away.Magnitude() == 0) continue;
       // Two planes that go as far meet at a tangent of half the angle between their outsides.
       const auto face = static_cast<std::size_t>(t.face), beside = static_cast<std::size_t>(other.face);
-      const bool grows = (away.Dot(m) > 0) == (sign_of(beside) > 0);
+      const bool grows = (away.Dot(m) > 0) == (sign_[beside] > 0);
       const double reach = std::min(std::tan(n.Angle(m) / 2), kBeyond) * std::max(most_[face], most_[beside]);
       if (!grows || most_[beside] == 0 || reach <= 0) continue;
       const gp_Vec out = away.Normalized() * reach;
@@ -166,7 +171,7 @@ void HoldBack::find_facing() {
     const double keep = 2 * kDeflection * request_.largest;
     const Opposite opposite{&soup_, &others, request_.largest / most_[face], keep, kOpposite};
     const double far = keep + (most_[face] + request_.largest) / kMargin;
-    const double sign = sign_of(face);
+    const double sign = sign_[face];
     for (const int t : triangles_[face])
       visit_triangle(soup_, t, HeldField::kSampling * spacing_, far, opposite, [&](const SourcePlace& at) {
         const Room room = room_along(at.point, at.outside * sign, at.outside, most_[face] / kMargin, opposite);
@@ -185,13 +190,6 @@ bool HoldBack::add(const std::vector<std::array<int, 2>>& pairs) {
   return is_new;
 }
 
-/// Outward or inward: as a face goes where its first triangle is.
-double HoldBack::sign_of(std::size_t face) const {
-  if (triangles_[face].empty()) return 1;
-  const gp_Pnt2d uv = soup_.triangles()[static_cast<std::size_t>(triangles_[face].front())].uv[0];
-  return request_.distances[face](uv.X(), uv.Y()) < 0 ? -1 : 1;
-}
-
 /// What holds a face back, and how far it goes itself: faces that are as fast together. \param masks which faces each
 /// is of; has to outlive them
 std::vector<Opposite> HoldBack::opposites_of(std::size_t face, Masks& masks) const {
@@ -199,7 +197,7 @@ std::vector<Opposite> HoldBack::opposites_of(std::size_t face, Masks& masks) con
     const auto own = static_cast<int>(face);
     if (pair[0] != own && pair[1] != own) continue;
     const auto other = static_cast<std::size_t>(pair[0] == own ? pair[1] : pair[0]);
-    const bool comes = sign_of(other) == sign_of(face);
+    const bool comes = sign_[other] == sign_[face];
     // Triangles lie beside curved faces.
     const int curved = !is_flat(soup_.faces()[face]) + !is_flat(soup_.faces()[other]);
     auto& mask = masks[{comes ? most_[other] / most_[face] : 0, curved * kDeflection * request_.largest}];

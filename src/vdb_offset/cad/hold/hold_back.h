@@ -46,7 +46,6 @@ class HoldBack {
   void find_neighbours();
   void find_mitres();
   void find_facing();
-  double sign_of(std::size_t face) const;
   std::vector<Opposite> opposites_of(std::size_t face, Masks& masks) const;
   void tell(std::size_t face, HeldField& field, HeldFace& held);
   double share_at(std::size_t face, const SourcePlace& at, Opposite opposite) const;
@@ -59,7 +58,7 @@ class HoldBack {
   Soup soup_;
   double spacing_;  // of fields
   std::vector<std::size_t> piece_;
-  std::vector<double> most_;                 // of each face: how far it goes at most
+  std::vector<double> most_, sign_;  // of each face: how far it goes at most, and there outward (1) or inward (-1)
   std::vector<std::vector<int>> triangles_;  // of each face
   std::set<std::array<int, 2>> neighbours_, pairs_;
   std::map<std::array<int, 2>, std::array<int, 2>> sides_;  // of faces, by their nodes: the triangles there, or -1

@@ -10,15 +10,17 @@ namespace {
 
 const Soup::Facing kAny{nullptr, gp_Vec(0, 0, 0), 1};
 
-/// Narrows `most` to the distance of a segment from triangles, to a thousandth of what it was: by halves, as the middle
-/// of one tells how near its ends may be.
+constexpr double kFine = 1e-3;  // of a gap
+
+/// Narrows `most` to the distance of a segment from triangles, to a thousandth of it, or to `fine`: by halves, as the
+/// middle of one tells how near its ends may be.
 void narrow(const gp_Pnt& from, const gp_Pnt& to, const Soup& other, double fine, double& most) {
   const gp_Pnt middle((from.XYZ() + to.XYZ()) / 2);
   const double half = from.Distance(to) / 2;
   const Soup::Nearest nearest = other.nearest(middle, most + half, kAny);
   if (nearest.triangle < 0) return;
   most = std::min(most, nearest.distance);
-  if (half <= fine) return;
+  if (half <= std::max(kFine * most, fine)) return;
   narrow(from, middle, other, fine, most);
   narrow(middle, to, other, fine, most);
 }
@@ -31,7 +33,7 @@ void narrow_by_sides(const Soup& of, const Soup& other, double fine, double& mos
 }  // namespace
 
 double gap_between(const Soup& one, const Soup& other, double most) {
-  const double fine = 1e-3 * most;
+  const double fine = kFine * kFine * most;
   narrow_by_sides(one, other, fine, most);
   narrow_by_sides(other, one, fine, most);
   return most;

@@ -271,10 +271,10 @@ class OffsetWriter {
   }
 
   /// Whether the bodies neither cross nor enclose a part of an obstacle, nor come nearer to it than asked, or than the
-  /// source is. A part that goes through the source is in nobody's way.
+  /// source is; measures the least gap. A part that goes through the source is in nobody's way.
   bool is_clear_of_obstacles(const CadModel& again) {
     constexpr double kOff = 0.01;  // of the distance, as far as triangles tell
-    const double most = millimetres_ * write_.clearance;
+    const double asked = millimetres_ * write_.clearance;
     const Soup before = soup_of(together(bodies_, [](const OffsetBody& each) { return each.source.shape; }));
     const Soup after = soup_of(
         together(again.bodies, [&](const Body& body) { return scaled(shape_of(body).shape, in_millimetres(again)); }));
@@ -283,12 +283,15 @@ class OffsetWriter {
     };
     for (const Soup& part : connected_parts(obstacle_points(write_, millimetres_), write_.obstacle_triangles)) {
       if (before.crosses(part)) continue;
+      const auto& corner = part.triangles().front().points[0];
+      const double gap = gap_between(after, part, after.triangles().front().points[0].Distance(corner));
       const bool is_hit = after.crosses(part) || encloses(after, part) != encloses(before, part);
-      if (!is_hit &&
-          (most == 0 || gap_between(after, part, most) >= gap_between(before, part, most) - kOff * largest()))
-        continue;
-      written_.gaps.emplace_back("the result comes nearer to an obstacle than asked, or meets it");
-      return false;
+      if (is_hit || gap < gap_between(before, part, asked) - kOff * largest()) {
+        written_.gaps.emplace_back("the result comes nearer to an obstacle than asked, or meets it");
+        return false;
+      }
+      if (written_.obstacle_gap < 0 || gap / millimetres_ < written_.obstacle_gap)
+        written_.obstacle_gap = gap / millimetres_;
     }
     return true;
   }

@@ -70,6 +70,7 @@ CadFileFacts facts_of(CadWritten&& written) {
   facts.missing = written.missing;
   facts.held = written.held;
   facts.least_held = written.least_held;
+  if (written.obstacle_gap >= 0) facts.obstacle_gap = written.obstacle_gap;
   facts.fit_error = written.fit_error;
   facts.samples = written.samples;
   facts.least = written.least;

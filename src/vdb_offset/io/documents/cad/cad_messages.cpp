@@ -194,7 +194,8 @@ std::string pack(const CadWritten& written) {
   for (const std::uint64_t count :
        {written.kept, written.fitted, written.swallowed, written.missing, written.held, written.samples})
     packer.value(count);
-  for (const double value : {written.least_held, written.fit_error, written.least, written.most, written.volume})
+  for (const double value :
+       {written.obstacle_gap, written.least_held, written.fit_error, written.least, written.most, written.volume})
     packer.value(value);
   put_texts(packer, written.gaps);
   return packer.take();
@@ -209,7 +210,8 @@ CadWritten unpack_written(std::string_view bytes) {
   for (std::uint64_t* count :
        {&written.kept, &written.fitted, &written.swallowed, &written.missing, &written.held, &written.samples})
     *count = unpacker.value<std::uint64_t>();
-  for (double* value : {&written.least_held, &written.fit_error, &written.least, &written.most, &written.volume})
+  for (double* value :
+       {&written.obstacle_gap, &written.least_held, &written.fit_error, &written.least, &written.most, &written.volume})
     *value = unpacker.value<double>();
   written.gaps = take_texts(unpacker);
   unpacker.end();

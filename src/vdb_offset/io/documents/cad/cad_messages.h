@@ -101,6 +101,7 @@ struct CadWritten {
   std::uint64_t kept = 0, fitted = 0, swallowed = 0, missing = 0;  ///< Faces of the source.
   std::uint64_t samples = 0;                                       ///< Points of the result that were measured.
   std::uint64_t held = 0;         ///< Faces of the source that are held back where fronts meet.
+  double obstacle_gap = -1;       ///< The least distance from obstacles, in the file's unit; below 0: not measured.
   double least_held = 1;          ///< The least share of its distance that a point of them goes.
   double fit_error = 0;           ///< In the file's unit.
   double least = 0, most = 0;     ///< Distances of the result's points from the source, as shares; 0: not sampled.
