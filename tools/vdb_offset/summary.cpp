@@ -255,7 +255,9 @@ void print_states(std::FILE* out, const OffsetResult& result) {
   if (in(VertexState::OutsideField)) fmt::print(out, ", {} outside the field", in(VertexState::OutsideField));
 }
 
+/// Nothing where every vertex of the offset belongs to an edge.
 void print_exactness(std::FILE* out, const ExactFacts& exact) {
+  if (exact.vertices == 0) return;
   fmt::print(
       out, "from the faces of the CAD model, {} vertices are off their distance by {:.2g} on average, {:.2g} at most\n",
       exact.vertices, exact.mean, exact.worst);
@@ -344,6 +346,8 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
 
 void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds) {
   const Printout out(output_is_taken(job.request));
+  // Whose faces are not the mesh's.
+  const bool is_cad_model = made.cad && made.cad->made != CadFileFacts::Made::Facets;
   const OffsetResult& result = outcome.result;
   const AchievedSummary achieved = summarise(result);
   const char* const vertices = job.curves() ? "points" : "vertices";
@@ -353,10 +357,10 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
   const std::string asked = result.distances.uniform() ? fmt::format("{:.6g}", result.distances[0])
                             : least == most            ? least
                                                        : fmt::format("{} to {}", least, most);
-  fmt::print(out, "{}: {} {} at {}: {:.3f} % reached", outcome.to.mesh, achieved.vertices, vertices, asked,
-             100 * achieved.share_reached);
+  fmt::print(out, "{}: {}{} {} at {}: {:.3f} % reached", outcome.to.mesh, is_cad_model ? "as a mesh, " : "",
+             achieved.vertices, vertices, asked, 100 * achieved.share_reached);
   print_states(out, result);
-  print_faces(out, result.statistics.faces, job.curves());
+  if (!is_cad_model) print_faces(out, result.statistics.faces, job.curves());
   if (result.statistics.certified)
     print_certified(out, *result.statistics.certified, faces_in(result.statistics.facts));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
@@ -367,7 +371,7 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
   if (result.statistics.fit) print_fit(out, *result.statistics.fit);
   if (const auto obstacles = obstacles_of(result.statistics, made))
     print_obstacles(out, *obstacles, job.options.clearance);
-  print_face_causes(out, job, result.statistics);
+  if (!is_cad_model) print_face_causes(out, job, result.statistics);
   print_doubts(out, job, result.statistics, result.distances);
 }
 

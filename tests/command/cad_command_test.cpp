@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the command tells of CAD models.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "command/shell_command.h"
+
+using namespace vdb_offset;
+
+TEST_CASE("command: of a CAD model that is written, no faces of a mesh are told", "[command][cad]") {
+  const ShellCommand shell;
+  const std::string bracket = SCENE_DIR "/bracket.step ";
+  const auto told = [&](const std::string& words) {
+    const Run run = shell(bracket + words);
+    CHECK(run.code == 0);
+    return run.out;
+  };
+  const std::string model = told("out.step -d 1mm");
+  CHECK_THAT(model, Catch::StartsWith("out.step: as a mesh, ") && Catch::Contains("out.step: a valid solid: 13 faces"));
+  CHECK_THAT(model, !Catch::Contains("off on average") && !Catch::Contains("faces are off"));
+  CHECK_THAT(told("out.obj -d 1mm"), !Catch::Contains("as a mesh") && Catch::Contains("off on average") &&
+                                         Catch::Contains("faces are off mostly beside sharp corners"));
+  // Round corners leave no vertex of this model on a single face's offset.
+  CHECK_THAT(model, !Catch::Contains("from the faces of the CAD model"));
+  CHECK_THAT(told("out.step -d 1mm --corners miter"), Catch::Contains("\nfrom the faces of the CAD model, "));
+}
