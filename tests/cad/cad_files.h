@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 
+#include "support/places.h"
 #include "vdb_offset/io/documents/cad/cad_worker.h"
 
 namespace vdb_offset::test {
@@ -21,8 +22,7 @@ class CadFiles {
   CadFiles() : folder_(std::filesystem::temp_directory_path() / ("vdb_offset_cad_" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
     is_made_ =
-        std::system(
-            (std::string(CAD_MODELS) + " '" + folder_.string() + "' >'" + folder_.string() + "/log' 2>&1").c_str()) ==
+        std::system((cad_models_path() + " '" + folder_.string() + "' >'" + folder_.string() + "/log' 2>&1").c_str()) ==
         0;
   }
   ~CadFiles() { std::filesystem::remove_all(folder_); }

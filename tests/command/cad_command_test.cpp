@@ -4,12 +4,13 @@
 #include <string>
 
 #include "command/shell_command.h"
+#include "support/places.h"
 
 using namespace vdb_offset;
 
 TEST_CASE("command: of a CAD model that is written, no faces of a mesh are told", "[command][cad]") {
   const ShellCommand shell;
-  const std::string bracket = SCENE_DIR "/bracket.step ";
+  const std::string bracket = test::scenes_path() + "/bracket.step ";
   const auto told = [&](const std::string& words) {
     const Run run = shell(bracket + words);
     CHECK(run.code == 0);

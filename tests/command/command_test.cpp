@@ -14,6 +14,7 @@
 
 #include "command/shell_command.h"
 #include "support/dxf_text.h"
+#include "support/places.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene.h"
@@ -490,7 +491,7 @@ TEST_CASE("command: 2 for input that cannot be read", "[command]") {
 TEST_CASE("command: 3 for work that is refused or falls short", "[command]") {
   const ShellCommand shell;
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --voxel-size 1e-4 --max-memory 1G", 3, "would fit");
-  const std::string plates = std::string(SCENE_DIR) + "/plates_closing.json";
+  const std::string plates = test::scenes_path() + "/plates_closing.json";
   CHECK(shell("'" + plates + "' out.obj").code == 0);
   const Run strict = shell("'" + plates + "' out.obj --strict");
   CHECK(strict.code == 3);
@@ -550,11 +551,12 @@ TEST_CASE("command: an interrupt ends it by that signal and leaves nothing", "[c
   const ShellCommand shell;
   io::write_mesh(shell.file("big.obj"), scene::bumpy_sphere(1, 0.4, 2, 1, 7).view());
   const std::size_t before = shell.count();
-  const std::string input = shell.file("big.obj"), output = shell.file("out.obj");
+  const std::string command = test::command_path(), input = shell.file("big.obj"), output = shell.file("out.obj");
   const pid_t child = fork();
   REQUIRE(child >= 0);
   if (child == 0) {
-    execl(COMMAND, COMMAND, input.c_str(), output.c_str(), "-d", "-4%", "--threads", "1", "-q", nullptr);
+    execl(command.c_str(), command.c_str(), input.c_str(), output.c_str(), "-d", "-4%", "--threads", "1", "-q",
+          nullptr);
     _exit(127);
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
@@ -901,18 +903,18 @@ TEST_CASE("command: an iso-surface whose corners would be rounded by more than v
 
 TEST_CASE("command: the command line's corners count, and not the scene's", "[command][scene]") {
   const ShellCommand run;
-  const std::string scene = "'" + std::string(SCENE_DIR) + "/miter_gear.json'";
+  const std::string scene = "'" + test::scenes_path() + "/miter_gear.json'";
   CHECK_THAT(run(scene + " mitred.obj").out, Catch::Contains("of them mitred"));
   const Run round = run(scene + " round.obj --corners round");
   CHECK(round.code == 3);  // what the scene expects of faces
   CHECK_THAT(round.out, !Catch::Contains("mitred"));
   CHECK_THAT(run(scene + " cut.obj -d 1% --miter-limit 1").out, Catch::Contains("miters cut"));
-  CHECK(run("'" + std::string(SCENE_DIR) + "/gear.json' none.obj --miter-limit 2").code == 1);
+  CHECK(run("'" + test::scenes_path() + "/gear.json' none.obj --miter-limit 2").code == 1);
 }
 
 TEST_CASE("command: a scene brings what its shape is to fit, unless a distance is given", "[command][scene]") {
   const ShellCommand run;
-  const std::string scene = std::string(SCENE_DIR) + "/peg_in_socket.json";
+  const std::string scene = test::scenes_path() + "/peg_in_socket.json";
   CHECK(run("'" + scene + "' peg.obj --strict --report peg.json").code == 0);
   CHECK_THAT(run.slurp(run.file("peg.json")), Catch::Contains("\"triangles_too_near\": 0"));
   CHECK(run("'" + scene + "' as_it_is.obj --distance 0").code == 0);

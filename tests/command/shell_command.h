@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 
+#include "support/places.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene.h"
 
@@ -40,9 +41,9 @@ class ShellCommand {
     const std::string err = (std::filesystem::temp_directory_path() / ("vdb_offset_err_" + std::to_string(::getpid())))
                                 .string(),
                       out = err + "_out";
-    const int status = std::system(
-        ("cd '" + path_.string() + "' && exec '" COMMAND "' " + arguments + " >" + out + " 2>" + err + " </dev/null")
-            .c_str());
+    const int status = std::system(("cd '" + path_.string() + "' && exec '" + vdb_offset::test::command_path() + "' " +
+                                    arguments + " >" + out + " 2>" + err + " </dev/null")
+                                       .c_str());
     Run run{WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), slurp(out), slurp(err)};
     std::filesystem::remove(err);
     std::filesystem::remove(out);

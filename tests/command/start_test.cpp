@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "command/shell_command.h"
+#include "support/places.h"
 
 #ifdef LOADS_WRITERS
 namespace {
@@ -59,7 +60,7 @@ TEST_CASE("command: OpenVDB, VTK and CGNS are loaded by runs that need them, and
 TEST_CASE("command: a missing module is told before the work, in one line", "[command][start]") {
   const ShellCommand shell;
   const std::string alone = shell.file("alone"), text = shell.file("text");
-  std::filesystem::copy_file(COMMAND, alone);
+  std::filesystem::copy_file(vdb_offset::test::command_path(), alone);
   const auto check_missing = [&](const std::string& out, const std::string& options, int code, const char* told) {
     INFO(out << ' ' << options);
     const int status = std::system(("cd / && env -u VDB_OFFSET_MODULES '" + alone + "' '" + shell.file("sphere.obj") +

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command/shell_command.h"
+#include "support/places.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene.h"
 
@@ -185,7 +186,8 @@ TEST_CASE("tolerance: a length, distances of each vertex, parts, scenes, and a d
   CHECK(shell.slurp(shell.file("refined.obj")) == shell.slurp(shell.file("box.obj")));
   CHECK(map_of(shell, "map.txt").empty());
   // A scene is written as plain polygons; its answer is about its own vertices.
-  const Run ball = shell("'" SCENE_DIR "/cube_out.json' ball.ply --tolerance 2% --refined-source refined.ply --strict");
+  const Run ball = shell("'" + test::scenes_path() +
+                         "/cube_out.json' ball.ply --tolerance 2% --refined-source refined.ply --strict");
   INFO(ball.out << ball.err);
   CHECK(ball.code == 0);
   CHECK(mesh_of(shell, "ball.ply").corners == mesh_of(shell, "refined.ply").corners);
@@ -225,7 +227,7 @@ TEST_CASE("tolerance: 3 where --max-faces stops it, or --strict asks for what is
   CHECK_THAT(map.out, Catch::StartsWith("# vertex face") && !Catch::Contains("certified"));
   CHECK_THAT(map.err, Catch::Contains("certified within 5 %"));
   // Two plates that are nearer to each other than twice the distance: where vertices cannot be, no faces are wasted.
-  const std::string plates = "'" SCENE_DIR "/plates_closing.json' out.ply --tolerance 5%";
+  const std::string plates = "'" + test::scenes_path() + "/plates_closing.json' out.ply --tolerance 5%";
   CHECK(shell(plates).code == 0);
   const Run strict = shell(plates + " --strict --report r.json");
   CHECK(strict.code == 3);
@@ -270,7 +272,7 @@ TEST_CASE("tolerance: options that do not go together, and files that clash", "[
   check_failure(shell, offset + "-d 0.1 --map no/such/m.txt", 4, "no/such/m.txt");
   check_failure(shell, offset + "-d 0.1 --refined-source r.obj --map /dev/full", 4, "/dev/full");
   for (const char* const scene : {"shell_cube", "peg_in_socket"})
-    check_failure(shell, "'" SCENE_DIR "/" + std::string(scene) + ".json' out.obj --tolerance 1%", 1,
+    check_failure(shell, "'" + test::scenes_path() + "/" + scene + ".json' out.obj --tolerance 1%", 1,
                   "--tolerance: expected a scene without a shell or a fit");
   std::ofstream(shell.file("square.txt")) << "0 0\n1 0\n1 1\n0 1\n0 0\n";
   check_failure(shell, "square.txt out.txt -d 0.1 --tolerance 1%", 1, "--tolerance: expected a mesh");

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "support/oracles.h"
+#include "support/places.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/surface/surface.h"
@@ -27,7 +28,7 @@ scene::Scene read(const std::string& text) { return scene::read_scene(TemporaryF
 
 TEST_CASE("scenes: every one runs as it expects", "[scene]") {
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SCENE_DIR)) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::scenes_path())) {
     if (!scene::is_scene(entry.path().string())) continue;  // a model to try things with
     INFO(entry.path().string());
     const scene::Scene scene = scene::read_scene(entry.path().string());
