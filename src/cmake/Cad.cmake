@@ -22,20 +22,25 @@ mark_as_advanced(OPENCASCADE_HEADERS)
 
 # What the worker is made of, for the tests of its parts as well.
 add_library(vdb_offset_cad_objects OBJECT)
-set(cad_sources read/document read/name_instances read/read_model surface/face_surface surface/offset_points tessellate/append_body
-  tessellate/divide_to_deflection tessellate/flip_slivers tessellate/orient tessellate/place_on_surfaces
-  tessellate/sew_open_edges tessellate/take_mesh tessellate/tessellate
-  offset/arrange offset/build offset/contact offset/contract offset/edge_curve offset/mend_pcurve offset/model offset/offset_solid
-  offset/offset_surface offset/place offset/resolve offset/surface_fit
-  hold/held_field hold/hold_back hold/room hold/smooth_edges
-  judge/clearance judge/edge_points judge/judge judge/parameters judge/soup judge/soup_crossings
-  trim/cut_faces trim/join_pieces trim/point_in_face trim/trim_offset
-  write/assemblies write/blended_faces write/body_shape write/face_distances write/faceted write/offset_bodies write/own_process
-  write/thick_solids write/write_model write/write_offset
-  worker/guard worker/memory_limit worker/requests)
-list(TRANSFORM cad_sources PREPEND src/vdb_offset/cad/)
-list(TRANSFORM cad_sources APPEND .cpp)
-target_sources(vdb_offset_cad_objects PRIVATE ${cad_sources})
+# Those of a folder are compiled together where units are joined, for the linter too: each reads OpenCASCADE's headers anew.
+function(vdb_offset_cad_folder folder)
+  list(TRANSFORM ARGN PREPEND src/vdb_offset/cad/${folder}/ OUTPUT_VARIABLE sources)
+  list(TRANSFORM sources APPEND .cpp)
+  target_sources(vdb_offset_cad_objects PRIVATE ${sources})
+  set_source_files_properties(${sources} PROPERTIES UNITY_GROUP cad_${folder})
+endfunction()
+vdb_offset_cad_folder(read document name_instances read_model)
+vdb_offset_cad_folder(surface face_surface offset_points)
+vdb_offset_cad_folder(tessellate append_body divide_to_deflection flip_slivers orient place_on_surfaces sew_open_edges take_mesh
+  tessellate)
+vdb_offset_cad_folder(offset arrange build contact contract edge_curve mend_pcurve model offset_solid offset_surface place resolve
+  surface_fit)
+vdb_offset_cad_folder(hold held_field hold_back room smooth_edges)
+vdb_offset_cad_folder(judge clearance edge_points judge parameters soup soup_crossings)
+vdb_offset_cad_folder(trim cut_faces join_pieces point_in_face trim_offset)
+vdb_offset_cad_folder(write assemblies blended_faces body_shape face_distances faceted offset_bodies own_process thick_solids
+  write_model write_offset)
+vdb_offset_cad_folder(worker guard memory_limit requests)
 target_compile_features(vdb_offset_cad_objects PUBLIC cxx_std_20)
 target_include_directories(vdb_offset_cad_objects PUBLIC include src)
 target_include_directories(vdb_offset_cad_objects SYSTEM PUBLIC ${OPENCASCADE_HEADERS})
@@ -55,7 +60,7 @@ if(VDB_OFFSET_EXPRESSIONS)
 endif()
 target_link_options(vdb_offset_cad PRIVATE -Wl,--as-needed)
 foreach(target IN ITEMS vdb_offset_cad_objects vdb_offset_cad)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endforeach()
 add_dependencies(vdb_offset_modules vdb_offset_cad)
 install(TARGETS vdb_offset_cad RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/vdb_offset)

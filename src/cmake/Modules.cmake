@@ -22,8 +22,8 @@ function(vdb_offset_module name needs)
   target_include_directories(vdb_offset_${name}_module PRIVATE include src)
   target_link_libraries(vdb_offset_${name}_module PRIVATE OpenVDB::openvdb TBB::tbb fmt::fmt ${needs} vdb_offset_build)
   target_link_options(vdb_offset_${name}_module PRIVATE -Wl,--as-needed -Wl,-Bsymbolic-functions)
-  set_target_properties(vdb_offset_${name}_module PROPERTIES OUTPUT_NAME vdb_offset_${name} PREFIX "" SUFFIX .so UNITY_BUILD OFF
-    LINKER_LANGUAGE CXX CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(vdb_offset_${name}_module PROPERTIES OUTPUT_NAME vdb_offset_${name} PREFIX "" SUFFIX .so
+    UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE 0 LINKER_LANGUAGE CXX CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_precompile_headers(vdb_offset_${name}_module REUSE_FROM vdb_offset_core_objects)
   add_dependencies(vdb_offset_modules vdb_offset_${name}_module)
   install(TARGETS vdb_offset_${name}_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/vdb_offset)

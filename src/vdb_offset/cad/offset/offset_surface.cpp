@@ -228,16 +228,16 @@ namespace {
 // How long spans of a fit may be at first, in u or v, so that no change of a distance is passed over between the points
 // that are looked at. Not measured.
 double longest_span(const Geom_Surface& surface, const Box2& box, double detail, bool along_u) {
-  constexpr double kLeastSpans = 8, kMostSpans = 64;
+  constexpr double kFewSpans = 8, kManySpans = 64;
   const double range = along_u ? box.u1 - box.u0 : box.v1 - box.v0;
-  double spans = kLeastSpans;
+  double spans = kFewSpans;
   for (const double part : {0.1, 0.5, 0.9}) {
     gp_Pnt p;
     gp_Vec du, dv;
     surface.D1(box.u0 + part * (box.u1 - box.u0), box.v0 + part * (box.v1 - box.v0), p, du, dv);
     if (detail > 0) spans = std::max(spans, (along_u ? du : dv).Magnitude() * range / detail);
   }
-  return range / std::min(spans, kMostSpans);
+  return range / std::min(spans, kManySpans);
 }
 
 OffsetSurface fitted(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,

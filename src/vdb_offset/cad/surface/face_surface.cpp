@@ -19,7 +19,7 @@ constexpr double kNoDirection = 1e-10;
 // Where a face is so narrow, as a share of what it is along, its directions are those of rounded numbers.
 constexpr double kNoWidth = 1e-9;
 // Steps of a search that starts beside its end: they square the error.
-constexpr int kMostSteps = 20;
+constexpr int kMostSearchSteps = 20;
 // How far a search may leave the range of a face's parameters, as a share of it: points of mitres lie outside.
 constexpr double kBeyond = 0.25;
 
@@ -188,7 +188,7 @@ Foot FaceSurface::searched_foot(const gp_Pnt& point, double u, double v) const {
   const double start_u = u, start_v = v, start = point.Distance(surface_.Value(u, v));
   gp_Pnt at;
   gp_Vec du, dv, duu, dvv, duv;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostSearchSteps; ++step) {
     surface_.D2(u, v, at, du, dv, duu, dvv, duv);
     const gp_Vec off(point, at);
     const double gu = off.Dot(du), gv = off.Dot(dv);
