@@ -8,7 +8,7 @@ from attack import BOX, attack, attack_each
 
 def part(place, size):
     """Sanitized, what takes seconds takes a minute."""
-    return size // 5 if place.sanitized else size
+    return size // 10 if place.sanitized else size
 
 
 def star(corners):
@@ -59,7 +59,7 @@ def curves_from_one_point(place):
 @attack_each({'level': 0, 'tilted': 0.37})
 def points_on_one_line(place, slope):
     """Each place is on a third of the segments. What has fewer crossings than are counted has them listed, which takes
-    longer than that, so that a fifth of the points would be no less work: sanitized, there are few."""
+    longer than that, so that a tenth of the points would be no less work: sanitized, there are few."""
     numbers = random.Random(1)
     at = [numbers.random() for _ in range(250 if place.sanitized else 6250)]
     place.file('line.txt', ''.join(f'{x!r} {slope * x!r}\n' for x in at))
