@@ -11,6 +11,7 @@
 #include "vdb_offset/limit/limit_schedule.h"
 #include "vdb_offset/limit/limit_state.h"
 #include "vdb_offset/limit/pull_back.h"
+#include "vdb_offset/limit/return_to_faces.h"
 #include "vdb_offset/limit/settle.h"
 #include "vdb_offset/limit/untangle_patches.h"
 
@@ -28,9 +29,12 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
   while (pull_back(state)) progress.advance(1);
   LetOut let_out(state);
   let_out(progress);
+  ReturnToFaces return_to_faces(state);
+  if (return_to_faces()) let_out(progress);
   Settling settle(state);
   for (const LiveArea::Lines lines : {LiveArea::Lines::KeepBorder, LiveArea::Lines::All})
     if (settle(lines)) let_out(progress);
+  if (return_to_faces()) let_out(progress);
   for (int i = 0; i < kEasings; ++i) let_out.ease();
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }

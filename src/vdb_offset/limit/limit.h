@@ -19,6 +19,7 @@ struct SurfaceOffset {
   const Distances& distances;     ///< Of these vertices.
   Paths& paths;                   ///< Of these vertices; displacement 0 of those that are not on the moving part.
   MitredPaths* mitred = nullptr;  ///< Of these vertices, if any are mitred.
+  bool keeps_faces = false;       ///< Faces are to be at the distance: no vertex slides where that loses more of them.
 };
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew (see fault_finder.h
@@ -32,8 +33,10 @@ struct SurfaceOffset {
 ///    paths back first that they had before. A surface that is pulled back
 ///    altogether is the source, so that this ends.
 /// 3. Letting out (LetOut): pulled vertices are let out again as far as no fault arises, a few at a time.
-/// 4. Settling (Settling): short vertices are put where there is room, if less is lost with what goes back for that.
-/// 5. Easing (LetOut::ease()): vertices around pulled ones follow these, where thickness would change too fast.
+/// 4. Returning (ReturnToFaces), where faces are to be at the distance, before and after settling: vertices that have
+///    slid aside or were taken back go where the faces around them are at the distance.
+/// 5. Settling (Settling): short vertices are put where there is room, if less is lost with what goes back for that.
+/// 6. Easing (LetOut::ease()): vertices around pulled ones follow these, where thickness would change too fast.
 /// With `started_from`, patches that were moved in that offset and are faulty here start from there, and patches that
 /// could not be freed there are not tried again.
 ///

@@ -23,6 +23,7 @@ LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, c
       distances(offset.distances),
       paths(offset.paths),
       mitred(offset.mitred),
+      keeps_faces(offset.keeps_faces),
       faults(fault_finder),
       started_from(warm),
       whole(offset.paths.displacement),
@@ -54,6 +55,19 @@ Vec3d LimitState::displacement_of(std::uint32_t v) const {
   return (all * (u * u) + start * (all.length() * u * (1 - u))) * kBent;
 }
 
+double LimitState::off_planes(std::uint32_t v, const Vec3d& displacement) const {
+  const auto& x = surface.vertices;
+  double off = 0, area = 0;
+  for (const auto t : surface.triangles_around(v)) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3d normal = (x[b] - x[a]).cross(x[c] - x[a]);
+    const double length = normal.length();
+    off += std::abs(normal.dot(displacement) - length * distances[v]);
+    area += length;
+  }
+  return area > 0 ? off / (area * std::abs(distances[v])) : 0;
+}
+
 Indices LimitState::take_miters_back(const Indices& vertices) {
   if (!mitred) return {};
   Indices unmitred = mitred->take_back(vertices, paths);
@@ -71,6 +85,7 @@ Indices LimitState::with_rings(const Indices& vertices, int rings) {
 }
 
 bool LimitState::may_slide(std::uint32_t v) const {
+  if (keeps_faces && mitred && mitred->is_mitred(v)) return false;
   const VertexState state = paths.state[v];
   const bool at_end = !falls_short(state) || (state == VertexState::Collision && has_sides(v));
   return at_end && distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);

@@ -28,6 +28,7 @@ struct LimitState {
   const Distances& distances;
   Paths& paths;         ///< Keeps states and displacements of the beginning; the result is written by limit().
   MitredPaths* mitred;  ///< Null if no vertex is mitred.
+  bool keeps_faces;     ///< See SurfaceOffset.
   FaultFinder& faults;
   const WarmStart* started_from;  ///< Null without one.
 
@@ -51,13 +52,18 @@ struct LimitState {
            (nearer > 0 ? nearer : std::abs(distances[v])) * (1 - kReachedTolerance) - faults.rounding(v);
   }
   /// Whether a vertex may slide at its distance. A collided one may slide to where there is room; a vertex that stays,
-  /// or is bound to its path, may not.
+  /// or is bound to its path, may not, nor one that is mitred where faces are to be kept.
   bool may_slide(std::uint32_t v) const;
 
   /// The share of a vertex's whole displacement that it goes: along the straight line, but the last tenth of it, at the
   /// surface, on a parabola that meets the surface in the vertex's start direction, as the straight line may dip
   /// through the faces around the vertex.
   Vec3d displacement_of(std::uint32_t v) const;
+  /// How far the planes of the faces around a vertex are off where it stands, in distances: the mean by area. Not moved
+  /// at all, the vertex would have 1.
+  double off_planes(std::uint32_t v) const { return off_planes(v, displacement_of(v)); }
+  /// The same with another displacement.
+  double off_planes(std::uint32_t v, const Vec3d& displacement) const;
   /// World coordinates.
   Vec3d position_of(std::uint32_t v) const { return source[v] + displacement_of(v); }
 

@@ -187,29 +187,13 @@ std::vector<PatchUntangler::PatchFaults> PatchUntangler::faults_by_patch() const
   return faults;
 }
 
-/// How far the planes of the faces around a vertex are off at the end of its whole displacement, in distances: the mean
-/// by area. Held back altogether, the vertex would have 1.
-double PatchUntangler::off_planes(std::uint32_t v) const {
-  const auto& x = state_.surface.vertices;
-  const double distance = state_.distances[v];
-  double off = 0, area = 0;
-  for (const auto t : state_.surface.triangles_around(v)) {
-    const auto& [a, b, c] = state_.surface.triangles[t];
-    const Vec3d normal = (x[b] - x[a]).cross(x[c] - x[a]);
-    const double length = normal.length();
-    off += std::abs(normal.dot(state_.whole[v]) - length * distance);
-    area += length;
-  }
-  return area > 0 ? off / (area * std::abs(distance)) : 0;
-}
-
 /// Marks the patches of which a vertex has strayed: though its faces have room, they are farther off their planes than
 /// before, and than if it had been held back.
 /// \param chosen the vertices, and how far off their planes were before
 std::vector<std::uint8_t> PatchUntangler::patches_astray(const std::vector<std::pair<std::uint32_t, double>>& chosen) {
   Indices strayed, unknown;
   for (const auto& [v, before] : chosen) {
-    const double off = off_planes(v);
+    const double off = state_.off_planes(v, state_.whole[v]);
     if (off <= kMostOff || off <= before) continue;
     strayed.push_back(v);
     if (state_.live_area[v] < 0) unknown.push_back(v);
@@ -218,7 +202,28 @@ std::vector<std::uint8_t> PatchUntangler::patches_astray(const std::vector<std::
   std::vector<std::uint8_t> astray(patches_.count(), 0);
   for (const auto v : strayed)
     if (state_.live_area[v] > kLiveShare * state_.live_area.area(v)) astray[patches_.of(v)] = 1;
+  if (state_.keeps_faces) mark_losses(chosen, astray);
   return astray;
+}
+
+/// Marks the patches that lose more of their faces than if their faulty vertices were held back: live area, by how far
+/// its planes are off.
+void PatchUntangler::mark_losses(const std::vector<std::pair<std::uint32_t, double>>& chosen,
+                                 std::vector<std::uint8_t>& astray) {
+  Indices moved;
+  for (const auto& [v, before] : chosen)
+    if (state_.off_planes(v, state_.whole[v]) != before) moved.push_back(v);
+  state_.live_area.measure(moved);
+  Indices faulty = state_.faults.faulty_vertices();
+  std::vector<double> lost(patches_.count(), 0.0);
+  for (const auto& [v, before] : chosen) {
+    const double off = state_.off_planes(v, state_.whole[v]);
+    if (off == before) continue;
+    const bool is_held = state_.is_short(v) || std::binary_search(faulty.begin(), faulty.end(), v);
+    lost[patches_.of(v)] += state_.live_area[v] * (off - (is_held ? std::max(1.0, before) : before));
+  }
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    if (lost[i] > 0) astray[i] = 1;
 }
 
 /// Lets move(patch) change the displacements and shares of the patches' vertices, in parallel; then takes back the
@@ -234,7 +239,7 @@ std::size_t PatchUntangler::try_out(Move&& move, Keep keep) {
   off_before.reserve(chosen.size());
   for (const auto v : chosen) {
     old.emplace_back(state_.whole[v], state_.share[v]);
-    off_before.emplace_back(v, off_planes(v));
+    off_before.emplace_back(v, state_.off_planes(v, state_.whole[v]));
   }
   tbb::parallel_for(std::size_t{0}, patches_.count(), [&](std::size_t i) { move(patches_[i]); });
   const std::vector<std::uint8_t> astray = patches_astray(off_before);

@@ -54,8 +54,8 @@ class PatchUntangler {
   void leave_out(const PatchSizes& sizes, double least_contrast);
   double contrast(const Indices& patch) const;
   std::vector<PatchFaults> faults_by_patch() const;
-  double off_planes(std::uint32_t v) const;
   std::vector<std::uint8_t> patches_astray(const std::vector<std::pair<std::uint32_t, double>>& chosen);
+  void mark_losses(const std::vector<std::pair<std::uint32_t, double>>& chosen, std::vector<std::uint8_t>& astray);
   template <class Move>
   std::size_t try_out(Move&& move, Keep keep);
 

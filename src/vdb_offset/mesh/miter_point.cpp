@@ -151,12 +151,6 @@ class NearestInHull {
   Vec3d point_{0.0};
 };
 
-double excess_of(std::span<const Vec3d> normals, const Vec3d& x) {
-  double most = 0;
-  for (const Vec3d& n : normals) most = std::max(most, n.dot(x) - 1);
-  return most;
-}
-
 /// The point with n . x = 1 for all normals, if there is one and only one that they say clearly.
 std::optional<Vec3d> common_point(std::span<const Vec3d> normals) {
   openvdb::math::Mat3d squares = openvdb::math::Mat3d::zero(), axes;
@@ -189,6 +183,12 @@ std::optional<Vec3d> common_point(std::span<const Vec3d> normals) {
 }
 
 }  // namespace
+
+double excess_of(std::span<const Vec3d> normals, const Vec3d& x) {
+  double most = 0;
+  for (const Vec3d& n : normals) most = std::max(most, n.dot(x) - 1);
+  return most;
+}
 
 std::optional<MiterPoint> miter_point(std::span<const Vec3d> normals) {
   if (normals.empty()) return std::nullopt;

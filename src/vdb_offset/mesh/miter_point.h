@@ -23,4 +23,7 @@ struct MiterPoint {
 /// \return nothing if there is none: the normals do not all face one direction
 std::optional<MiterPoint> miter_point(std::span<const Vec3d> normals);
 
+/// By how much more than 1 x moves the plane that it moves farthest; 0 if it moves none by more.
+double excess_of(std::span<const Vec3d> normals, const Vec3d& x);
+
 }  // namespace vdb_offset

@@ -11,6 +11,7 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/curve/curve_corners.h"
 #include "vdb_offset/mesh/miter_point.h"
+#include "vdb_offset/mesh/prevailing_point.h"
 #include "vdb_offset/paths/obstacle_guard.h"
 #include "vdb_offset/surface/creases.h"
 
@@ -19,9 +20,6 @@ namespace {
 
 // Miters that are proven together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kMitersTogether = 64;
-// The largest sine of the angle between normals of faces on one plane. Reasoned: far above the rounding of coordinates
-// with seven digits, far below all bends that are meant.
-constexpr double kOnePlaneSine = 1e-4;
 // How far from a vertex, in distances, what is nearer to the end of its miter still belongs to its corner: edges broken
 // by less are details of it. Not measured.
 constexpr double kDetail = 0.1;
@@ -34,30 +32,12 @@ constexpr double kTooAlike = 0.1;
 // rounding.
 constexpr double kSameMiterDistance = 1e-9;
 
-double area_of(const Surface& surface, std::uint32_t triangle) {
-  const auto& [a, b, c] = surface.triangles[triangle];
-  return (surface.vertices[b] - surface.vertices[a]).cross(surface.vertices[c] - surface.vertices[a]).length();
-}
-double area_of(const Polyline& line, std::uint32_t segment) {
-  const auto& [a, b] = line.segments[segment];
-  return (line.vertices[b] - line.vertices[a]).length();
-}
-
-/// The normals of the planes around a vertex, each once: of the largest of the faces on it, which tells best.
+/// The planes around a vertex, of the exact surface where that is known.
 template <class Shape>
-std::vector<Vec3d> planes_around(const Shape& shape, std::uint32_t vertex, const ExactCorners* exact) {
-  std::vector<std::pair<double, std::uint32_t>> faces;
-  for (const auto t : shape.triangles_around(vertex))
-    if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-area_of(shape, t), t);
-  std::sort(faces.begin(), faces.end());
-  std::vector<Vec3d> planes;
-  for (const auto& [area, t] : faces) {
-    const Vec3d& normal = exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
-    if (std::none_of(planes.begin(), planes.end(),
-                     [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine; }))
-      planes.push_back(normal);
-  }
-  return planes;
+PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, const ExactCorners* exact) {
+  return planes_around(shape, vertex, [&](std::uint32_t t) -> const Vec3d& {
+    return exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
+  });
 }
 
 /// Normals less their parts along those of walls, which are in the way.
@@ -162,33 +142,44 @@ bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
 template <class Query>
 MiterFinder<Query>::MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
                                 std::span<const MiterWalls> walls, const ExactCorners* exact)
-    : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles), exact_(exact) {
+    : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles), walls_(walls), exact_(exact) {
   VDB_OFFSET_ASSERT(longest >= 1);
   std::vector<std::uint8_t> on_crease = vertices_on_creases(query.surface());
   for (const MiterWalls& each : walls) on_crease[each.vertex] = 1;
   for (std::uint32_t v = 0; v < on_crease.size(); ++v)
     if (on_crease[v] || (exact && exact->knows(v))) miters_.push_back({v, Vec3d(0.0), 0, {}, on_crease[v] != 0, false});
   for_each_index(
-      miters_.size(), [&](std::size_t i) { miters_[i] = unit_miter(miters_[i].vertex, miters_[i].on_crease, walls); },
+      miters_.size(), [&](std::size_t i) { miters_[i] = unit_miter(miters_[i].vertex, miters_[i].on_crease); },
       kMitersTogether);
+}
+
+template <class Query>
+const MiterWalls* MiterFinder<Query>::walls_of(std::uint32_t vertex) const {
+  const auto own = std::lower_bound(walls_.begin(), walls_.end(), vertex,
+                                    [](const MiterWalls& each, std::uint32_t other) { return each.vertex < other; });
+  return own != walls_.end() && own->vertex == vertex ? &*own : nullptr;
+}
+
+/// The planes that the miter of a vertex has to be on, which keep to a border, or to walls.
+template <class Query>
+PlanesAround MiterFinder<Query>::planes_to_meet(std::uint32_t vertex, const ExactCorners* exact) const {
+  const auto& shape = query_.surface();
+  PlanesAround planes = planes_around(shape, vertex, exact);
+  if (const MiterWalls* const own_walls = walls_of(vertex)) keep_to_walls(own_walls->normals, planes.normals);
+  else
+    for (Vec3d& plane : planes.normals) plane = shape.along_border(vertex, plane);
+  return planes;
 }
 
 /// The miter of a vertex for a distance of 1.
 template <class Query>
-typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::unit_miter(std::uint32_t vertex, bool on_crease,
-                                                                      std::span<const MiterWalls> walls) const {
+typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::unit_miter(std::uint32_t vertex, bool on_crease) const {
   const auto& shape = query_.surface();
-  const auto own_walls =
-      std::lower_bound(walls.begin(), walls.end(), vertex,
-                       [](const MiterWalls& each, std::uint32_t other) { return each.vertex < other; });
-  const bool has_walls = own_walls != walls.end() && own_walls->vertex == vertex;
-  UnitMiter miter{vertex, Vec3d(0.0), 0, {}, on_crease, exact_ && exact_->knows(vertex) && !has_walls, has_walls};
+  const MiterWalls* const own_walls = walls_of(vertex);
+  UnitMiter miter{
+      vertex, Vec3d(0.0), 0, {}, on_crease, exact_ && exact_->knows(vertex) && !own_walls, own_walls != nullptr};
   const ExactCorners* const exact = miter.is_exact ? exact_ : nullptr;
-  std::vector<Vec3d> planes = planes_around(shape, vertex, exact);
-  if (has_walls) keep_to_walls(own_walls->normals, planes);
-  else
-    for (Vec3d& plane : planes) plane = shape.along_border(vertex, plane);
-  const auto point = miter_point(planes);
+  const auto point = miter_point(planes_to_meet(vertex, exact).normals);
   if (!point || point->excess > kMostExcess) return miter;
   miter.end = point->position;
   miter.excess = point->excess;
@@ -320,8 +311,8 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Asked& fro
 }
 
 template <class Query>
-std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(const Asked& asked) const {
-  const std::vector<UnitMiter> units = unit_miters_of(asked);
+std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(std::span<const UnitMiter> units,
+                                                                                   const Asked& asked) const {
   std::vector<Miter> miters(units.size());
   std::vector<std::uint8_t> proven(units.size(), 0);
   for (std::size_t i = 0; i < miters.size(); ++i) {
@@ -336,10 +327,43 @@ std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::pro
                  [&](std::size_t block) {
                    const std::size_t begin = block * kMitersTogether,
                                      count = std::min(kMitersTogether, units.size() - begin);
-                   prove(std::span(units).subspan(begin, count), asked, std::span(miters).subspan(begin, count),
+                   prove(units.subspan(begin, count), asked, std::span(miters).subspan(begin, count),
                          std::span(proven).subspan(begin, count));
                  },
                  1);
+  return {std::move(miters), std::move(proven)};
+}
+
+/// The miter, for a distance of 1, on the planes of most of the area around a vertex.
+template <class Query>
+typename MiterFinder<Query>::UnitMiter MiterFinder<Query>::prevailing_miter(const UnitMiter& even) const {
+  UnitMiter miter = even;
+  miter.end = Vec3d(0.0);
+  miter.is_above_face = {};
+  const PlanesAround planes = planes_to_meet(even.vertex, even.is_exact ? exact_ : nullptr);
+  const auto point = prevailing_point(planes.normals, planes.areas, longest_);
+  if (!point) return miter;
+  miter.end = *point;
+  miter.excess = excess_of(planes.normals, *point);
+  return miter;
+}
+
+template <class Query>
+std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::prove(const Asked& asked) const {
+  auto [miters, proven] = prove(unit_miters_of(asked), asked);
+  if (corners_ == Corners::Round) return {std::move(miters), std::move(proven)};
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < miters.size(); ++i)
+    if (!proven[i] && miters_[i].on_crease && !(asked.own && asked.own->differ(miters_[i].vertex))) left.push_back(i);
+  std::vector<UnitMiter> others(left.size());
+  for_each_index(
+      left.size(), [&](std::size_t k) { others[k] = prevailing_miter(miters_[left[k]]); }, kMitersTogether);
+  const auto [other_miters, other_proven] = prove(others, asked);
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (!other_proven[k]) continue;
+    miters[left[k]] = other_miters[k];
+    proven[left[k]] = 1;
+  }
   return {std::move(miters), std::move(proven)};
 }
 

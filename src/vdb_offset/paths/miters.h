@@ -14,6 +14,7 @@
 #include "vdb_offset/options.h"
 #include "vdb_offset/paths/exact_corners.h"
 #include "vdb_offset/paths/own_distances.h"
+#include "vdb_offset/paths/planes_around.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/query/obstacles.h"
@@ -45,12 +46,13 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 /// Finds the miters of the vertices on creases, of a Surface and of a Polyline alike.
 ///
 /// Distinct planes around a vertex move along their normals by its distance; its miter is the smallest displacement to
-/// a point on all of them, or beyond (see miter_point()); at a border, of those that keep to it, or to walls. A miter
-/// is proven by one exact distance: the surface is no nearer to its end than the distance, and what is nearest there is
-/// one of the faces around the vertex, goes on in the plane of one, or is a detail of the corner. Vertices whose miter
-/// is not proven have none, nor have those on edges of more than two faces. With Corners::Round, miters are those whose
-/// ends are at the distance themselves, as inward at convex edges: of all positions that are, the one with the faces
-/// at the distance, too.
+/// a point on all of them, or beyond (see miter_point()); if that moves a plane much too far, or is not proven, with
+/// Corners::Miter that on the planes of most of the area (see prevailing_point()); at a border, of those that keep to
+/// it, or to walls. A miter is proven by one exact distance: the surface is no nearer to its end than the distance, and
+/// what is nearest there is one of the faces around the vertex, goes on in the plane of one, or is a detail of the
+/// corner. Vertices whose miter is not proven have none, nor have those on edges of more than two faces. With
+/// Corners::Round, miters are those whose ends are at the distance themselves, as inward at convex edges: of all
+/// positions that are, the one with the faces at the distance, too.
 ///
 /// Where the exact surface is known, its normals are the planes, and all vertices have miters: one that is not on a
 /// crease goes along the normal. There, what is nearest to the end may be nearer than the distance by the deflection,
@@ -63,7 +65,7 @@ class MiterFinder {
   /// Finds creases, and the miters for a distance of 1. Keeps references.
   /// \param longest a miter may be so many distances long, at least 1, if its end is farther than the distance
   /// \param obstacles to keep off; nullptr without any
-  /// \param walls of some vertices, sorted by vertex
+  /// \param walls of some vertices, sorted by vertex; referred to
   /// \param exact of the surface, if it is known; not of curves
   MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
               std::span<const MiterWalls> walls = {}, const ExactCorners* exact = nullptr);
@@ -97,8 +99,10 @@ class MiterFinder {
   /// Where a miter ends for a distance of 1 to the side of `distance`, and whether it is cut there; zero if nowhere.
   std::pair<Vec3d, bool> end_of(const UnitMiter& miter, double distance) const;
 
-  /// Miters, and of each whether it is proven.
+  /// Miters, and of each whether it is proven: of a vertex whose planes have no miter that is, on most of them.
   std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(const Asked& asked) const;
+  std::pair<std::vector<Miter>, std::vector<std::uint8_t>> prove(std::span<const UnitMiter> units,
+                                                                 const Asked& asked) const;
   void prove(std::span<const UnitMiter> some, const Asked& asked, std::span<Miter> miters,
              std::span<std::uint8_t> proven) const;
   bool is_proven(const Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
@@ -106,12 +110,16 @@ class MiterFinder {
   void bring_to_exact(std::span<const UnitMiter> units, const Asked& asked, std::span<Miter> miters) const;
   std::vector<UnitMiter> unit_miters_of(const Asked& asked) const;
   UnitMiter own_miter(const UnitMiter& even, double distance, const OwnDistances& own) const;
-  UnitMiter unit_miter(std::uint32_t vertex, bool on_crease, std::span<const MiterWalls> walls) const;
+  const MiterWalls* walls_of(std::uint32_t vertex) const;
+  PlanesAround planes_to_meet(std::uint32_t vertex, const ExactCorners* exact) const;
+  UnitMiter unit_miter(std::uint32_t vertex, bool on_crease) const;
+  UnitMiter prevailing_miter(const UnitMiter& even) const;
 
   const Query& query_;
   const Corners corners_;
   const double longest_;
   const Obstacles* obstacles_;
+  std::span<const MiterWalls> walls_;
   const ExactCorners* exact_;
   std::vector<UnitMiter> miters_;  // of all vertices on creases or known, sorted; `end` is zero of one without a miter
 };
@@ -138,6 +146,9 @@ class MitredPaths {
   std::span<const double> nearer() const { return nearer_; }
   /// Whether a vertex's path leads to the end of its miter now.
   bool is_mitred(std::uint32_t vertex) const;
+  /// The displacement of a vertex to the end of its miter, whether or not its path leads there now; nullptr without
+  /// one.
+  const Vec3d* miter_of(std::uint32_t vertex) const;
   /// Whether a displacement of a vertex is its miter's.
   bool is_miter(std::uint32_t vertex, const Vec3d& displacement) const;
   /// The vertices whose miters have been taken back.

@@ -55,6 +55,11 @@ bool MitredPaths::is_mitred(std::uint32_t vertex) const {
   return at != others_.end() && at->is_mitred;
 }
 
+const Vec3d* MitredPaths::miter_of(std::uint32_t vertex) const {
+  const auto at = find(vertex);
+  return at != others_.end() ? &at->miter : nullptr;
+}
+
 bool MitredPaths::is_miter(std::uint32_t vertex, const Vec3d& displacement) const {
   const auto at = find(vertex);
   return at != others_.end() && at->miter == displacement;

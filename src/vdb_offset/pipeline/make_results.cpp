@@ -162,7 +162,9 @@ class ResultMaker {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit = limit(
-        *draft.faults, {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths, &draft.marched.mitred},
+        *draft.faults,
+        {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths, &draft.marched.mitred,
+         options_.corners == Corners::Miter && !draft.marched.mitred.empty() && draft.distances.at_corner().empty()},
         progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());

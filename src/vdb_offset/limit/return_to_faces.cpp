@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/limit/return_to_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "vdb_offset/base/hash_mix.h"
+#include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/prevailing_point.h"
+#include "vdb_offset/paths/planes_around.h"
+#include "vdb_offset/surface/creases.h"
+
+namespace vdb_offset {
+namespace {
+
+// In the first of so many rounds all vertices are tried, then one in kReturnEvery, others in each, as vertices that
+// move together get into each other's way. See docs/dev/tuning.md.
+constexpr std::uint64_t kReturnRounds = 40, kReturnEvery = 3;
+// Of a fault's corners that have moved those with the least area around them go back first, and those with no more than
+// so many times that. Not measured.
+constexpr double kAlikeAround = 4;
+// By how much less the planes have to be off, in distances. Reasoned: what is less is no fault of faces.
+constexpr double kLessOff = 1e-3;
+// The largest planes around a vertex that its places lie on, and how far these may be, in distances. Not measured.
+constexpr std::size_t kPlanesOfPlaces = 4;
+constexpr double kFarthestPlace = 4;
+
+}  // namespace
+
+bool ReturnToFaces::may_move(std::uint32_t v) const {
+  const ConstrainedSurface& constrained = state_.constrained;
+  if (constrained.obstacles && state_.paths.state[v] == VertexState::Collision) return false;
+  if (state_.mitred && state_.mitred->is_mitred(v)) return false;
+  return state_.distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
+}
+
+bool ReturnToFaces::operator()() {
+  if (!state_.keeps_faces) return false;
+  if (on_crease_.empty()) on_crease_ = vertices_on_creases(state_.surface);
+  std::vector<Candidate> all = candidates();
+  bool any = false;
+  for (std::uint64_t round = 0; round < kReturnRounds && !all.empty(); ++round) {
+    std::vector<Candidate*> some;
+    for (Candidate& candidate : all)
+      if (round == 0 || mix(round << 32 | candidate.vertex) % kReturnEvery == 0) some.push_back(&candidate);
+    any |= try_some(some);
+    std::erase_if(all, [&](const Candidate& candidate) { return candidate.tried == candidate.places.size(); });
+  }
+  return any;
+}
+
+/// The vertices with live area that have places better than where they are.
+std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates() {
+  Indices some;
+  for (std::uint32_t v = 0; v < state_.source.size(); ++v)
+    if (may_move(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
+  state_.live_area.measure(some);
+  std::erase_if(some, [&](std::uint32_t v) { return !(state_.live_area[v] > 0); });
+  std::vector<Candidate> all(some.size());
+  for_each_index(
+      some.size(),
+      [&](std::size_t i) {
+        all[i] = {some[i], places(some[i])};
+      },
+      16);
+  std::erase_if(all, [](const Candidate& candidate) { return candidate.places.empty(); });
+  return all;
+}
+
+std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v) const {
+  std::vector<Place> places;
+  const double worst = state_.off_planes(v) - kLessOff;
+  const auto offer = [&](const Vec3d& end) {
+    if (const double off = state_.off_planes(v, end); off < worst) places.push_back({end, off});
+  };
+  if (const Vec3d* const miter = state_.mitred ? state_.mitred->miter_of(v) : nullptr) offer(*miter);
+  if (!falls_short(state_.paths.state[v])) offer(state_.paths.displacement[v]);
+  if (on_crease_[v] && !state_.constrained.obstacles) offer_planes(v, worst, places);
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.off < b.off; });
+  return places;
+}
+
+/// Adds the points at the distance that lie on some of the largest planes around a vertex.
+void ReturnToFaces::offer_planes(std::uint32_t v, double worst, std::vector<Place>& places) const {
+  const Surface& part = state_.constrained.moving_part.surface();
+  const std::uint32_t part_vertex = state_.constrained.part_vertex_of(v);
+  PlanesAround planes = planes_around(
+      state_.surface, v, [&](std::uint32_t t) -> const Vec3d& { return state_.surface.triangle_normals[t]; });
+  for (Vec3d& normal : planes.normals) normal = part.along_border(part_vertex, normal);
+  for_each_point_on_planes(planes.normals, planes.areas, kPlanesOfPlaces, [&](const Vec3d& x) {
+    if (!(x.lengthSqr() <= kFarthestPlace * kFarthestPlace)) return;
+    const Vec3d end = round_displacement(x * state_.distances[v], std::abs(state_.distances[v]));
+    const double off = state_.off_planes(v, end);
+    if (off < worst && is_at_distance(v, end)) places.push_back({end, off});
+  });
+}
+
+bool ReturnToFaces::is_at_distance(std::uint32_t v, const Vec3d& end) const {
+  const Closest closest = state_.constrained.moving_part(state_.surface.vertices[v] + end, state_.constrained.hint(v));
+  const double distance = std::abs(state_.distances[v]);
+  return std::abs(closest.distance - distance) <= kReachedTolerance * distance;
+}
+
+/// Puts vertices to the next of their places, and those back that come to be at faults. Returns whether any stays
+/// there.
+bool ReturnToFaces::try_some(std::vector<Candidate*>& some) {
+  OldOnes moved;
+  Indices put;
+  for (Candidate* candidate : some) {
+    const Place& place = candidate->places[candidate->tried++];
+    const std::uint32_t v = candidate->vertex;
+    if (!(place.off < state_.off_planes(v) - kLessOff)) continue;
+    moved.push_back({v, state_.whole[v], state_.share[v]});
+    state_.whole[v] = place.end;
+    state_.share[v] = 1;
+    put.push_back(v);
+  }
+  if (put.empty()) return false;
+  {
+    FaultFinder::Trial trial = state_.faults.try_out(
+        put, [&](std::uint32_t v) { return state_.position_of(v); }, FaultFinder::Crossings::OneOfEach);
+    for (Indices back = restore_faulty(moved); !back.empty(); back = restore_faulty(moved)) {
+      trial.take_back(back);
+      ++state_.statistics.rounds;
+    }
+  }
+  if (!state_.mitred) return !moved.empty();
+  Indices mitred;
+  for (const Old& old : moved)
+    if (state_.mitred->is_miter(old.vertex, state_.whole[old.vertex])) mitred.push_back(old.vertex);
+  state_.mitred->miter_again(mitred, state_.paths);
+  return !moved.empty();
+}
+
+/// Gives moved vertices that are at faults back what they had, those with the least area around them first, and leaves
+/// them out. Returns these.
+Indices ReturnToFaces::restore_faulty(OldOnes& moved) {
+  const auto find = [&](std::uint32_t v) {
+    return std::lower_bound(moved.begin(), moved.end(), v,
+                            [](const Old& old, std::uint32_t w) { return old.vertex < w; });
+  };
+  const auto has_moved = [&](std::uint32_t v) {
+    const auto at = find(v);
+    return at != moved.end() && at->vertex == v;
+  };
+  const auto gather = [&](std::uint32_t v) {
+    if (has_moved(v)) state_.gathered.add(v);
+  };
+  state_.faults.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto triangle : {s, t})
+      for (const auto v : state_.surface.triangles[triangle])
+        if (has_moved(v)) least = std::min(least, state_.live_area.area(v));
+    for (const auto triangle : {s, t})
+      for (const auto v : state_.surface.triangles[triangle])
+        if (has_moved(v) && state_.live_area.area(v) <= kAlikeAround * least) state_.gathered.add(v);
+  });
+  for (const auto v : state_.faults.misplaced()) gather(v);
+  state_.faults.for_each_faulty_corner(gather, [](std::uint32_t) { return true; });  // of a rim alone
+  for (const auto v : state_.faults.caught()) gather(v);
+  Indices back = state_.gathered.take();
+  for (const auto v : back) {
+    const Old& old = *find(v);
+    state_.whole[v] = old.whole;
+    state_.share[v] = old.share;
+  }
+  std::erase_if(moved, [&](const Old& old) { return std::binary_search(back.begin(), back.end(), old.vertex); });
+  return back;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/limit/limit_state.h"
+
+namespace vdb_offset {
+
+/// Where faces are to be at the distance: puts vertices to where theirs are, once there is room.
+///
+/// Such places of a vertex are the end of its miter, that of its path, and on a crease what lies at the distance on
+/// one, two or three of the largest planes around it: straight above the largest, a vertex that has no room beside it
+/// still lets that be at the distance. The places are tried by how far they leave the planes off. A vertex that would
+/// cause a fault stays.
+class ReturnToFaces {
+ public:
+  /// Keeps a reference.
+  explicit ReturnToFaces(LimitState& state) : state_(state) {}
+
+  /// Tries a part of the vertices at a time. Returns whether any has moved.
+  bool operator()();
+
+ private:
+  /// Where a vertex might be, as a displacement, and how far the planes around it are off there, in distances.
+  struct Place {
+    Vec3d end;
+    double off;
+  };
+  /// The places of a vertex that are better than where it is, the best first, of which so many have been tried.
+  struct Candidate {
+    std::uint32_t vertex;
+    std::vector<Place> places;
+    std::size_t tried = 0;
+  };
+  /// A vertex, and what it had before it was put elsewhere.
+  struct Old {
+    std::uint32_t vertex;
+    Vec3d whole;
+    double share;
+  };
+  using OldOnes = std::vector<Old>;
+
+  bool may_move(std::uint32_t v) const;
+  std::vector<Candidate> candidates();
+  std::vector<Place> places(std::uint32_t v) const;
+  void offer_planes(std::uint32_t v, double worst, std::vector<Place>& places) const;
+  bool is_at_distance(std::uint32_t v, const Vec3d& end) const;
+  bool try_some(std::vector<Candidate*>& some);
+  Indices restore_faulty(OldOnes& moved);
+
+  LimitState& state_;
+  std::vector<std::uint8_t> on_crease_;  // of each vertex; empty before the first call
+};
+
+}  // namespace vdb_offset

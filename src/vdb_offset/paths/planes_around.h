@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/curve/polyline.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// The largest sine of the angle between normals of faces on one plane. Reasoned: far above the rounding of coordinates
+/// with seven digits, far below all bends that are meant.
+inline constexpr double kOnePlaneSine = 1e-4;
+
+/// The planes around a vertex: their normals, and the areas of the faces on each, up to a factor.
+struct PlanesAround {
+  std::vector<Vec3d> normals;
+  std::vector<double> areas;
+};
+
+inline double extent_of(const Surface& surface, std::uint32_t triangle) {
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return (surface.vertices[b] - surface.vertices[a]).cross(surface.vertices[c] - surface.vertices[a]).length();
+}
+inline double extent_of(const Polyline& line, std::uint32_t segment) {
+  const auto& [a, b] = line.segments[segment];
+  return (line.vertices[b] - line.vertices[a]).length();
+}
+
+/// The planes around a vertex of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
+/// which tells best. normal_of(face) is called of faces that have an area.
+template <class Shape, class NormalOf>
+PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of) {
+  std::vector<std::pair<double, std::uint32_t>> faces;
+  for (const auto t : shape.triangles_around(vertex))
+    if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-extent_of(shape, t), t);
+  std::sort(faces.begin(), faces.end());
+  PlanesAround planes;
+  for (const auto& [less, t] : faces) {
+    const Vec3d& normal = normal_of(t);
+    const auto alike = std::find_if(planes.normals.begin(), planes.normals.end(), [&](const Vec3d& plane) {
+      return (plane - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine;
+    });
+    if (alike != planes.normals.end()) {
+      planes.areas[static_cast<std::size_t>(alike - planes.normals.begin())] -= less;
+      continue;
+    }
+    planes.normals.push_back(normal);
+    planes.areas.push_back(-less);
+  }
+  return planes;
+}
+
+}  // namespace vdb_offset
