@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
+#include <random>
 
 #include "support/curve_oracles.h"
 #include "vdb_offset/curve/curve_line.h"
@@ -178,4 +180,39 @@ TEST_CASE("curve ends: far from each other, or of several pieces", "[curves]") {
   CHECK(close_curves(pieces).size() == 1);
   CHECK(pieces.face_count() == 3);
   CHECK(open_curves(pieces.view()).empty());
+}
+
+TEST_CASE("curves: where fronts merge, miters add no faults to those of round corners", "[curve][miter][random]") {
+  std::size_t mitred = 0, merged = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> radius(0.4, 1.6);
+    const std::size_t count = 8 + seed;
+    std::vector<Vec3d> points;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count);
+      points.push_back(Vec3d(std::cos(angle), std::sin(angle), 0) * radius(random));
+    }
+    const Curves star = curve_through(points, true);
+    for (const double distance : {0.1, -0.1, 0.2}) {
+      INFO("seed " << seed << ", distance " << distance);
+      const auto count_faults = [&](Corners corners) {
+        OffsetOptions options;
+        options.collision = Collision::Merge;
+        options.corners = corners;
+        const Distances distances(distance);
+        const OffsetResult result = offset_curves(star.view(), {&distances, 1}, options).front();
+        if (corners == Corners::Miter) mitred += result.statistics.miters.mitred;
+        CheckOptions check;
+        check.distance = distance;
+        check.corners = corners;
+        return check_curves(star.view(), result.positions, check).faults.total();
+      };
+      const std::size_t round = count_faults(Corners::Round);
+      merged += round > 0;
+      CHECK(count_faults(Corners::Miter) <= round);
+    }
+  }
+  CHECK(mitred > 1000);
+  CHECK(merged > 20);
 }

@@ -49,7 +49,9 @@ class CurveFaults {
   /// Moves points to positions, and finds the faults around them. \pre `points` are sorted, each once
   void move(const Indices& points, std::span<const Vec2d> positions);
 
-  bool any() const { return wrong_segments_ + misplaced_ + crossing_.count > 0; }
+  bool any() const { return total() > 0; }
+  /// Inverted and collapsed segments, misplaced points and new crossings.
+  std::size_t total() const { return wrong_segments_ + misplaced_ + crossing_.count; }
   FaultCounts count() const;
   /// The misplaced points, and those of faulty segments. Sorted.
   Indices faulty_points() const;

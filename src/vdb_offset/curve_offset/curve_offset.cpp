@@ -9,6 +9,7 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/curve_offset/curve_limit.h"
+#include "vdb_offset/curve_offset/curve_miters.h"
 #include "vdb_offset/curve_offset/prepared_curves.h"
 #include "vdb_offset/curve_offset/segment_error.h"
 #include "vdb_offset/data/count_states.h"
@@ -41,7 +42,7 @@ OffsetResult make_result(const PreparedCurves& curves, const Distances& distance
     const StageTimer timer(result.statistics.seconds, Stage::Limit);
     result.statistics.limit = limit_curves(plane, paths, options.progress);
   } else {
-    MitredPaths(miters, paths);
+    miter_sound_corners(plane, paths);
   }
   count_miters(miters, paths.state, facts);
   result.statistics.room = curves.room(paths, distances);
