@@ -525,6 +525,10 @@ TEST_CASE("limit: vertices that gave up their miters are at their distance, or n
     options.corners = Corners::Miter;
     const OffsetResult result = offset(scene.mesh.view(), options);
     CHECK(result.statistics.limit.left.total() == 0);
+    CheckOptions check;
+    check.distance = scene.distance;
+    check.corners = Corners::Miter;
+    CHECK(check_offset(scene.mesh.view(), result.positions, check).faults.total() == 0);
     std::size_t beyond = 0;
     for (std::size_t v = 0; v < result.states.size(); ++v) {
       const bool may_be = result.states[v] == VertexState::Mitred || result.states[v] == VertexState::Cut;

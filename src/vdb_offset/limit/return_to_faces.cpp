@@ -119,8 +119,8 @@ bool ReturnToFaces::try_some(std::vector<Candidate*>& some) {
   }
   if (put.empty()) return false;
   {
-    FaultFinder::Trial trial = state_.faults.try_out(
-        put, [&](std::uint32_t v) { return state_.position_of(v); }, FaultFinder::Crossings::OneOfEach);
+    // All crossings, as not all corners of a fault go back: one that is not known would be left.
+    FaultFinder::Trial trial = state_.faults.try_out(put, [&](std::uint32_t v) { return state_.position_of(v); });
     for (Indices back = restore_faulty(moved); !back.empty(); back = restore_faulty(moved)) {
       trial.take_back(back);
       ++state_.statistics.rounds;
