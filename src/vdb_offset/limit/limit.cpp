@@ -32,9 +32,13 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
   ReturnToFaces return_to_faces(state);
   if (return_to_faces()) let_out(progress);
   Settling settle(state);
+  bool any_settled = false;
   for (const LiveArea::Lines lines : {LiveArea::Lines::KeepBorder, LiveArea::Lines::All})
-    if (settle(lines)) let_out(progress);
-  if (return_to_faces()) let_out(progress);
+    if (settle(lines)) {
+      let_out(progress);
+      any_settled = true;
+    }
+  if (any_settled && return_to_faces()) let_out(progress);
   for (int i = 0; i < kEasings; ++i) let_out.ease();
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }

@@ -53,9 +53,12 @@ bool ReturnToFaces::operator()() {
 
 /// The vertices with live area that have places better than where they are.
 std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates() {
+  const auto is_elsewhere = [&](std::uint32_t v) {
+    return state_.share[v] != 1 || state_.whole[v] != state_.paths.displacement[v];
+  };
   Indices some;
   for (std::uint32_t v = 0; v < state_.source.size(); ++v)
-    if (may_move(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
+    if ((on_crease_[v] || is_elsewhere(v)) && may_move(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
   state_.live_area.measure(some);
   std::erase_if(some, [&](std::uint32_t v) { return !(state_.live_area[v] > 0); });
   std::vector<Candidate> all(some.size());
