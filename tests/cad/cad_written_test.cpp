@@ -90,7 +90,7 @@ TEST_CASE("cad written: a fillet that the distance swallows is gone, and its nei
   CHECK(volume_of_mesh(written.again.polygons) == Approx(volume_of_block(-4.5)).epsilon(2e-3));
 }
 
-TEST_CASE("cad written: points of a face are at the distance from the face that it comes of", "[cad]") {
+TEST_CASE("cad written: points of a face are at the distance from the face that it comes of", "[cad][long]") {
   for (const char* const name : {"sphere.brep", "cone.brep", "torus.brep"}) {
     INFO(name);
     const Written written = write(name, 0.25, "round.step");
