@@ -538,6 +538,31 @@ TEST_CASE("limit: vertices that gave up their miters are at their distance, or n
   }
 }
 
+TEST_CASE("limit: what is short with round corners goes where there is room", "[limit][miter]") {
+  // Distance, and the share that reaches it: 83.8 and 59.3 % otherwise.
+  const std::tuple<const char*, Polygons, double, double> cases[] = {
+      {"room corner", scene::room_corner(1, 40), 0.3, 0.87},
+      {"diffuser", scene::diffuser(0.4, 0.8, 2, 24), 0.2, 0.625},
+  };
+  for (const auto& [name, mesh, distance, least] : cases) {
+    CAPTURE(name);
+    const OffsetResult result = limited(mesh, distance);
+    CHECK(test::share(result, VertexState::Reached) > least);
+    CHECK(result.statistics.limit.left.total() == 0);
+    CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).faults.total() == 0);
+  }
+}
+
+TEST_CASE("limit: what is short does not leave a plane that holds it", "[limit][border]") {
+  // Its border lies in z = 0, and half of it, where faces are steep enough, is held there.
+  const Polygons patch = scene::patch(1, 0.05, 48);
+  const OffsetResult result = limited(patch, 0.05);
+  std::size_t held = 0;
+  for (std::size_t v = 0; v < patch.positions.size(); ++v)
+    if (std::abs(patch.positions[v][2]) < 1e-12) held += std::abs(result.positions[v][2]) < 1e-12;
+  CHECK(held == 96);
+}
+
 TEST_CASE("limit: random scenes are valid and exact", "[limit][property][random]") {
   const test::Seeds seeds = test::random_seeds(200);
   for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {

@@ -30,7 +30,9 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
   LetOut let_out(state);
   let_out(progress);
   ReturnToFaces return_to_faces(state);
-  if (return_to_faces()) let_out(progress);
+  // Round corners that return first take room from settling, which gives most of it to the largest of them.
+  using Which = ReturnToFaces::Which;
+  if (return_to_faces(state.keeps_faces ? Which::All : Which::LargeCorners)) let_out(progress);
   Settling settle(state);
   bool any_settled = false;
   for (const LiveArea::Lines lines : {LiveArea::Lines::KeepBorder, LiveArea::Lines::All})
@@ -38,7 +40,7 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
       let_out(progress);
       any_settled = true;
     }
-  if (any_settled && return_to_faces()) let_out(progress);
+  if ((any_settled || !state.keeps_faces) && return_to_faces(Which::All)) let_out(progress);
   for (int i = 0; i < kEasings; ++i) let_out.ease();
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }

@@ -55,6 +55,16 @@ struct LimitState {
   /// or is bound to its path, may not, nor one that is mitred where faces are to be kept.
   bool may_slide(std::uint32_t v) const;
 
+  /// Whether a vertex of the moving part has to stay in planes.
+  bool is_held(std::uint32_t v) const {
+    return constrained.moving_part.surface().is_held(constrained.part_vertex_of(v));
+  }
+  /// What of a displacement lies in the planes that a vertex has to stay in; all of it, if there are none.
+  Vec3d in_planes(std::uint32_t v, const Vec3d& displacement) const {
+    return is_held(v) ? constrained.moving_part.surface().along_border(constrained.part_vertex_of(v), displacement)
+                      : displacement;
+  }
+
   /// The share of a vertex's whole displacement that it goes: along the straight line, but the last tenth of it, at the
   /// surface, on a parabola that meets the surface in the vertex's start direction, as the straight line may dip
   /// through the faces around the vertex.

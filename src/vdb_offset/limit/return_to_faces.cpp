@@ -23,6 +23,8 @@ constexpr std::uint64_t kReturnRounds = 40, kReturnEvery = 3;
 constexpr double kAlikeAround = 4;
 // By how much less the planes have to be off, in distances. Reasoned: what is less is no fault of faces.
 constexpr double kLessOff = 1e-3;
+// Share of the moving part's area: what live area around a corner is large.
+constexpr double kLargeCorner = 1e-3;
 // The largest planes around a vertex that its places lie on, and how far these may be, in distances. Not measured.
 constexpr std::size_t kPlanesOfPlaces = 4;
 constexpr double kFarthestPlace = 4;
@@ -36,10 +38,9 @@ bool ReturnToFaces::may_move(std::uint32_t v) const {
   return state_.distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
 }
 
-bool ReturnToFaces::operator()() {
-  if (!state_.keeps_faces) return false;
+bool ReturnToFaces::operator()(Which which) {
   if (on_crease_.empty()) on_crease_ = vertices_on_creases(state_.surface);
-  std::vector<Candidate> all = candidates();
+  std::vector<Candidate> all = candidates(which);
   bool any = false;
   for (std::uint64_t round = 0; round < kReturnRounds && !all.empty(); ++round) {
     std::vector<Candidate*> some;
@@ -51,28 +52,32 @@ bool ReturnToFaces::operator()() {
   return any;
 }
 
+/// Whether a vertex is to be looked at: with round corners one that is short, else any that may be off its planes.
+bool ReturnToFaces::may_be_better(std::uint32_t v) const {
+  if (!state_.keeps_faces) return state_.is_short(v);
+  return on_crease_[v] || state_.share[v] != 1 || state_.whole[v] != state_.paths.displacement[v];
+}
+
 /// The vertices with live area that have places better than where they are.
-std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates() {
-  const auto is_elsewhere = [&](std::uint32_t v) {
-    return state_.share[v] != 1 || state_.whole[v] != state_.paths.displacement[v];
-  };
+std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates(Which which) {
+  const double least_area = which == Which::LargeCorners ? kLargeCorner * state_.live_area.whole_area() : 0;
   Indices some;
   for (std::uint32_t v = 0; v < state_.source.size(); ++v)
-    if ((on_crease_[v] || is_elsewhere(v)) && may_move(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
+    if (may_move(v) && may_be_better(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
   state_.live_area.measure(some);
-  std::erase_if(some, [&](std::uint32_t v) { return !(state_.live_area[v] > 0); });
+  std::erase_if(some, [&](std::uint32_t v) { return !(state_.live_area[v] > least_area); });
   std::vector<Candidate> all(some.size());
   for_each_index(
       some.size(),
       [&](std::size_t i) {
-        all[i] = {some[i], places(some[i])};
+        all[i] = {some[i], places(some[i], which)};
       },
       16);
   std::erase_if(all, [](const Candidate& candidate) { return candidate.places.empty(); });
   return all;
 }
 
-std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v) const {
+std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v, Which which) const {
   std::vector<Place> places;
   const double worst = state_.off_planes(v) - kLessOff;
   const auto offer = [&](const Vec3d& end) {
@@ -80,7 +85,10 @@ std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v) const {
   };
   if (const Vec3d* const miter = state_.mitred ? state_.mitred->miter_of(v) : nullptr) offer(*miter);
   if (!falls_short(state_.paths.state[v])) offer(state_.paths.displacement[v]);
-  if (on_crease_[v] && !state_.constrained.obstacles) offer_planes(v, worst, places);
+  if (!state_.constrained.obstacles) {
+    if (on_crease_[v]) offer_planes(v, worst, places);
+    if (which == Which::All) offer_images(v, worst, places);
+  }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.off < b.off; });
   return places;
 }
@@ -98,6 +106,17 @@ void ReturnToFaces::offer_planes(std::uint32_t v, double worst, std::vector<Plac
     const double off = state_.off_planes(v, end);
     if (off < worst && is_at_distance(v, end)) places.push_back({end, off});
   });
+}
+
+/// Adds the images of live points around a vertex. Where it has to stay in planes, what of them lies in these, if that
+/// is at the distance.
+void ReturnToFaces::offer_images(std::uint32_t v, double worst, std::vector<Place>& places) const {
+  for (const Vec3d& position : state_.live_area.positions_with_room(v, LiveArea::Lines::KeepBorder)) {
+    const Vec3d whole = state_.in_planes(v, position - state_.surface.vertices[v]);
+    const Vec3d end = round_displacement(whole, std::abs(state_.distances[v]));
+    const double off = state_.off_planes(v, end);
+    if (off < worst && (!state_.is_held(v) || is_at_distance(v, end))) places.push_back({end, off});
+  }
 }
 
 bool ReturnToFaces::is_at_distance(std::uint32_t v, const Vec3d& end) const {

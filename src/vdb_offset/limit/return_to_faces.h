@@ -8,19 +8,22 @@
 
 namespace vdb_offset {
 
-/// Where faces are to be at the distance: puts vertices to where theirs are, once there is room.
+/// Puts vertices to where their faces are at the distance, once there is room: with round corners those that are short,
+/// else all whose planes are off.
 ///
-/// Such places of a vertex are the end of its miter, that of its path, and on a crease what lies at the distance on
-/// one, two or three of the largest planes around it: straight above the largest, a vertex that has no room beside it
-/// still lets that be at the distance. The places are tried by how far they leave the planes off. A vertex that would
-/// cause a fault stays.
+/// Such places of a vertex are the end of its miter, that of its path, the images of live points around it (see
+/// LiveArea::positions_with_room()), and on a crease what lies at the distance on one, two or three of the largest
+/// planes around it: straight above the largest, a vertex that has no room beside it still lets that be at the
+/// distance. The places are tried by how far they leave the planes off. A vertex that would cause a fault stays.
 class ReturnToFaces {
  public:
   /// Keeps a reference.
   explicit ReturnToFaces(LimitState& state) : state_(state) {}
 
+  /// LargeCorners: those alone that have much live area around them, at their ends and on their planes.
+  enum class Which { LargeCorners, All };
   /// Tries a part of the vertices at a time. Returns whether any has moved.
-  bool operator()();
+  bool operator()(Which which);
 
  private:
   /// Where a vertex might be, as a displacement, and how far the planes around it are off there, in distances.
@@ -43,9 +46,11 @@ class ReturnToFaces {
   using OldOnes = std::vector<Old>;
 
   bool may_move(std::uint32_t v) const;
-  std::vector<Candidate> candidates();
-  std::vector<Place> places(std::uint32_t v) const;
+  bool may_be_better(std::uint32_t v) const;
+  std::vector<Candidate> candidates(Which which);
+  std::vector<Place> places(std::uint32_t v, Which which) const;
   void offer_planes(std::uint32_t v, double worst, std::vector<Place>& places) const;
+  void offer_images(std::uint32_t v, double worst, std::vector<Place>& places) const;
   bool is_at_distance(std::uint32_t v, const Vec3d& end) const;
   bool try_some(std::vector<Candidate*>& some);
   Indices restore_faulty(OldOnes& moved);

@@ -46,11 +46,6 @@ bool Settling::may_leave_path(std::uint32_t v) const {
   return state_.distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
 }
 
-/// Whether a vertex of the moving part has to stay in planes.
-bool Settling::is_held(std::uint32_t v) const {
-  return state_.constrained.moving_part.surface().is_held(state_.constrained.part_vertex_of(v));
-}
-
 /// The short vertices with which most live area is lost, that with the most first.
 std::vector<std::uint32_t> Settling::vertices_to_settle() {
   LiveArea& live_area = state_.live_area;
@@ -78,7 +73,7 @@ bool Settling::operator()(LiveArea::Lines lines) {
   for (const auto v : vertices_to_settle()) {
     if (trials >= kMostTrials) break;
     if (!state_.is_short(v)) continue;
-    if (lines == LiveArea::Lines::All && is_held(v)) continue;
+    if (lines == LiveArea::Lines::All && state_.is_held(v)) continue;
     any |= settle(v, lines, trials);
   }
   return any;
@@ -113,7 +108,7 @@ Settling::Moves Settling::with_short_neighbours(const Move& move, LiveArea::Line
   const Indices around = state_.with_rings({move.vertex}, 1);
   if (around.size() > kMostAside) return moves;
   for (const auto w : around) {
-    if (w == move.vertex || !may_settle(w) || (lines == LiveArea::Lines::All && is_held(w))) continue;
+    if (w == move.vertex || !may_settle(w) || (lines == LiveArea::Lines::All && state_.is_held(w))) continue;
     if (const auto positions = state_.live_area.positions_with_room(w, lines); !positions.empty())
       moves.push_back({w, positions.front()});
   }
@@ -182,9 +177,7 @@ void Settling::put(const Moves& moves, OldOnes& old) {
   for (const auto& [v, position] : moves) {
     old.push_back(old_of(v));
     moved.push_back(v);
-    Vec3d whole = position - state_.surface.vertices[v];
-    if (is_held(v))
-      whole = state_.constrained.moving_part.surface().along_border(state_.constrained.part_vertex_of(v), whole);
+    const Vec3d whole = state_.in_planes(v, position - state_.surface.vertices[v]);
     state_.whole[v] = round_displacement(whole, std::abs(state_.distances[v]));
     state_.share[v] = 1;
   }

@@ -44,8 +44,7 @@ class Settling {
 
   bool may_leave_path(std::uint32_t v) const;
   bool may_settle(std::uint32_t v) const { return may_leave_path(v) && state_.is_short(v); }
-  bool may_go_along(std::uint32_t v) const { return may_leave_path(v) && !is_held(v); }
-  bool is_held(std::uint32_t v) const;
+  bool may_go_along(std::uint32_t v) const { return may_leave_path(v) && !state_.is_held(v); }
   std::vector<std::uint32_t> vertices_to_settle();
   bool settle(std::uint32_t v, LiveArea::Lines lines, std::size_t& trials);
   Moves with_short_neighbours(const Move& move, LiveArea::Lines lines);
