@@ -144,7 +144,7 @@ TEST_CASE("iso inside: what lies in a solid is not surface, whether faces meet o
   CHECK(hollow.statistics.solid.buried + hollow.statistics.solid.cut == 0);
 }
 
-TEST_CASE("iso inside: an edge of four faces does not make solids open", "[iso]") {
+TEST_CASE("iso inside: an edge of four faces does not make solids open", "[iso][no_races]") {
   const Polygons cube = scene::box({1, 1, 1}, 1, true);
   const Polygons cubes = together(cube, moved(cube, {1, 1, 0}));
   const IsoResult result = make_iso_surface(cubes.view(), options_of(-0.05, 0.02));
@@ -221,7 +221,7 @@ TEST_CASE("holes: loops are found whatever meets at their vertices", "[iso]") {
   for (const Hole& hole : found.holes) CHECK(hole.rim.size() == 3);
 }
 
-TEST_CASE("iso: flat faces at round coordinates are valid", "[iso]") {
+TEST_CASE("iso: flat faces at round coordinates are valid", "[iso][no_races]") {
   for (const double d : {0.5, -0.5, 1.0}) {
     const IsoResult result = make_iso_surface(prism(24).view(), options_of(d, 0.25));
     CHECK(result.statistics.valid());
@@ -229,7 +229,7 @@ TEST_CASE("iso: flat faces at round coordinates are valid", "[iso]") {
   }
 }
 
-TEST_CASE("iso: knife edges leave no specks", "[iso]") {
+TEST_CASE("iso: knife edges leave no specks", "[iso][no_races]") {
   const Polygons wedge = knife(10);
   IsoOptions options = options_of(-0.2, 0.1);
   const IsoResult result = make_iso_surface(wedge.view(), options);

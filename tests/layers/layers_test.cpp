@@ -229,7 +229,7 @@ void check_grown_cases(const std::vector<GrownCase>& cases) {
 }
 }  // namespace
 
-TEST_CASE("layers: scenes with corners, creases and narrow places have valid cells", "[layers]") {
+TEST_CASE("layers: scenes with corners, creases and narrow places have valid cells", "[layers][no_races]") {
   check_grown_cases(
       {{"quads, inward", scene::box({1, 1, 1}, 12, false), -0.05, 0.97},
        {"wedge", scene::wedge(40, 1, 1, 16), 0.03, 0.93},  // the first row from the crease has no room for all
@@ -417,7 +417,7 @@ TEST_CASE("layers: where the edge of a part slides on a bent surface, all layers
   CHECK(off_chord > 1e-3);
 }
 
-TEST_CASE("layers: what rests at the edge of a part is in the way of what rises under it", "[layers]") {
+TEST_CASE("layers: what rests at the edge of a part is in the way of what rises under it", "[layers][no_races]") {
   // A floor, and from one edge of it a wall that leans over it.
   constexpr std::uint32_t kLong = 80, kWide = 32;
   constexpr double kSteepness = 0.3;

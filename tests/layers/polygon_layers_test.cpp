@@ -134,7 +134,8 @@ TEST_CASE("polygon prism: right ones are valid over any polygon, inverted ones o
   CHECK(scaled_jacobian(prism_over(circle, circle, -1)) < 0);
 }
 
-TEST_CASE("layers: concave, bent and straight-cornered polygons carry valid cells or none", "[layers][polygons]") {
+TEST_CASE("layers: concave, bent and straight-cornered polygons carry valid cells or none",
+          "[layers][polygons][no_races]") {
   for (unsigned seed = 0; seed < 24; ++seed) {
     INFO("seed " << seed);
     std::mt19937 random(seed);

@@ -84,7 +84,7 @@ TEST_CASE("metric: every vertex is on the ellipsoids around the surface", "[metr
   }
 }
 
-TEST_CASE("metric: a run is valid as written, and check agrees", "[metric]") {
+TEST_CASE("metric: a run is valid as written, and check agrees", "[metric][no_races]") {
   const Polygons mesh = scene::torus(1, 0.4, 24, 12);
   for (const auto kind : {Precision::Kind::Double, Precision::Kind::Single, Precision::Kind::Digits}) {
     for (const auto& [xy, z] : {std::pair{0.12, 0.04}, {-0.35, -0.1}, {-0.2, -0.39}}) {
@@ -142,7 +142,7 @@ TEST_CASE("metric: an iso-surface is at ellipsoids, too, and valid as written", 
   CHECK(result.statistics.source.diagonal == Approx(std::sqrt(3.0)));
 }
 
-TEST_CASE("metric: what is told of an iso-surface is told of the file's coordinates", "[metric][iso]") {
+TEST_CASE("metric: what is told of an iso-surface is told of the file's coordinates", "[metric][iso][no_races]") {
   const Polygons mesh = scene::torus(1, 0.4, 24, 12);
   const Metric metric = Metric::of_half_axes(0.1, 0.3);
   for (const auto kind : {Precision::Kind::Double, Precision::Kind::Single, Precision::Kind::Digits}) {

@@ -226,7 +226,7 @@ TEST_CASE("miter: round corners have the faces at the distance where vertices ca
   CHECK(in_state(result, VertexState::Reached) == 18);
 }
 
-TEST_CASE("miter: where fronts meet, round corners keep to their paths", "[miter]") {
+TEST_CASE("miter: where fronts meet, round corners keep to their paths", "[miter][no_races]") {
   // Too thick for its teeth: what cannot all be there is saved by what goes the same way.
   const Polygons gear = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
   OffsetOptions options;

@@ -78,7 +78,8 @@ struct Tetrahedron {
 
 }  // namespace
 
-TEST_CASE("ridges: whatever the grid, the cube's vertices arrive where the smaller cube is closest", "[ridges]") {
+TEST_CASE("ridges: whatever the grid, the cube's vertices arrive where the smaller cube is closest",
+          "[ridges][no_races]") {
   const Polygons cube = scene::box(Vec3d(0.5), 20, true);
   for (const double h : {0.1, 0.025, 0.004}) {
     const OffsetResult result = merged(cube.view(), -0.1, h);
@@ -138,7 +139,7 @@ TEST_CASE("ridges: from a corner whose third face falls behind, the way goes alo
   }
 }
 
-TEST_CASE("ridges: planes may be as rough as seven digits leave them", "[ridges]") {
+TEST_CASE("ridges: planes may be as rough as seven digits leave them", "[ridges][no_races]") {
   const Polygons cube = scene::box(Vec3d(0.5), 10, true);
   const Vec3d axis = Vec3d(1, 2, 3).unit();
   const auto turned = [&](const Vec3d& p, double angle) {

@@ -420,7 +420,7 @@ TEST_CASE("offset: memory is asked for once, as the plan has it, before the fiel
   CHECK_THROWS_AS(offset(mesh.view(), options), Cancelled);
 }
 
-TEST_CASE("offset: options that cannot be used are told", "[offset]") {
+TEST_CASE("offset: options that cannot be used are told", "[offset][no_races]") {
   const Polygons mesh = scene::icosphere(1, 1);
   CHECK_THROWS_AS(offset(mesh.view(), by(std::nan(""))), InvalidInput);
   OffsetOptions threads = by(0.1);

@@ -239,7 +239,7 @@ TEST_CASE("part: what stays is in the way", "[part][no_races]") {
   CHECK(CrossingFinder(surface, surface.vertices).all().empty());
 }
 
-TEST_CASE("part: a lid that goes farther than the faces beside it are high", "[part]") {
+TEST_CASE("part: a lid that goes farther than the faces beside it are high", "[part][no_races]") {
   const Polygons box = scene::box(Vec3d(1, 1, 1), 20, true);
   OffsetOptions options;
   options.only = faces_where(box, [](const Vec3d& p) { return p[2] == 0.5; });

@@ -26,7 +26,7 @@ scene::Scene read(const std::string& text) { return scene::read_scene(TemporaryF
 
 }  // namespace
 
-TEST_CASE("scenes: every one runs as it expects", "[scene]") {
+TEST_CASE("scenes: every one runs as it expects", "[scene][no_races]") {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::scenes_path())) {
     if (!scene::is_scene(entry.path().string())) continue;  // a model to try things with

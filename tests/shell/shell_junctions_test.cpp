@@ -146,7 +146,7 @@ TEST_CASE("shell junctions: where walls are of smaller faces than they are thick
   CHECK(made.shell.facts.volume == Approx(made_of(walls(four_rooms()), 0.6).shell.facts.volume).epsilon(1e-3));
 }
 
-TEST_CASE("shell junctions: three leaves of a book, at any angles and whichever way they face", "[shell]") {
+TEST_CASE("shell junctions: three leaves of a book, at any angles and whichever way they face", "[shell][no_races]") {
   for (int turned = 0; turned < 8; ++turned)
     for (const double angle : {60.0, 120.0, 170.0, 180.0}) {
       INFO(turned << ", " << angle);
