@@ -34,8 +34,8 @@ struct SurfaceOffset {
 ///    altogether is the source, so that this ends.
 /// 3. Letting out (LetOut): pulled vertices are let out again as far as no fault arises, a few at a time.
 /// 4. Returning (ReturnToFaces), before and after settling: vertices go where there is room and the faces around them
-/// are
-///    nearest to the distance; with round corners those that are short, with miters also those that have slid aside.
+///    are nearest to the distance; with round corners those that are short, with miters also those that have slid
+///    aside.
 /// 5. Settling (Settling): short vertices are put where there is room, if less is lost with what goes back for that.
 /// 6. Easing (LetOut::ease()): vertices around pulled ones follow these, where thickness would change too fast.
 /// With `started_from`, patches that were moved in that offset and are faulty here start from there, and patches that
