@@ -78,7 +78,7 @@ TEST_CASE("cad held: a bore that the distance would close stays a cylinder", "[c
   CHECK(facts.volume == Approx(across * (20 + 14)).epsilon(1e-9));
 }
 
-TEST_CASE("cad held: bosses that grow towards each other stop before the plane between them", "[cad]") {
+TEST_CASE("cad held: bosses that grow towards each other stop before the plane between them", "[cad][long]") {
   const io::MeshFile bosses = model_of("bosses.step");
   for (const double d : {1.6, 3.0}) {
     const CadFileFacts facts = io::write_cad(place_for("bosses_held.step"), bosses, d, {}, held());
@@ -106,7 +106,7 @@ TEST_CASE("cad held: bosses that grow towards each other stop before the plane b
   }
 }
 
-TEST_CASE("cad held: walls that the distance would break through hold, where cut faces make no solid", "[cad]") {
+TEST_CASE("cad held: walls that the distance would break through hold, where cut faces make no solid", "[cad][long]") {
   const io::MeshFile waist = model_of("waist.step");
   CHECK(io::write_cad(place_for("waist_cut.step"), waist, -0.8, {}).made == Made::Faces);
   const CadFileFacts facts = io::write_cad(place_for("waist_held.step"), waist, -0.8, {}, held());
@@ -166,7 +166,7 @@ TEST_CASE("cad held: faces keep clear of an obstacle, and go all the way beside 
   }
 }
 
-TEST_CASE("cad held: what an obstacle is in the way of is never called whole", "[cad]") {
+TEST_CASE("cad held: what an obstacle is in the way of is never called whole", "[cad][long]") {
   const io::MeshFile block = model_of("block.step");
   // One that is met, beside a triangle without area.
   Polygons met = box(Vec3d(28, 20, 21.5), Vec3d(32, 24, 30));

@@ -181,7 +181,7 @@ TEST_CASE("cad written: a groove that closes is gone from the floor that it shar
   CHECK(volume_of_mesh(written.again.polygons) == Approx(written.facts.volume).epsilon(1e-6));
 }
 
-TEST_CASE("cad written: walls of a hollow block are good to the last, and not when they are gone", "[cad]") {
+TEST_CASE("cad written: walls of a hollow block are good to the last, and not when they are gone", "[cad][long]") {
   // Nearly all of each wall's sides lies over the mitres of the other side.
   for (const double d : {-2.3, -2.4, -2.49}) {
     INFO(d);
@@ -197,7 +197,7 @@ TEST_CASE("cad written: walls of a hollow block are good to the last, and not wh
   }
 }
 
-TEST_CASE("cad written: grooves and flanges of turned parts close, and what they part meets", "[cad]") {
+TEST_CASE("cad written: grooves and flanges of turned parts close, and what they part meets", "[cad][long]") {
   using std::numbers::pi;
   const auto cylinder = [](double radius, double height) { return pi * radius * radius * height; };
   for (const double d : {0.3, 0.75, 1.5}) {
@@ -225,7 +225,7 @@ TEST_CASE("cad written: grooves and flanges of turned parts close, and what they
   }
 }
 
-TEST_CASE("cad written: edges within a plane or a cylinder lead to where its faces meet others", "[cad]") {
+TEST_CASE("cad written: edges within a plane or a cylinder lead to where its faces meet others", "[cad][long]") {
   for (const double d : {0.25, 1.0, 2.5, -0.25, -1.0, -1.75}) {
     INFO(d);
     const double side = 10 + 2 * d, radius = 6 + d, x = 0.5 - d;
