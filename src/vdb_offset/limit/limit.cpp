@@ -30,7 +30,7 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
   LetOut let_out(state);
   let_out(progress);
   ReturnToFaces return_to_faces(state);
-  // Round corners that return first take room from settling, which gives most of it to the largest of them.
+  // A corner that returns before settling takes room that settling may need: of round corners only large ones do.
   using Which = ReturnToFaces::Which;
   if (return_to_faces(state.keeps_faces ? Which::All : Which::LargeCorners)) let_out(progress);
   Settling settle(state);

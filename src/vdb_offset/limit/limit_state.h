@@ -16,8 +16,8 @@ namespace vdb_offset {
 
 /// The offset that limit() makes valid, as its steps change it: each vertex goes a share of a whole displacement.
 ///
-/// The steps (PatchUntangler, pull_back(), LetOut, Settling) change whole displacements and shares, and then move the
-/// vertices by move() or a trial of `faults`, so that `faults` always knows the vertices where they stand.
+/// The steps (PatchUntangler, pull_back(), LetOut, ReturnToFaces, Settling) change whole displacements and shares, and
+/// then move the vertices by move() or a trial of `faults`, so that `faults` always knows where the vertices stand.
 struct LimitState {
   /// `offset` and what it refers to must outlive this. `warm` is null without a warm start.
   LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, const WarmStart* warm);
