@@ -473,6 +473,27 @@ TEST_CASE("limit: random scenes are what they say in three formats", "[limit][pr
   }
 }
 
+TEST_CASE("limit: what crosses itself all over is valid to check as well", "[limit][check][property][random]") {
+  // Where faces are folded, an edge and its end disagree about sides, and rounding chooses which is closest.
+  const test::Seeds seeds = test::random_seeds(40);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
+    const Polygons mesh = test::crumpled_box(seed);
+    for (const Corners corners : {Corners::Round, Corners::Miter}) {
+      INFO("seed " << seed << (corners == Corners::Miter ? " miter" : " round"));
+      OffsetOptions options;
+      options.distance = 0.05;
+      options.corners = corners;
+      const OffsetResult result = offset(mesh.view(), options);
+      CHECK(result.statistics.limit.left.total() == 0);
+      const CheckResult found =
+          check_offset(mesh.view(), result.positions, {.distance = options.distance, .corners = corners});
+      CHECK(found.faults.total() == 0);
+      CHECK(found.wrong_side == 0);
+      CHECK(found.beyond == 0);
+    }
+  }
+}
+
 TEST_CASE("limit: a vertex that gives up its miter has a path to the distance, and no share of the miter",
           "[limit][miter]") {
   const Polygons cube = scene::box(Vec3d(1), 1, false);

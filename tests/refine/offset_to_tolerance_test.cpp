@@ -7,9 +7,12 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "support/oracles.h"
+#include "support/random_scenes.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/query/closest_query.h"
@@ -251,6 +254,52 @@ TEST_CASE("tolerance: miters need no split, inward or outward", "[tolerance][mit
       CHECK(certified_of(refined).certified == 1);
       CHECK(certified_of(refined).there == 1);
     }
+}
+
+TEST_CASE("tolerance: beside a miter that is cut, faces hold to it", "[tolerance][miter][check]") {
+  // A prism whose sharp edge, of ten degrees, has a miter that is 11.5 distances long.
+  const double angle = 5 * M_PI / 180;
+  Polygons blade;
+  for (const double y : {0.0, 1.0})
+    for (const double z : {0.0, -1.0, 1.0}) blade.positions.emplace_back(std::abs(z), y, z * std::tan(angle));
+  for (const auto& [a, b, c] : {std::tuple(0U, 1U, 2U), std::tuple(3U, 5U, 4U)}) blade.add_face({a, b, c});
+  for (std::uint32_t i = 0; i < 3; ++i) blade.add_face({(i + 1) % 3, i, 3 + i, 3 + (i + 1) % 3});
+  constexpr double kDistance = 0.02;
+  for (const auto& [limit, least] : {std::pair(4.0, 0.97), std::pair(1.2, 0.91)}) {
+    CAPTURE(limit);
+    OffsetOptions options = options_for(kDistance, Corners::Miter);
+    options.miter_limit = limit;
+    const RefinedOffset refined = offset_to_tolerance(blade.view(), options, tolerance_of(0.01));
+    const PolygonView mesh = refined.refinement.polygons.view();
+    double farthest = 0;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      farthest = std::max(farthest, (refined.result.positions[v] - mesh.positions[v]).length());
+    CHECK(farthest < limit * kDistance * (1 + 1e-9));
+    CHECK(certified_of(refined).certified > least);
+    // Whoever looks at the pair sees the same.
+    const CheckResult found = check_offset(
+        mesh, refined.result.positions,
+        {.distance = Distances(kDistance), .corners = Corners::Miter, .miter_limit = limit, .tolerance_share = 0.01});
+    CHECK(found.states == refined.result.states);
+    CHECK(found.beyond == 0);
+    CHECK(found.certified->certified == Approx(certified_of(refined).certified).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("tolerance: added vertices keep to the miter limit where faces are folded", "[tolerance][miter]") {
+  for (const unsigned seed : {1U, 2U}) {
+    CAPTURE(seed);
+    constexpr double kDistance = 0.05, kLimit = 4;
+    const RefinedOffset refined = offset_to_tolerance(test::crumpled_box(seed).view(),
+                                                      options_for(kDistance, Corners::Miter), tolerance_of(0.05));
+    double farthest = 0;
+    for (std::size_t v = 0; v < refined.result.states.size(); ++v)
+      if (refined.result.states[v] == VertexState::Mitred)
+        farthest = std::max(
+            farthest, (refined.result.positions[v] - refined.refinement.polygons.positions[v]).length() / kDistance);
+    CHECK(farthest > 1.5);
+    CHECK(farthest < kLimit * (1 + 1e-9));
+  }
 }
 
 TEST_CASE("tolerance: distances that differ from vertex to vertex", "[tolerance]") {

@@ -67,6 +67,16 @@ Seeds random_seeds(unsigned count) {
   return {first, first + number_from_environment("VDB_OFFSET_RANDOM_COUNT", std::min(count, most))};
 }
 
+Polygons crumpled_box(unsigned seed) {
+  constexpr int kDivisions = 4;
+  constexpr double kMost = 0.9 / kDivisions;
+  Polygons mesh = scene::box(Vec3d(1), kDivisions, true);
+  Dice dice(seed);
+  for (Vec3d& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] += dice.between(-kMost, kMost);
+  return mesh;
+}
+
 RandomScene random_scene(unsigned seed) {
   Dice dice(seed);
   RandomScene scene;

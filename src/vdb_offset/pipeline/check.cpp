@@ -117,10 +117,26 @@ WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, cons
   return miters;
 }
 
+/// Whether a vertex is on the planes of all of its faces that move, moved by the distance, and no farther away than
+/// miters are: those that offset_to_tolerance() adds on faces beside a miter may be anywhere on these planes.
+bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& displacement, double asked,
+                  double miter_limit, double tolerance) {
+  const Surface& surface = parts.surface();
+  if (displacement.length() > miter_limit * std::abs(asked) + tolerance) return false;
+  const auto around = surface.triangles_around(vertex);
+  return std::all_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Vec3d& normal = surface.triangle_normals[t];
+    if (normal.lengthSqr() == 0 || (!parts.off_part.empty() && parts.off_part[t])) return true;
+    return std::abs(normal.dot(displacement) - asked) <= tolerance;
+  });
+}
+
 /// Judges the states and distances of the input's vertices.
-void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const FaultFinder& finder,
-                    const Distances& distances, const WantedMiters& miters, const Rounding& precision,
+void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const FaultFinder& finder,
+                    const Distances& distances, const WantedMiters& miters, const CheckOptions& options,
                     CheckResult& result) {
+  const Surface& surface = parts.surface();
+  const Rounding precision(options.precision);
   const double epsilon = precision.epsilon();
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     const std::uint32_t w = surface.welded[v];
@@ -129,13 +145,17 @@ void judge_vertices(const Surface& surface, std::span<const Vec3d> source, const
                  tolerance = kReachedTolerance * target + std::max(epsilon * finder.positions()[w].length(),
                                                                    precision.most_off(finder.positions()[w]));
     result.achieved[v] = finder.distance_of(w);
+    const Vec3d displacement = finder.positions()[w] - source[w];
     const Miter* const miter = find_miter(miters.of_vertex, w);
-    const bool is_mitred = miter && (finder.positions()[w] - source[w] - miter->displacement).length() <= tolerance;
-    result.states[v] = is_mitred                      ? miter->state
+    const bool is_at_miter = miter && (displacement - miter->displacement).length() <= tolerance,
+               is_beside_miter = !is_at_miter && error > tolerance && options.corners == Corners::Miter &&
+                                 is_on_planes(parts, w, displacement, distances[w], options.miter_limit, tolerance);
+    result.states[v] = is_at_miter                    ? miter->state
+                       : is_beside_miter              ? VertexState::Mitred
                        : std::abs(error) <= tolerance ? VertexState::Reached
                                                       : VertexState::Limited;
-    if (is_mitred && miter->nearer > 0) result.achieved[v] = miter->distance;
-    result.beyond += error > tolerance && !is_mitred;
+    if (is_at_miter && miter->nearer > 0) result.achieved[v] = miter->distance;
+    result.beyond += error > tolerance && !is_at_miter && !is_beside_miter;
     result.wrong_side += !finder.on_right_side(w);
   }
 }
@@ -228,7 +248,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   FaultFinder finder(constrained, source, distances, options.precision, std::move(source_crossings));
   progress.advance(in_offset.size());
   find_faults(finder, in_offset, surroundings ? surroundings->crossing() : 0, progress, result);
-  judge_vertices(surface, source, finder, distances, miters, options.precision, result);
+  judge_vertices(parts, source, finder, distances, miters, options, result);
   std::vector<VertexState> states(source.size(), VertexState::Reached);
   for (std::size_t w = 0; w < states.size(); ++w)
     if (surface.representative[w] != kNone) states[w] = result.states[surface.representative[w]];

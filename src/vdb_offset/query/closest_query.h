@@ -59,8 +59,8 @@ class ClosestQuery {
   void answer_along_paths(std::span<const Vec3d> points, std::span<const std::size_t> begin,
                           std::span<const std::uint32_t> hints, std::span<Closest> answers) const;
 
-  /// Calls visit(point) for all points of the surface, one a triangle, that are as near to x as the closest one, but
-  /// for what rounding may have made of that: the same ones in each frame that the surface may stand in.
+  /// Calls visit(triangle, point) for all points of the surface, one a triangle, that are as near to x as the closest
+  /// one, but for what rounding may have made of that: the same ones in each frame that the surface may stand in.
   template <class Visit>
   void visit_as_near(const Vec3d& x, double distance, Visit&& visit) const {
     const double farthest = farthest_tie(distance);
@@ -68,7 +68,7 @@ class ClosestQuery {
     collect_together({&ball, 1}, [&](std::size_t, const NearTriangles& near) {
       for (std::size_t i = 0; i < near.size(); ++i) {
         const TrianglePoint point = surface_.closest_on(near.triangle(i), x);
-        if (point.squared_distance <= farthest * farthest) visit(point.point);
+        if (point.squared_distance <= farthest * farthest) visit(near.triangle(i), point);
       }
     });
   }

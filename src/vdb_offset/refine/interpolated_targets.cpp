@@ -19,17 +19,22 @@ constexpr double kLeastTargetSlope = 0.005;
 constexpr int kMostTargetSteps = 40;
 // How much longer a ray may be than the faces at its origin ask for, as a share. Not measured.
 constexpr double kMostDetour = 0.5;
+// Cosines from which two planes count as one: of what is closest on the way out of a valley, where those of a round
+// surface follow each other; and of faces, where their common point would be a matter of rounding. Not measured.
+constexpr double kAlikeOnTheWay = 0.999, kAlike = 1 - 1e-10;
 // How far a point between vertices of the offset may be pushed out, in distances. Not measured.
 constexpr double kFarthestPush = 2;
 
-/// The last few planes that a point is to be beyond.
+/// The last few planes that a point is to be on, or beyond.
 class NearPlanes {
  public:
-  /// The point x is to have normal.dot(x) >= height. A plane that is much like another one replaces it.
+  /// \param alike cosine from which a plane replaces another one
+  explicit NearPlanes(double alike) : alike_(alike) {}
+
+  /// The point x is to have normal.dot(x) >= height.
   void add(const Vec3d& normal, double height) {
-    constexpr double kAlike = 0.999;  // cosine; not measured
     const auto alike =
-        std::find_if(planes_.begin(), planes_.end(), [&](const auto& one) { return one.first.dot(normal) > kAlike; });
+        std::find_if(planes_.begin(), planes_.end(), [&](const auto& one) { return one.first.dot(normal) > alike_; });
     if (alike != planes_.end()) planes_.erase(alike);
     else if (planes_.size() == 3) planes_.erase(planes_.begin());
     planes_.emplace_back(normal, height);
@@ -70,6 +75,7 @@ class NearPlanes {
     return x;
   }
 
+  double alike_;
   std::vector<std::pair<Vec3d, double>> planes_;  // unit normals and heights
 };
 
@@ -87,8 +93,13 @@ struct InterpolatedTargets::Ray {
 };
 
 InterpolatedTargets::InterpolatedTargets(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
-                                         Corners corners, std::vector<Vec3d> displacement)
-    : parts_(parts), query_(query), obstacles_(obstacles), corners_(corners), displacement_(std::move(displacement)) {}
+                                         Corners corners, double miter_limit, std::vector<Vec3d> displacement)
+    : parts_(parts),
+      query_(query),
+      obstacles_(obstacles),
+      corners_(corners),
+      miter_limit_(miter_limit),
+      displacement_(std::move(displacement)) {}
 
 /// The triangles of the moving part that a place lies on.
 std::vector<std::uint32_t> InterpolatedTargets::triangles_at(const SurfacePlace& place) const {
@@ -113,18 +124,39 @@ VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& 
   if (!(length > 0) || triangles.empty()) return {};
   Ray ray{position - surface.origin, displacement / length, 1, std::abs(asked), hint_at(place)};
   double steepest = -1;
+  const Vec3d* plane = nullptr;
+  bool is_one_plane = true;
   for (const auto t : triangles) {
     const Vec3d& normal = surface.triangle_normals[t];
     if (normal.lengthSqr() == 0) continue;
     const double slope = normal.dot(ray.direction) * (asked < 0 ? -1 : 1);
     ray.slope = std::min(ray.slope, slope);
     steepest = std::max(steepest, slope);
+    is_one_plane &= !plane || plane->dot(normal) > kAlike;
+    plane = &normal;
   }
   const bool is_flat = steepest - ray.slope <= kReachedTolerance * ray.slope;
   if (!(ray.slope >= kLeastTargetSlope)) return {};
-  if (corners_ == Corners::Miter && is_flat)
+  if (corners_ == Corners::Miter && is_flat) {
+    if (miter_limit_ * ray.slope < 1) {
+      // Beside a miter that is cut. Its edge stays whole: nothing round may stand between such miters.
+      if (!plane || !is_one_plane) return {};
+      ray = within_limit(ray, displacement, *plane * asked);
+    }
     if (const VertexTarget target = in_plane(ray); target.is_there) return target;
+  }
   return at_distance(ray);
+}
+
+/// A ray to where a plane is once it has moved by a displacement across it, shifted along the plane by the part that
+/// another one has along it, as far as the miter limit allows.
+InterpolatedTargets::Ray InterpolatedTargets::within_limit(const Ray& ray, const Vec3d& displacement,
+                                                           const Vec3d& across) const {
+  Vec3d along = displacement - across * (across.dot(displacement) / across.lengthSqr());
+  const double most = ray.asked * std::sqrt(miter_limit_ * miter_limit_ - 1), length = along.length();
+  if (length > most) along *= most / length;
+  const Vec3d end = across + along;
+  return {ray.origin, end.unit(), ray.asked / end.length(), ray.asked, ray.hint};
 }
 
 std::uint32_t InterpolatedTargets::hint_at(const SurfacePlace& place) const {
@@ -160,7 +192,7 @@ bool InterpolatedTargets::is_before_faces(const SurfacePlace& place, const Vec3d
 /// from all that is closest in turn, to the nearest point that is on the far side of the planes that these have there.
 VertexTarget InterpolatedTargets::pushed_out(const Vec3d& from, const Vec3d& origin, double asked,
                                              Closest closest) const {
-  NearPlanes planes;
+  NearPlanes planes(kAlikeOnTheWay);
   Vec3d x = from;
   for (int i = 0; i < kMostTargetSteps; ++i) {
     const double off = closest.distance - asked;
@@ -183,16 +215,16 @@ VertexTarget InterpolatedTargets::pushed_out(const Vec3d& from, const Vec3d& ori
 }
 
 /// The point nearest to `between` that is as far from the planes of all faces at a place as is asked for, if there is
-/// one. In the frame of the surface.
+/// one within the miter limit: planes that are folded onto each other meet anywhere. In the frame of the surface.
 std::optional<Vec3d> InterpolatedTargets::in_planes(const SurfacePlace& place, const Vec3d& origin, double asked,
                                                     const Vec3d& between) const {
-  NearPlanes planes;
+  NearPlanes planes(kAlike);
   for (const auto t : triangles_at(place)) {
     const Vec3d& normal = parts_.surface().triangle_normals[t];
     if (normal.lengthSqr() > 0) planes.add(normal, asked - normal.dot(between - origin));
   }
   const std::optional<Vec3d> step = planes.nearest_on_all();
-  if (!step) return std::nullopt;
+  if (!step || (between + *step - origin).length() > miter_limit_ * std::abs(asked)) return std::nullopt;
   return between + *step;
 }
 

@@ -33,10 +33,11 @@ struct VertexTarget {
 /// distance, if nothing else is nearer there.
 class InterpolatedTargets {
  public:
-  /// Keeps references. \param displacement of the vertices of parts.surface(), or the direction to begin with where a
-  /// vertex falls short, as long as its distance
+  /// Keeps references. \param miter_limit how many distances vertices go at most to the planes of their faces
+  /// \param displacement of the vertices of parts.surface(), or the direction to begin with where a vertex falls short,
+  /// as long as its distance
   InterpolatedTargets(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles, Corners corners,
-                      std::vector<Vec3d> displacement);
+                      double miter_limit, std::vector<Vec3d> displacement);
 
   /// In the direction of the displacements there. \param position world coordinates; \param asked not 0
   VertexTarget along(const SurfacePlace& place, const Vec3d& position, double asked) const;
@@ -49,6 +50,7 @@ class InterpolatedTargets {
  private:
   struct Ray;
   std::vector<std::uint32_t> triangles_at(const SurfacePlace& place) const;
+  Ray within_limit(const Ray& ray, const Vec3d& displacement, const Vec3d& across) const;
   VertexTarget in_plane(const Ray& ray) const;
   VertexTarget pushed_out(const Vec3d& from, const Vec3d& origin, double asked, Closest closest) const;
   std::optional<Vec3d> in_planes(const SurfacePlace& place, const Vec3d& position, double asked,
@@ -63,6 +65,7 @@ class InterpolatedTargets {
   const ClosestQuery& query_;
   const Obstacles* obstacles_;
   Corners corners_;
+  double miter_limit_;
   std::vector<Vec3d> displacement_;
 };
 

@@ -184,7 +184,7 @@ class RefinedRun {
     for (std::uint32_t w = 0; w < displacement.size(); ++w) displacement[w] = displacement_of(w, asked[w], coarse);
     std::vector<RefinedVertex> vertices = vertices_of_surface(asked, coarse);
     const InterpolatedTargets targets(prepared_.parts(), prepared_.query(), prepared_.obstacles(), options_.corners,
-                                      std::move(displacement));
+                                      options_.miter_limit, std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
                     {options_.corners, most_faces(), mesh_.face_count(), most_corners(), tolerance_.precision,
@@ -214,11 +214,15 @@ class RefinedRun {
     const std::size_t before = triangles_->triangles().size();
     bool any_faulty = false;
     if (!refiner.split()) return false;
+    // Where the source crosses itself, many faults stay whatever is whole.
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (int attempt = 0; attempt < kMostAttempts && options_.collision == Collision::Limit; ++attempt) {
       RefinedMesh refined(*triangles_, mesh_, options_, threads_, crosses_nothing_);
       const std::vector<std::uint32_t> faulty = refined.faulty_triangles(refiner.vertices());
       any_faulty |= !faulty.empty();
       if (faulty.empty() || !refiner.keep_whole(faulty) || !refiner.split()) break;
+      if (static_cast<double>(faulty.size()) > kFewer * static_cast<double>(fewest)) break;
+      fewest = faulty.size();
     }
     const std::size_t added = triangles_->triangles().size() - before;
     return !any_faulty || static_cast<double>(added) > least_gain * static_cast<double>(before);
@@ -272,6 +276,8 @@ class RefinedRun {
   // Of triangles, for another round of the last stage, and of one before. Not measured beside many.
   static constexpr double kLeastGain = 0.04, kLeastGainBefore = 0.05;
   static constexpr int kMostAttempts = 12;  // at a round without faults; not measured
+  // Share of the faulty triangles of one attempt that are worth another one.
+  static constexpr double kFewer = 0.9;
 
   PolygonView mesh_;
   const OffsetOptions& options_;

@@ -46,6 +46,28 @@ bool turns_from(const Vec3d& outward, const Vec3d& away) {
   return along < 0 && along * along > kRightAngle * kRightAngle * outward.lengthSqr() * away.lengthSqr();
 }
 
+/// Calls visit(feature) for the features of a triangle on whose normals x lies, but for rounding, if `closest` is the
+/// triangle's closest point. At the end of an edge these are the edge and the corner.
+template <class Visit>
+void for_each_feature_before(const Surface& surface, std::uint32_t triangle, const Vec3d& x,
+                             const TrianglePoint& closest, Visit&& visit) {
+  constexpr double kSame = 1e-6;  // share of the distance; reasoned: far above rounding, far below what faces differ by
+  const auto& corners = surface.triangles[triangle];
+  const Vec3d away = x - closest.point;
+  const double slack = kSame * away.length();
+  visit(closest.feature);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Vec3d& start = surface.vertices[corners[k]];
+    const Vec3d edge = surface.vertices[corners[(k + 1) % 3]] - start, from_start = closest.point - start;
+    if (from_start.length() <= slack) visit(static_cast<Feature>(k));
+    const double length = edge.length();
+    if (!(length > 0) || std::abs(away.dot(edge)) > slack * length) continue;
+    if (from_start.cross(edge).length() <= slack * length) visit(static_cast<Feature>(3 + k));
+  }
+  const Vec3d& normal = surface.triangle_normals[triangle];
+  if ((away - normal * normal.dot(away)).length() <= slack) visit(Feature::Face);
+}
+
 }  // namespace
 
 VertexPositions::VertexPositions(const ConstrainedSurface& constrained, std::span<const Vec3d> source,
@@ -159,7 +181,23 @@ void VertexPositions::take(std::uint32_t v, const Vec3d& x, const Closest& close
   right_side_[v] = 1;
   const int side = distances_[v] < 0 ? -1 : 1;
   if (moving_part.facts.closed() && moving_part.facts.oriented() && closest.distance > near_)
-    right_side_[v] = side * moving_part.pseudonormal(closest.triangle, closest.feature).dot(away_[v]) > 0;
+    right_side_[v] = is_on_side(side, x, closest);
+}
+
+/// Whether a position is on a side, as anything tells that is as near as the closest point. Where the moving part
+/// crosses itself, an edge and its end may disagree, and rounding chooses between them.
+bool VertexPositions::is_on_side(int side, const Vec3d& x, const Closest& closest) const {
+  const Surface& moving_part = constrained_.moving_part.surface();
+  const auto tells_so = [&](std::uint32_t t, Feature feature, const Vec3d& point) {
+    return side * moving_part.pseudonormal(t, feature).dot(x - point) > 0;
+  };
+  if (tells_so(closest.triangle, closest.feature, closest.point)) return true;
+  bool any = false;
+  constrained_.moving_part.visit_as_near(x, closest.distance, [&](std::uint32_t t, const TrianglePoint& at) {
+    for_each_feature_before(moving_part, t, x, at,
+                            [&](Feature feature) { any = any || tells_so(t, feature, at.point); });
+  });
+  return any;
 }
 
 void VertexPositions::find_ties_around(const Indices& triangles) {
@@ -223,8 +261,9 @@ bool VertexPositions::looks_away(const Vec3d& outward, const Vec3d& x, const Vec
   if (turns_from(outward, away)) return false;
   bool from_all = true;
   if (tied)
-    constrained_.moving_part.visit_as_near(
-        x, distance, [&](const Vec3d& point) { from_all = from_all && !turns_from(outward, x - point); });
+    constrained_.moving_part.visit_as_near(x, distance, [&](std::uint32_t, const TrianglePoint& at) {
+      from_all = from_all && !turns_from(outward, x - at.point);
+    });
   return from_all;
 }
 

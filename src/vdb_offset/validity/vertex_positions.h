@@ -25,7 +25,7 @@ inline Vec3d twice_area(const Surface& surface, std::uint32_t triangle, std::spa
 ///
 /// All is told of positions as they will be written, and by these alone: neither what was known of other positions nor
 /// the order of a search has an influence. A position may be as near to several points of the moving part, as on the
-/// middle sheet of a wall: then a face is to look away from each of them.
+/// middle sheet of a wall: then a face is to look away from each of them, and a vertex is on the side that any tells.
 class VertexPositions {
  public:
   /// What is known of the moving part near a vertex: Found, the closest point of the triangles around the one that a
@@ -87,6 +87,7 @@ class VertexPositions {
   void measure_exactly(std::span<const std::uint32_t> vertices);
   bool is_known(std::uint32_t vertex, const Vec3d& x, const Paths& ends) const;
   void take(std::uint32_t vertex, const Vec3d& x, const Closest& closest, Nearness nearness);
+  bool is_on_side(int side, const Vec3d& x, const Closest& closest) const;
   bool is_beyond_wall(std::uint32_t vertex) const;
   Vec3d in_frame(std::uint32_t vertex) const { return position_[vertex] - constrained_.moving_part.surface().origin; }
   bool looks_away(const Vec3d& outward, const Vec3d& x, const Vec3d& away, double distance, bool tied) const;
