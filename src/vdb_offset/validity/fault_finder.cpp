@@ -116,6 +116,8 @@ void FaultFinder::move(const Indices& moved, const PositionOf& position_of, cons
 void FaultFinder::move(const Indices& moved, const PositionOf& position_of, const Paths* ends, Crossings crossings) {
   Parts& parts = *parts_;
   VDB_OFFSET_ASSERT(is_index_set(moved, source_.size()));
+  // What a path has found is closest but for rounding. Where the source crosses itself, that may be on another side.
+  if (parts.pairs.source_crossings().count() > 0) ends = nullptr;
   parts.positions.move(moved, position_of, ends);
   const Indices touched = parts.triangles_around(moved);
   if (ends) parts.positions.find_ties_around(touched);
