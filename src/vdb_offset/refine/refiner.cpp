@@ -74,6 +74,17 @@ void Refiner::begin_stage(double loosened) {
 bool Refiner::begin_round(const std::function<void(double)>& tell) {
   if (is_cut_short_ || round_++ == kMostSplitRounds) return false;
   tell(1 - static_cast<double>(fresh_.size()) / static_cast<double>(state_.size()));
+  look_at_fresh();
+  then_ = {vertices_.size(), state_, triangles_, fresh_};
+  piece_of_.resize(state_.size());
+  std::iota(piece_of_.begin(), piece_of_.end(), 0U);
+  halved_once_.assign(state_.size(), 0);
+  is_undone_ = false;
+  return !fresh_.empty();
+}
+
+/// Judges the triangles that are to be looked at, and makes candidates of the edges of those that are not settled.
+void Refiner::look_at_fresh() {
   for_each_index(
       fresh_.size(), [&](std::size_t i) { state_[fresh_[i]] = judge(triangles_.triangles()[fresh_[i]]); }, 16);
   std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] != State::Off && state_[t] != State::Mixed; });
@@ -81,13 +92,25 @@ bool Refiner::begin_round(const std::function<void(double)>& tell) {
   std::erase_if(candidates_, [&](const Candidate&) { return i < marked_.size() && marked_[i++] != 0; });
   marked_.clear();  // edges that have been split are gone
   propose(fresh_);
-  then_ = {vertices_.size(), state_, triangles_, fresh_};
-  piece_of_.resize(state_.size());
-  std::iota(piece_of_.begin(), piece_of_.end(), 0U);
-  return !fresh_.empty();
 }
 
 bool Refiner::split() {
+  is_second_ = false;
+  halved_twice_.assign(then_.state.size(), 0);
+  if (!split_once()) return false;
+  look_at_fresh();
+  is_second_ = true;
+  // What stays as it is now, as a triangle beside it is halved once alone, may be split in the next round.
+  std::vector<std::uint32_t> left = fresh_;
+  if (!split_once()) return true;
+  std::sort(fresh_.begin(), fresh_.end());
+  std::erase_if(left, [&](std::uint32_t t) { return std::binary_search(fresh_.begin(), fresh_.end(), t); });
+  fresh_.insert(fresh_.end(), left.begin(), left.end());
+  return true;
+}
+
+/// Splits the edges that the triangles to be looked at ask for. False if that is none.
+bool Refiner::split_once() {
   marked_.assign(candidates_.size(), 0);
   find_whole_edges();
   for (const std::uint32_t t : fresh_) mark(t, marked_);
@@ -104,16 +127,21 @@ bool Refiner::keep_whole(std::span<const std::uint32_t> triangles) {
   for (const std::uint32_t t : triangles) {
     const std::uint32_t whole = piece_of_[t];
     if (pieces[whole] < 2) continue;
-    then_.state[whole] = State::Whole;
+    if (halved_twice_[whole] && !is_undone_) halved_once_[whole] = 1;
+    else then_.state[whole] = State::Whole;
     any = true;
   }
   if (!any) return false;
+  is_undone_ = true;
   vertices_.resize(then_.vertices);
   triangles_ = *then_.triangles;
   state_ = then_.state;
   fresh_ = then_.fresh;
   std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::Whole; });
   piece_of_.resize(state_.size());
+  std::erase_if(candidates_, [&](const Candidate& one) { return one.edge.second >= then_.vertices; });
+  marked_.clear();
+  propose(fresh_);
   return true;
 }
 
@@ -257,7 +285,7 @@ void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) co
 void Refiner::find_whole_edges() {
   std::vector<Edge> edges;
   for (std::uint32_t t = 0; t < state_.size(); ++t) {
-    if (state_[t] != State::Whole) continue;
+    if (state_[t] != State::Whole && !(is_second_ && halved_once_[piece_of_[t]])) continue;
     const Corners3& v = triangles_.triangles()[t].vertex;
     for (std::size_t k = 0; k < 3; ++k) edges.push_back(edge_between(v[k], v[(k + 1) % 3]));
   }
@@ -303,6 +331,7 @@ void Refiner::split(const std::vector<std::uint8_t>& marked) {
   for (const std::uint32_t t : split_from) {
     state_.push_back(state_[t]);
     piece_of_.push_back(piece_of_[t]);
+    if (is_second_) halved_twice_[piece_of_[t]] = 1;
   }
   std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::GivenUp; });
   for (const std::uint32_t t : fresh_) state_[t] = State::New;

@@ -58,10 +58,12 @@ class Refiner {
   /// Begins a round. False if there is nothing to be split any more. \param tell receives the share of triangles that
   /// are settled
   bool begin_round(const std::function<void(double)>& tell);
-  /// Splits what this round asks for. False if that is nothing.
+  /// Splits what this round asks for, and what its pieces ask for in turn: halves of a corner may be folded that
+  /// quarters are not. False if that is nothing.
   bool split();
-  /// Undoes this round's splits, and has the triangles stay whole that some of the present ones are pieces of. Returns
-  /// false, and undoes nothing, if none of them is a piece of another one.
+  /// Undoes this round's splits, and has the triangles stay whole that some of the present ones are pieces of; the
+  /// first time in a round, those whose pieces were split in turn be split once only. Returns false, and undoes
+  /// nothing, if none of them is a piece of another one.
   bool keep_whole(std::span<const std::uint32_t> triangles);
 
   /// Of all vertices, the added ones last.
@@ -89,6 +91,8 @@ class Refiner {
   };
   using Corners3 = std::array<std::uint32_t, 3>;
 
+  void look_at_fresh();
+  bool split_once();
   bool moves(const RefinedTriangles::Triangle& triangle) const;
   State judge(const RefinedTriangles::Triangle& triangle) const;
   double length_of(const Edge& edge) const;
@@ -122,7 +126,11 @@ class Refiner {
     std::vector<std::uint32_t> fresh;
   } then_;
   std::vector<std::uint32_t> piece_of_;
-  double loosened_ = 1;  // how many times the tolerance is that of the present stage
+  // Of each triangle then: whether its pieces may not be split in turn, and whether any of them have been.
+  std::vector<std::uint8_t> halved_once_, halved_twice_;
+  bool is_second_ = false;  // pieces are split in turn
+  bool is_undone_ = false;  // splits of this round have been undone
+  double loosened_ = 1;     // how many times the tolerance is that of the present stage
   bool is_cut_short_ = false;
 };
 
