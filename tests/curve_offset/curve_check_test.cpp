@@ -6,6 +6,7 @@
 #include <random>
 
 #include "support/curve_oracles.h"
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/curve/curve_line.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
@@ -215,4 +216,39 @@ TEST_CASE("curves: where fronts merge, miters add no faults to those of round co
   }
   CHECK(mitred > 1000);
   CHECK(merged > 20);
+}
+
+TEST_CASE("curves: points that stay keep their digits, and a segment between them its sides", "[curve][random]") {
+  // Rounded as well, such a point would be off the source by as much as tells a direction.
+  const Rounding precision(Precision{Precision::Kind::Digits, 5});
+  std::size_t held = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> aside(-0.3, 0.3);
+    std::vector<Vec3d> points;
+    for (int k = 0; k < 40; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 40;
+      points.emplace_back(std::cos(angle) + aside(random), std::sin(angle) + aside(random), 0);
+    }
+    const Curves crumpled = curve_through(points, true);
+    for (const double distance : {0.05, -0.05}) {
+      INFO("seed " << seed << ", distance " << distance);
+      OffsetOptions options;
+      options.precision = precision;
+      const Distances distances(distance);
+      const OffsetResult result = offset_curves(crumpled.view(), {&distances, 1}, options).front();
+      std::vector<Vec3d> written;
+      for (std::size_t p = 0; p < result.positions.size(); ++p) {
+        written.push_back(precision(crumpled.positions[p], result.positions[p]));
+        held += written[p] == crumpled.positions[p];
+      }
+      CheckOptions check;
+      check.distance = distance;
+      check.precision = precision;
+      const CheckResult found = check_curves(crumpled.view(), written, check);
+      CHECK(found.valid());
+      CHECK(found.beyond == 0);
+    }
+  }
+  CHECK(held > 10);
 }

@@ -291,6 +291,7 @@ CheckResult measure_curves(const CheckRequest& request) {
   options.threads = made.threads;
   options.corners = made.corners.value_or(Corners::Round);
   options.miter_limit = made.miter_limit.value_or(options.miter_limit);
+  options.precision = io::precision_of_curves(made.output, source, made.write);
   if (const auto distance = parse_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
   CheckResult result = check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
   write_findings(made, source.file.polygons.view(), offset.file.polygons.positions, result, {{}, nullptr, true});

@@ -83,7 +83,9 @@ VDB_OFFSET_API void write_curves(const std::string& path, const CurveFile& sourc
 /// DXF, or text. \throw as the other one
 VDB_OFFSET_API void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options = {});
 
-/// The precision of coordinates that write_curves() writes.
-VDB_OFFSET_API Precision precision_of_curves(const WriteOptions& options);
+/// The precision of coordinates that write_curves() writes of curves from a file: points that do not move keep theirs
+/// in text and OBJ of the same format.
+VDB_OFFSET_API Precision precision_of_curves(const std::string& path, const CurveFile& source,
+                                             const WriteOptions& options);
 
 }  // namespace vdb_offset::io

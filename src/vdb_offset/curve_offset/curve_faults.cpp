@@ -167,7 +167,7 @@ void CurveFaults::move(const Indices& points, std::span<const Vec2d> positions) 
       points.size(),
       [&](std::size_t i) {
         const auto p = points[i];
-        position_[p] = {curves_.precision(positions[i][0]), curves_.precision(positions[i][1])};
+        position_[p] = curves_.as_written(p, positions[i]);
         measure(p);
       },
       kGrain);

@@ -30,6 +30,11 @@ struct PlaneCurves {
   Vec3d in_frame(const Vec2d& x) const {
     return {x[0] - line().origin[0], x[1] - line().origin[1], line().vertices.front()[2]};
   }
+  /// A position of a vertex in the plane as it will be written.
+  Vec2d as_written(std::uint32_t vertex, const Vec2d& x) const {
+    if (x == source[vertex] && !precision.rounds_all) return x;
+    return {precision(x[0]), precision(x[1])};
+  }
   /// The side that a vertex goes to: 1 outward, -1 inward.
   int side(std::uint32_t vertex) const { return distances[vertex] < 0 ? -1 : 1; }
 };

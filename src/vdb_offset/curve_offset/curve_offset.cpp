@@ -23,8 +23,10 @@ namespace {
 /// Where the vertices of the polyline are at the ends of their paths, in the plane, as they will be written.
 std::vector<Vec2d> ends_as_written(const PlaneCurves& plane, const Paths& paths) {
   std::vector<Vec2d> ends(plane.source.begin(), plane.source.end());
-  for (std::size_t v = 0; v < ends.size(); ++v)
-    for (int k = 0; k < 2; ++k) ends[v][k] = plane.precision(ends[v][k] + paths.displacement[v][k]);
+  for (std::uint32_t v = 0; v < ends.size(); ++v) {
+    const Vec3d& displacement = paths.displacement[v];
+    ends[v] = plane.as_written(v, ends[v] + Vec2d(displacement[0], displacement[1]));
+  }
   return ends;
 }
 

@@ -313,20 +313,32 @@ CurveFile parse_curves(const std::string& name, CurveFormat format, std::string 
   return parse_bytes(name, format, FileBytes(std::move(bytes)), how);
 }
 
-Precision precision_of_curves(const WriteOptions& options) {
+namespace {
+
+Rounding rounding_of(const WriteOptions& options) {
   return options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
+}
+
+}  // namespace
+
+Precision precision_of_curves(const std::string& path, const CurveFile& source, const WriteOptions& options) {
+  Precision precision = rounding_of(options);
+  const bool is_in_place =
+      curve_format_of(path) == source.format && source.format != CurveFormat::Svg && source.format != CurveFormat::Dxf;
+  precision.rounds_all = !is_in_place;
+  return precision;
 }
 
 void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
-  const Rounding precision = precision_of_curves(options);
+  const Rounding precision = rounding_of(options);
   write_pieces(path, in_sections(as_file(format, curves, precision), {}));
 }
 
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
                   const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
-  const Rounding precision = precision_of_curves(options);
+  const Rounding precision = rounding_of(options);
   const Curves& read = source.file.polygons;
   const CurvesView moved{positions, read.corners, read.face_begin};
   const Pieces pieces =
