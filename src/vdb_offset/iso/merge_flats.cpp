@@ -37,7 +37,7 @@ constexpr int kMostMergeTrials = 5;
 
 using List = std::vector<std::uint32_t>;
 
-struct Plane {
+struct FlatPlane {
   Vec3d point, normal;
   double height(const Vec3d& x) const { return normal.dot(x - point); }
 };
@@ -124,7 +124,7 @@ class FlatMerger {
 
   /// The plane through a vertex with the normal of the largest of some triangles; none if all are too small to tell
   /// one.
-  std::optional<Plane> plane_of_largest(std::span<const std::uint32_t> triangles, std::uint32_t v) const {
+  std::optional<FlatPlane> plane_of_largest(std::span<const std::uint32_t> triangles, std::uint32_t v) const {
     double most = 0;
     Vec3d cross(0.0);
     for (const auto t : triangles)
@@ -134,11 +134,11 @@ class FlatMerger {
       }
     const double length = std::sqrt(most);
     if (!(length > kClearHeight * tolerance_ * kClearHeight * tolerance_)) return std::nullopt;
-    return Plane{mesh_.vertices[v], cross / length};
+    return FlatPlane{mesh_.vertices[v], cross / length};
   }
 
   /// Whether a triangle lies in a plane, and faces as the plane does: a sliver may be folded over within the tolerance.
-  bool is_in(const Plane& plane, std::uint32_t triangle) const {
+  bool is_in(const FlatPlane& plane, std::uint32_t triangle) const {
     for (const auto w : mesh_.triangles[triangle])
       if (std::abs(plane.height(mesh_.vertices[w])) > tolerance_) return false;
     return plane.normal.dot(cross_of(corners_of(mesh_.triangles[triangle]))) > 0;
@@ -146,7 +146,7 @@ class FlatMerger {
 
   /// The flat parts around a vertex: one plane, or two.
   struct Flat {
-    std::array<Plane, 2> plane;
+    std::array<FlatPlane, 2> plane;
     std::vector<std::uint8_t> plane_of;  // of each triangle around: 0 or 1
     List targets;  // neighbours that the vertex may be merged into: all, or the two along the edge
   };

@@ -26,9 +26,9 @@ struct CreaseSheets {
   std::size_t count;
 };
 
-class CreaseFinder {
+class CreasePlaces {
  public:
-  CreaseFinder(const IsoLevel& level, const VoxelMesh& mesh, const std::vector<Vec3d>& positions,
+  CreasePlaces(const IsoLevel& level, const VoxelMesh& mesh, const std::vector<Vec3d>& positions,
                const std::vector<std::uint32_t>& closest)
       : level_(level),
         surface_(level.query().surface()),
@@ -167,7 +167,7 @@ class CreaseFinder {
 std::vector<std::uint8_t> put_on_creases(const IsoLevel& level, const VoxelMesh& mesh, std::vector<Vec3d>& positions,
                                          std::vector<std::uint32_t>& closest) {
   VDB_OFFSET_ASSERT(positions.size() == mesh.points.size() && closest.size() == mesh.points.size());
-  const CreaseFinder finder(level, mesh, positions, closest);
+  const CreasePlaces finder(level, mesh, positions, closest);
   std::vector<std::uint8_t> on_crease(positions.size(), 0);
   std::vector<std::optional<std::pair<Vec3d, std::uint32_t>>> found(positions.size());
   for_each_index(positions.size(), [&](std::size_t v) { found[v] = finder.find(v); });

@@ -21,7 +21,7 @@ constexpr int kMostTargetSteps = 40;
 constexpr double kMostDetour = 0.5;
 // Cosines from which two planes count as one: of what is closest on the way out of a valley, where those of a round
 // surface follow each other; and of faces, where their common point would be a matter of rounding. Not measured.
-constexpr double kAlikeOnTheWay = 0.999, kAlike = 1 - 1e-10;
+constexpr double kAlikeOnTheWay = 0.999, kParallelPlanes = 1 - 1e-10;
 // How far a point between vertices of the offset may be pushed out, in distances. Not measured.
 constexpr double kFarthestPush = 2;
 
@@ -132,7 +132,7 @@ VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& 
     const double slope = normal.dot(ray.direction) * (asked < 0 ? -1 : 1);
     ray.slope = std::min(ray.slope, slope);
     steepest = std::max(steepest, slope);
-    is_one_plane &= !plane || plane->dot(normal) > kAlike;
+    is_one_plane &= !plane || plane->dot(normal) > kParallelPlanes;
     plane = &normal;
   }
   const bool is_flat = steepest - ray.slope <= kReachedTolerance * ray.slope;
@@ -218,7 +218,7 @@ VertexTarget InterpolatedTargets::pushed_out(const Vec3d& from, const Vec3d& ori
 /// one within the miter limit: planes that are folded onto each other meet anywhere. In the frame of the surface.
 std::optional<Vec3d> InterpolatedTargets::in_planes(const SurfacePlace& place, const Vec3d& origin, double asked,
                                                     const Vec3d& between) const {
-  NearPlanes planes(kAlike);
+  NearPlanes planes(kParallelPlanes);
   for (const auto t : triangles_at(place)) {
     const Vec3d& normal = parts_.surface().triangle_normals[t];
     if (normal.lengthSqr() > 0) planes.add(normal, asked - normal.dot(between - origin));
