@@ -234,6 +234,7 @@ CheckOptions check_options(const AskedOptions& asked, const py::object& toleranc
   CheckOptions check;
   check.only = options.only;
   check.border = options.border;
+  check.symmetry = options.symmetry;
   check.obstacles = options.obstacles;
   check.clearance = options.clearance;
   check.corners = options.corners;

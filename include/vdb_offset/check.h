@@ -18,9 +18,10 @@ struct VDB_OFFSET_API CheckOptions {
   /// The distance that was asked for, world units, negative inward, one for all vertices or one for each; empty: the
   /// median of the distances found, with the sign of most of them.
   std::optional<Distances> distance;
-  /// Marks of the faces that were offset. This and the next six are as they were for the offset (see OffsetOptions).
+  /// Marks of the faces that were offset. This and the next seven are as they were for the offset (see OffsetOptions).
   std::vector<std::uint8_t> only;
   Border border = Border::Slide;
+  SymmetryOptions symmetry;  ///< What is beyond a plane is on the wrong side if that plane is named.
   PolygonView obstacles;
   double clearance = 0;
   Corners corners = Corners::Round;

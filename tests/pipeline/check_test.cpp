@@ -68,6 +68,38 @@ TEST_CASE("check: what is wrong with an offset is told", "[check]") {
   CHECK(check_of(torn, bad, 0.1).torn > 0);
 }
 
+TEST_CASE("check: miters at a border are found in its plane", "[check][symmetry][miter]") {
+  Polygons tube;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+      tube.positions.emplace_back(x + 0.577 * z, y, z);
+  for (std::uint32_t i = 0; i < 4; ++i) tube.add_face({i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i});
+  for (const bool finds : {true, false}) {
+    OffsetOptions options;
+    options.distance = 0.05;
+    options.corners = Corners::Miter;
+    options.symmetry.find = finds;
+    const OffsetResult result = offset(tube.view(), options);
+    CheckOptions check;
+    check.distance = 0.05;
+    check.corners = Corners::Miter;
+    for (const bool is_told : {finds, !finds}) {
+      check.symmetry.find = is_told;
+      const CheckResult found = check_offset(tube.view(), result.positions, check);
+      CHECK(found.valid());
+      if (is_told == finds) CHECK(found.states == result.states);
+    }
+  }
+  // What has passed a plane that is named is on the wrong side.
+  std::vector<Vec3d> sunk = offset(tube.view(), {.distance = 0.05}).positions;
+  for (Vec3d& x : sunk) x[2] -= 0.01;
+  CheckOptions check;
+  check.distance = 0.05;
+  CHECK(check_offset(tube.view(), sunk, check).wrong_side == 0);
+  check.symmetry.planes = {{Vec3d(0, 0, 1), 0}};
+  CHECK(check_offset(tube.view(), sunk, check).wrong_side == 4);
+}
+
 TEST_CASE("check: flat faces over a round source are off between their vertices", "[check]") {
   const Polygons sphere = scene::icosphere(1, 3);
   std::vector<Vec3d> positions = sphere.positions;

@@ -42,8 +42,8 @@ constexpr const char* kCheckAbout =
     "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
     "Both must have the same vertices and faces in the same order, or OFFSET their triangles, as STL has them; or "
     "they\n"
-    "are curves, with the same points. What an offset by vdb_offset was told of distances, parts, obstacles, welding\n"
-    "and orientation has to be told here as well; then both find the same.";
+    "are curves, with the same points. What an offset by vdb_offset was told of distances, parts, planes, obstacles,\n"
+    "welding and orientation has to be told here as well; then both find the same.";
 
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
@@ -77,6 +77,10 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
                 [&made](const std::string& text) { made.only.push_back(parse_part("--only", text)); });
   line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
               [&made](const std::string& text) { made.border = parse_border(text); });
+  line.repeated("--symmetry", "PLANE",
+                "A plane that what lay on it was to stay in, as it was for the offset: 'x=0' (or y, z), 'A,B,C,D', or "
+                "'none'; may be repeated",
+                [&made](const std::string& text) { take_plane(text, made); });
   line.repeated("--obstacle", "FILE", "Another mesh that nothing may touch; repeatable",
                 [&made](const std::string& text) { made.obstacles.push_back(text); });
   line.option("--clearance", "C", "How near to obstacles is too near [0]",
@@ -282,6 +286,7 @@ CheckResult measure_curves(const CheckRequest& request) {
                                     {"--only", !made.only.empty()},
                                     {"--distance-of", !made.distances_of.empty()},
                                     {"--obstacle", !made.obstacles.empty()},
+                                    {"--symmetry", !made.symmetry_texts.empty()},
                                     {"--tolerance", made.tolerance.has_value()},
                                     {"--distance-from", !request.distance_from.empty()}})
     if (given) throw UsageError(fmt::format("{}: expected meshes, as this is not for curves", name));
@@ -311,6 +316,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   CheckOptions options;
   options.only = job.options.only;
   options.border = job.options.border;
+  options.symmetry = job.options.symmetry;
   options.obstacles = job.options.obstacles;
   options.clearance = job.options.clearance;
   options.corners = job.options.corners;

@@ -209,7 +209,9 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
   result.facts =
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
-  to_local_frame(parts, frame_voxel_size(parts.surface().facts), {.find = false, .planes = {}}, 0);
+  to_local_frame(parts, frame_voxel_size(parts.surface().facts), options.symmetry, 0);
+  // Planes that are found tell where miters are. Whoever made the offset may have left them.
+  if (options.symmetry.planes.empty()) parts.moving_part.walls.clear();
   const Surface& surface = parts.surface();
   Progress progress(options.progress, Stage::Measure, units_of(surface, options));
   const ClosestQuery query(parts.moving_part);

@@ -101,6 +101,28 @@ InterpolatedTargets::InterpolatedTargets(const MeshParts& parts, const ClosestQu
       miter_limit_(miter_limit),
       displacement_(std::move(displacement)) {}
 
+/// The planes that hold what is added at a place.
+PlaneNormals InterpolatedTargets::planes_at(const SurfacePlace& place) const {
+  const Surface& part = parts_.moving_part;
+  if (part.planes.empty()) return {};
+  std::vector<std::uint32_t> vertices;
+  for (const auto v : place.vertex)
+    if (v != kNone) vertices.push_back(parts_.part_vertex.empty() ? v : parts_.part_vertex[v]);
+  if (std::find(vertices.begin(), vertices.end(), kNone) != vertices.end()) return {};
+  return planes_along(part, vertices, place.on_edge() && triangles_at(place).size() == 1);
+}
+
+/// From a place in a direction. In the frame of the surface.
+InterpolatedTargets::Ray InterpolatedTargets::ray_along(const SurfacePlace& place, const Vec3d& origin,
+                                                        const Vec3d& displacement, double asked) const {
+  Ray ray{origin, displacement.unit(), 1, std::abs(asked), hint_at(place)};
+  for (const auto t : triangles_at(place)) {
+    const Vec3d& normal = parts_.surface().triangle_normals[t];
+    if (normal.lengthSqr() > 0) ray.slope = std::min(ray.slope, normal.dot(ray.direction) * (asked < 0 ? -1 : 1));
+  }
+  return ray;
+}
+
 /// The triangles of the moving part that a place lies on.
 std::vector<std::uint32_t> InterpolatedTargets::triangles_at(const SurfacePlace& place) const {
   if (!place.on_edge()) return {place.triangle};
@@ -119,19 +141,18 @@ VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& 
   Vec3d displacement(0.0);
   for (std::size_t k = 0; k < 3; ++k)
     if (place.vertex[k] != kNone) displacement += displacement_[place.vertex[k]] * place.share[k];
-  const double length = displacement.length();
+  const PlaneNormals held = planes_at(place);
+  displacement = held.within(displacement);
   const std::vector<std::uint32_t> triangles = triangles_at(place);
-  if (!(length > 0) || triangles.empty()) return {};
-  Ray ray{position - surface.origin, displacement / length, 1, std::abs(asked), hint_at(place)};
+  if (!(displacement.length() > 0) || triangles.empty()) return {};
+  Ray ray = ray_along(place, position - surface.origin, displacement, asked);
   double steepest = -1;
   const Vec3d* plane = nullptr;
   bool is_one_plane = true;
   for (const auto t : triangles) {
     const Vec3d& normal = surface.triangle_normals[t];
     if (normal.lengthSqr() == 0) continue;
-    const double slope = normal.dot(ray.direction) * (asked < 0 ? -1 : 1);
-    ray.slope = std::min(ray.slope, slope);
-    steepest = std::max(steepest, slope);
+    steepest = std::max(steepest, normal.dot(ray.direction) * (asked < 0 ? -1 : 1));
     is_one_plane &= !plane || plane->dot(normal) > kParallelPlanes;
     plane = &normal;
   }
@@ -140,8 +161,9 @@ VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& 
   if (corners_ == Corners::Miter && is_flat) {
     if (miter_limit_ * ray.slope < 1) {
       // Beside a miter that is cut. Its edge stays whole: nothing round may stand between such miters.
-      if (!plane || !is_one_plane) return {};
-      ray = within_limit(ray, displacement, *plane * asked);
+      const Vec3d across = plane ? held.within(*plane) : Vec3d(0.0);
+      if (!is_one_plane || !(across.lengthSqr() > 0)) return {};
+      ray = within_limit(ray, displacement, across * (asked / across.lengthSqr()));
     }
     if (const VertexTarget target = in_plane(ray); target.is_there) return target;
   }
@@ -153,7 +175,8 @@ VertexTarget InterpolatedTargets::along(const SurfacePlace& place, const Vec3d& 
 InterpolatedTargets::Ray InterpolatedTargets::within_limit(const Ray& ray, const Vec3d& displacement,
                                                            const Vec3d& across) const {
   Vec3d along = displacement - across * (across.dot(displacement) / across.lengthSqr());
-  const double most = ray.asked * std::sqrt(miter_limit_ * miter_limit_ - 1), length = along.length();
+  const double limit = miter_limit_ * ray.asked, most = std::sqrt(std::max(0.0, limit * limit - across.lengthSqr())),
+               length = along.length();
   if (length > most) along *= most / length;
   const Vec3d end = across + along;
   return {ray.origin, end.unit(), ray.asked / end.length(), ray.asked, ray.hint};
@@ -166,18 +189,26 @@ std::uint32_t InterpolatedTargets::hint_at(const SurfacePlace& place) const {
 
 VertexTarget InterpolatedTargets::beside(const SurfacePlace& place, const Vec3d& position, double asked,
                                          const Vec3d& between, bool is_by_miter) const {
-  const Vec3d origin = position - parts_.surface().origin;
+  const Vec3d& frame = parts_.surface().origin;
+  const VertexTarget target = from_between(place, position - frame, asked, between - frame, is_by_miter);
+  return is_before_faces(place, target.displacement, asked) ? target : VertexTarget{};
+}
+
+VertexTarget InterpolatedTargets::from_between(const SurfacePlace& place, const Vec3d& origin, double asked,
+                                               const Vec3d& between, bool is_by_miter) const {
   const double wanted = std::abs(asked);
-  Vec3d x = between - parts_.surface().origin;
-  const std::optional<Vec3d> in_all_planes = is_by_miter ? in_planes(place, origin, asked, x) : std::nullopt;
+  const PlaneNormals held = planes_at(place);
+  Vec3d x = held.count > 0 ? origin + held.within(between - origin) : between;
+  const std::optional<Vec3d> in_all_planes = is_by_miter ? in_planes(place, origin, asked, x, held) : std::nullopt;
   if (in_all_planes) x = *in_all_planes;
   const Closest closest = query_(x, hint_at(place));
   if (!(closest.distance > 0)) return {};
   if (in_all_planes && closest.distance >= wanted * (1 - kStopTolerance) && is_before_faces(place, x - origin, asked))
-    return {x - origin, (x - closest.point) / closest.distance, true,
+    return {held.within(x - origin), (x - closest.point) / closest.distance, true,
             closest.distance > wanted * (1 + kReachedTolerance)};
-  const VertexTarget target = pushed_out(x, origin, wanted, closest);
-  return is_before_faces(place, target.displacement, asked) ? target : VertexTarget{};
+  if (held.count == 0) return pushed_out(x, origin, wanted, closest);
+  const Ray ray = ray_along(place, origin, held.within(x - origin), asked);
+  return ray.slope >= kLeastTargetSlope ? at_distance(ray) : VertexTarget{};
 }
 
 /// Whether a displacement leads to the side of all faces at a place that is asked for.
@@ -214,11 +245,13 @@ VertexTarget InterpolatedTargets::pushed_out(const Vec3d& from, const Vec3d& ori
   return {};
 }
 
-/// The point nearest to `between` that is as far from the planes of all faces at a place as is asked for, if there is
-/// one within the miter limit: planes that are folded onto each other meet anywhere. In the frame of the surface.
+/// The point nearest to `between` that is as far from the planes of all faces at a place as is asked for, and in those
+/// that hold it, if there is one within the miter limit: planes that are folded onto each other meet anywhere. In the
+/// frame of the surface.
 std::optional<Vec3d> InterpolatedTargets::in_planes(const SurfacePlace& place, const Vec3d& origin, double asked,
-                                                    const Vec3d& between) const {
+                                                    const Vec3d& between, const PlaneNormals& held) const {
   NearPlanes planes(kParallelPlanes);
+  for (std::size_t i = 0; i < held.count; ++i) planes.add(held.normal[i], held.normal[i].dot(origin - between));
   for (const auto t : triangles_at(place)) {
     const Vec3d& normal = parts_.surface().triangle_normals[t];
     if (normal.lengthSqr() > 0) planes.add(normal, asked - normal.dot(between - origin));

@@ -12,6 +12,7 @@
 #include "vdb_offset/query/obstacles.h"
 #include "vdb_offset/refine/refined_triangles.h"
 #include "vdb_offset/statistics.h"
+#include "vdb_offset/surface/border_planes.h"
 
 namespace vdb_offset {
 
@@ -31,6 +32,8 @@ struct VertexTarget {
 ///
 /// Where the surface's vertices are mitred, what lies in the plane of one face goes to that plane, moved by the
 /// distance, if nothing else is nearer there.
+///
+/// What is added on a border that stays in a plane stays in it, too.
 class InterpolatedTargets {
  public:
   /// Keeps references. \param miter_limit how many distances vertices go at most to the planes of their faces
@@ -49,12 +52,16 @@ class InterpolatedTargets {
 
  private:
   struct Ray;
+  PlaneNormals planes_at(const SurfacePlace& place) const;
+  Ray ray_along(const SurfacePlace& place, const Vec3d& origin, const Vec3d& displacement, double asked) const;
   std::vector<std::uint32_t> triangles_at(const SurfacePlace& place) const;
   Ray within_limit(const Ray& ray, const Vec3d& displacement, const Vec3d& across) const;
   VertexTarget in_plane(const Ray& ray) const;
   VertexTarget pushed_out(const Vec3d& from, const Vec3d& origin, double asked, Closest closest) const;
-  std::optional<Vec3d> in_planes(const SurfacePlace& place, const Vec3d& position, double asked,
-                                 const Vec3d& between) const;
+  VertexTarget from_between(const SurfacePlace& place, const Vec3d& origin, double asked, const Vec3d& between,
+                            bool is_by_miter) const;
+  std::optional<Vec3d> in_planes(const SurfacePlace& place, const Vec3d& origin, double asked, const Vec3d& between,
+                                 const PlaneNormals& held) const;
   bool is_before_faces(const SurfacePlace& place, const Vec3d& displacement, double asked) const;
   std::uint32_t hint_at(const SurfacePlace& place) const;
   VertexTarget at_distance(const Ray& ray) const;

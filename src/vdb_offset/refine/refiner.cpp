@@ -23,6 +23,10 @@ constexpr double kLeastMixed = 0.5, kShort = 0.5;
 // The length, in those units, of the shortest edge that is split: where one of the source would have to be so short,
 // what is next to each other in it is not in the offset.
 constexpr double kShortestSplit = 1e-3;
+// The height, in those units of the tolerance that is asked for, below which a piece of a wider face is narrow, and
+// asks for no splits: halves of its long edges are as narrow, and so on. Without, such pieces took a third of the time
+// on soups with sharp creases. 0.05 leaves a millionth of a bumpy sphere open at 0.1 %.
+constexpr double kNarrow = 0.02;
 // Share of an edge's bulge from which its halves count as bulging as much, and how often that may be in a row where
 // edges are short. Not measured: a quarter on a smooth surface, a half across a valley.
 constexpr double kMostKept = 0.6;
@@ -37,6 +41,12 @@ constexpr int kMostSplitRounds = 20;
 
 /// The length of a chord of a circle that bulges by the tolerance.
 double chord(double asked, double tolerance) { return std::sqrt(8 * std::abs(asked) * tolerance); }
+
+/// The least height of a triangle; 0 if it is a point.
+double least_height(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const double longest = std::max({(b - a).length(), (c - b).length(), (a - c).length()});
+  return longest > 0 ? (b - a).cross(c - a).length() / longest : 0;
+}
 
 }  // namespace
 
@@ -265,8 +275,21 @@ void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& s
   if (most->vertex.bulge > kLeastBulge * loosened_ || length_of(longest->edge) > kLongFlat) split(longest);
 }
 
+/// Whether a piece is narrow, and its face is not.
+bool Refiner::is_narrow_piece(const RefinedTriangles::Triangle& triangle) const {
+  const auto& vertices = parts_.surface().vertices;
+  const auto& corners = parts_.surface().triangles[triangle.source];
+  const auto& positions = triangles_.positions();
+  const RefinedVertex& vertex = vertices_[triangle.vertex[0]];
+  const double narrow = kNarrow * chord(vertex.asked, vertex.tolerance);
+  return least_height(positions[triangle.vertex[0]], positions[triangle.vertex[1]], positions[triangle.vertex[2]]) <
+             narrow &&
+         least_height(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]) >= narrow;
+}
+
 /// Marks the edges of a triangle that is not settled which are to be split.
 void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) const {
+  if (is_narrow_piece(triangles_.triangles()[triangle])) return;
   const Corners3& v = triangles_.triangles()[triangle].vertex;
   std::array<const Candidate*, 3> of_edge;
   for (std::size_t k = 0; k < 3; ++k) of_edge[k] = &find(edge_between(v[k], v[(k + 1) % 3]));

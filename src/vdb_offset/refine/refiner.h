@@ -97,6 +97,7 @@ class Refiner {
   State judge(const RefinedTriangles::Triangle& triangle) const;
   double length_of(const Edge& edge) const;
   bool is_torn(const Candidate& one) const;
+  bool is_narrow_piece(const RefinedTriangles::Triangle& triangle) const;
   void propose(const std::vector<std::uint32_t>& triangles);
   Candidate candidate(const Edge& edge, std::uint32_t source) const;
   const Candidate& find(const Edge& edge) const;

@@ -59,14 +59,18 @@ struct Hold {
   }
 };
 
+/// How far from a plane a vertex counts as on it.
+double plane_tolerance(const Surface& surface) {
+  double largest = 0;
+  for (int k = 0; k < 3; ++k)
+    largest = std::max({largest, std::abs(surface.facts.lower[k]), std::abs(surface.facts.upper[k])});
+  return std::min(kSevenDigits * largest, kRoughest * surface.facts.diagonal);
+}
+
 class PlaneFinder {
  public:
-  PlaneFinder(Surface& surface, double reach) : surface_(surface), reach_(reach) {
-    double largest = 0;
-    for (int k = 0; k < 3; ++k)
-      largest = std::max({largest, std::abs(surface.facts.lower[k]), std::abs(surface.facts.upper[k])});
-    tolerance_ = std::min(kSevenDigits * largest, kRoughest * surface.facts.diagonal);
-  }
+  PlaneFinder(Surface& surface, double reach)
+      : surface_(surface), reach_(reach), tolerance_(plane_tolerance(surface)) {}
 
   void name(const SymmetryPlane& in_world) {
     const SymmetryPlane plane{in_world.normal, in_world.offset - in_world.normal.dot(surface_.origin)};
@@ -76,7 +80,7 @@ class PlaneFinder {
       if (is_on(plane, v)) holds_.push_back({v, number});
     if (holds_.size() == before)
       throw InvalidInput("symmetry: expected vertices on the plane " + text_of(in_world) + ", found none");
-    named_ = surface_.planes.size();
+    surface_.named_planes = surface_.planes.size();
   }
 
   void find() {
@@ -340,7 +344,7 @@ class PlaneFinder {
     const std::uint32_t v = all.front().vertex;
     const auto normal_of = [&](const Hold& each) -> const Vec3d& { return surface_.planes[each.plane].normal; };
     std::stable_partition(all.begin(), all.end(), [&](const Hold& each) { return is_axis(normal_of(each)); });
-    std::stable_partition(all.begin(), all.end(), [&](const Hold& each) { return each.plane < named_; });
+    std::stable_partition(all.begin(), all.end(), [&](const Hold& each) { return each.plane < surface_.named_planes; });
     std::array<Vec3d, 3> conormal{Vec3d(0.0), Vec3d(0.0), Vec3d(0.0)};
     std::uint8_t count = 0;
     for (const Hold& each : all) {
@@ -348,7 +352,7 @@ class PlaneFinder {
       for (std::uint8_t i = 0; i < count; ++i) left -= conormal[i] * conormal[i].dot(left);
       if (!(left.length() > kSamePlane)) continue;
       conormal[count] = left.unit();
-      if (each.plane >= named_ && count > 0 &&
+      if (each.plane >= surface_.named_planes && count > 0 &&
           (count == 2 || !leads_off(v, std::span(conormal).first(count + 1u), kWithinReach / 2)))
         continue;
       if (++count == 3) break;
@@ -367,7 +371,7 @@ class PlaneFinder {
     for (std::uint32_t number = 0; number < of_plane.size(); ++number) {
       if (!is_wall_[number]) continue;
       const SymmetryPlane& plane = surface_.planes[number];
-      const double far = number < named_ ? std::numeric_limits<double>::infinity() : reach_;
+      const double far = number < surface_.named_planes ? std::numeric_limits<double>::infinity() : reach_;
       for (const auto v : of_plane[number]) region.add(v);
       double low = 0, high = 0;
       for (std::size_t i = 0; i < region.so_far().size(); ++i)
@@ -390,8 +394,7 @@ class PlaneFinder {
   }
 
   Surface& surface_;
-  double reach_, tolerance_ = 0;
-  std::size_t named_ = 0;              // planes that the user has named: the first of all
+  double reach_, tolerance_;
   std::vector<std::uint8_t> is_wall_;  // of each plane: 1 if it may be a wall
   std::vector<Hold> holds_;
 };
@@ -406,6 +409,22 @@ void hold_in_planes(Surface& surface, const SymmetryOptions& options, double rea
   for (const SymmetryPlane& plane : options.planes) finder.name(plane);
   if (options.find && surface.facts.boundary_left > 0) finder.find();
   finder.settle();
+}
+
+PlaneNormals planes_along(const Surface& surface, std::span<const std::uint32_t> vertices, bool is_on_border) {
+  PlaneNormals found;
+  if (!std::all_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return surface.is_held(v); })) return found;
+  const double tolerance = plane_tolerance(surface);
+  const std::size_t count = is_on_border ? surface.planes.size() : surface.named_planes;
+  for (std::size_t i = 0; i < count && found.count < 3; ++i) {
+    const SymmetryPlane& plane = surface.planes[i];
+    if (std::any_of(vertices.begin(), vertices.end(),
+                    [&](std::uint32_t v) { return std::abs(plane.height(surface.vertices[v])) > 2 * tolerance; }))
+      continue;
+    const Vec3d left = found.within(plane.normal);
+    if (left.length() > kSamePlane) found.normal[found.count++] = is_axis(plane.normal) ? plane.normal : left.unit();
+  }
+  return found;
 }
 
 bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "vdb_offset/mesh_facts.h"
@@ -30,6 +33,22 @@ struct Wall {
 /// that vertices go; for a named plane, of all that are connected with it. \pre conormals and normals are those of the
 /// surface as it stands. \throw InvalidInput if there is no vertex on a plane that is named
 void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
+
+/// Normals of planes, at right angles to each other.
+struct PlaneNormals {
+  std::array<Vec3d, 3> normal{Vec3d(0.0), Vec3d(0.0), Vec3d(0.0)};
+  std::size_t count = 0;
+
+  /// A vector without what leads out of the planes: exactly, of one at right angles to an axis.
+  Vec3d within(Vec3d v) const {
+    for (std::size_t i = 0; i < count; ++i) v -= normal[i] * normal[i].dot(v);
+    return v;
+  }
+};
+
+/// The planes that hold what is between some vertices of a surface: those that hold all of these. What is not on the
+/// border itself is held by planes that are named alone.
+PlaneNormals planes_along(const Surface& surface, std::span<const std::uint32_t> vertices, bool is_on_border);
 
 /// Whether a position of a vertex is beyond one of its walls, by more than `slack`.
 bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack);

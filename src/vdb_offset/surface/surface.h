@@ -38,6 +38,7 @@ struct Surface {
   std::vector<Vec3d> conormals;
   /// Planes that vertices stay in (see border_planes.h), in this frame.
   std::vector<SymmetryPlane> planes;
+  std::size_t named_planes = 0;  ///< How many of them, the first ones, the user has named.
   /// Of each vertex, how many planes hold it, 0 .. 3. Empty if there are no planes.
   std::vector<std::uint8_t> held;
   /// Of vertices that two planes hold, a second conormal, at right angles to the first one. Sorted by vertex.

@@ -244,7 +244,7 @@ double VertexPositions::rounding(std::uint32_t v) const { return precision_.most
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
   const double farther = constrained_.farther.empty() ? 0 : constrained_.farther[v];
-  return is_beyond_wall(v) || !right_side_[v] ||
+  return !on_right_side(v) ||
          distance_[v] > std::max(farther, std::abs(distances_[v])) * (1 + kReachedTolerance) + rounding(v);
 }
 

@@ -70,7 +70,7 @@ class VertexPositions {
   double distance(std::uint32_t vertex) const { return distance_[vertex]; }
   /// The closest triangle of the moving part; kNone of a vertex that has not moved, or is not on the moving part.
   std::uint32_t closest(std::uint32_t vertex) const { return closest_[vertex]; }
-  bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex]; }
+  bool on_right_side(std::uint32_t vertex) const { return right_side_[vertex] && !is_beyond_wall(vertex); }
   /// How far the precision's rounding may have moved a vertex, world units.
   double rounding(std::uint32_t vertex) const;
   /// Whether a vertex is too far from the moving part, or on the wrong side of it or of a wall.

@@ -164,11 +164,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
       "--symmetry", "PLANE",
       "A plane that what lies on it stays in: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
       "be repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told",
-      [&request](const std::string& text) {
-        request.symmetry_texts.push_back(text);
-        if (text == "none") request.symmetry.find = false;
-        else request.symmetry.planes.push_back(parse_plane(text));
-      });
+      [&request](const std::string& text) { take_plane(text, request); });
   line.repeated("--obstacle", "FILE",
                 "A mesh that the offset must not touch; distances are not measured from it; may be repeated",
                 [&request](const std::string& text) { request.obstacles.push_back(text); });
@@ -226,6 +222,12 @@ void declare_products(CommandLine& line, Draft& draft) {
 }
 
 }  // namespace
+
+void take_plane(const std::string& text, Request& request) {
+  request.symmetry_texts.push_back(text);
+  if (text == "none") request.symmetry.find = false;
+  else request.symmetry.planes.push_back(parse_plane(text));
+}
 
 void declare_part_distances(CommandLine& line, Request& request) {
   line.repeated("--distance-of", "PART:D",

@@ -14,6 +14,9 @@ void declare_cad(CommandLine& line, Request& request);
 
 /// Declares the options that give parts distances of their own.
 void declare_part_distances(CommandLine& line, Request& request);
+/// Takes a plane of --symmetry, or that none are to be found.
+void take_plane(const std::string& text, Request& request);
+
 /// Where parts alone have distances, the rest stays.
 void complete_part_distances(Request& request);
 
