@@ -367,6 +367,16 @@ TEST_CASE("command: check measures any two meshes", "[command]") {
   io::write_mesh(shell.file("bad.obj"), turned.view());
   CHECK(shell("check sphere.obj bad.obj").code == 3);
   io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 2, true).view());
+  // What is asked to stay in a plane and has left it is told, as is a plane on which nothing lies.
+  CHECK(shell("check sphere.obj out.obj -d 0.1 --symmetry none").code == 0);
+  CHECK(shell("box.obj moved.obj -d 0.1 --symmetry z=0.5 -q").code == 0);
+  CHECK(shell("box.obj free.obj -d 0.1 -q").code == 0);
+  CHECK(shell("check box.obj moved.obj -d 0.1 --symmetry z=0.5").code == 0);
+  CHECK(shell("check box.obj free.obj -d 0.1").code == 0);
+  CHECK_THAT(shell("check box.obj free.obj -d 0.1 --symmetry z=0.5").out,
+             Catch::Contains("9 on the wrong side\n") && Catch::EndsWith("\nnot valid\n"));
+  check_failure(shell, "check box.obj free.obj --symmetry z=7", 2, "symmetry: expected vertices on the plane");
+  check_failure(shell, "check box.obj free.obj --symmetry up", 1, "--symmetry: expected 'x=0'");
   check_failure(shell, "check sphere.obj box.obj", 2, "box.obj");
   check_failure(shell, "check sphere.obj none.obj", 2, "none.obj");
   check_failure(shell, "check sphere.obj", 1, "OFFSET");

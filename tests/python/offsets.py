@@ -186,6 +186,16 @@ class Offsets(BesideTheCommand):
         turned = vdb_offset.check(vertices, faces, 2 * vertices[:, [1, 0, 2]], "0.5%")
         self.assertFalse(turned.valid)
 
+    def test_check_in_planes(self):
+        vertices = CUBE.copy()
+        vertices[:, 0] += 0.5 * vertices[:, 2]
+        walls = [face for face in QUADS if len(set(vertices[face, 2])) > 1]  # open above and below
+        result = vdb_offset.offset(vertices, walls, 0.05, corners="miter")
+        found = vdb_offset.check(vertices, walls, result.positions, 0.05, corners="miter")
+        self.assertTrue((found.states == result.states).all())
+        free = vdb_offset.check(vertices, walls, result.positions, 0.05, corners="miter", symmetry=False)
+        self.assertFalse((free.states == result.states).all())
+
     def test_check_finds_what_the_command_finds(self):
         run = self.run_command
         vertices, faces = shape_of("gear", run)

@@ -112,7 +112,7 @@ PlaneNormals InterpolatedTargets::planes_at(const SurfacePlace& place) const {
   return planes_along(part, vertices, place.on_edge() && triangles_at(place).size() == 1);
 }
 
-/// From a place in a direction. In the frame of the surface.
+/// From a place in the direction of a displacement, which is not 0. In the frame of the surface.
 InterpolatedTargets::Ray InterpolatedTargets::ray_along(const SurfacePlace& place, const Vec3d& origin,
                                                         const Vec3d& displacement, double asked) const {
   Ray ray{origin, displacement.unit(), 1, std::abs(asked), hint_at(place)};
@@ -207,7 +207,9 @@ VertexTarget InterpolatedTargets::from_between(const SurfacePlace& place, const 
     return {held.within(x - origin), (x - closest.point) / closest.distance, true,
             closest.distance > wanted * (1 + kReachedTolerance)};
   if (held.count == 0) return pushed_out(x, origin, wanted, closest);
-  const Ray ray = ray_along(place, origin, held.within(x - origin), asked);
+  const Vec3d displacement = held.within(x - origin);
+  if (!(displacement.length() > 0)) return {};
+  const Ray ray = ray_along(place, origin, displacement, asked);
   return ray.slope >= kLeastTargetSlope ? at_distance(ray) : VertexTarget{};
 }
 
