@@ -359,6 +359,30 @@ TEST_CASE("tolerance: what is added on a face in a named plane stays in it", "[t
   CHECK(off_other > 8);
 }
 
+TEST_CASE("tolerance: check finds the miters of corners with more planes than meet in a point",
+          "[tolerance][miter][check][long][no_races]") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> moved(-0.25, 0.25);
+    Polygons box = scene::box(Vec3d(3), 3, true);
+    for (Vec3d& x : box.positions) x += Vec3d(moved(random), moved(random), moved(random));
+    const OffsetOptions options = options_for(0.1, Corners::Miter);
+    const RefinedOffset refined = offset_to_tolerance(box.view(), options, tolerance_of(0.02));
+    CheckOptions check;
+    check.distance = options.distance;
+    check.corners = Corners::Miter;
+    check.tolerance_share = 0.02;
+    const CheckResult found = check_offset(refined.refinement.polygons.view(), refined.result.positions, check);
+    CHECK(found.beyond == 0);
+    const auto mitred = [](const std::vector<VertexState>& states) {
+      return std::count(states.begin(), states.end(), VertexState::Mitred);
+    };
+    CHECK(mitred(found.states) == mitred(refined.result.states));
+    CHECK(found.certified.value().certified == Approx(certified_of(refined).certified).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("tolerance: pieces of needles do not get narrower and narrower", "[tolerance][miter]") {
   const Polygons loft = open_loft();
   const RefinedOffset refined = offset_to_tolerance(loft.view(), options_for(0.54, Corners::Miter), tolerance_of(0.01));

@@ -15,6 +15,7 @@
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/proof/certified_faces.h"
 #include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/surface/border_planes.h"
 #include "vdb_offset/validity/face_error.h"
 #include "vdb_offset/validity/fault_finder.h"
 #include "vdb_offset/validity/obstacle_facts.h"
@@ -117,18 +118,34 @@ WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, cons
   return miters;
 }
 
-/// Whether a vertex is on the planes of all of its faces that move, moved by the distance, and no farther away than
-/// miters are: those that offset_to_tolerance() adds on faces beside a miter may be anywhere on these planes.
+/// What is left of a vector across all of some normals.
+Vec3d across_all(const Vec3d& v, std::span<const Vec3d> normals) {
+  constexpr double kLeast = 1e-6;  // sine; reasoned: far above rounding
+  PlaneNormals planes;
+  for (const Vec3d& normal : normals) {
+    const Vec3d left = planes.within(normal);
+    if (planes.count < 3 && left.length() > kLeast) planes.normal[planes.count++] = left.unit();
+  }
+  return planes.within(v);
+}
+
+/// Whether a vertex is anywhere on the planes of all of its faces that move, moved by the distance, or at the nearest
+/// point of some of them, and no farther away than miters are. Those that offset_to_tolerance() adds beside a miter may
+/// be anywhere on these planes; and where more planes are around a corner than meet in a point, it is the areas of
+/// faces before they were split that have chosen between them.
 bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& displacement, double asked,
                   double miter_limit, double tolerance) {
   const Surface& surface = parts.surface();
   if (displacement.length() > miter_limit * std::abs(asked) + tolerance) return false;
-  const auto around = surface.triangles_around(vertex);
-  return std::all_of(around.begin(), around.end(), [&](std::uint32_t t) {
+  std::vector<Vec3d> on;
+  bool is_on_all = true;
+  for (const std::uint32_t t : surface.triangles_around(vertex)) {
     const Vec3d& normal = surface.triangle_normals[t];
-    if (normal.lengthSqr() == 0 || (!parts.off_part.empty() && parts.off_part[t])) return true;
-    return std::abs(normal.dot(displacement) - asked) <= tolerance;
-  });
+    if (normal.lengthSqr() == 0 || (!parts.off_part.empty() && parts.off_part[t])) continue;
+    if (std::abs(normal.dot(displacement) - asked) <= tolerance) on.push_back(normal);
+    else is_on_all = false;
+  }
+  return is_on_all || (!on.empty() && across_all(displacement, on).length() <= tolerance);
 }
 
 /// Judges the states and distances of the input's vertices.
