@@ -187,14 +187,11 @@ class Offsets(BesideTheCommand):
         self.assertFalse(turned.valid)
 
     def test_check_in_planes(self):
-        vertices = CUBE.copy()
-        vertices[:, 0] += 0.5 * vertices[:, 2]
-        walls = [face for face in QUADS if len(set(vertices[face, 2])) > 1]  # open above and below
-        result = vdb_offset.offset(vertices, walls, 0.05, corners="miter")
-        found = vdb_offset.check(vertices, walls, result.positions, 0.05, corners="miter")
-        self.assertTrue((found.states == result.states).all())
-        free = vdb_offset.check(vertices, walls, result.positions, 0.05, corners="miter", symmetry=False)
-        self.assertFalse((free.states == result.states).all())
+        free = vdb_offset.offset(CUBE, QUADS, 0.05)
+        held = vdb_offset.offset(CUBE, QUADS, 0.05, symmetry="z=1")
+        self.assertTrue(vdb_offset.check(CUBE, QUADS, free.positions, 0.05).valid)
+        self.assertFalse(vdb_offset.check(CUBE, QUADS, free.positions, 0.05, symmetry="z=1").valid)
+        self.assertTrue(vdb_offset.check(CUBE, QUADS, held.positions, 0.05, symmetry="z=1").valid)
 
     def test_check_finds_what_the_command_finds(self):
         run = self.run_command
