@@ -46,7 +46,8 @@ struct CheckResult {
   MeshFacts facts;      ///< Of the source.
   /// Of each vertex of the source: Reached (to 1e-6 of the distance and the rounding of coordinates), Mitred or Cut
   /// (at the end of its miter, as exactly; Mitred also elsewhere on the planes of all its faces, moved by the distance,
-  /// or at the nearest point of some of them, within the miter limit), Limited (nearer or farther) or Unused.
+  /// or at the nearest point of some where all have no point in common, within the miter limit), Limited (nearer or
+  /// farther) or Unused.
   std::vector<VertexState> states;
   std::vector<double> achieved;  ///< Of each vertex: the exact distance to the source, world units.
   std::size_t beyond = 0;        ///< Vertices farther than the distance.

@@ -69,35 +69,48 @@ TEST_CASE("check: what is wrong with an offset is told", "[check]") {
 }
 
 TEST_CASE("check: miters at a border are found in its plane", "[check][symmetry][miter]") {
-  Polygons tube;
-  for (const double z : {0.0, 1.0})
-    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
-      tube.positions.emplace_back(x + 0.577 * z, y, z);
-  for (std::uint32_t i = 0; i < 4; ++i) tube.add_face({i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i});
+  const Polygons loft = test::open_loft(16);
   for (const bool finds : {true, false}) {
+    CAPTURE(finds);
     OffsetOptions options;
-    options.distance = 0.05;
+    options.distance = 0.5;
     options.corners = Corners::Miter;
     options.symmetry.find = finds;
-    const OffsetResult result = offset(tube.view(), options);
+    const OffsetResult result = offset(loft.view(), options);
     CheckOptions check;
-    check.distance = 0.05;
+    check.distance = options.distance;
     check.corners = Corners::Miter;
-    for (const bool is_told : {finds, !finds}) {
-      check.symmetry.find = is_told;
-      const CheckResult found = check_offset(tube.view(), result.positions, check);
-      CHECK(found.valid());
-      if (is_told == finds) CHECK(found.states == result.states);
-    }
+    check.symmetry.find = finds;
+    CHECK(check_offset(loft.view(), result.positions, check).states == result.states);
+    check.symmetry.find = !finds;
+    CHECK(check_offset(loft.view(), result.positions, check).states != result.states);
   }
-  // What has passed a plane that is named is on the wrong side.
-  std::vector<Vec3d> sunk = offset(tube.view(), {.distance = 0.05}).positions;
+}
+
+TEST_CASE("check: what has passed a plane that is named is on the wrong side", "[check][symmetry]") {
+  const Polygons tube = test::oblique_tube();
+  OffsetOptions options;
+  options.distance = 0.05;
+  std::vector<Vec3d> sunk = offset(tube.view(), options).positions;
   for (Vec3d& x : sunk) x[2] -= 0.01;
   CheckOptions check;
-  check.distance = 0.05;
+  check.distance = options.distance;
   CHECK(check_offset(tube.view(), sunk, check).wrong_side == 0);
   check.symmetry.planes = {{Vec3d(0, 0, 1), 0}};
   CHECK(check_offset(tube.view(), sunk, check).wrong_side == 4);
+}
+
+TEST_CASE("check: a corner on some of its planes alone is not mitred if all meet in a point", "[check][miter]") {
+  const Polygons cube = scene::box(Vec3d(1), 1, false);
+  std::vector<Vec3d> moved = cube.positions;
+  for (Vec3d& x : moved)
+    for (int k = 0; k < 2; ++k) x[k] += x[k] < 0 ? -0.1 : 0.1;
+  CheckOptions check;
+  check.distance = 0.1;
+  check.corners = Corners::Miter;
+  CHECK(check_offset(cube.view(), moved, check).beyond == 8);
+  for (Vec3d& x : moved) x[2] += x[2] < 0 ? -0.1 : 0.1;
+  CHECK(check_offset(cube.view(), moved, check).beyond == 0);
 }
 
 TEST_CASE("check: flat faces over a round source are off between their vertices", "[check]") {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -71,35 +70,6 @@ void require_result_valid(const RefinedOffset& refined, const OffsetOptions& opt
   for (const auto f : refined.refinement.parent)
     if (!options.only.empty()) check.only.push_back(options.only[f]);
   CHECK(check_offset(refined.refinement.polygons.view(), refined.result.positions, check).valid());
-}
-
-/// A square tube that is sheared along x, between the planes z = 0 and z = 1.
-Polygons oblique_tube() {
-  Polygons mesh;
-  for (const double z : {0.0, 1.0})
-    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
-      mesh.positions.emplace_back(x + 0.577 * z, y, z);
-  for (std::uint32_t i = 0; i < 4; ++i) mesh.add_face({i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i});
-  return mesh;
-}
-
-/// Needles from a circle of 64 vertices in z = 0 to a rectangle in z = 30.
-Polygons open_loft() {
-  constexpr std::uint32_t kCount = 64;
-  Polygons mesh;
-  const auto angle = [](std::uint32_t i) { return 2 * std::numbers::pi * i / kCount; };
-  for (std::uint32_t i = 0; i < kCount; ++i)
-    mesh.positions.emplace_back(10 * std::cos(angle(i)), 10 * std::sin(angle(i)), 0);
-  for (std::uint32_t i = 0; i < kCount; ++i) {
-    const double x = std::cos(angle(i)), y = std::sin(angle(i)), far = 20 / std::max(std::abs(x), 2 * std::abs(y));
-    mesh.positions.emplace_back(far * x, far * y, 30);
-  }
-  for (std::uint32_t i = 0; i < kCount; ++i) {
-    const std::uint32_t next = (i + 1) % kCount;
-    mesh.add_face({i, next, kCount + next});
-    mesh.add_face({i, kCount + next, kCount + i});
-  }
-  return mesh;
 }
 
 /// Points spread evenly over the area of the triangles whose vertices all get there.
@@ -317,7 +287,7 @@ TEST_CASE("tolerance: beside a miter that is cut, faces hold to it", "[tolerance
 }
 
 TEST_CASE("tolerance: what is added on a border stays in its plane", "[tolerance][symmetry][miter][check]") {
-  for (const auto& [mesh, size] : {std::pair{oblique_tube(), 1.0}, {open_loft(), 30.0}})
+  for (const auto& [mesh, size] : {std::pair{test::oblique_tube(), 1.0}, {test::open_loft(64), 30.0}})
     for (const double distance : {0.02, -0.02, 0.08})
       for (const Corners corners : {Corners::Round, Corners::Miter}) {
         CAPTURE(size, distance, corners == Corners::Miter);
@@ -343,7 +313,7 @@ TEST_CASE("tolerance: what is added on a border stays in its plane", "[tolerance
 }
 
 TEST_CASE("tolerance: what is added on a face in a named plane stays in it", "[tolerance][symmetry]") {
-  const Polygons tube = oblique_tube();
+  const Polygons tube = test::oblique_tube();
   OffsetOptions options = options_for(0.02);
   options.symmetry = {false, {{Vec3d(0, 0, 1), 0}}};
   const RefinedOffset refined = offset_to_tolerance(tube.view(), options, tolerance_of(0.01));
@@ -384,7 +354,7 @@ TEST_CASE("tolerance: check finds the miters of corners with more planes than me
 }
 
 TEST_CASE("tolerance: pieces of needles do not get narrower and narrower", "[tolerance][miter]") {
-  const Polygons loft = open_loft();
+  const Polygons loft = test::open_loft(64);
   const RefinedOffset refined = offset_to_tolerance(loft.view(), options_for(0.54, Corners::Miter), tolerance_of(0.01));
   const PolygonView pieces = refined.refinement.polygons.view();
   double shortest = 30;

@@ -68,6 +68,31 @@ Polygons torn(const Polygons& mesh) {
   return soup;
 }
 
+Polygons oblique_tube() {
+  Polygons mesh;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+      mesh.positions.emplace_back(x + 0.577 * z, y, z);
+  for (std::uint32_t i = 0; i < 4; ++i) mesh.add_face({i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i});
+  return mesh;
+}
+
+Polygons open_loft(std::uint32_t count) {
+  Polygons mesh;
+  for (const bool is_above : {false, true})
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * i / count, x = std::cos(angle), y = std::sin(angle),
+                   far = is_above ? 20 / std::max(std::abs(x), 2 * std::abs(y)) : 10;
+      mesh.positions.emplace_back(far * x, far * y, is_above ? 30 : 0);
+    }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t next = (i + 1) % count;
+    mesh.add_face({i, next, count + next});
+    mesh.add_face({i, count + next, count + i});
+  }
+  return mesh;
+}
+
 double brute_force_distance(PolygonView mesh, const Vec3d& x) {
   double least = std::numeric_limits<double>::infinity();
   for_each_triangle(mesh, [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,12 @@ namespace vdb_offset::test {
 
 /// Every face with corners of its own, as STL and hard-edge exports store them.
 Polygons torn(const Polygons& mesh);
+
+/// A square tube that is sheared along x, between the planes z = 0 and z = 1.
+Polygons oblique_tube();
+
+/// Needles from a circle in z = 0 to a rectangle in z = 30, of so many vertices each.
+Polygons open_loft(std::uint32_t count);
 
 /// So small and far from the origin that single precision moves each vertex, and distances to grow its upper part by.
 std::pair<Polygons, std::vector<double>> far_sphere();

@@ -31,16 +31,6 @@ Polygons open_tube(std::uint32_t segments, std::uint32_t stacks, const std::func
   return mesh;
 }
 
-/// A square tube that is sheared along x, between the planes z = 0 and z = 1.
-Polygons oblique_tube() {
-  Polygons mesh;
-  for (const double z : {0.0, 1.0})
-    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
-      mesh.positions.emplace_back(x + 0.577 * z, y, z);
-  for (std::uint32_t i = 0; i < 4; ++i) mesh.add_face({i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i});
-  return mesh;
-}
-
 /// A cone's side that gets wider upwards: radius 1 at z = 0, `top` at z = 1.
 Polygons cone(double top, std::uint32_t segments = 48, std::uint32_t stacks = 12) {
   return open_tube(segments, stacks, [&](double turn, double z) {
@@ -67,7 +57,7 @@ Polygons turned_about(Polygons mesh) {
 }  // namespace
 
 TEST_CASE("symmetry: borders in a plane stay in it to the last bit, whatever faces do there", "[symmetry]") {
-  const Polygons mesh = oblique_tube();
+  const Polygons mesh = test::oblique_tube();
   for (const double distance : {0.1, -0.1, 0.37}) {
     const OffsetResult result = offset(mesh.view(), options_at(distance));
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) CHECK(result.positions[v][2] == mesh.positions[v][2]);
@@ -79,7 +69,7 @@ TEST_CASE("symmetry: borders in a plane stay in it to the last bit, whatever fac
 }
 
 TEST_CASE("symmetry: all layers of such borders, and their sides", "[symmetry][layers]") {
-  for (const Polygons& mesh : {oblique_tube(), cone(1.8)}) {
+  for (const Polygons& mesh : {test::oblique_tube(), cone(1.8)}) {
     std::vector<Distances> heights;
     for (const double h : {0.02, 0.05, 0.1}) heights.emplace_back(h);
     const LayersResult layers = grow_layers(mesh.view(), heights, {});

@@ -10,8 +10,10 @@
 #include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/mesh/miter_point.h"
 #include "vdb_offset/parts/mesh_parts.h"
 #include "vdb_offset/parts/part_miters.h"
+#include "vdb_offset/paths/planes_around.h"
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/proof/certified_faces.h"
 #include "vdb_offset/query/closest_query.h"
@@ -129,23 +131,27 @@ Vec3d across_all(const Vec3d& v, std::span<const Vec3d> normals) {
   return planes.within(v);
 }
 
-/// Whether a vertex is anywhere on the planes of all of its faces that move, moved by the distance, or at the nearest
-/// point of some of them, and no farther away than miters are. Those that offset_to_tolerance() adds beside a miter may
-/// be anywhere on these planes; and where more planes are around a corner than meet in a point, it is the areas of
-/// faces before they were split that have chosen between them.
+/// Whether a vertex is anywhere on the planes of all of its faces that move, moved by the distance, and no farther away
+/// than miters are: so may those be that offset_to_tolerance() adds beside a miter. Or, at a corner with more planes
+/// than meet in a point, at the nearest point of some: it is the areas of faces before they were split that have chosen
+/// between these.
 bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& displacement, double asked,
                   double miter_limit, double tolerance) {
-  const Surface& surface = parts.surface();
   if (displacement.length() > miter_limit * std::abs(asked) + tolerance) return false;
-  std::vector<Vec3d> on;
-  bool is_on_all = true;
-  for (const std::uint32_t t : surface.triangles_around(vertex)) {
-    const Vec3d& normal = surface.triangle_normals[t];
-    if (normal.lengthSqr() == 0 || (!parts.off_part.empty() && parts.off_part[t])) continue;
-    if (std::abs(normal.dot(displacement) - asked) <= tolerance) on.push_back(normal);
-    else is_on_all = false;
-  }
-  return is_on_all || (!on.empty() && across_all(displacement, on).length() <= tolerance);
+  const Surface& part = parts.moving_part;
+  const std::uint32_t on_part = parts.part_vertex.empty() ? vertex : parts.part_vertex[vertex];
+  if (on_part == kNone) return false;
+  const auto is_on = [&](const Vec3d& normal) { return std::abs(normal.dot(displacement) - asked) <= tolerance; };
+  const auto normal_of = [&](std::uint32_t t) -> const Vec3d& { return part.triangle_normals[t]; };
+  const auto around = part.triangles_around(on_part);
+  if (std::all_of(around.begin(), around.end(),
+                  [&](std::uint32_t t) { return normal_of(t).lengthSqr() == 0 || is_on(normal_of(t)); }))
+    return true;
+  std::vector<Vec3d> planes = planes_around(part, on_part, normal_of).normals;
+  const std::optional<MiterPoint> on_all = miter_point(planes);
+  if (on_all && on_all->excess <= kReachedTolerance) return false;
+  std::erase_if(planes, [&](const Vec3d& normal) { return !is_on(normal); });
+  return !planes.empty() && across_all(displacement, planes).length() <= tolerance;
 }
 
 /// Judges the states and distances of the input's vertices.
@@ -226,9 +232,8 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
   result.facts =
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
+  // Planes that are found tell where miters are. No walls: whoever made the offset may have left these planes.
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), options.symmetry, 0);
-  // Planes that are found tell where miters are. Whoever made the offset may have left them.
-  if (options.symmetry.planes.empty()) parts.moving_part.walls.clear();
   const Surface& surface = parts.surface();
   Progress progress(options.progress, Stage::Measure, units_of(surface, options));
   const ClosestQuery query(parts.moving_part);

@@ -372,6 +372,7 @@ class PlaneFinder {
       if (!is_wall_[number]) continue;
       const SymmetryPlane& plane = surface_.planes[number];
       const double far = number < surface_.named_planes ? std::numeric_limits<double>::infinity() : reach_;
+      if (!(far > 0)) continue;
       for (const auto v : of_plane[number]) region.add(v);
       double low = 0, high = 0;
       for (std::size_t i = 0; i < region.so_far().size(); ++i)
@@ -416,14 +417,15 @@ PlaneNormals planes_along(const Surface& surface, std::span<const std::uint32_t>
   if (!std::all_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return surface.is_held(v); })) return found;
   const double tolerance = plane_tolerance(surface);
   const std::size_t count = is_on_border ? surface.planes.size() : surface.named_planes;
-  for (std::size_t i = 0; i < count && found.count < 3; ++i) {
-    const SymmetryPlane& plane = surface.planes[i];
-    if (std::any_of(vertices.begin(), vertices.end(),
-                    [&](std::uint32_t v) { return std::abs(plane.height(surface.vertices[v])) > 2 * tolerance; }))
-      continue;
-    const Vec3d left = found.within(plane.normal);
-    if (left.length() > kSamePlane) found.normal[found.count++] = is_axis(plane.normal) ? plane.normal : left.unit();
-  }
+  // Planes at right angles to an axis come first, as normals after the first are rounded.
+  for (const bool on_axis : {true, false})
+    for (std::size_t i = 0; i < count && found.count < 3; ++i) {
+      const SymmetryPlane& plane = surface.planes[i];
+      const auto is_off = [&](std::uint32_t v) { return std::abs(plane.height(surface.vertices[v])) > 2 * tolerance; };
+      if (is_axis(plane.normal) != on_axis || std::any_of(vertices.begin(), vertices.end(), is_off)) continue;
+      const Vec3d left = found.within(plane.normal);
+      if (left.length() > kSamePlane) found.normal[found.count++] = left.unit();
+    }
   return found;
 }
 

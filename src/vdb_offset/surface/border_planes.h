@@ -30,8 +30,8 @@ struct Wall {
 /// displacements in the plane lead off all of them; and vertices of straight pieces along which the
 /// faces are in one plane: they stay in the plane at right angles to it. Where the surface lies on one side of a plane,
 /// that becomes a wall: for a border's plane, of the vertices that are connected with it within `reach`, the farthest
-/// that vertices go; for a named plane, of all that are connected with it. \pre conormals and normals are those of the
-/// surface as it stands. \throw InvalidInput if there is no vertex on a plane that is named
+/// that vertices go, if that is not 0; for a named plane, of all that are connected with it. \pre conormals and normals
+/// are those of the surface as it stands. \throw InvalidInput if there is no vertex on a plane that is named
 void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
 
 /// Normals of planes, at right angles to each other.
