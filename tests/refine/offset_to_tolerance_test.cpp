@@ -2,6 +2,7 @@
 #include "vdb_offset/tolerance.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -331,14 +332,35 @@ TEST_CASE("tolerance: what is added on a face in a named plane stays in it", "[t
 
 TEST_CASE("tolerance: check finds the miters of corners with more planes than meet in a point",
           "[tolerance][miter][check][long][no_races]") {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    CAPTURE(seed);
+  const auto moved = [](Polygons mesh, unsigned seed, double most) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> moved(-0.25, 0.25);
-    Polygons box = scene::box(Vec3d(3), 3, true);
-    for (Vec3d& x : box.positions) x += Vec3d(moved(random), moved(random), moved(random));
+    std::uniform_real_distribution<double> by(-most, most);
+    for (Vec3d& x : mesh.positions) x += Vec3d(by(random), by(random), by(random));
+    return mesh;
+  };
+  std::vector<Polygons> meshes;
+  for (unsigned seed = 1; seed <= 6; ++seed) meshes.push_back(moved(scene::box(Vec3d(3), 3, true), seed, 0.25));
+  // And one without a floor: at a corner of its border, planes do not meet in a point of the border's plane.
+  Polygons open;
+  open.positions = {{0.117336, 0.128782, 0.000000},  {-0.095351, 0.800181, 0.000000}, {-0.011898, 1.103892, 0.949264},
+                    {0.108056, -0.090921, 1.120766}, {1.091930, -0.034397, 0.000000}, {1.072821, 0.877194, 0.000000},
+                    {1.122050, 0.906208, 1.121346},  {1.074276, 0.137713, 0.934233}};
+  for (const std::array<std::uint32_t, 3>& face : std::initializer_list<std::array<std::uint32_t, 3>>{{3, 2, 1},
+                                                                                                      {3, 1, 0},
+                                                                                                      {4, 5, 6},
+                                                                                                      {4, 6, 7},
+                                                                                                      {4, 7, 3},
+                                                                                                      {4, 3, 0},
+                                                                                                      {1, 2, 6},
+                                                                                                      {1, 6, 5},
+                                                                                                      {3, 7, 6},
+                                                                                                      {3, 6, 2}})
+    open.add_face({face[0], face[1], face[2]});
+  meshes.push_back(std::move(open));
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    CAPTURE(i);
     const OffsetOptions options = options_for(0.1, Corners::Miter);
-    const RefinedOffset refined = offset_to_tolerance(box.view(), options, tolerance_of(0.02));
+    const RefinedOffset refined = offset_to_tolerance(meshes[i].view(), options, tolerance_of(0.02));
     CheckOptions check;
     check.distance = options.distance;
     check.corners = Corners::Miter;

@@ -148,6 +148,7 @@ bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& dis
                   [&](std::uint32_t t) { return normal_of(t).lengthSqr() == 0 || is_on(normal_of(t)); }))
     return true;
   std::vector<Vec3d> planes = planes_around(part, on_part, normal_of).normals;
+  for (Vec3d& normal : planes) normal = part.along_border(on_part, normal);
   const std::optional<MiterPoint> on_all = miter_point(planes);
   if (on_all && on_all->excess <= kReachedTolerance) return false;
   std::erase_if(planes, [&](const Vec3d& normal) { return !is_on(normal); });
