@@ -52,10 +52,11 @@ bool ReturnToFaces::operator()(Which which) {
   return any;
 }
 
-/// Whether a vertex is to be looked at: with round corners one that is short, else any that may be off its planes.
+/// Whether a vertex is to be looked at: where it is not where its path has led, and with round corners where it is
+/// short, else where it may be off its planes.
 bool ReturnToFaces::may_be_better(std::uint32_t v) const {
-  if (!state_.keeps_faces) return state_.is_short(v);
-  return on_crease_[v] || state_.share[v] != 1 || state_.whole[v] != state_.paths.displacement[v];
+  const bool is_elsewhere = state_.share[v] != 1 || state_.whole[v] != state_.paths.displacement[v];
+  return is_elsewhere || (state_.keeps_faces ? on_crease_[v] != 0 : state_.is_short(v));
 }
 
 /// The vertices with live area that have places better than where they are.

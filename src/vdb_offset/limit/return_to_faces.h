@@ -8,8 +8,8 @@
 
 namespace vdb_offset {
 
-/// Puts vertices to where their faces are at the distance, once there is room: with round corners those that are short,
-/// else all whose planes are off.
+/// Puts vertices to where their faces are at the distance, once there is room: with round corners those that are short
+/// or have slid, else all whose planes are off.
 ///
 /// Such places of a vertex are the end of its miter, that of its path, the images of live points around it (see
 /// LiveArea::positions_with_room()), and on a crease what lies at the distance on one, two or three of the largest
