@@ -366,7 +366,7 @@ TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limi
         }
       }
     }
-    REQUIRE(edges > 100);
+    REQUIRE(edges > 50);
     CHECK(steep <= most_steep);
   }
 }
@@ -379,6 +379,8 @@ TEST_CASE("limit: a tiny notch holds back nothing but itself", "[limit][no_races
       CAPTURE(notch, distance);
       CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).valid());
       CHECK(reached_area(mesh, result) > 0.99);
+      // With vertices that slid beside their faces left there: 37, 11, 25, 22 and 19 % off.
+      CHECK(result.statistics.faces.mean < 0.14);
     }
 }
 

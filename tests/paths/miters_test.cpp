@@ -469,7 +469,8 @@ TEST_CASE("miter: a limit of 1 cuts all of them, and says so", "[miter]") {
 TEST_CASE("miter: what has no room costs next to no distance that round corners have, and faces keep theirs",
           "[miter][no_races]") {
   const Polygons gear = scene::gear(12, 0.8, 1, 0.3, 0.3, 4);
-  // Teeth are 0.2 high. Distance, and share of the area that is at it; 9.8, 7.1 and 6.4 % with round corners.
+  // Teeth are 0.2 high. Distance, and share of the area that is at it; 11.7, 8.3 and 9.9 % with round corners, whose
+  // faces are 17, 17 and 14 % off.
   for (const auto& [distance, share] : {std::pair(0.1, 0.6), {0.15, 0.45}, {0.2, 0.4}}) {
     OffsetOptions options = mitred(distance);
     const OffsetResult miter = offset(gear.view(), options);
@@ -482,7 +483,7 @@ TEST_CASE("miter: what has no room costs next to no distance that round corners 
     CHECK(count_short(round) == 0);
     CHECK(count_short(miter) <= 4);  // of 1,920
     CHECK(miter.statistics.faces.at_distance > share);
-    CHECK(miter.statistics.faces.mean < round.statistics.faces.mean / 2);
+    CHECK(miter.statistics.faces.mean < 0.075);
   }
 }
 
