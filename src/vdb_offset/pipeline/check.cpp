@@ -131,28 +131,49 @@ Vec3d across_all(const Vec3d& v, std::span<const Vec3d> normals) {
   return planes.within(v);
 }
 
+/// Whether a displacement leads to the nearest point of some of the planes of a vertex of the moving part, if these do
+/// not all meet in one, or the vertex's miter is not there.
+/// \param planes normals, which may be shorter than 1
+/// \param is_on tells whether a displacement is on one of them
+/// \param miter of the vertex, or null
+template <class IsOn>
+bool is_nearest_of_some(std::vector<Vec3d> planes, const Vec3d& displacement, double tolerance, const Miter* miter,
+                        IsOn&& is_on) {
+  const std::optional<MiterPoint> on_all = miter_point(planes);
+  const bool is_miter_on_all = !miter || std::all_of(planes.begin(), planes.end(), [&](const Vec3d& normal) {
+    return is_on(normal, miter->displacement);
+  });
+  if (on_all && on_all->excess <= kReachedTolerance && is_miter_on_all) return false;
+  std::erase_if(planes, [&](const Vec3d& normal) { return !is_on(normal, displacement); });
+  return !planes.empty() && across_all(displacement, planes).length() <= tolerance;
+}
+
 /// Whether a vertex is anywhere on the planes of all of its faces that move, moved by the distance, and no farther away
 /// than miters are: so may those be that offset_to_tolerance() adds beside a miter. Or, at a corner with more planes
-/// than meet in a point, at the nearest point of some: it is the areas of faces before they were split that have chosen
-/// between these.
+/// than meet in a point, or one whose miter is not where they do, at the nearest point of some: it is the areas of
+/// faces before they were split that have chosen between these. A border whose edges were split for a tolerance may
+/// seem to be held in planes, and has not been.
+/// \param miter of the vertex, or null
 bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& displacement, double asked,
-                  double miter_limit, double tolerance) {
-  if (displacement.length() > miter_limit * std::abs(asked) + tolerance) return false;
+                  const CheckOptions& options, double tolerance, const Miter* miter) {
+  if (displacement.length() > options.miter_limit * std::abs(asked) + tolerance) return false;
   const Surface& part = parts.moving_part;
   const std::uint32_t on_part = parts.part_vertex.empty() ? vertex : parts.part_vertex[vertex];
   if (on_part == kNone) return false;
-  const auto is_on = [&](const Vec3d& normal) { return std::abs(normal.dot(displacement) - asked) <= tolerance; };
+  const auto is_on = [&](const Vec3d& normal, const Vec3d& x) { return std::abs(normal.dot(x) - asked) <= tolerance; };
   const auto normal_of = [&](std::uint32_t t) -> const Vec3d& { return part.triangle_normals[t]; };
   const auto around = part.triangles_around(on_part);
   if (std::all_of(around.begin(), around.end(),
-                  [&](std::uint32_t t) { return normal_of(t).lengthSqr() == 0 || is_on(normal_of(t)); }))
+                  [&](std::uint32_t t) { return normal_of(t).lengthSqr() == 0 || is_on(normal_of(t), displacement); }))
     return true;
-  std::vector<Vec3d> planes = planes_around(part, on_part, normal_of).normals;
-  for (Vec3d& normal : planes) normal = part.along_border(on_part, normal);
-  const std::optional<MiterPoint> on_all = miter_point(planes);
-  if (on_all && on_all->excess <= kReachedTolerance) return false;
-  std::erase_if(planes, [&](const Vec3d& normal) { return !is_on(normal); });
-  return !planes.empty() && across_all(displacement, planes).length() <= tolerance;
+  const std::vector<Vec3d> planes = planes_around(part, on_part, normal_of).normals;
+  std::vector<Vec3d> along = planes;
+  for (Vec3d& normal : along) normal = part.along_border(on_part, normal);
+  if (is_nearest_of_some(along, displacement, tolerance, miter, is_on)) return true;
+  if (!part.is_held(on_part) || options.tolerance_share + options.tolerance_length == 0) return false;
+  const Vec3d over = part.own_conormal(on_part);
+  for (std::size_t i = 0; i < along.size(); ++i) along[i] = planes[i] - over * over.dot(planes[i]);
+  return is_nearest_of_some(along, displacement, tolerance, nullptr, is_on);
 }
 
 /// Judges the states and distances of the input's vertices.
@@ -173,7 +194,7 @@ void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const
     const Miter* const miter = find_miter(miters.of_vertex, w);
     const bool is_at_miter = miter && (displacement - miter->displacement).length() <= tolerance,
                is_beside_miter = !is_at_miter && error > tolerance && options.corners == Corners::Miter &&
-                                 is_on_planes(parts, w, displacement, distances[w], options.miter_limit, tolerance);
+                                 is_on_planes(parts, w, displacement, distances[w], options, tolerance, miter);
     result.states[v] = is_at_miter                    ? miter->state
                        : is_beside_miter              ? VertexState::Mitred
                        : std::abs(error) <= tolerance ? VertexState::Reached

@@ -302,30 +302,17 @@ void to_local_frame(Surface& surface, double voxel_size) {
 
 namespace {
 
-/// Finds the conormals of border vertices. A vertex with more than two border edges, where several borders meet, has
-/// none.
+/// Finds the conormals of border vertices.
 void find_conormals(Surface& surface) {
   surface.conormals.clear();
   if (surface.facts.boundary_left == 0) return;
   surface.conormals.assign(surface.vertices.size(), Vec3d(0.0));
-  std::vector<std::uint8_t> edges(surface.vertices.size(), 0);
-  for (std::uint32_t edge = 0; edge < surface.next_around_edge.size(); ++edge) {
-    if (surface.next_around_edge[edge] != edge) continue;
-    const std::uint32_t from = surface.from(edge), to = surface.to(edge);
-    const Vec3d over = (surface.vertices[to] - surface.vertices[from]).cross(surface.triangle_normals[edge / 3]);
-    for (const auto v : {from, to}) {
-      if (over.lengthSqr() > 0) surface.conormals[v] += over.unit();
-      edges[v] = static_cast<std::uint8_t>(std::min(edges[v] + 1, 3));
-    }
-  }
-  // Length of the sum of two unit vectors below which a border turns back on itself, within six degrees, and leads
-  // nowhere. Not measured.
-  constexpr double kTurnsBack = 0.1;
-  for (std::size_t v = 0; v < edges.size(); ++v) {
-    Vec3d& c = surface.conormals[v];
-    const double length = c.length();
-    c = edges[v] == 2 && length > kTurnsBack ? c / length : Vec3d(0.0);
-  }
+  std::vector<std::uint8_t> on_border(surface.vertices.size(), 0);
+  for (std::uint32_t edge = 0; edge < surface.next_around_edge.size(); ++edge)
+    if (surface.next_around_edge[edge] == edge) on_border[surface.from(edge)] = on_border[surface.to(edge)] = 1;
+  for_each_index(on_border.size(), [&](std::size_t v) {
+    if (on_border[v]) surface.conormals[v] = surface.own_conormal(static_cast<std::uint32_t>(v));
+  });
 }
 
 }  // namespace
@@ -335,6 +322,23 @@ void to_frame(Surface& surface, const Vec3d& origin) {
   for_each_index(surface.vertices.size(), [&](std::size_t v) { surface.vertices[v] -= surface.origin; });
   find_normals(surface);
   find_conormals(surface);
+}
+
+Vec3d Surface::own_conormal(std::uint32_t vertex) const {
+  // Length of the sum of two unit vectors below which a border turns back on itself, within six degrees, and leads
+  // nowhere. Not measured.
+  constexpr double kTurnsBack = 0.1;
+  Vec3d sum(0.0);
+  int edges = 0;
+  for (const auto t : triangles_around(vertex))
+    for (std::uint32_t edge = 3 * t; edge < 3 * t + 3; ++edge) {
+      if (next_around_edge[edge] != edge || (from(edge) != vertex && to(edge) != vertex)) continue;
+      const Vec3d over = (vertices[to(edge)] - vertices[from(edge)]).cross(triangle_normals[t]);
+      if (over.lengthSqr() > 0) sum += over.unit();
+      ++edges;
+    }
+  const double length = sum.length();
+  return edges == 2 && length > kTurnsBack ? sum / length : Vec3d(0.0);
 }
 
 Vec3d Surface::along_line(std::uint32_t vertex, const Vec3d& v) const {

@@ -73,6 +73,9 @@ struct Surface {
     const Vec3d along = v - conormals[vertex] * conormals[vertex].dot(v);
     return held.empty() || held[vertex] < 2 ? along : along_line(vertex, along);
   }
+  /// The conormal of a vertex on a border by its faces alone, whether or not a plane holds it; zero where several
+  /// borders meet, or one turns back on itself.
+  Vec3d own_conormal(std::uint32_t vertex) const;
   /// Whether a vertex must not leave the plane that along_border() keeps to.
   bool is_held(std::uint32_t vertex) const { return !held.empty() && held[vertex] > 0; }
   /// Projects a vector that lies in one of the planes that hold a vertex into all of them.
