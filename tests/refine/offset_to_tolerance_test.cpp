@@ -330,16 +330,46 @@ TEST_CASE("tolerance: what is added on a face in a named plane stays in it", "[t
   CHECK(off_other > 8);
 }
 
+namespace {
+
+/// A mesh with its vertices moved by random amounts.
+Polygons crumpled(Polygons mesh, unsigned seed, double most) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> by(-most, most);
+  for (Vec3d& x : mesh.positions) x += Vec3d(by(random), by(random), by(random));
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("tolerance: check does not take the split edge of a part for one that lies in a plane",
+          "[tolerance][miter][parts][check][long]") {
+  for (unsigned seed = 1; seed <= 6; ++seed)
+    for (const double distance : {0.15, -0.15}) {
+      CAPTURE(seed, distance);
+      const Polygons mesh = crumpled(scene::box(Vec3d(2), 2, true), seed, 0.3);
+      OffsetOptions options = options_for(distance, Corners::Miter);
+      options.border = Border::Free;
+      options.only.assign(mesh.face_count(), 0);
+      std::fill_n(options.only.begin(), mesh.face_count() / 3, 1);
+      const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.02));
+      CheckOptions check;
+      check.distance = options.distance;
+      check.corners = Corners::Miter;
+      check.border = options.border;
+      check.tolerance_share = 0.02;
+      for (const auto face : refined.refinement.parent) check.only.push_back(options.only[face]);
+      const CheckResult found = check_offset(refined.refinement.polygons.view(), refined.result.positions, check);
+      CHECK(found.valid());
+      CHECK(found.beyond == 0);
+      CHECK(found.certified->certified == Approx(certified_of(refined).certified).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("tolerance: check finds the miters of corners with more planes than meet in a point",
           "[tolerance][miter][check][long][no_races]") {
-  const auto moved = [](Polygons mesh, unsigned seed, double most) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> by(-most, most);
-    for (Vec3d& x : mesh.positions) x += Vec3d(by(random), by(random), by(random));
-    return mesh;
-  };
   std::vector<Polygons> meshes;
-  for (unsigned seed = 1; seed <= 6; ++seed) meshes.push_back(moved(scene::box(Vec3d(3), 3, true), seed, 0.25));
+  for (unsigned seed = 1; seed <= 6; ++seed) meshes.push_back(crumpled(scene::box(Vec3d(3), 3, true), seed, 0.25));
   // And one without a floor: at a corner of its border, planes do not meet in a point of the border's plane.
   Polygons open;
   open.positions = {{0.117336, 0.128782, 0.000000},  {-0.095351, 0.800181, 0.000000}, {-0.011898, 1.103892, 0.949264},
