@@ -130,7 +130,7 @@ bool ReturnToFaces::is_at_distance(std::uint32_t v, const Vec3d& end) const {
 /// there.
 bool ReturnToFaces::try_some(std::vector<Candidate*>& some) {
   OldOnes moved;
-  Indices put;
+  Indices put, mitred;
   for (Candidate* candidate : some) {
     const Place& place = candidate->places[candidate->tried++];
     const std::uint32_t v = candidate->vertex;
@@ -139,21 +139,17 @@ bool ReturnToFaces::try_some(std::vector<Candidate*>& some) {
     state_.whole[v] = place.end;
     state_.share[v] = 1;
     put.push_back(v);
+    if (state_.mitred && state_.mitred->is_miter(v, place.end)) mitred.push_back(v);
   }
   if (put.empty()) return false;
-  {
-    // All crossings, as not all corners of a fault go back: one that is not known would be left.
-    FaultFinder::Trial trial = state_.faults.try_out(put, [&](std::uint32_t v) { return state_.position_of(v); });
-    for (Indices back = restore_faulty(moved); !back.empty(); back = restore_faulty(moved)) {
-      trial.take_back(back);
-      ++state_.statistics.rounds;
-    }
+  // Before they are judged: any other vertex that is farther than its distance is misplaced.
+  if (state_.mitred) state_.mitred->miter_again(mitred, state_.paths);
+  // All crossings, as not all corners of a fault go back: one that is not known would be left.
+  FaultFinder::Trial trial = state_.faults.try_out(put, [&](std::uint32_t v) { return state_.position_of(v); });
+  for (Indices back = restore_faulty(moved); !back.empty(); back = restore_faulty(moved)) {
+    trial.take_back(back);
+    ++state_.statistics.rounds;
   }
-  if (!state_.mitred) return !moved.empty();
-  Indices mitred;
-  for (const Old& old : moved)
-    if (state_.mitred->is_miter(old.vertex, state_.whole[old.vertex])) mitred.push_back(old.vertex);
-  state_.mitred->miter_again(mitred, state_.paths);
   return !moved.empty();
 }
 
@@ -189,6 +185,7 @@ Indices ReturnToFaces::restore_faulty(OldOnes& moved) {
     state_.whole[v] = old.whole;
     state_.share[v] = old.share;
   }
+  if (state_.mitred) state_.mitred->take_back(back, state_.paths);
   std::erase_if(moved, [&](const Old& old) { return std::binary_search(back.begin(), back.end(), old.vertex); });
   return back;
 }
