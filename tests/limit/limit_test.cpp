@@ -379,8 +379,8 @@ TEST_CASE("limit: a tiny notch holds back nothing but itself", "[limit][no_races
       CAPTURE(notch, distance);
       CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).valid());
       CHECK(reached_area(mesh, result) > 0.99);
-      // With vertices that slid beside their faces left there: 37, 11, 25, 22 and 19 % off.
-      CHECK(result.statistics.faces.mean < 0.14);
+      // With vertices left where they had slid: up to 37 %. Round corners alone: 19 %.
+      CHECK(result.statistics.faces.mean < 0.2);
     }
 }
 

@@ -16,8 +16,8 @@ namespace vdb_offset {
 namespace {
 
 // In the first of so many rounds all vertices are tried, then one in kReturnEvery, others in each, as vertices that
-// move together get into each other's way. See docs/dev/tuning.md.
-constexpr std::uint64_t kReturnRounds = 40, kReturnEvery = 3;
+// move together get into each other's way. In so many passes, as each may make room. See docs/dev/tuning.md.
+constexpr std::uint64_t kReturnRounds = 40, kReturnEvery = 3, kReturnPasses = 2;
 // Of a fault's corners that have moved those with the least area around them go back first, and those with no more than
 // so many times that. Not measured.
 constexpr double kAlikeAround = 4;
@@ -25,6 +25,8 @@ constexpr double kAlikeAround = 4;
 constexpr double kLessOff = 1e-3;
 // Share of the moving part's area: what live area around a corner is large.
 constexpr double kLargeCorner = 1e-3;
+// How far off the planes are at a place that is better than any other.
+constexpr double kBest = -1;
 // The largest planes around a vertex that its places lie on, and how far these may be, in distances. Not measured.
 constexpr std::size_t kPlanesOfPlaces = 4;
 constexpr double kFarthestPlace = 4;
@@ -40,12 +42,19 @@ bool ReturnToFaces::may_move(std::uint32_t v) const {
 
 bool ReturnToFaces::operator()(Which which) {
   if (on_crease_.empty()) on_crease_ = vertices_on_creases(state_.surface);
-  std::vector<Candidate> all = candidates(which);
+  bool any = false;
+  for (std::uint64_t pass = 0; pass < kReturnPasses && try_all(candidates(which), pass); ++pass) any = true;
+  return any;
+}
+
+/// Tries the places of all candidates, each once. Returns whether any vertex has moved.
+bool ReturnToFaces::try_all(std::vector<Candidate> all, std::uint64_t pass) {
   bool any = false;
   for (std::uint64_t round = 0; round < kReturnRounds && !all.empty(); ++round) {
+    const std::uint64_t salt = (pass * kReturnRounds + round) << 32;
     std::vector<Candidate*> some;
     for (Candidate& candidate : all)
-      if (round == 0 || mix(round << 32 | candidate.vertex) % kReturnEvery == 0) some.push_back(&candidate);
+      if (salt == 0 || mix(salt | candidate.vertex) % kReturnEvery == 0) some.push_back(&candidate);
     any |= try_some(some);
     std::erase_if(all, [&](const Candidate& candidate) { return candidate.tried == candidate.places.size(); });
   }
@@ -85,12 +94,17 @@ std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v, Which w
     if (const double off = state_.off_planes(v, end); off < worst) places.push_back({end, off});
   };
   if (const Vec3d* const miter = state_.mitred ? state_.mitred->miter_of(v) : nullptr) offer(*miter);
-  if (!falls_short(state_.paths.state[v])) offer(state_.paths.displacement[v]);
+  if (!falls_short(state_.paths.state[v])) {
+    if (state_.keeps_faces) offer(state_.paths.displacement[v]);
+    else places.push_back({state_.paths.displacement[v], kBest});  // round corners are where paths lead
+  }
   if (!state_.constrained.obstacles) {
     if (on_crease_[v]) offer_planes(v, worst, places);
-    if (which == Which::All) offer_images(v, worst, places);
+    if (which == Which::All && (state_.keeps_faces || state_.is_short(v))) offer_images(v, worst, places);
   }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.off < b.off; });
+  const auto same = [](const Place& a, const Place& b) { return a.end == b.end; };
+  places.erase(std::unique(places.begin(), places.end(), same), places.end());
   return places;
 }
 

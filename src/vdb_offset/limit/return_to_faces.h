@@ -52,6 +52,7 @@ class ReturnToFaces {
   void offer_planes(std::uint32_t v, double worst, std::vector<Place>& places) const;
   void offer_images(std::uint32_t v, double worst, std::vector<Place>& places) const;
   bool is_at_distance(std::uint32_t v, const Vec3d& end) const;
+  bool try_all(std::vector<Candidate> all, std::uint64_t pass);
   bool try_some(std::vector<Candidate*>& some);
   Indices restore_faulty(OldOnes& moved);
 
