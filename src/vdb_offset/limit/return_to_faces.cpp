@@ -25,7 +25,8 @@ constexpr double kAlikeAround = 4;
 constexpr double kLessOff = 1e-3;
 // Share of the moving part's area: what live area around a corner is large.
 constexpr double kLargeCorner = 1e-3;
-// How far off the planes are at a place that is better than any other.
+// How far off the planes are taken to be at a place that is tried first. Where vertices stay there once they are,
+// plate_with_notch at 0.5 % has its faces 9.7 % off, not 4.1, and gears at -0.5 % 98.0 % of its vertices, not 98.5.
 constexpr double kBest = -1;
 // The largest planes around a vertex that its places lie on, and how far these may be, in distances. Not measured.
 constexpr std::size_t kPlanesOfPlaces = 4;
@@ -96,7 +97,7 @@ std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v, Which w
   if (const Vec3d* const miter = state_.mitred ? state_.mitred->miter_of(v) : nullptr) offer(*miter);
   if (!falls_short(state_.paths.state[v])) {
     if (state_.keeps_faces) offer(state_.paths.displacement[v]);
-    else places.push_back({state_.paths.displacement[v], kBest});  // round corners are where paths lead
+    else places.push_back({state_.paths.displacement[v], kBest});  // comes first, and others may follow from there
   }
   if (!state_.constrained.obstacles) {
     if (on_crease_[v]) offer_planes(v, worst, places);
