@@ -41,6 +41,7 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
       any_settled = true;
     }
   if ((any_settled || !state.keeps_faces) && return_to_faces(Which::All)) let_out(progress);
+  if (state.keeps_faces && return_to_faces.settle()) let_out(progress);
   for (int i = 0; i < kEasings; ++i) let_out.ease();
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }

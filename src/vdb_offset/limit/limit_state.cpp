@@ -91,6 +91,11 @@ bool LimitState::may_slide(std::uint32_t v) const {
   return at_end && distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
 }
 
+bool LimitState::may_leave_path(std::uint32_t v) const {
+  if (constrained.obstacles && paths.state[v] == VertexState::Collision) return false;
+  return distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
+}
+
 /// Whether any face around a vertex has an area. Lines have none, nor do the vertices that only lines hold.
 bool LimitState::has_sides(std::uint32_t v) const {
   const auto around = surface.triangles_around(v);

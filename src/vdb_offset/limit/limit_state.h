@@ -55,6 +55,9 @@ struct LimitState {
   /// or is bound to its path, may not, nor one that is mitred where faces are to be kept.
   bool may_slide(std::uint32_t v) const;
 
+  /// Whether a vertex may be put elsewhere than on its path; not one that an obstacle may have stopped.
+  bool may_leave_path(std::uint32_t v) const;
+
   /// Whether a vertex of the moving part has to stay in planes.
   bool is_held(std::uint32_t v) const {
     return constrained.moving_part.surface().is_held(constrained.part_vertex_of(v));

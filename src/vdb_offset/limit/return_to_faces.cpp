@@ -31,14 +31,15 @@ constexpr double kBest = -1;
 // The largest planes around a vertex that its places lie on, and how far these may be, in distances. Not measured.
 constexpr std::size_t kPlanesOfPlaces = 4;
 constexpr double kFarthestPlace = 4;
+// What settling a vertex has to win at least: area by how far it is off, as a share of the moving part's area. How many
+// of its places are tried, and how many trials all vertices together have. See docs/dev/tuning.md.
+constexpr double kLeastToWin = 5e-5;
+constexpr std::size_t kPlacesSettled = 3, kMostFaceTrials = 1000;
 
 }  // namespace
 
 bool ReturnToFaces::may_move(std::uint32_t v) const {
-  const ConstrainedSurface& constrained = state_.constrained;
-  if (constrained.obstacles && state_.paths.state[v] == VertexState::Collision) return false;
-  if (state_.mitred && state_.mitred->is_mitred(v)) return false;
-  return state_.distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);
+  return state_.may_leave_path(v) && !(state_.mitred && state_.mitred->is_mitred(v));
 }
 
 bool ReturnToFaces::operator()(Which which) {
@@ -60,6 +61,40 @@ bool ReturnToFaces::try_all(std::vector<Candidate> all, std::uint64_t pass) {
     std::erase_if(all, [&](const Candidate& candidate) { return candidate.tried == candidate.places.size(); });
   }
   return any;
+}
+
+bool ReturnToFaces::settle() {
+  if (state_.faults.any()) return false;
+  std::vector<std::pair<double, Candidate>> all;
+  for (Candidate& candidate : candidates(Which::All)) {
+    const std::uint32_t v = candidate.vertex;
+    const double to_win = state_.live_area[v] * (state_.off_planes(v) - candidate.places.front().off);
+    if (to_win > kLeastToWin * state_.live_area.whole_area()) all.emplace_back(to_win, std::move(candidate));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  SettlingTrial trial(state_, SettlingTrial::Aim::Faces);
+  bool any = false;
+  for (const auto& [to_win, candidate] : all) {
+    if (trial.count() >= kMostFaceTrials) break;
+    any |= settle(candidate, trial);
+  }
+  return any;
+}
+
+/// Tries the best places of a vertex, alone and with the small feature that it is part of; then the first of them while
+/// the vertices in the way slide aside.
+bool ReturnToFaces::settle(const Candidate& candidate, SettlingTrial& trial) const {
+  const std::uint32_t v = candidate.vertex;
+  const double worst = state_.off_planes(v) - kLessOff;
+  const auto move_to = [&](const Place& place) {
+    return SettlingTrial::Move{v, state_.surface.vertices[v] + place.end};
+  };
+  for (std::size_t i = 0; i < std::min(candidate.places.size(), kPlacesSettled); ++i) {
+    const SettlingTrial::Move move = move_to(candidate.places[i]);
+    if (candidate.places[i].off < worst && (trial.at({move}) || trial.with_feature(move))) return true;
+  }
+  const Place& best = candidate.places.front();
+  return best.off < worst && trial.with_others_aside(move_to(best));
 }
 
 /// Whether a vertex is to be looked at: where it is not where its path has led, and with round corners where it is

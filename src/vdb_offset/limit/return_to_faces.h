@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/limit/limit_state.h"
+#include "vdb_offset/limit/settling_trial.h"
 
 namespace vdb_offset {
 
@@ -24,6 +25,10 @@ class ReturnToFaces {
   enum class Which { LargeCorners, All };
   /// Tries a part of the vertices at a time. Returns whether any has moved.
   bool operator()(Which which);
+  /// Puts vertices at such places at the cost of what is in their way, one at a time, those first whose faces have most
+  /// to win (see SettlingTrial). False if none was, or if there are faults. Follows on the other call, as what has room
+  /// need cost nothing.
+  bool settle();
 
  private:
   /// Where a vertex might be, as a displacement, and how far the planes around it are off there, in distances.
@@ -55,6 +60,7 @@ class ReturnToFaces {
   bool try_all(std::vector<Candidate> all, std::uint64_t pass);
   bool try_some(std::vector<Candidate*>& some);
   Indices restore_faulty(OldOnes& moved);
+  bool settle(const Candidate& candidate, SettlingTrial& trial) const;
 
   LimitState& state_;
   std::vector<std::uint8_t> on_crease_;  // of each vertex; empty before the first call

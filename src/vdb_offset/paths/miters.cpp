@@ -21,8 +21,8 @@ namespace {
 // Miters that are proven together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kMitersTogether = 64;
 // How far from a vertex, in distances, what is nearer to the end of its miter still belongs to its corner: edges broken
-// by less are details of it. Not measured.
-constexpr double kDetail = 0.1;
+// by less are details of it. See docs/dev/tuning.md.
+constexpr double kDetail = 1;
 // A miter with which a plane would go farther than the distance by more than this share of it is none. Not measured.
 constexpr double kMostExcess = 0.5;
 // Planes that are closer to each other, as the length between their normals, and have different distances of their own
