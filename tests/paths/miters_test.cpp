@@ -470,8 +470,8 @@ TEST_CASE("miter: what has no room costs next to no distance that round corners 
           "[miter][no_races]") {
   const Polygons gear = scene::gear(12, 0.8, 1, 0.3, 0.3, 4);
   // Teeth are 0.2 high. Distance, share of the area that is at it, and how far faces are off; 9, 6 and 6 %, and 18, 17
-  // and 15 %, with round corners. If miters that were taken back could not return: 67, 51 and 46 %, and 5, 7 and 7 %; if
-  // nothing were put elsewhere at the cost of what is in its way: 74, 55 and 48 %, and 3.2, 5.4 and 6.3 %.
+  // and 15 %, with round corners. If miters that were taken back could not return: 67, 51 and 46 %, and 5, 7 and 7 %;
+  // if nothing were put elsewhere at the cost of what is in its way: 74, 55 and 48 %, and 3.2, 5.4 and 6.3 %.
   for (const auto& [distance, share, off] : {std::tuple(0.1, 0.75, 0.03), {0.15, 0.59, 0.05}, {0.2, 0.51, 0.056}}) {
     CAPTURE(distance);
     OffsetOptions options = mitred(distance);

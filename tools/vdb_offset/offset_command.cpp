@@ -171,14 +171,27 @@ OffsetResult of_copies(const OffsetResult& result, std::span<const std::uint32_t
   return copies;
 }
 
+/// What the refined source keeps of coordinates: no more than the source, nor than the file that it is written to.
+Precision precision_of_refined(const Job& job) {
+  if (!job.source.file) return {};
+  const io::MeshFile& file = *job.source.file;
+  // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
+  Precision own = file.document ? Precision{} : file.precision;
+  const std::string& path = job.request.tolerance->refined_source;
+  if (own.kind != Precision::Kind::Double || path.empty()) return own;
+  return io::precision_of_new(path, file, write_options(job.request, path));
+}
+
 /// Carries out a job with --tolerance. From where the faces are split, the refined source stands for the one read.
 ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar) {
   Tolerance tolerance = job.request.tolerance->tolerance;
-  // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
-  if (job.source.file && !job.source.file->document) tolerance.precision = job.source.file->precision;
+  tolerance.precision = precision_of_refined(job);
   OffsetOptions options = job.options;
   options.distance = job.distances.front();
   RefinedOffset made = offset_to_tolerance(job.source.view(), options, tolerance);
+  // Writing rounds the source's own vertices, as they were for the offset.
+  std::copy(job.source.view().positions.begin(), job.source.view().positions.end(),
+            made.refinement.polygons.positions.begin());
   bar.show(Stage::Write, 0);
   const RefinedSource refined = refined_source(job.source, std::move(made.refinement));
   std::vector<OffsetResult> results;

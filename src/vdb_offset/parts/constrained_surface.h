@@ -57,6 +57,10 @@ struct ConstrainedSurface {
   /// surface; 0 if it has to be as far as asked. Empty: all have.
   std::span<const double> nearer;
 
+  /// How far the surface's vertices may be off where they were before their digits were cut to those of a file, as in a
+  /// refined mesh, whose added vertices were in the planes of faces: distances are no more exact than that.
+  double vertex_error = 0;
+
   const FileFrame* file = nullptr;  ///< If distances are measured in the space of a metric.
 
   /// The index of a vertex on the moving part; kNone if it is not there.

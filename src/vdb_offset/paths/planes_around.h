@@ -16,10 +16,11 @@ namespace vdb_offset {
 /// with seven digits, far below all bends that are meant.
 inline constexpr double kOnePlaneSine = 1e-4;
 
-/// The planes around a vertex: their normals, and the areas of the faces on each, up to a factor.
+/// The planes around a vertex: their normals, the areas of the faces on each, up to a factor, and by how much the
+/// largest of these may be tilted.
 struct PlanesAround {
   std::vector<Vec3d> normals;
-  std::vector<double> areas;
+  std::vector<double> areas, tilts;
 };
 
 inline double extent_of(const Surface& surface, std::uint32_t triangle) {
@@ -32,9 +33,10 @@ inline double extent_of(const Polyline& line, std::uint32_t segment) {
 }
 
 /// The planes around a vertex of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
-/// which tells best. normal_of(face) is called of faces that have an area.
-template <class Shape, class NormalOf>
-PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of) {
+/// which tells best. normal_of(face) and tilt_of(face), the sine of the angle by which that may be wrong, are called of
+/// faces that have an area.
+template <class Shape, class NormalOf, class TiltOf>
+PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of, TiltOf&& tilt_of) {
   std::vector<std::pair<double, std::uint32_t>> faces;
   for (const auto t : shape.triangles_around(vertex))
     if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-extent_of(shape, t), t);
@@ -42,17 +44,22 @@ PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& 
   PlanesAround planes;
   for (const auto& [less, t] : faces) {
     const Vec3d& normal = normal_of(t);
-    const auto alike = std::find_if(planes.normals.begin(), planes.normals.end(), [&](const Vec3d& plane) {
-      return (plane - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine;
-    });
+    const double tilt = tilt_of(t), most = kOnePlaneSine + tilt;
+    const auto alike = std::find_if(planes.normals.begin(), planes.normals.end(),
+                                    [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < most * most; });
     if (alike != planes.normals.end()) {
       planes.areas[static_cast<std::size_t>(alike - planes.normals.begin())] -= less;
       continue;
     }
     planes.normals.push_back(normal);
     planes.areas.push_back(-less);
+    planes.tilts.push_back(tilt);
   }
   return planes;
+}
+template <class Shape, class NormalOf>
+PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of) {
+  return planes_around(shape, vertex, normal_of, [](std::uint32_t) { return 0.0; });
 }
 
 }  // namespace vdb_offset

@@ -131,21 +131,60 @@ Vec3d across_all(const Vec3d& v, std::span<const Vec3d> normals) {
   return planes.within(v);
 }
 
-/// Whether a displacement leads to the nearest point of some of the planes of a vertex of the moving part, if these do
-/// not all meet in one, or the vertex's miter is not there.
-/// \param planes normals, which may be shorter than 1
-/// \param is_on tells whether a displacement is on one of them
+/// The planes around a vertex of the moving part, moved by a distance, as far as the digits of a file tell where they
+/// are: edges that were split for a tolerance have small faces beside them, which rounding tilts.
+struct MovedPlanes {
+  std::vector<Vec3d> normals;  ///< May be shorter than 1.
+  std::vector<double> tilts;
+  double asked, tolerance;
+
+  bool is_on(const Vec3d& normal, double tilt, const Vec3d& displacement) const {
+    const double height = normal.dot(displacement), squared = displacement.lengthSqr() - height * height;
+    return std::abs(height - asked) <= tolerance + tilt * std::sqrt(std::max(squared, 0.0));
+  }
+  bool is_on(std::size_t plane, const Vec3d& displacement) const {
+    return is_on(normals[plane], tilts[plane], displacement);
+  }
+  bool is_on_all(const Vec3d& displacement) const {
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      if (!is_on(i, displacement)) return false;
+    return true;
+  }
+};
+
+/// The planes around a vertex of a part, of faces that count as on one plane that of the face that a displacement is
+/// nearest to: it is the largest face before any was split that has told where the plane is.
+PlanesAround planes_told_by(const Surface& part, std::uint32_t vertex, const Vec3d& displacement, double asked) {
+  const auto normal_of = [&](std::uint32_t t) -> const Vec3d& { return part.triangle_normals[t]; };
+  PlanesAround planes = planes_around(part, vertex, normal_of, [&](std::uint32_t t) { return part.tilt(t); });
+  const std::vector<Vec3d> of_largest = planes.normals;
+  const auto off = [&](const Vec3d& normal) { return std::abs(normal.dot(displacement) - asked); };
+  for (const auto t : part.triangles_around(vertex))
+    for (std::size_t i = 0; i < of_largest.size(); ++i) {
+      if (normal_of(t).lengthSqr() == 0 || !((of_largest[i] - normal_of(t)).length() < kOnePlaneSine + part.tilt(t)) ||
+          !(off(normal_of(t)) < off(planes.normals[i])))
+        continue;
+      planes.normals[i] = normal_of(t);
+      planes.tilts[i] = part.tilt(t);
+    }
+  return planes;
+}
+
+/// Whether a displacement leads to the nearest point of some of the planes of a vertex, if these do not all meet in
+/// one, or the vertex's miter is not there.
 /// \param miter of the vertex, or null
-template <class IsOn>
-bool is_nearest_of_some(std::vector<Vec3d> planes, const Vec3d& displacement, double tolerance, const Miter* miter,
-                        IsOn&& is_on) {
-  const std::optional<MiterPoint> on_all = miter_point(planes);
-  const bool is_miter_on_all = !miter || std::all_of(planes.begin(), planes.end(), [&](const Vec3d& normal) {
-    return is_on(normal, miter->displacement);
-  });
+bool is_nearest_of_some(const MovedPlanes& planes, const Vec3d& displacement, const Miter* miter) {
+  const std::optional<MiterPoint> on_all = miter_point(planes.normals);
+  const bool is_miter_on_all = !miter || planes.is_on_all(miter->displacement);
   if (on_all && on_all->excess <= kReachedTolerance && is_miter_on_all) return false;
-  std::erase_if(planes, [&](const Vec3d& normal) { return !is_on(normal, displacement); });
-  return !planes.empty() && across_all(displacement, planes).length() <= tolerance;
+  std::vector<Vec3d> on;
+  double tilt = 0;
+  for (std::size_t i = 0; i < planes.normals.size(); ++i)
+    if (planes.is_on(i, displacement)) {
+      on.push_back(planes.normals[i]);
+      tilt = std::max(tilt, planes.tilts[i]);
+    }
+  return !on.empty() && across_all(displacement, on).length() <= planes.tolerance + tilt * displacement.length();
 }
 
 /// Whether a vertex is anywhere on the planes of all of its faces that move, moved by the distance, and no farther away
@@ -160,20 +199,21 @@ bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& dis
   const Surface& part = parts.moving_part;
   const std::uint32_t on_part = parts.part_vertex.empty() ? vertex : parts.part_vertex[vertex];
   if (on_part == kNone) return false;
-  const auto is_on = [&](const Vec3d& normal, const Vec3d& x) { return std::abs(normal.dot(x) - asked) <= tolerance; };
-  const auto normal_of = [&](std::uint32_t t) -> const Vec3d& { return part.triangle_normals[t]; };
-  const auto around = part.triangles_around(on_part);
-  if (std::all_of(around.begin(), around.end(),
-                  [&](std::uint32_t t) { return normal_of(t).lengthSqr() == 0 || is_on(normal_of(t), displacement); }))
+  const PlanesAround around = planes_told_by(part, on_part, displacement, asked);
+  MovedPlanes planes{around.normals, around.tilts, asked, tolerance};
+  const auto triangles = part.triangles_around(on_part);
+  if (std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+        const Vec3d& normal = part.triangle_normals[t];
+        return normal.lengthSqr() == 0 || planes.is_on(normal, part.tilt(t), displacement);
+      }))
     return true;
-  const std::vector<Vec3d> planes = planes_around(part, on_part, normal_of).normals;
-  std::vector<Vec3d> along = planes;
-  for (Vec3d& normal : along) normal = part.along_border(on_part, normal);
-  if (is_nearest_of_some(along, displacement, tolerance, miter, is_on)) return true;
+  for (Vec3d& normal : planes.normals) normal = part.along_border(on_part, normal);
+  if (is_nearest_of_some(planes, displacement, miter)) return true;
   if (!part.is_held(on_part) || options.tolerance_share + options.tolerance_length == 0) return false;
   const Vec3d over = part.own_conormal(on_part);
-  for (std::size_t i = 0; i < along.size(); ++i) along[i] = planes[i] - over * over.dot(planes[i]);
-  return is_nearest_of_some(along, displacement, tolerance, nullptr, is_on);
+  for (std::size_t i = 0; i < planes.normals.size(); ++i)
+    planes.normals[i] = around.normals[i] - over * over.dot(around.normals[i]);
+  return is_nearest_of_some(planes, displacement, nullptr);
 }
 
 /// Judges the states and distances of the input's vertices.
@@ -181,14 +221,13 @@ void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const
                     const Distances& distances, const WantedMiters& miters, const CheckOptions& options,
                     CheckResult& result) {
   const Surface& surface = parts.surface();
-  const Rounding precision(options.precision);
-  const double epsilon = precision.epsilon();
+  const double epsilon = Rounding(options.precision).epsilon();
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     const std::uint32_t w = surface.welded[v];
     if (w == kNone) continue;
     const double target = std::abs(distances[w]), error = finder.distance_of(w) - target,
-                 tolerance = kReachedTolerance * target + std::max(epsilon * finder.positions()[w].length(),
-                                                                   precision.most_off(finder.positions()[w]));
+                 tolerance = kReachedTolerance * target +
+                             std::max(epsilon * finder.positions()[w].length(), finder.rounding(w));
     result.achieved[v] = finder.distance_of(w);
     const Vec3d displacement = finder.positions()[w] - source[w];
     const Miter* const miter = find_miter(miters.of_vertex, w);
@@ -271,6 +310,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   ConstrainedSurface constrained = parts.constrained(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, moved_in_file};
   if (!options.metric.even()) constrained.file = &file;
+  if (options.tolerance_share + options.tolerance_length > 0) constrained.vertex_error = surface.vertex_error;
   result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, in_offset));
   std::size_t disagreeing = 0;

@@ -110,6 +110,7 @@ class PreparedMesh {
   std::vector<Vec3d> source_;
   std::optional<Surroundings> surroundings_;
   std::optional<BorderSlides> slides_;
+  double vertex_error_ = 0;  // see ConstrainedSurface
 };
 
 /// The vertices of a mesh, as an InputVertices.

@@ -304,6 +304,13 @@ double Tolerance::at(double distance) const { return share > 0 ? share * std::ab
 RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance) {
   vdb_offset::require_usable(mesh, {&options.distance, 1}, options);
   require_usable(options, tolerance);
+  std::vector<Vec3d> rounded;
+  if (tolerance.precision.rounds_all) {
+    rounded.assign(mesh.positions.begin(), mesh.positions.end());
+    const Rounding precision(tolerance.precision);
+    for (Vec3d& position : rounded) position = precision(position);
+    mesh.positions = rounded;
+  }
   return in_arena(options.threads, [&](int threads) { return RefinedRun(mesh, options, tolerance, threads).run(); });
 }
 

@@ -17,6 +17,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/surface/connect_faces.h"
+#include "vdb_offset/surface/seams.h"
 #include "vdb_offset/surface/weld.h"
 
 namespace vdb_offset {
@@ -129,6 +130,19 @@ void find_bounds(Surface& surface) {
   facts.diagonal = (facts.upper - facts.lower).length();
   if (!std::isfinite(facts.diagonal))
     throw InvalidInput("mesh: expected a bounding box with a finite diagonal, got coordinates too far apart");
+}
+
+/// By the coordinates of some vertices: all of them take long to look at.
+void find_vertex_error(Surface& surface) {
+  constexpr std::size_t kLookedAt = 1000;
+  const std::size_t step = 1 + surface.vertices.size() / kLookedAt;
+  std::vector<double> numbers;
+  for (std::size_t v = 0; v < surface.vertices.size(); v += step)
+    for (int k = 0; k < 3; ++k) numbers.push_back(surface.vertices[v][k]);
+  double largest = 0;
+  for (const Vec3d& corner : {surface.facts.lower, surface.facts.upper})
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(corner[k]));
+  if (largest > 0) surface.vertex_error = std::sqrt(3.0) * unit_in_last_place(numbers, largest);
 }
 
 /// Sorts triangles and vertices along a space-filling curve, so that those near in space are near in memory, whatever
@@ -283,6 +297,7 @@ Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient
   Surface surface;
   give_vertices(polygons, welding, surface);
   find_bounds(surface);
+  find_vertex_error(surface);
   split_faces(polygons, surface);
   sort_in_space(surface);
   measure(polygons, surface);
@@ -339,6 +354,13 @@ Vec3d Surface::own_conormal(std::uint32_t vertex) const {
     }
   const double length = sum.length();
   return edges == 2 && length > kTurnsBack ? sum / length : Vec3d(0.0);
+}
+
+double Surface::tilt(std::uint32_t triangle) const {
+  const auto& [a, b, c] = triangles[triangle];
+  const Vec3d ab = vertices[b] - vertices[a], bc = vertices[c] - vertices[b], ca = vertices[a] - vertices[c];
+  const double height = ab.cross(bc).length() / std::sqrt(std::max({ab.lengthSqr(), bc.lengthSqr(), ca.lengthSqr()}));
+  return height > 2 * vertex_error ? 2 * vertex_error / height : 1;
 }
 
 Vec3d Surface::along_line(std::uint32_t vertex, const Vec3d& v) const {

@@ -51,6 +51,8 @@ struct Surface {
   std::vector<std::uint32_t> representative;  ///< For each surface vertex the input vertex that gives its position.
   std::vector<std::uint32_t> welded;          ///< Surface vertex of each input vertex; kNone if no face uses it.
   MeshFacts facts;
+  /// How far rounding to the digits of the input's coordinates may have moved a vertex; see unit_in_last_place().
+  double vertex_error = 0;
 
   std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
     return std::span(incident).subspan(incident_begin[vertex], incident_begin[vertex + 1] - incident_begin[vertex]);
@@ -76,6 +78,8 @@ struct Surface {
   /// The conormal of a vertex on a border by its faces alone, whether or not a plane holds it; zero where several
   /// borders meet, or one turns back on itself.
   Vec3d own_conormal(std::uint32_t vertex) const;
+  /// Sine of the angle by which the errors of its corners may tilt a triangle.
+  double tilt(std::uint32_t triangle) const;
   /// Whether a vertex must not leave the plane that along_border() keeps to.
   bool is_held(std::uint32_t vertex) const { return !held.empty() && held[vertex] > 0; }
   /// Projects a vector that lies in one of the planes that hold a vertex into all of them.

@@ -240,7 +240,9 @@ void VertexPositions::put_back(std::uint32_t v, const Standing& standing) {
   nearness_[v] = standing.nearness;
 }
 
-double VertexPositions::rounding(std::uint32_t v) const { return precision_.most_off(position_[v]); }
+double VertexPositions::rounding(std::uint32_t v) const {
+  return precision_.most_off(position_[v]) + constrained_.vertex_error;
+}
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
   const double farther = constrained_.farther.empty() ? 0 : constrained_.farther[v];
