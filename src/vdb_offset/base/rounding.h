@@ -136,6 +136,8 @@ struct Rounding : Precision {
     if (frames) size = std::max(size, frames->extent());
     return size * epsilon();
   }
+  /// Most that a vertex may be off, all coordinates together: the square root of 3 times that, and a little.
+  double most_off_together(const Vec3d& position) const { return 2 * most_off(position); }
 
  private:
   /// The position as it is read again, after its vertex was written in the frame that it has in the file.

@@ -288,11 +288,19 @@ void find_faults(FaultFinder& finder, std::span<const Vec3d> in_offset, std::siz
   result.more_source_crossings = finder.source_crossings().has_more();
 }
 
+/// What has been made with a tolerance may have been written with fewer digits than its source had, both files of it.
+void count_digits_of_pair(const Rounding& precision, Surface& part) {
+  for (const Vec3d& corner : {part.facts.lower, part.facts.upper})
+    part.vertex_error = std::max(part.vertex_error, precision.most_off_together(corner));
+}
+
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
   const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
   result.facts =
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
+  if (options.tolerance_share + options.tolerance_length > 0)
+    count_digits_of_pair(options.precision, parts.moving_part);
   // Planes that are found tell where miters are. No walls: whoever made the offset may have left these planes.
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), options.symmetry, 0);
   const Surface& surface = parts.surface();
@@ -310,7 +318,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   ConstrainedSurface constrained = parts.constrained(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, moved_in_file};
   if (!options.metric.even()) constrained.file = &file;
-  if (options.tolerance_share + options.tolerance_length > 0) constrained.vertex_error = surface.vertex_error;
+  if (options.tolerance_share + options.tolerance_length > 0) constrained.vertex_error = parts.moving_part.vertex_error;
   result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, in_offset));
   std::size_t disagreeing = 0;

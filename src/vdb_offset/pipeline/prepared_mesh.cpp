@@ -89,7 +89,6 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     }
   }
   statistics_.plan = plan;
-  if (yield.has_targets) vertex_error_ = parts_.surface().vertex_error;
   if (moves) reserve_memory(options.reserve, plan.bytes);
   if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
@@ -176,9 +175,9 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
     const VertexState state = targets.state[surface().representative[w]];
     marched.paths.achieved[w] = closest[i].distance;
     marched.paths.closest[w] = closest[i].triangle;
-    marched.paths.state[w] = std::abs(off) <= kReachedTolerance * asked + vertex_error_ ? VertexState::Reached
-                             : falls_short(state)                                       ? state
-                                                                                        : VertexState::Limited;
+    marched.paths.state[w] = std::abs(off) <= kReachedTolerance * asked + targets.vertex_error ? VertexState::Reached
+                             : falls_short(state)                                              ? state
+                                                                                               : VertexState::Limited;
     if (off > 0 && (state == VertexState::Mitred || state == VertexState::Cut))
       marched.miters.push_back(
           {w, marched.paths.displacement[w], closest[i].distance, 0, closest[i].triangle, state, 0});
@@ -187,6 +186,7 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
   marched.bound = std::exchange(parts_.bound, {});
   hold(distances, marched);
   marched.miter_facts.on_creases = marched.miters.size();
+  marched.vertex_error = targets.vertex_error;
   marched.mitred = MitredPaths(marched.miters, marched.paths);
   return marched;
 }
@@ -240,7 +240,7 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
   constrained.bound = marched.bound;
   constrained.farther = marched.mitred.farther();
   constrained.nearer = marched.mitred.nearer();
-  constrained.vertex_error = vertex_error_;
+  constrained.vertex_error = marched.vertex_error;
   return constrained;
 }
 

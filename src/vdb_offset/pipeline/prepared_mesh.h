@@ -78,6 +78,7 @@ class PreparedMesh {
     std::vector<Miter> miters;        ///< With Corners::Miter, those that are proven.
     MitredPaths mitred;               ///< The vertices whose paths are miters, with Corners::Round as well.
     MiterFacts miter_facts;           ///< What is known of them before the result is made valid.
+    double vertex_error = 0;          ///< See ConstrainedSurface.
   };
   /// Marches once for several sets of distances of all vertices. \pre some vertex moves
   std::vector<Marched> march(std::span<const Distances> distances, Ridges ridges);
@@ -110,7 +111,6 @@ class PreparedMesh {
   std::vector<Vec3d> source_;
   std::optional<Surroundings> surroundings_;
   std::optional<BorderSlides> slides_;
-  double vertex_error_ = 0;  // see ConstrainedSurface
 };
 
 /// The vertices of a mesh, as an InputVertices.

@@ -12,6 +12,7 @@ namespace vdb_offset {
 struct VertexTargets {
   std::vector<Vec3d> displacement;  ///< Of each vertex of the input, world units.
   std::vector<VertexState> state;   ///< What each is there: Mitred, Cut, or why it falls short, if it does.
+  double vertex_error = 0;          ///< See ConstrainedSurface.
 };
 
 }  // namespace vdb_offset

@@ -217,7 +217,7 @@ class RefinedRun {
     // Where the source crosses itself, many faults stay whatever is whole.
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (int attempt = 0; attempt < kMostAttempts && options_.collision == Collision::Limit; ++attempt) {
-      RefinedMesh refined(*triangles_, mesh_, options_, threads_, crosses_nothing_);
+      RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_);
       const std::vector<std::uint32_t> faulty = refined.faulty_triangles(refiner.vertices());
       any_faulty |= !faulty.empty();
       if (faulty.empty() || !refiner.keep_whole(faulty) || !refiner.split()) break;
@@ -230,7 +230,7 @@ class RefinedRun {
   }
 
   void make_valid(const Refiner& refiner) {
-    RefinedMesh refined(*triangles_, mesh_, options_, threads_, crosses_nothing_);
+    RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_);
     refined_.result = refined.offset(refiner.vertices());
     refined_.refinement = refined.take_refinement();
     numbers_ = refined.numbers();

@@ -10,9 +10,14 @@
 
 namespace vdb_offset {
 
-RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options, int threads,
-                         bool crosses_nothing)
-    : triangles_(triangles), mesh_(mesh), options_(options), threads_(threads), crosses_nothing_(crosses_nothing) {
+RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
+                         const Rounding& precision, int threads, bool crosses_nothing)
+    : triangles_(triangles),
+      mesh_(mesh),
+      options_(options),
+      precision_(precision),
+      threads_(threads),
+      crosses_nothing_(crosses_nothing) {
   refinement_ = triangles.of_mesh(mesh, numbers_, &triangle_of_face_);
   if (options.only.empty()) return;
   options_.only.clear();
@@ -23,6 +28,8 @@ RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, co
 void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
   const std::size_t count = refinement_.polygons.positions.size();
   VertexTargets targets{std::vector<Vec3d>(count, Vec3d(0.0)), std::vector<VertexState>(count, VertexState::Limited)};
+  for (const Vec3d& position : refinement_.polygons.positions)
+    targets.vertex_error = std::max(targets.vertex_error, precision_.most_off_together(position));
   std::vector<double> each(options_.distance.uniform() ? 0 : count);
   for (std::size_t v = 0; v < mesh_.positions.size() && !each.empty(); ++v) each[v] = options_.distance[v];
   for (std::size_t i = 0; i < vertices.size(); ++i) {

@@ -20,10 +20,11 @@ namespace vdb_offset {
 /// A mesh with its faces split, which is offset like any other, with its vertices at their targets.
 class RefinedMesh {
  public:
-  /// Keeps references to the triangles and the mesh that they are of. `options` are those of the mesh.
+  /// Keeps references to the triangles and the mesh that they are of. `options` are those of the mesh, `precision` that
+  /// which vertices were rounded to when they were added.
   /// \param crosses_nothing the mesh is known not to cross itself
-  RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options, int threads,
-              bool crosses_nothing);
+  RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
+              const Rounding& precision, int threads, bool crosses_nothing);
   RefinedMesh(const RefinedMesh&) = delete;
   RefinedMesh& operator=(const RefinedMesh&) = delete;
 
@@ -42,6 +43,7 @@ class RefinedMesh {
   const RefinedTriangles& triangles_;
   PolygonView mesh_;
   OffsetOptions options_;
+  const Rounding precision_;
   int threads_;
   bool crosses_nothing_;
   std::vector<std::uint32_t> numbers_, triangle_of_face_;
