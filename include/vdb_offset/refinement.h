@@ -18,7 +18,8 @@ struct VertexOrigin {
   std::array<double, 3> share;  ///< Barycentric: not below 0, their sum is 1 exactly; on an edge the last one is 0.
 };
 
-/// A mesh whose faces are split, on the same surface: no vertex of the source is moved, and no face leaves its plane.
+/// A mesh whose faces are split, on the same surface: no vertex of the source is moved, and no face leaves its plane,
+/// but for what rounding does (see Tolerance::precision). but
 struct VDB_OFFSET_API Refinement {
   /// The source's vertices in their order, then the ones that were added. In the place of each face of the source there
   /// are its pieces, in a row and the same way round: triangles, or the face itself where it is not split.

@@ -23,7 +23,8 @@ struct VDB_OFFSET_API Tolerance {
 };
 
 struct RefinedOffset {
-  Refinement refinement;  ///< The mesh that was offset: the one given, its faces split.
+  Refinement refinement;  ///< The mesh that was offset: the one given, rounded if the precision asks for that, its
+                          ///< faces split.
   OffsetResult result;    ///< Of that; `statistics.certified` tells what is proven.
 };
 

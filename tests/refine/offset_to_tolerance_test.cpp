@@ -406,26 +406,22 @@ TEST_CASE("tolerance: check finds the miters of corners with more planes than me
   }
 }
 
-TEST_CASE("tolerance: a pair of few digits is what it says", "[tolerance][miter][check][long][no_races]") {
+TEST_CASE("tolerance: a pair in single precision is what it says", "[tolerance][miter][check][long][no_races]") {
   // Rounding tilts the pieces of split faces. If it counted as an error, a tenth of the vertices would be short; if
   // `check` took the pieces for planes of their own, hundreds of mitred corners would be beyond the distance, and with
   // a source that is only rounded when it is written, some faces inverted.
-  using Kind = Precision::Kind;
-  for (const Precision& precision :
-       {Precision{.kind = Kind::Single}, Precision{.kind = Kind::Single, .rounds_all = true},
-        Precision{.kind = Kind::Digits, .digits = 7}})
-    for (unsigned seed = 1; seed <= 6; ++seed)
-      for (const Corners corners : {Corners::Round, Corners::Miter}) {
-        CAPTURE(seed, corners == Corners::Miter, precision.kind == Kind::Single, precision.rounds_all);
+  const Rounding single(Precision::Kind::Single);
+  for (unsigned seed = 1; seed <= 6; ++seed)
+    for (const Corners corners : {Corners::Round, Corners::Miter})
+      for (const bool rounds_all : {false, true}) {
+        CAPTURE(seed, corners == Corners::Miter, rounds_all);
         Polygons mesh = crumpled(scene::box(Vec3d(2), 2, true), seed, seed % 2 == 0 ? 0.15 : 0.3);
-        const Rounding rounding(precision);
-        if (precision.kind == Kind::Single && !precision.rounds_all)
-          for (Vec3d& position : mesh.positions) position = rounding(position);
+        if (!rounds_all)
+          for (Vec3d& position : mesh.positions) position = single(position);
         OffsetOptions options = options_for(0.1, corners);
-        options.precision = precision;
-        options.precision.rounds_all = precision.kind == Kind::Single;
+        options.precision = {.kind = Precision::Kind::Single, .rounds_all = true};
         Tolerance tolerance = tolerance_of(0.02);
-        tolerance.precision = precision;
+        tolerance.precision = {.kind = Precision::Kind::Single, .rounds_all = rounds_all};
         const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance);
         CHECK(std::none_of(refined.result.states.begin(), refined.result.states.end(), falls_short));
         CheckOptions check;

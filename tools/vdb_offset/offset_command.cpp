@@ -179,7 +179,9 @@ Precision precision_of_refined(const Job& job) {
   Precision own = file.document ? Precision{} : file.precision;
   const std::string& path = job.request.tolerance->refined_source;
   if (own.kind != Precision::Kind::Double || path.empty()) return own;
-  return io::precision_of_new(path, file, write_options(job.request, path));
+  io::WriteOptions all_digits;
+  all_digits.format = format_of(path, job.request);
+  return io::precision_of_new(path, file, all_digits);
 }
 
 /// Carries out a job with --tolerance. From where the faces are split, the refined source stands for the one read.
@@ -189,7 +191,7 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
   OffsetOptions options = job.options;
   options.distance = job.distances.front();
   RefinedOffset made = offset_to_tolerance(job.source.view(), options, tolerance);
-  // Writing rounds the source's own vertices, as they were for the offset.
+  // Its file tells what the source's own vertices are. Where writing rounds these, they were rounded for the offset.
   std::copy(job.source.view().positions.begin(), job.source.view().positions.end(),
             made.refinement.polygons.positions.begin());
   bar.show(Stage::Write, 0);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/hash_mix.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/mesh/prevailing_point.h"
@@ -64,6 +65,7 @@ bool ReturnToFaces::try_all(std::vector<Candidate> all, std::uint64_t pass) {
 }
 
 bool ReturnToFaces::settle() {
+  VDB_OFFSET_ASSERT(state_.keeps_faces && !on_crease_.empty());
   if (state_.faults.any()) return false;
   std::vector<std::pair<double, Candidate>> all;
   for (Candidate& candidate : candidates(Which::All)) {
@@ -86,15 +88,12 @@ bool ReturnToFaces::settle() {
 bool ReturnToFaces::settle(const Candidate& candidate, SettlingTrial& trial) const {
   const std::uint32_t v = candidate.vertex;
   const double worst = state_.off_planes(v) - kLessOff;
-  const auto move_to = [&](const Place& place) {
-    return SettlingTrial::Move{v, state_.surface.vertices[v] + place.end};
-  };
   for (std::size_t i = 0; i < std::min(candidate.places.size(), kPlacesSettled); ++i) {
-    const SettlingTrial::Move move = move_to(candidate.places[i]);
-    if (candidate.places[i].off < worst && (trial.at({move}) || trial.with_feature(move))) return true;
+    const SettlingTrial::Move move{v, candidate.places[i].end};
+    if (candidate.places[i].off < worst && (trial.try_alone({move}) || trial.try_with_feature(move))) return true;
   }
   const Place& best = candidate.places.front();
-  return best.off < worst && trial.with_others_aside(move_to(best));
+  return best.off < worst && trial.try_with_others_aside({v, best.end});
 }
 
 /// Whether a vertex is to be looked at: where it is not where its path has led, and with round corners where it is

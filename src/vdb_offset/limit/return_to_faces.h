@@ -27,7 +27,7 @@ class ReturnToFaces {
   bool operator()(Which which);
   /// Puts vertices at such places at the cost of what is in their way, one at a time, those first whose faces have most
   /// to win (see SettlingTrial). False if none was, or if there are faults. Follows on the other call, as what has room
-  /// need cost nothing.
+  /// need cost nothing. \pre that call, and faces are kept
   bool settle();
 
  private:

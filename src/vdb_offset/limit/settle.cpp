@@ -49,16 +49,22 @@ bool Settling::operator()(LiveArea::Lines lines) {
   return any;
 }
 
+/// To a position in the surface's frame, or as near to it as planes let the vertex come.
+SettlingTrial::Move Settling::move_to(std::uint32_t v, const Vec3d& position) const {
+  return {v, state_.in_planes(v, position - state_.surface.vertices[v])};
+}
+
 /// Tries a vertex at each of its positions; then, at the first of them, with its neighbours, with the small feature
 /// that it is part of, and while the vertices in the way slide aside.
 bool Settling::settle(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial) {
   const std::vector<Vec3d> positions = state_.live_area.positions_with_room(v, lines);
   if (positions.empty()) return false;
   for (const Vec3d& position : positions)
-    if (trial.at({{v, position}})) return true;
-  const SettlingTrial::Move move{v, positions.front()};
+    if (trial.try_alone({move_to(v, position)})) return true;
+  const SettlingTrial::Move move = move_to(v, positions.front());
   const SettlingTrial::Moves together = with_short_neighbours(move, lines);
-  return (together.size() > 1 && trial.at(together)) || trial.with_feature(move) || trial.with_others_aside(move);
+  return (together.size() > 1 && trial.try_alone(together)) || trial.try_with_feature(move) ||
+         trial.try_with_others_aside(move);
 }
 
 /// A move, and the moves of the short vertices around it to where they have their distances; not where there are many.
@@ -69,7 +75,7 @@ SettlingTrial::Moves Settling::with_short_neighbours(const SettlingTrial::Move& 
   for (const auto w : around) {
     if (w == move.vertex || !may_settle(w) || (lines == LiveArea::Lines::All && state_.is_held(w))) continue;
     if (const auto positions = state_.live_area.positions_with_room(w, lines); !positions.empty())
-      moves.push_back({w, positions.front()});
+      moves.push_back(move_to(w, positions.front()));
   }
   return moves;
 }

@@ -29,6 +29,7 @@ class Settling {
   bool may_settle(std::uint32_t v) const { return state_.may_leave_path(v) && state_.is_short(v); }
   std::vector<std::uint32_t> vertices_to_settle();
   bool settle(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial);
+  SettlingTrial::Move move_to(std::uint32_t v, const Vec3d& position) const;
   SettlingTrial::Moves with_short_neighbours(const SettlingTrial::Move& move, LiveArea::Lines lines);
 
   LimitState& state_;

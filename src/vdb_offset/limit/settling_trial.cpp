@@ -39,17 +39,17 @@ bool holds(const Some& some, std::uint32_t v) {
 }  // namespace
 
 /// Puts a vertex there with ever larger features that it may be part of.
-bool SettlingTrial::with_feature(const Move& move) {
+bool SettlingTrial::try_with_feature(const Move& move) {
   std::size_t fewer = 1;
   return std::any_of(std::begin(kReaches), std::end(kReaches), [&](double reach) {
     const Moves feature = with_near_vertices(move, reach);
-    return feature.size() > std::exchange(fewer, feature.size()) && at(feature);
+    return feature.size() > std::exchange(fewer, feature.size()) && try_alone(feature);
   });
 }
 
-bool SettlingTrial::with_others_aside(const Move& move) {
+bool SettlingTrial::try_with_others_aside(const Move& move) {
   const auto all = std::span(kSlideAsides).first(aim_ == Aim::Faces ? kAsidesForFaces : std::size(kSlideAsides));
-  return std::any_of(all.begin(), all.end(), [&](const SlideAside& aside) { return is_kept({move}, &aside); });
+  return std::any_of(all.begin(), all.end(), [&](const SlideAside& aside) { return try_out({move}, &aside); });
 }
 
 /// A move, and the same displacement of the vertices that edges lead to of which none is longer than a share of the
@@ -57,7 +57,6 @@ bool SettlingTrial::with_others_aside(const Move& move) {
 SettlingTrial::Moves SettlingTrial::with_near_vertices(const Move& move, double reach) const {
   const Surface& surface = state_.surface;
   Moves moves{move};
-  const Vec3d displacement = move.position - surface.vertices[move.vertex];
   const double longest = reach * std::abs(state_.distances[move.vertex]);
   for (std::size_t i = 0; i < moves.size() && moves.size() <= kMostAside; ++i) {
     const Vec3d& from = surface.vertices[moves[i].vertex];
@@ -66,7 +65,7 @@ SettlingTrial::Moves SettlingTrial::with_near_vertices(const Move& move, double 
         const bool is_near = (surface.vertices[w] - from).length() <= longest &&
                              (surface.vertices[w] - surface.vertices[move.vertex]).length() <= 2 * longest;
         if (!is_near || !may_go_along(w) || holds(moves, w)) continue;
-        moves.push_back({w, surface.vertices[w] + displacement});
+        moves.push_back({w, move.displacement});
       }
   }
   return moves;
@@ -84,14 +83,14 @@ SettlingTrial::Old SettlingTrial::old_of(std::uint32_t v) const {
 /// Whether more is won by the trial so far than is lost.
 bool SettlingTrial::is_worth_it(std::uint32_t vertex, const OldOnes& old) {
   double lost = 0;
+  Indices some;
+  for (const Old& o : old) some.push_back(o.vertex);
+  state_.live_area.measure(some);
   if (aim_ == Aim::Distance) {
     for (const Old& o : old)
       if (!o.was_short && state_.is_short(o.vertex)) lost += state_.live_area[o.vertex];
     return lost <= kWorthLosing * state_.live_area[vertex];
   }
-  Indices some;
-  for (const Old& o : old) some.push_back(o.vertex);
-  state_.live_area.measure(some);
   for (const Old& o : old) {
     const bool is_short = state_.is_short(o.vertex);
     if (is_short != o.was_short) lost += (is_short ? kShortCosts : -kShortCosts) * state_.live_area.area(o.vertex);
@@ -102,7 +101,7 @@ bool SettlingTrial::is_worth_it(std::uint32_t vertex, const OldOnes& old) {
 
 /// One trial: of the first of the moves, and of others that go along. False, and nothing has changed, if more is lost
 /// than won, or the first vertex does not get to its distance.
-bool SettlingTrial::is_kept(const Moves& moves, const SlideAside* aside) {
+bool SettlingTrial::try_out(const Moves& moves, const SlideAside* aside) {
   ++count_;
   OldOnes old;
   put(moves, old);
@@ -132,11 +131,10 @@ bool SettlingTrial::is_kept(const Moves& moves, const SlideAside* aside) {
 
 void SettlingTrial::put(const Moves& moves, OldOnes& old) {
   Indices moved, mitred;
-  for (const auto& [v, position] : moves) {
+  for (const auto& [v, displacement] : moves) {
     old.push_back(old_of(v));
     moved.push_back(v);
-    const Vec3d whole = state_.in_planes(v, position - state_.surface.vertices[v]);
-    state_.whole[v] = round_displacement(whole, std::abs(state_.distances[v]));
+    state_.whole[v] = round_displacement(displacement, std::abs(state_.distances[v]));
     state_.share[v] = 1;
     if (state_.mitred && state_.mitred->is_miter(v, state_.whole[v])) mitred.push_back(v);
   }

@@ -12,28 +12,28 @@ namespace vdb_offset {
 
 /// Puts a vertex elsewhere at the cost of what is in its way, if less is lost by that than is won.
 ///
-/// A trial puts the vertex there alone (at()), with the small feature that it is part of (with_feature()), or while the
-/// vertices in its way slide aside (with_others_aside()); then it pulls back the vertices that are still in its way.
+/// A trial puts the vertex there alone, with the small feature that it is part of, or while the vertices in its way
+/// slide aside; then it pulls back the vertices that are still in its way.
 /// What is won and lost is live area: with Aim::Distance that of vertices at their distance, with Aim::Faces that of
 /// faces, by how far these are off. Each call answers whether the trial is kept; if not, nothing has changed. \pre
 /// there are no faults
 class SettlingTrial {
  public:
   enum class Aim : std::uint8_t { Distance, Faces };
-  /// A vertex and the position that it is put to, in the surface's frame.
+  /// A vertex and the displacement that it is given.
   struct Move {
     std::uint32_t vertex;
-    Vec3d position;
+    Vec3d displacement;
   };
   using Moves = std::vector<Move>;
 
   /// Keeps a reference.
   SettlingTrial(LimitState& state, Aim aim) : state_(state), aim_(aim) {}
 
-  /// Puts vertices there; what is won is that of the first one.
-  bool at(const Moves& moves) { return is_kept(moves, nullptr); }
-  bool with_feature(const Move& move);
-  bool with_others_aside(const Move& move);
+  /// Moves vertices; what is won is that of the first one.
+  bool try_alone(const Moves& moves) { return try_out(moves, nullptr); }
+  bool try_with_feature(const Move& move);
+  bool try_with_others_aside(const Move& move);
 
   /// How many trials there have been.
   std::size_t count() const { return count_; }
@@ -52,7 +52,7 @@ class SettlingTrial {
   };
   using OldOnes = std::vector<Old>;
 
-  bool is_kept(const Moves& moves, const SlideAside* aside);
+  bool try_out(const Moves& moves, const SlideAside* aside);
   Moves with_near_vertices(const Move& move, double reach) const;
   bool may_go_along(std::uint32_t v) const { return state_.may_leave_path(v) && !state_.is_held(v); }
   Old old_of(std::uint32_t v) const;

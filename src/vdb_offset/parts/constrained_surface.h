@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -29,6 +30,9 @@ struct FileFrame {
     return precision(before, to == from ? before : space.moved(before, from, to));
   }
 };
+
+/// What of an error of vertices counts at a distance: no more than a thousandth of it, as what is farther off is short.
+inline double vertex_error_at(double error, double distance) { return std::min(error, 1e-3 * std::abs(distance)); }
 
 /// All that must stay valid: the part that moves, which distances are measured from, and what it must not meet.
 ///

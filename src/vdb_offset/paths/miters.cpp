@@ -20,8 +20,8 @@ namespace {
 
 // Miters that are proven together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kMitersTogether = 64;
-// How far from a vertex, in distances, what is nearer to the end of its miter still belongs to its corner: edges broken
-// by less are details of it. See docs/dev/tuning.md.
+// How far from a vertex, in distances, what is nearer to the end of its miter than its own faces still belongs to its
+// corner. See docs/dev/tuning.md.
 constexpr double kDetail = 1;
 // A miter with which a plane would go farther than the distance by more than this share of it is none. Not measured.
 constexpr double kMostExcess = 0.5;
@@ -123,6 +123,13 @@ bool is_above_face(const Shape& shape, std::uint32_t vertex, const Vec3d& end, i
 
 std::uint32_t corner_of(const Surface& surface, std::uint32_t triangle) { return surface.triangles[triangle][0]; }
 std::uint32_t corner_of(const Polyline& line, std::uint32_t segment) { return line.segments[segment][0]; }
+
+/// Whether what is closest is a detail of a vertex's corner, for a distance.
+template <class Shape>
+bool is_detail(const Shape& shape, std::uint32_t vertex, const Closest& closest, double distance) {
+  return shape.component[corner_of(shape, closest.triangle)] == shape.component[vertex] &&
+         (closest.point - shape.vertices[vertex]).length() <= kDetail * distance;
+}
 
 /// Whether a triangle of the vertex's component goes on in the plane of one of those around the vertex.
 template <class Shape>
@@ -248,7 +255,7 @@ bool MiterFinder<Query>::is_proven(const Miter& miter, const UnitMiter& unit, co
            exact_->is_own(miter.vertex, end, distance < 0 ? -asked : asked, closest.triangle, closest.point) &&
            (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
   const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
-                      (closest.point - start).length() <= kDetail * asked || goes_on(shape, miter.vertex, closest);
+                      is_detail(shape, miter.vertex, closest, asked) || goes_on(shape, miter.vertex, closest);
   return is_own && closest.distance >= asked * (1 - kReachedTolerance) &&
          (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
 }

@@ -16,6 +16,9 @@ namespace vdb_offset {
 /// with seven digits, far below all bends that are meant.
 inline constexpr double kOnePlaneSine = 1e-4;
 
+/// The largest tilt of a face that tells of a plane (see Surface::tilt). Reasoned: far below the bends of creases.
+inline constexpr double kMostTilt = 0.01;
+
 /// The planes around a vertex: their normals, the areas of the faces on each, up to a factor, and by how much the
 /// largest of these may be tilted.
 struct PlanesAround {
@@ -34,7 +37,7 @@ inline double extent_of(const Polyline& line, std::uint32_t segment) {
 
 /// The planes around a vertex of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
 /// which tells best. normal_of(face) and tilt_of(face), the sine of the angle by which that may be wrong, are called of
-/// faces that have an area.
+/// faces that have an area; those that may be tilted by more than kMostTilt are left out.
 template <class Shape, class NormalOf, class TiltOf>
 PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of, TiltOf&& tilt_of) {
   std::vector<std::pair<double, std::uint32_t>> faces;
@@ -45,6 +48,7 @@ PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& 
   for (const auto& [less, t] : faces) {
     const Vec3d& normal = normal_of(t);
     const double tilt = tilt_of(t), most = kOnePlaneSine + tilt;
+    if (tilt > kMostTilt) continue;
     const auto alike = std::find_if(planes.normals.begin(), planes.normals.end(),
                                     [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < most * most; });
     if (alike != planes.normals.end()) {

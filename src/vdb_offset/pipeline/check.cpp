@@ -152,22 +152,24 @@ struct MovedPlanes {
   }
 };
 
-/// The planes around a vertex of a part, of faces that count as on one plane that of the face that a displacement is
-/// nearest to: it is the largest face before any was split that has told where the plane is.
-PlanesAround planes_told_by(const Surface& part, std::uint32_t vertex, const Vec3d& displacement, double asked) {
-  const auto normal_of = [&](std::uint32_t t) -> const Vec3d& { return part.triangle_normals[t]; };
-  PlanesAround planes = planes_around(part, vertex, normal_of, [&](std::uint32_t t) { return part.tilt(t); });
+bool has_tolerance(const CheckOptions& options) { return options.tolerance_share + options.tolerance_length > 0; }
+
+/// Of each plane that of its faces takes the place which a displacement is nearest to: where faces were split, the
+/// largest one before that has told where the plane is.
+void take_nearest(const Surface& part, std::uint32_t vertex, const Vec3d& displacement, double asked,
+                  PlanesAround& planes) {
   const std::vector<Vec3d> of_largest = planes.normals;
   const auto off = [&](const Vec3d& normal) { return std::abs(normal.dot(displacement) - asked); };
-  for (const auto t : part.triangles_around(vertex))
-    for (std::size_t i = 0; i < of_largest.size(); ++i) {
-      if (normal_of(t).lengthSqr() == 0 || !((of_largest[i] - normal_of(t)).length() < kOnePlaneSine + part.tilt(t)) ||
-          !(off(normal_of(t)) < off(planes.normals[i])))
-        continue;
-      planes.normals[i] = normal_of(t);
-      planes.tilts[i] = part.tilt(t);
-    }
-  return planes;
+  for (const auto t : part.triangles_around(vertex)) {
+    const Vec3d& normal = part.triangle_normals[t];
+    const double tilt = part.tilt(t);
+    if (normal.lengthSqr() == 0 || tilt > kMostTilt) continue;
+    for (std::size_t i = 0; i < of_largest.size(); ++i)
+      if ((of_largest[i] - normal).length() < kOnePlaneSine + tilt && off(normal) < off(planes.normals[i])) {
+        planes.normals[i] = normal;
+        planes.tilts[i] = tilt;
+      }
+  }
 }
 
 /// Whether a displacement leads to the nearest point of some of the planes of a vertex, if these do not all meet in
@@ -199,17 +201,20 @@ bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& dis
   const Surface& part = parts.moving_part;
   const std::uint32_t on_part = parts.part_vertex.empty() ? vertex : parts.part_vertex[vertex];
   if (on_part == kNone) return false;
-  const PlanesAround around = planes_told_by(part, on_part, displacement, asked);
+  const auto normal_of = [&](std::uint32_t t) -> const Vec3d& { return part.triangle_normals[t]; };
+  const auto tilt_of = [&](std::uint32_t t) { return has_tolerance(options) ? part.tilt(t) : 0; };
+  PlanesAround around = planes_around(part, on_part, normal_of, tilt_of);
+  if (has_tolerance(options)) take_nearest(part, on_part, displacement, asked, around);
   MovedPlanes planes{around.normals, around.tilts, asked, tolerance};
   const auto triangles = part.triangles_around(on_part);
   if (std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
-        const Vec3d& normal = part.triangle_normals[t];
-        return normal.lengthSqr() == 0 || planes.is_on(normal, part.tilt(t), displacement);
+        return normal_of(t).lengthSqr() == 0 || tilt_of(t) > kMostTilt ||
+               planes.is_on(normal_of(t), tilt_of(t), displacement);
       }))
     return true;
   for (Vec3d& normal : planes.normals) normal = part.along_border(on_part, normal);
   if (is_nearest_of_some(planes, displacement, miter)) return true;
-  if (!part.is_held(on_part) || options.tolerance_share + options.tolerance_length == 0) return false;
+  if (!part.is_held(on_part) || !has_tolerance(options)) return false;
   const Vec3d over = part.own_conormal(on_part);
   for (std::size_t i = 0; i < planes.normals.size(); ++i)
     planes.normals[i] = around.normals[i] - over * over.dot(around.normals[i]);
@@ -288,19 +293,11 @@ void find_faults(FaultFinder& finder, std::span<const Vec3d> in_offset, std::siz
   result.more_source_crossings = finder.source_crossings().has_more();
 }
 
-/// What has been made with a tolerance may have been written with fewer digits than its source had, both files of it.
-void count_digits_of_pair(const Rounding& precision, Surface& part) {
-  for (const Vec3d& corner : {part.facts.lower, part.facts.upper})
-    part.vertex_error = std::max(part.vertex_error, precision.most_off_together(corner));
-}
-
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
   const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
   result.facts =
       options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
-  if (options.tolerance_share + options.tolerance_length > 0)
-    count_digits_of_pair(options.precision, parts.moving_part);
   // Planes that are found tell where miters are. No walls: whoever made the offset may have left these planes.
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), options.symmetry, 0);
   const Surface& surface = parts.surface();
@@ -318,7 +315,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   ConstrainedSurface constrained = parts.constrained(query, surroundings ? &surroundings->obstacles() : nullptr, false);
   const FileFrame file{space, in_file, moved_in_file};
   if (!options.metric.even()) constrained.file = &file;
-  if (options.tolerance_share + options.tolerance_length > 0) constrained.vertex_error = parts.moving_part.vertex_error;
+  if (has_tolerance(options)) constrained.vertex_error = surface.vertex_error;
   result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, in_offset));
   std::size_t disagreeing = 0;

@@ -171,13 +171,14 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
   const std::vector<Closest> closest = closest_points(*query_, ends);
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const std::uint32_t w = moving[i];
-    const double asked = std::abs(distances[w]), off = closest[i].distance - asked;
+    const double asked = std::abs(distances[w]), off = closest[i].distance - asked,
+                 most = kReachedTolerance * asked + vertex_error_at(targets.vertex_error, asked);
     const VertexState state = targets.state[surface().representative[w]];
     marched.paths.achieved[w] = closest[i].distance;
     marched.paths.closest[w] = closest[i].triangle;
-    marched.paths.state[w] = std::abs(off) <= kReachedTolerance * asked + targets.vertex_error ? VertexState::Reached
-                             : falls_short(state)                                              ? state
-                                                                                               : VertexState::Limited;
+    marched.paths.state[w] = std::abs(off) <= most ? VertexState::Reached
+                             : falls_short(state)  ? state
+                                                   : VertexState::Limited;
     if (off > 0 && (state == VertexState::Mitred || state == VertexState::Cut))
       marched.miters.push_back(
           {w, marched.paths.displacement[w], closest[i].distance, 0, closest[i].triangle, state, 0});

@@ -241,7 +241,7 @@ void VertexPositions::put_back(std::uint32_t v, const Standing& standing) {
 }
 
 double VertexPositions::rounding(std::uint32_t v) const {
-  return precision_.most_off(position_[v]) + constrained_.vertex_error;
+  return precision_.most_off(position_[v]) + vertex_error_at(constrained_.vertex_error, distances_[v]);
 }
 
 bool VertexPositions::is_misplaced(std::uint32_t v) const {
