@@ -935,3 +935,12 @@ TEST_CASE("command: a scene brings what its shape is to fit, unless a distance i
   }
   CHECK(!run.has("no.obj"));
 }
+
+TEST_CASE("command: what becomes of a scene in STL is judged as it is written", "[command][scene]") {
+  const ShellCommand run;
+  const std::string scene = "'" + test::scenes_path() + "/naca_wing.json'";
+  CHECK(run(scene + " wing.obj -d 0").code == 0);
+  CHECK(run(scene + " thin.stl -d -1%").code == 0);
+  // Judged in double precision, the trailing edge had 12 crossings there.
+  CHECK_THAT(run("check wing.obj thin.stl -d -1%").out, Catch::EndsWith("\nvalid\n"));
+}

@@ -173,15 +173,15 @@ OffsetResult of_copies(const OffsetResult& result, std::span<const std::uint32_t
 
 /// What the refined source keeps of coordinates: no more than the source, nor than the file that it is written to.
 Precision precision_of_refined(const Job& job) {
-  if (!job.source.file) return {};
+  const std::string& path = job.request.tolerance->refined_source;
+  io::WriteOptions all_digits;
+  if (!path.empty()) all_digits.format = format_of(path, job.request);
+  if (!job.source.file) return path.empty() ? Precision{} : io::precision_of(path, all_digits);
   const io::MeshFile& file = *job.source.file;
   // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
-  Precision own = file.document ? Precision{} : file.precision;
-  const std::string& path = job.request.tolerance->refined_source;
-  if (own.kind != Precision::Kind::Double || path.empty()) return own;
-  io::WriteOptions all_digits;
-  all_digits.format = format_of(path, job.request);
-  return io::precision_of_new(path, file, all_digits);
+  const bool is_double = file.document || file.precision.kind == Precision::Kind::Double;
+  if (is_double && !path.empty()) return io::precision_of_new(path, file, all_digits);
+  return file.document ? Precision{} : file.precision;
 }
 
 /// Carries out a job with --tolerance. From where the faces are split, the refined source stands for the one read.

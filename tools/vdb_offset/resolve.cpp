@@ -124,11 +124,12 @@ Precision precision_of(const Job& job) {
   const Request& request = job.request;
   const bool cells =
       request.layers && (io::volume_format_of(request.output) || io::structured_format_of(request.output));
-  if (cells || !(job.curves() || job.source.file)) return {};
+  if (cells) return {};
   if (is_cad_output(request.output, request)) return {};
   const std::string path = request.layers ? name_of_layer(request.output, 1, job.distances.size()) : request.output;
   const io::WriteOptions writing = write_options(request, path);
   if (job.curves()) return io::precision_of_curves(path, *job.source.curves, writing);
+  if (!job.source.file) return io::precision_of(path, writing);
   const bool makes_anew = job.shell || request.tolerance;
   return makes_anew ? io::precision_of_new(path, *job.source.file, writing)
                     : io::precision_of(path, *job.source.file, writing);

@@ -134,6 +134,9 @@ VDB_OFFSET_API std::string patched_bytes(const MeshFile& source, std::span<const
 VDB_OFFSET_API Precision precision_of(const std::string& path, const MeshFile& source,
                                       const WriteOptions& options = {});
 
+/// The same of a mesh that comes from no file.
+VDB_OFFSET_API Precision precision_of(const std::string& path, const WriteOptions& options = {});
+
 /// The precision of coordinates in a file that is made anew of the source where that is a document: of a shell of it,
 /// or of its faces split.
 VDB_OFFSET_API Precision precision_of_new(const std::string& path, const MeshFile& source,

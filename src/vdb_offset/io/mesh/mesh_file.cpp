@@ -171,6 +171,10 @@ Precision precision_of(const std::string& path, const MeshFile& source, const Wr
   return precision_of_file(format, format == source.format, source, options);
 }
 
+Precision precision_of(const std::string& path, const WriteOptions& options) {
+  return precision_of_file(require_written_format(path, options.format), false, {}, options);
+}
+
 Precision precision_of_new(const std::string& path, const MeshFile& source, const WriteOptions& options) {
   const Format format = require_written_format(path, options.format);
   return precision_of_file(format, format == source.format && !source.document, source, options);
