@@ -5,8 +5,8 @@
 #include <span>
 
 #include "vdb_offset/base/index_set.h"
-#include "vdb_offset/limit/untangle.h"
 #include "vdb_offset/surface/surface.h"
+#include "vdb_offset/untangle/untangle.h"
 
 /// The schedule of limit(): with which settings of the energy patches are untangled, on which patches, in which order.
 /// Measurements are those of docs/dev/tuning.md.

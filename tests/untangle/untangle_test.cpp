@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/limit/untangle.h"
+#include "vdb_offset/untangle/untangle.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

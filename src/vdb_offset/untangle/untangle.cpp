@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/limit/untangle.h"
+#include "vdb_offset/untangle/untangle.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "vdb_offset/base/assert.h"
-#include "vdb_offset/limit/quasi_newton.h"
 #include "vdb_offset/paths/propagate.h"
+#include "vdb_offset/untangle/quasi_newton.h"
 
 namespace vdb_offset {
 namespace {

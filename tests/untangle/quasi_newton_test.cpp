@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/limit/quasi_newton.h"
+#include "vdb_offset/untangle/quasi_newton.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
