@@ -366,7 +366,7 @@ TEST_CASE("limit: what is held back dips no more steeply than it has to", "[limi
         }
       }
     }
-    REQUIRE(edges > 50);
+    REQUIRE(edges > 20);
     CHECK(steep <= most_steep);
   }
 }
@@ -568,17 +568,34 @@ TEST_CASE("limit: vertices that gave up their miters are at their distance, or n
 }
 
 TEST_CASE("limit: what is short with round corners goes where there is room", "[limit][miter]") {
-  // Distance, and the share that reaches it: 83.8 and 59.3 % otherwise.
+  // Distance, the share that reaches it, and how far faces are off: 83.8 and 59.3 % otherwise, and 8.0 and 16.9 % off,
+  // if vertices went straight above live points alone and not beside their neighbours.
+  const std::tuple<const char*, Polygons, double, double, double> cases[] = {
+      {"room corner", scene::room_corner(1, 40), 0.3, 0.88, 0.03},
+      {"diffuser", scene::diffuser(0.4, 0.8, 2, 24), 0.2, 0.675, 0.01},
+  };
+  for (const auto& [name, mesh, distance, least, most_off] : cases) {
+    CAPTURE(name);
+    const OffsetResult result = limited(mesh, distance);
+    CHECK(test::share(result, VertexState::Reached) > least);
+    CHECK(result.statistics.faces.mean < most_off);
+    CHECK(result.statistics.limit.left.total() == 0);
+    CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).faults.total() == 0);
+  }
+}
+
+TEST_CASE("limit: what nothing has room above goes beside neighbours that are at the distance", "[limit]") {
+  // Distance, and the share that reaches it: 62.0 and 99.93 % otherwise.
   const std::tuple<const char*, Polygons, double, double> cases[] = {
-      {"room corner", scene::room_corner(1, 40), 0.3, 0.87},
-      {"diffuser", scene::diffuser(0.4, 0.8, 2, 24), 0.2, 0.625},
+      {"wing", scene::naca_wing("2412", 1, 1, 80, 40), -0.0425828, 0.645},
+      {"gear", scene::gear(18, 0.8, 1, 0.3, 0.3, 6), -0.0851684, 0.9995},
   };
   for (const auto& [name, mesh, distance, least] : cases) {
     CAPTURE(name);
     const OffsetResult result = limited(mesh, distance);
     CHECK(test::share(result, VertexState::Reached) > least);
     CHECK(result.statistics.limit.left.total() == 0);
-    CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).faults.total() == 0);
+    CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).valid());
   }
 }
 

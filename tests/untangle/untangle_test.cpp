@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "vdb_offset/limit/limit_schedule.h"
-#include "vdb_offset/limit/vertex_patches.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/query/closest_query.h"
+#include "vdb_offset/untangle/schedule.h"
+#include "vdb_offset/untangle/vertex_patches.h"
 
 using namespace vdb_offset;
 

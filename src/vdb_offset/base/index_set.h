@@ -21,6 +21,11 @@ inline bool is_sorted_unique(std::span<const std::uint32_t> indices) {
   return std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>()) == indices.end();
 }
 
+/// Whether indices are sorted, no two the same, and below `count`.
+inline bool is_index_set(std::span<const std::uint32_t> indices, std::size_t count) {
+  return is_sorted_unique(indices) && (indices.empty() || indices.back() < count);
+}
+
 inline void sort_unique(Indices& indices) {
   std::sort(indices.begin(), indices.end());
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());

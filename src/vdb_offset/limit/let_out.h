@@ -12,7 +12,7 @@
 
 namespace vdb_offset {
 
-/// The third and the fifth step of limit(): lets pulled vertices out again, and eases the thickness around them. Both
+/// The third and the last step of limit(): lets pulled vertices out again, and eases the thickness around them. Both
 /// are called when there are no faults, and make none: a vertex that would cause one keeps the share that it had.
 ///
 /// operator() follows on pull_back(), and again on each Settling, as what was settled has pulled others back. ease() is

@@ -7,13 +7,14 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/progress_count.h"
+#include "vdb_offset/limit/contraction.h"
 #include "vdb_offset/limit/let_out.h"
-#include "vdb_offset/limit/limit_schedule.h"
 #include "vdb_offset/limit/limit_state.h"
 #include "vdb_offset/limit/pull_back.h"
 #include "vdb_offset/limit/return_to_faces.h"
 #include "vdb_offset/limit/settle.h"
 #include "vdb_offset/limit/untangle_patches.h"
+#include "vdb_offset/untangle/schedule.h"
 
 namespace vdb_offset {
 namespace {
@@ -42,6 +43,13 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
     }
   if ((any_settled || !state.keeps_faces) && return_to_faces(Which::All)) let_out(progress);
   if (state.keeps_faces && return_to_faces.settle()) let_out(progress);
+  if (Contraction contract(state); contract()) {
+    let_out(progress);
+    // What has been contracted makes room for others; miters have had theirs.
+    if (!state.keeps_faces && settle(LiveArea::Lines::All)) let_out(progress);
+    if (!state.keeps_faces && contract()) let_out(progress);
+    if (return_to_faces(Which::All)) let_out(progress);
+  }
   for (int i = 0; i < kEasings; ++i) let_out.ease();
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }

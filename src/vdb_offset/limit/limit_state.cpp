@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "vdb_offset/base/assert.h"
-#include "vdb_offset/limit/limit_schedule.h"
+#include "vdb_offset/untangle/schedule.h"
 
 namespace vdb_offset {
 namespace {
@@ -73,6 +73,20 @@ Indices LimitState::take_miters_back(const Indices& vertices) {
   Indices unmitred = mitred->take_back(vertices, paths);
   for (const auto v : unmitred) whole[v] = paths.displacement[v];
   return unmitred;
+}
+
+std::vector<Vec3d> LimitState::displacements() const {
+  std::vector<Vec3d> all(share.size());
+  for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = displacement_of(v);
+  return all;
+}
+
+Indices LimitState::moved_since(const std::vector<Vec3d>& before, int rings) {
+  VDB_OFFSET_ASSERT(before.empty() || before.size() == share.size());
+  Indices moved;
+  for (std::uint32_t v = 0; v < share.size(); ++v)
+    if (before.empty() || displacement_of(v) != before[v]) moved.push_back(v);
+  return with_rings(moved, rings);
 }
 
 Indices LimitState::with_rings(const Indices& vertices, int rings) {

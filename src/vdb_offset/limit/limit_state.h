@@ -16,8 +16,9 @@ namespace vdb_offset {
 
 /// The offset that limit() makes valid, as its steps change it: each vertex goes a share of a whole displacement.
 ///
-/// The steps (PatchUntangler, pull_back(), LetOut, ReturnToFaces, Settling) change whole displacements and shares, and
-/// then move the vertices by move() or a trial of `faults`, so that `faults` always knows where the vertices stand.
+/// The steps (PatchUntangler, pull_back(), LetOut, ReturnToFaces, Settling, Contraction) change whole displacements and
+/// shares, and then move the vertices by move() or a trial of `faults`, so that `faults` always knows where the
+/// vertices stand.
 struct LimitState {
   /// `offset` and what it refers to must outlive this. `warm` is null without a warm start.
   LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, const WarmStart* warm);
@@ -88,6 +89,12 @@ struct LimitState {
   void move(const Indices& vertices) {
     faults.move(vertices, [&](std::uint32_t v) { return position_of(v); });
   }
+
+  /// Displacements of all vertices, to tell later which have moved since.
+  std::vector<Vec3d> displacements() const;
+  /// The vertices that do not have these displacements, and those of so many rings around them; all vertices if there
+  /// are none.
+  Indices moved_since(const std::vector<Vec3d>& before, int rings);
 
   /// Some vertices and those of so many rings around them.
   Indices with_rings(const Indices& vertices, int rings);

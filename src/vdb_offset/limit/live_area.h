@@ -37,6 +37,8 @@ class LiveArea {
   /// vertices.
   enum class Lines { KeepBorder, All };
 
+  bool is_at_border(std::uint32_t vertex) const;
+
   /// Positions at its distance that have room for a vertex: of each line, the larger faces' first, the image of the
   /// live point that is nearest to the vertex. In the surface's frame. None where faces around the vertex do not agree
   /// about the outside.
@@ -51,7 +53,6 @@ class LiveArea {
   double area_of(std::uint32_t triangle) const;
   double find(std::uint32_t vertex) const;
   Vec3d centre(std::uint32_t triangle) const;
-  bool is_at_border(std::uint32_t vertex) const;
   bool faces_agree(std::uint32_t vertex) const;
   std::vector<Vec3d> ends_of_lines(std::uint32_t vertex, std::uint32_t triangle, Lines lines) const;
   Image image(std::uint32_t vertex, std::uint32_t triangle, const Vec3d& along, std::uint32_t& hint) const;

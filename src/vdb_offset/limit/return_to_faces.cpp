@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
-#include "vdb_offset/base/hash_mix.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/mesh/prevailing_point.h"
 #include "vdb_offset/paths/planes_around.h"
@@ -16,12 +14,8 @@
 namespace vdb_offset {
 namespace {
 
-// In the first of so many rounds all vertices are tried, then one in kReturnEvery, others in each, as vertices that
-// move together get into each other's way. In so many passes, as each may make room. See docs/dev/tuning.md.
-constexpr std::uint64_t kReturnRounds = 40, kReturnEvery = 3, kReturnPasses = 2;
-// Of a fault's corners that have moved those with the least area around them go back first, and those with no more than
-// so many times that. Not measured.
-constexpr double kAlikeAround = 4;
+// Passes, as each may make room for the next. See docs/dev/tuning.md.
+constexpr std::uint64_t kReturnPasses = 2;
 // By how much less the planes have to be off, in distances. Reasoned: what is less is no fault of faces.
 constexpr double kLessOff = 1e-3;
 // Share of the moving part's area: what live area around a corner is large.
@@ -45,22 +39,16 @@ bool ReturnToFaces::may_move(std::uint32_t v) const {
 
 bool ReturnToFaces::operator()(Which which) {
   if (on_crease_.empty()) on_crease_ = vertices_on_creases(state_.surface);
+  // What has moved meanwhile may have made a place no better than where its vertex is.
+  PlaceTrials trials(state_,
+                     [&](std::uint32_t v, const Place& place) { return place.off < state_.off_planes(v) - kLessOff; });
   bool any = false;
-  for (std::uint64_t pass = 0; pass < kReturnPasses && try_all(candidates(which), pass); ++pass) any = true;
-  return any;
-}
-
-/// Tries the places of all candidates, each once. Returns whether any vertex has moved.
-bool ReturnToFaces::try_all(std::vector<Candidate> all, std::uint64_t pass) {
-  bool any = false;
-  for (std::uint64_t round = 0; round < kReturnRounds && !all.empty(); ++round) {
-    const std::uint64_t salt = (pass * kReturnRounds + round) << 32;
-    std::vector<Candidate*> some;
-    for (Candidate& candidate : all)
-      if (salt == 0 || mix(salt | candidate.vertex) % kReturnEvery == 0) some.push_back(&candidate);
-    any |= try_some(some);
-    std::erase_if(all, [&](const Candidate& candidate) { return candidate.tried == candidate.places.size(); });
+  const Indices vertices = state_.moved_since(before_, 1);
+  for (std::uint64_t pass = 0; pass < kReturnPasses; ++pass) {
+    if (trials(candidates(vertices, which), pass).empty()) break;
+    any = true;
   }
+  if (which == Which::All) before_ = state_.displacements();
   return any;
 }
 
@@ -68,7 +56,7 @@ bool ReturnToFaces::settle() {
   VDB_OFFSET_ASSERT(state_.keeps_faces && !on_crease_.empty());
   if (state_.faults.any()) return false;
   std::vector<std::pair<double, Candidate>> all;
-  for (Candidate& candidate : candidates(Which::All)) {
+  for (Candidate& candidate : candidates(state_.moved_since({}, 0), Which::All)) {
     const std::uint32_t v = candidate.vertex;
     const double to_win = state_.live_area[v] * (state_.off_planes(v) - candidate.places.front().off);
     if (to_win > kLeastToWin * state_.live_area.whole_area()) all.emplace_back(to_win, std::move(candidate));
@@ -103,11 +91,11 @@ bool ReturnToFaces::may_be_better(std::uint32_t v) const {
   return is_elsewhere || (state_.keeps_faces ? on_crease_[v] != 0 : state_.is_short(v));
 }
 
-/// The vertices with live area that have places better than where they are.
-std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates(Which which) {
+/// Those of some vertices with live area that have places better than where they are.
+std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates(const Indices& vertices, Which which) {
   const double least_area = which == Which::LargeCorners ? kLargeCorner * state_.live_area.whole_area() : 0;
   Indices some;
-  for (std::uint32_t v = 0; v < state_.source.size(); ++v)
+  for (const auto v : vertices)
     if (may_move(v) && may_be_better(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
   state_.live_area.measure(some);
   std::erase_if(some, [&](std::uint32_t v) { return !(state_.live_area[v] > least_area); });
@@ -173,70 +161,6 @@ bool ReturnToFaces::is_at_distance(std::uint32_t v, const Vec3d& end) const {
   const Closest closest = state_.constrained.moving_part(state_.surface.vertices[v] + end, state_.constrained.hint(v));
   const double distance = std::abs(state_.distances[v]);
   return std::abs(closest.distance - distance) <= kReachedTolerance * distance;
-}
-
-/// Puts vertices to the next of their places, and those back that come to be at faults. Returns whether any stays
-/// there.
-bool ReturnToFaces::try_some(std::vector<Candidate*>& some) {
-  OldOnes moved;
-  Indices put, mitred;
-  for (Candidate* candidate : some) {
-    const Place& place = candidate->places[candidate->tried++];
-    const std::uint32_t v = candidate->vertex;
-    if (!(place.off < state_.off_planes(v) - kLessOff)) continue;
-    moved.push_back({v, state_.whole[v], state_.share[v]});
-    state_.whole[v] = place.end;
-    state_.share[v] = 1;
-    put.push_back(v);
-    if (state_.mitred && state_.mitred->is_miter(v, place.end)) mitred.push_back(v);
-  }
-  if (put.empty()) return false;
-  // Before they are judged: any other vertex that is farther than its distance is misplaced.
-  if (state_.mitred) state_.mitred->miter_again(mitred, state_.paths);
-  // All crossings, as not all corners of a fault go back: one that is not known would be left.
-  FaultFinder::Trial trial = state_.faults.try_out(put, [&](std::uint32_t v) { return state_.position_of(v); });
-  for (Indices back = restore_faulty(moved); !back.empty(); back = restore_faulty(moved)) {
-    trial.take_back(back);
-    ++state_.statistics.rounds;
-  }
-  return !moved.empty();
-}
-
-/// Gives moved vertices that are at faults back what they had, those with the least area around them first, and leaves
-/// them out. Returns these.
-Indices ReturnToFaces::restore_faulty(OldOnes& moved) {
-  const auto find = [&](std::uint32_t v) {
-    return std::lower_bound(moved.begin(), moved.end(), v,
-                            [](const Old& old, std::uint32_t w) { return old.vertex < w; });
-  };
-  const auto has_moved = [&](std::uint32_t v) {
-    const auto at = find(v);
-    return at != moved.end() && at->vertex == v;
-  };
-  const auto gather = [&](std::uint32_t v) {
-    if (has_moved(v)) state_.gathered.add(v);
-  };
-  state_.faults.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto triangle : {s, t})
-      for (const auto v : state_.surface.triangles[triangle])
-        if (has_moved(v)) least = std::min(least, state_.live_area.area(v));
-    for (const auto triangle : {s, t})
-      for (const auto v : state_.surface.triangles[triangle])
-        if (has_moved(v) && state_.live_area.area(v) <= kAlikeAround * least) state_.gathered.add(v);
-  });
-  for (const auto v : state_.faults.misplaced()) gather(v);
-  state_.faults.for_each_faulty_corner(gather, [](std::uint32_t) { return true; });  // of a rim alone
-  for (const auto v : state_.faults.caught()) gather(v);
-  Indices back = state_.gathered.take();
-  for (const auto v : back) {
-    const Old& old = *find(v);
-    state_.whole[v] = old.whole;
-    state_.share[v] = old.share;
-  }
-  if (state_.mitred) state_.mitred->take_back(back, state_.paths);
-  std::erase_if(moved, [&](const Old& old) { return std::binary_search(back.begin(), back.end(), old.vertex); });
-  return back;
 }
 
 }  // namespace vdb_offset

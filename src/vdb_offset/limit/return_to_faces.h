@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/limit/limit_state.h"
+#include "vdb_offset/limit/place_trials.h"
 #include "vdb_offset/limit/settling_trial.h"
 
 namespace vdb_offset {
@@ -23,7 +24,8 @@ class ReturnToFaces {
 
   /// LargeCorners: those alone that have much live area around them, at their ends and on their planes.
   enum class Which { LargeCorners, All };
-  /// Tries a part of the vertices at a time. Returns whether any has moved.
+  /// Tries a part of the vertices at a time; once all were, only those around which others have moved since. Returns
+  /// whether any has moved.
   bool operator()(Which which);
   /// Puts vertices at such places at the cost of what is in their way, one at a time, those first whose faces have most
   /// to win (see SettlingTrial). False if none was, or if there are faults. Follows on the other call, as what has room
@@ -31,38 +33,20 @@ class ReturnToFaces {
   bool settle();
 
  private:
-  /// Where a vertex might be, as a displacement, and how far the planes around it are off there, in distances.
-  struct Place {
-    Vec3d end;
-    double off;
-  };
-  /// The places of a vertex that are better than where it is, the best first, of which so many have been tried.
-  struct Candidate {
-    std::uint32_t vertex;
-    std::vector<Place> places;
-    std::size_t tried = 0;
-  };
-  /// A vertex, and what it had before it was put elsewhere.
-  struct Old {
-    std::uint32_t vertex;
-    Vec3d whole;
-    double share;
-  };
-  using OldOnes = std::vector<Old>;
+  using Place = PlaceTrials::Place;  // off: the mean by area of the planes
+  using Candidate = PlaceTrials::Candidate;
 
   bool may_move(std::uint32_t v) const;
   bool may_be_better(std::uint32_t v) const;
-  std::vector<Candidate> candidates(Which which);
+  std::vector<Candidate> candidates(const Indices& vertices, Which which);
   std::vector<Place> places(std::uint32_t v, Which which) const;
   void offer_planes(std::uint32_t v, double worst, std::vector<Place>& places) const;
   void offer_images(std::uint32_t v, double worst, std::vector<Place>& places) const;
   bool is_at_distance(std::uint32_t v, const Vec3d& end) const;
-  bool try_all(std::vector<Candidate> all, std::uint64_t pass);
-  bool try_some(std::vector<Candidate*>& some);
-  Indices restore_faulty(OldOnes& moved);
   bool settle(const Candidate& candidate, SettlingTrial& trial) const;
 
   LimitState& state_;
+  std::vector<Vec3d> before_;            // displacements when all vertices were tried last; empty before that
   std::vector<std::uint8_t> on_crease_;  // of each vertex; empty before the first call
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vdb_offset/limit/contraction.h"
+
 namespace vdb_offset {
 namespace {
 
@@ -13,16 +15,23 @@ namespace {
 constexpr std::size_t kMostSettled = 2000, kMostTrials = 3000;
 // Share of the moving part's area: vertices with less live area are left short.
 constexpr double kLeastSettled = 2e-5;
+// Rings around what has moved in which vertices are tried again.
+constexpr int kRingsAround = 2;
 
 }  // namespace
 
-/// The short vertices with which most live area is lost, that with the most first.
-std::vector<std::uint32_t> Settling::vertices_to_settle() {
+/// The short vertices that may have room now with which most live area is lost, that with the most first.
+std::vector<std::uint32_t> Settling::vertices_to_settle(LiveArea::Lines lines) {
   LiveArea& live_area = state_.live_area;
   const double least = kLeastSettled * live_area.whole_area();
+  const Indices around_moved = state_.moved_since(before_, kRingsAround);
+  const auto has_changed = [&](std::uint32_t v) {
+    return std::binary_search(around_moved.begin(), around_moved.end(), v) ||
+           (lines == LiveArea::Lines::All && live_area.is_at_border(v));
+  };
   std::vector<std::pair<double, std::uint32_t>> order;
   for (std::uint32_t v = 0; v < state_.share.size(); ++v)
-    if (may_settle(v))
+    if (may_settle(v) && has_changed(v))
       if (const double area = live_area.area(v); area > least) order.emplace_back(-area, v);
   std::sort(order.begin(), order.end());
   order.resize(std::min(order.size(), kMostSettled));
@@ -40,12 +49,13 @@ bool Settling::operator()(LiveArea::Lines lines) {
   if (state_.faults.any()) return false;
   SettlingTrial trial(state_, SettlingTrial::Aim::Distance);
   bool any = false;
-  for (const auto v : vertices_to_settle()) {
+  for (const auto v : vertices_to_settle(lines)) {
     if (trial.count() >= kMostTrials) break;
     if (!state_.is_short(v)) continue;
     if (lines == LiveArea::Lines::All && state_.is_held(v)) continue;
     any |= settle(v, lines, trial);
   }
+  before_ = state_.displacements();
   return any;
 }
 
@@ -54,9 +64,13 @@ SettlingTrial::Move Settling::move_to(std::uint32_t v, const Vec3d& position) co
   return {v, state_.in_planes(v, position - state_.surface.vertices[v])};
 }
 
+bool Settling::settle(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial) {
+  return settle_with_room(v, lines, trial) || (!state_.keeps_faces && settle_beside(v, trial));
+}
+
 /// Tries a vertex at each of its positions; then, at the first of them, with its neighbours, with the small feature
 /// that it is part of, and while the vertices in the way slide aside.
-bool Settling::settle(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial) {
+bool Settling::settle_with_room(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial) {
   const std::vector<Vec3d> positions = state_.live_area.positions_with_room(v, lines);
   if (positions.empty()) return false;
   for (const Vec3d& position : positions)
@@ -65,6 +79,15 @@ bool Settling::settle(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& tri
   const SettlingTrial::Moves together = with_short_neighbours(move, lines);
   return (together.size() > 1 && trial.try_alone(together)) || trial.try_with_feature(move) ||
          trial.try_with_others_aside(move);
+}
+
+/// Tries a vertex beside its neighbours. \pre no faces are kept: it would take room that miters need
+bool Settling::settle_beside(std::uint32_t v, SettlingTrial& trial) {
+  if (state_.is_held(v)) return false;
+  const std::vector<Contraction::Place> places = Contraction{state_}.places(v);
+  return std::any_of(places.begin(), places.end(), [&](const Contraction::Place& place) {
+    return trial.try_alone({SettlingTrial::Move{v, place.end}});
+  });
 }
 
 /// A move, and the moves of the short vertices around it to where they have their distances; not where there are many.

@@ -10,12 +10,14 @@
 
 namespace vdb_offset {
 
-/// The fourth step of limit(): puts short vertices, one at a time, where there is room for them at their distance.
+/// The fifth step of limit(): puts short vertices, one at a time, where there is room for them at their distance.
 ///
-/// The positions are those of live points of the faces around a vertex (see LiveArea). Vertices with much area go
-/// first. Each is tried alone, with its short neighbours, with the small feature that it is part of, and while the
-/// vertices in its way slide aside (see SettlingTrial). Follows on LetOut, as what could be let out again need not be
-/// settled, and is called twice: first with borders kept in the planes across them, then without.
+/// The positions are those of live points of the faces around a vertex (see LiveArea), then, unless faces are kept, the
+/// places beside its neighbours (see Contraction). Vertices with much area go first. Each is tried alone, with its
+/// short neighbours, with the small feature that it is part of, and while the vertices in its way slide aside (see
+/// SettlingTrial). Follows on LetOut, as what could be let out again need not be settled, and is called first with
+/// borders kept in the planes across them, then without. After the first call those vertices alone are tried around
+/// which others have moved since the last.
 class Settling {
  public:
   /// Keeps a reference.
@@ -27,12 +29,15 @@ class Settling {
 
  private:
   bool may_settle(std::uint32_t v) const { return state_.may_leave_path(v) && state_.is_short(v); }
-  std::vector<std::uint32_t> vertices_to_settle();
+  std::vector<std::uint32_t> vertices_to_settle(LiveArea::Lines lines);
   bool settle(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial);
+  bool settle_with_room(std::uint32_t v, LiveArea::Lines lines, SettlingTrial& trial);
+  bool settle_beside(std::uint32_t v, SettlingTrial& trial);
   SettlingTrial::Move move_to(std::uint32_t v, const Vec3d& position) const;
   SettlingTrial::Moves with_short_neighbours(const SettlingTrial::Move& move, LiveArea::Lines lines);
 
   LimitState& state_;
+  std::vector<Vec3d> before_;  // displacements at the end of the last call; empty before the first
 };
 
 }  // namespace vdb_offset

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "vdb_offset/limit/contraction.h"
 #include "vdb_offset/limit/pull_back.h"
 #include "vdb_offset/paths/propagate.h"
 
@@ -17,6 +18,10 @@ namespace {
 // share of the live area that is won.
 constexpr std::size_t kMostFaults = 150;
 constexpr double kWorthLosing = 0.8;
+// With Aim::Distance up to so many times that share may be lost if room is found elsewhere for some of what is lost: of
+// so many vertices. See docs/dev/tuning.md.
+constexpr double kMayFindRoom = 5;
+constexpr std::size_t kMostElsewhere = 4;
 // In a trial, a vertex in the way keeps this share of its displacement in a round, less than in pull_back(), so that
 // few rounds are needed; below the last share it keeps none.
 constexpr double kKeptInTrial = 0.6, kLastShareInTrial = 1e-3;
@@ -80,8 +85,9 @@ SettlingTrial::Old SettlingTrial::old_of(std::uint32_t v) const {
           aim_ == Aim::Faces ? state_.off_planes(v) : 0};
 }
 
-/// Whether more is won by the trial so far than is lost.
-bool SettlingTrial::is_worth_it(std::uint32_t vertex, const OldOnes& old) {
+/// Whether more is won by the trial so far than is lost. With a leeway, up to so many times as much may be lost as a
+/// trial may lose in the end; it is for Aim::Distance alone.
+bool SettlingTrial::is_worth_it(std::uint32_t vertex, const OldOnes& old, double leeway) {
   double lost = 0;
   Indices some;
   for (const Old& o : old) some.push_back(o.vertex);
@@ -89,7 +95,7 @@ bool SettlingTrial::is_worth_it(std::uint32_t vertex, const OldOnes& old) {
   if (aim_ == Aim::Distance) {
     for (const Old& o : old)
       if (!o.was_short && state_.is_short(o.vertex)) lost += state_.live_area[o.vertex];
-    return lost <= kWorthLosing * state_.live_area[vertex];
+    return lost <= leeway * kWorthLosing * state_.live_area[vertex];
   }
   for (const Old& o : old) {
     const bool is_short = state_.is_short(o.vertex);
@@ -110,16 +116,18 @@ bool SettlingTrial::try_out(const Moves& moves, const SlideAside* aside) {
     put_back(old);
     return false;
   }
+  const bool finds_room = aim_ == Aim::Distance && !state_.keeps_faces;  // it may be that of miters
   while (state_.faults.any() || !state_.faults.misplaced().empty()) {
     const Indices in_the_way = vertices_to_pull(state_, vertex);
     const bool is_hopeless = in_the_way.empty() || state_.fault_count() > kMostFaults;
     if (!is_hopeless) pull(in_the_way, old);
-    if (is_hopeless || !is_worth_it(vertex, old)) {
+    if (is_hopeless || !is_worth_it(vertex, old, finds_room ? kMayFindRoom : 1)) {
       put_back(old);
       return false;
     }
     ++state_.statistics.rounds;
   }
+  if (finds_room) put_lost_elsewhere(vertex, old);
   if (!is_worth_it(vertex, old)) {
     put_back(old);
     return false;
@@ -174,6 +182,41 @@ bool SettlingTrial::slide_aside(std::uint32_t vertex, const SlideAside& aside, O
   Untangler(state_.constrained, state_.distances, aside.energy)(sliding, state_.whole);
   state_.move(sliding);
   return true;
+}
+
+/// Puts vertices that have come to be short where there is room for them, those first with which most is lost, until
+/// the trial is worth it. \pre there are no faults, and Aim::Distance
+void SettlingTrial::put_lost_elsewhere(std::uint32_t vertex, const OldOnes& old) {
+  if (is_worth_it(vertex, old)) return;
+  std::vector<std::pair<double, std::uint32_t>> lost;
+  for (const Old& o : old)
+    if (!o.was_short && state_.is_short(o.vertex) && may_go_along(o.vertex))
+      lost.emplace_back(-state_.live_area[o.vertex], o.vertex);
+  std::sort(lost.begin(), lost.end());
+  lost.resize(std::min(lost.size(), kMostElsewhere));
+  for (const auto& [area, v] : lost)
+    if (find_room(v) && is_worth_it(vertex, old)) return;
+}
+
+/// Puts a short vertex where it has room, or beside a neighbour, if that makes no fault; else leaves it where it is.
+bool SettlingTrial::find_room(std::uint32_t v) {
+  const double distance = std::abs(state_.distances[v]);
+  std::vector<Vec3d> ends;
+  for (const Vec3d& position : state_.live_area.positions_with_room(v, LiveArea::Lines::All))
+    ends.push_back(round_displacement(position - state_.surface.vertices[v], distance));
+  for (const Contraction::Place& place : Contraction{state_}.places(v)) ends.push_back(place.end);
+  const Vec3d whole = state_.whole[v];
+  const double share = state_.share[v];
+  for (const Vec3d& end : ends) {
+    state_.whole[v] = end;
+    state_.share[v] = 1;
+    state_.move({v});
+    if (!state_.faults.any() && state_.faults.misplaced().empty() && !state_.is_short(v)) return true;
+  }
+  state_.whole[v] = whole;
+  state_.share[v] = share;
+  state_.move({v});
+  return false;
 }
 
 void SettlingTrial::put_back(const OldOnes& old) {

@@ -5,15 +5,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_offset/limit/limit_schedule.h"
 #include "vdb_offset/limit/limit_state.h"
+#include "vdb_offset/untangle/schedule.h"
 
 namespace vdb_offset {
 
 /// Puts a vertex elsewhere at the cost of what is in its way, if less is lost by that than is won.
 ///
 /// A trial puts the vertex there alone, with the small feature that it is part of, or while the vertices in its way
-/// slide aside; then it pulls back the vertices that are still in its way.
+/// slide aside; then it pulls back the vertices that are still in its way, and with Aim::Distance looks for room for
+/// those elsewhere.
 /// What is won and lost is live area: with Aim::Distance that of vertices at their distance, with Aim::Faces that of
 /// faces, by how far these are off. Each call answers whether the trial is kept; if not, nothing has changed. \pre
 /// there are no faults
@@ -59,8 +60,10 @@ class SettlingTrial {
   void put(const Moves& moves, OldOnes& old);
   void pull(const Indices& vertices, OldOnes& old);
   bool slide_aside(std::uint32_t vertex, const SlideAside& aside, OldOnes& old);
+  void put_lost_elsewhere(std::uint32_t vertex, const OldOnes& old);
+  bool find_room(std::uint32_t v);
   void put_back(const OldOnes& old);
-  bool is_worth_it(std::uint32_t vertex, const OldOnes& old);
+  bool is_worth_it(std::uint32_t vertex, const OldOnes& old, double leeway = 1);
 
   LimitState& state_;
   Aim aim_;

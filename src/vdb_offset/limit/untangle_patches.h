@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "vdb_offset/base/progress_count.h"
-#include "vdb_offset/limit/limit_schedule.h"
 #include "vdb_offset/limit/limit_state.h"
-#include "vdb_offset/limit/vertex_patches.h"
+#include "vdb_offset/untangle/schedule.h"
+#include "vdb_offset/untangle/vertex_patches.h"
 
 namespace vdb_offset {
 

@@ -12,7 +12,7 @@
 #include "vdb_offset/parts/constrained_surface.h"
 #include "vdb_offset/statistics.h"
 #include "vdb_offset/validity/clearance.h"
-#include "vdb_offset/validity/index_checks.h"
+#include "vdb_offset/validity/replace_members.h"
 #include "vdb_offset/validity/source_crossings.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 #include "vdb_offset/validity/vertex_positions.h"

@@ -7,7 +7,7 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/paths/propagate.h"
-#include "vdb_offset/validity/index_checks.h"
+#include "vdb_offset/validity/replace_members.h"
 
 namespace vdb_offset {
 namespace {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
-#include "vdb_offset/validity/index_checks.h"
 
 namespace vdb_offset {
 

@@ -10,7 +10,6 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/surface/border_planes.h"
-#include "vdb_offset/validity/index_checks.h"
 
 namespace vdb_offset {
 namespace {

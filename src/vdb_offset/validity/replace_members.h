@@ -2,18 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
-#include <functional>
+#include <cstdint>
 
 #include "vdb_offset/base/index_set.h"
 
 namespace vdb_offset {
-
-/// Whether these are indices below `count`, sorted, each once: for assertions.
-inline bool is_index_set(const Indices& indices, std::size_t count) {
-  return std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>()) == indices.end() &&
-         (indices.empty() || indices.back() < count);
-}
 
 /// Replaces the members of `set` that are in `some` by those of `some` that is_member(index) is true of. Both sorted.
 template <class IsMember>

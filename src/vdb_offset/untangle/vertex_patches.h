@@ -10,7 +10,6 @@
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/index_set.h"
 #include "vdb_offset/surface/surface.h"
-#include "vdb_offset/validity/index_checks.h"
 
 namespace vdb_offset {
 
