@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "vdb_offset/base/parallel.h"
@@ -12,8 +13,8 @@ namespace {
 
 // Shares of the way from a neighbour to the middle of all neighbours: places are that near to the neighbour.
 constexpr double kBesideShares[] = {0.03, 0.3};
-// Most places of a vertex, and the neighbours from which on it has none: hubs of fans have places beside each.
-constexpr std::size_t kMostBeside = 16, kMostNeighbours = 200;
+// Most places of a vertex, and most faces around one that has any: hubs of fans would have places beside each corner.
+constexpr std::size_t kMostBeside = 12, kMostFacesAround = 200;
 // How far places are from the vertex at most, in distances. Farther ones bring vertices to their distance, too, but
 // stretch what lies between.
 constexpr double kFarthestBeside = 4;
@@ -42,7 +43,8 @@ bool Contraction::operator()() {
     if (moved.empty()) break;
     any = true;
     vertices = state_.with_rings(moved, 1);
-    // Collided vertices follow one ring at most: farther in, fronts stay in the middle between what they come from.
+    // Of those at the ends of their paths, as collided ones are, one ring goes in a call: farther in, fronts stay in
+    // the middle between what they come from.
     std::erase_if(vertices, [&](std::uint32_t v) { return !is_contractible(v) || state_.share[v] == 1; });
   }
   before_ = state_.displacements();
@@ -53,38 +55,42 @@ bool Contraction::is_contractible(std::uint32_t v) const {
   return state_.may_leave_path(v) && !state_.is_held(v) && state_.is_short(v);
 }
 
-/// The vertices that places of a vertex may be beside, each once: those at the border for one at a border.
+/// The vertices of the moving part that places of a vertex may be beside, each once: those at the border for one at a
+/// border.
 Indices Contraction::neighbours(std::uint32_t v) const {
-  const Surface& surface = state_.surface;
-  Indices all, along_border;
-  for (const auto t : surface.triangles_around(v))
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t edge = 3 * t + k, from = surface.from(edge), to = surface.to(edge);
-      if (from != v && to != v) continue;
-      const std::uint32_t other = from == v ? to : from;
-      all.push_back(other);
-      if (surface.next_around_edge[edge] == edge) along_border.push_back(other);
-    }
-  Indices& chosen = along_border.empty() ? all : along_border;
-  sort_unique(chosen);
-  return chosen;
+  Indices ends, all, along_border;
+  for (const auto t : state_.surface.triangles_around(v))
+    if (state_.constrained.triangle_on_part(t))
+      for (const auto w : state_.surface.triangles[t])
+        if (w != v) ends.push_back(w);
+  std::sort(ends.begin(), ends.end());
+  for (std::size_t i = 0, next = 0; i < ends.size(); i = next) {
+    while (next < ends.size() && ends[next] == ends[i]) ++next;
+    if (state_.distances[ends[i]] == 0) continue;
+    all.push_back(ends[i]);
+    if (next - i == 1) along_border.push_back(ends[i]);
+  }
+  return along_border.empty() ? all : along_border;
 }
 
-/// A displacement to a position at a vertex's distance near one.
-Vec3d Contraction::at_distance(std::uint32_t v, Vec3d position) const {
+/// A displacement to a position at a vertex's distance near one; none in narrow grooves, where steps away from one wall
+/// lead to the other.
+std::optional<Vec3d> Contraction::at_distance(std::uint32_t v, Vec3d position) const {
   // Steps along the gradient, and share of the distance that the last may be off. Reasoned: the gradient has length 1,
   // so that the first step is exact unless another part is nearer at its end.
-  constexpr int kMostSteps = 8;
+  constexpr int kMostSteps = 12;
   constexpr double kSettled = 1e-9;
   const double distance = std::abs(state_.distances[v]);
   std::uint32_t hint = state_.constrained.hint(v);
   for (int step = 0; step < kMostSteps; ++step) {
     const Closest closest = state_.constrained.moving_part(position, hint);
     hint = closest.triangle;
-    if (!(closest.distance > 0) || std::abs(closest.distance - distance) <= kSettled * distance) break;
+    if (std::abs(closest.distance - distance) <= kSettled * distance)
+      return round_displacement(position - state_.surface.vertices[v], distance);
+    if (!(closest.distance > 0)) break;
     position += (position - closest.point) * (distance / closest.distance - 1);
   }
-  return round_displacement(position - state_.surface.vertices[v], distance);
+  return std::nullopt;
 }
 
 /// How far the faces around a vertex are off with a displacement of it, in distances: where faces are kept, their
@@ -93,14 +99,17 @@ Vec3d Contraction::at_distance(std::uint32_t v, Vec3d position) const {
 double Contraction::error_around(std::uint32_t v, const Vec3d& displacement) const {
   if (state_.keeps_faces) return state_.off_planes(v, displacement);
   const auto& x = state_.surface.vertices;
-  const double distance = std::abs(state_.distances[v]);
   std::uint32_t hint = state_.constrained.hint(v);
   double error = 0, whole = 0;
   for (const auto t : state_.surface.triangles_around(v)) {
+    if (!state_.constrained.triangle_on_part(t)) continue;
     const auto& corners = state_.surface.triangles[t];
     Vec3d at[3];
-    for (int k = 0; k < 3; ++k)
+    double distance = 0;
+    for (int k = 0; k < 3; ++k) {
       at[k] = x[corners[k]] + (corners[k] == v ? displacement : state_.displacement_of(corners[k]));
+      distance += std::abs(state_.distances[corners[k]]) / 3;
+    }
     const double before = (x[corners[1]] - x[corners[0]]).cross(x[corners[2]] - x[corners[0]]).length(),
                  now = (at[1] - at[0]).cross(at[2] - at[0]).length();
     const Closest closest = state_.constrained.moving_part((at[0] + at[1] + at[2]) / 3.0, hint);
@@ -108,21 +117,22 @@ double Contraction::error_around(std::uint32_t v, const Vec3d& displacement) con
     error += (before + now) * std::abs(closest.distance - distance);
     whole += before;
   }
-  return whole > 0 ? error / (whole * distance) : 0;
+  return whole > 0 ? error / (whole * std::abs(state_.distances[v])) : 0;
 }
 
 std::vector<Contraction::Place> Contraction::places(std::uint32_t v) const {
   std::vector<Place> places;
   const Indices around = neighbours(v);
   const auto is_short = [&](std::uint32_t w) { return state_.is_short(w); };
-  if (around.size() > kMostNeighbours || std::all_of(around.begin(), around.end(), is_short)) return places;
+  const bool is_hub = state_.surface.triangles_around(v).size() > kMostFacesAround;
+  if (is_hub || std::all_of(around.begin(), around.end(), is_short)) return places;
   const auto position = [&](std::uint32_t w) { return state_.surface.vertices[w] + state_.displacement_of(w); };
   Vec3d middle(0.0);
   for (const auto w : around) middle += position(w) / static_cast<double>(around.size());
   const auto offer = [&](const Vec3d& near) {
-    const Vec3d end = at_distance(v, near);
-    if (end.length() <= kFarthestBeside * std::abs(state_.distances[v]))
-      places.push_back({end, state_.off_planes(v, end)});
+    const std::optional<Vec3d> end = at_distance(v, near);
+    if (end && end->length() <= kFarthestBeside * std::abs(state_.distances[v]))
+      places.push_back({*end, state_.off_planes(v, *end)});
   };
   for (const auto w : around)
     if (!is_short(w))

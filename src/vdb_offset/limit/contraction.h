@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vdb_offset/limit/limit_state.h"
@@ -14,8 +15,8 @@ namespace vdb_offset {
 ///
 /// That is what is left for a vertex of which nothing around has room straight above it. A place is taken only if the
 /// faces around the vertex are nearer to the distance with it than without (see error_around()), so that no vertex is
-/// counted as reached at the cost of the surface. A vertex at a border goes along the border alone; one that has to
-/// stay in planes does not go.
+/// counted as reached at the cost of the surface; settled vertices, which win live area, may take one that is a little
+/// worse. A vertex at a border goes along the border alone; one that has to stay in planes does not go.
 class Contraction {
  public:
   using Place = PlaceTrials::Place;
@@ -34,12 +35,12 @@ class Contraction {
  private:
   bool is_contractible(std::uint32_t v) const;
   Indices neighbours(std::uint32_t v) const;
-  Vec3d at_distance(std::uint32_t v, Vec3d position) const;
+  std::optional<Vec3d> at_distance(std::uint32_t v, Vec3d position) const;
   double error_around(std::uint32_t v, const Vec3d& displacement) const;
   std::vector<PlaceTrials::Candidate> candidates(const Indices& vertices) const;
 
   LimitState& state_;
-  std::vector<Vec3d> before_;  // displacements at the end of the last call; empty before the first
+  Displacements before_;  // displacements at the end of the last call; empty before the first
 };
 
 }  // namespace vdb_offset

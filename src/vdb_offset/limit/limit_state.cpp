@@ -14,6 +14,10 @@ namespace {
 // bent. Reasoned: the line may dip through the faces around the vertex only near them.
 constexpr double kBent = 0.1;
 
+std::array<float, 3> as_floats(const Vec3d& x) {
+  return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
+}
+
 }  // namespace
 
 LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, const WarmStart* warm)
@@ -75,17 +79,17 @@ Indices LimitState::take_miters_back(const Indices& vertices) {
   return unmitred;
 }
 
-std::vector<Vec3d> LimitState::displacements() const {
-  std::vector<Vec3d> all(share.size());
-  for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = displacement_of(v);
+Displacements LimitState::displacements() const {
+  Displacements all(share.size());
+  for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = as_floats(displacement_of(v));
   return all;
 }
 
-Indices LimitState::moved_since(const std::vector<Vec3d>& before, int rings) {
+Indices LimitState::moved_since(const Displacements& before, int rings) {
   VDB_OFFSET_ASSERT(before.empty() || before.size() == share.size());
   Indices moved;
   for (std::uint32_t v = 0; v < share.size(); ++v)
-    if (before.empty() || displacement_of(v) != before[v]) moved.push_back(v);
+    if (before.empty() || as_floats(displacement_of(v)) != before[v]) moved.push_back(v);
   return with_rings(moved, rings);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,9 @@
 #include "vdb_offset/limit/warm_start.h"
 
 namespace vdb_offset {
+
+/// Displacements of all vertices, for telling later which have moved since: 12 bytes a vertex.
+using Displacements = std::vector<std::array<float, 3>>;
 
 /// The offset that limit() makes valid, as its steps change it: each vertex goes a share of a whole displacement.
 ///
@@ -90,11 +94,11 @@ struct LimitState {
     faults.move(vertices, [&](std::uint32_t v) { return position_of(v); });
   }
 
-  /// Displacements of all vertices, to tell later which have moved since.
-  std::vector<Vec3d> displacements() const;
+  /// Of all vertices, where they stand.
+  Displacements displacements() const;
   /// The vertices that do not have these displacements, and those of so many rings around them; all vertices if there
   /// are none.
-  Indices moved_since(const std::vector<Vec3d>& before, int rings);
+  Indices moved_since(const Displacements& before, int rings);
 
   /// Some vertices and those of so many rings around them.
   Indices with_rings(const Indices& vertices, int rings);

@@ -11,8 +11,8 @@
 namespace vdb_offset {
 namespace {
 
-// In the first of so many rounds all vertices are tried, then one in kTrialEvery, others in each, as vertices that
-// move together get into each other's way. See docs/dev/tuning.md.
+// In the first of so many rounds of the first pass all vertices are tried, else one in kTrialEvery, others in each, as
+// vertices that move together get into each other's way. See docs/dev/tuning.md.
 constexpr std::uint64_t kTrialRounds = 40, kTrialEvery = 3;
 // Of a fault's corners that have moved those with the least area around them go back first, and those with no more than
 // so many times that. Not measured.

@@ -12,7 +12,7 @@
 namespace vdb_offset {
 
 /// Tries places of many vertices at once, none at the cost of another: they go there together, and those that come to
-/// be at faults go back, those with the least area around them first. \pre there are no faults
+/// be at faults go back, those with the least area around them first. Faults that there are before count as theirs.
 class PlaceTrials {
  public:
   /// Where a vertex might be, as a displacement, and how far the faces around it are off there, in distances.
@@ -32,8 +32,8 @@ class PlaceTrials {
   /// Keeps a reference.
   PlaceTrials(LimitState& state, IsBetter is_better) : state_(state), is_better_(std::move(is_better)) {}
 
-  /// Tries the places of some vertices, each once. Returns the vertices that stay at one, sorted. The number of the
-  /// pass decides who goes together.
+  /// Tries the places of some vertices, each at most once. Returns the vertices that stay at one, sorted. The number of
+  /// the pass decides who goes together.
   Indices operator()(std::vector<Candidate> all, std::uint64_t pass);
 
  private:

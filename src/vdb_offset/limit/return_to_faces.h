@@ -46,7 +46,7 @@ class ReturnToFaces {
   bool settle(const Candidate& candidate, SettlingTrial& trial) const;
 
   LimitState& state_;
-  std::vector<Vec3d> before_;            // displacements when all vertices were tried last; empty before that
+  Displacements before_;                 // displacements when all vertices were tried last; empty before that
   std::vector<std::uint8_t> on_crease_;  // of each vertex; empty before the first call
 };
 

@@ -16,8 +16,8 @@ namespace vdb_offset {
 /// places beside its neighbours (see Contraction). Vertices with much area go first. Each is tried alone, with its
 /// short neighbours, with the small feature that it is part of, and while the vertices in its way slide aside (see
 /// SettlingTrial). Follows on LetOut, as what could be let out again need not be settled, and is called first with
-/// borders kept in the planes across them, then without. After the first call those vertices alone are tried around
-/// which others have moved since the last.
+/// borders kept in the planes across them, then without. After the first call those vertices alone are tried that were
+/// not, or around which others have moved since.
 class Settling {
  public:
   /// Keeps a reference.
@@ -37,7 +37,8 @@ class Settling {
   SettlingTrial::Moves with_short_neighbours(const SettlingTrial::Move& move, LiveArea::Lines lines);
 
   LimitState& state_;
-  std::vector<Vec3d> before_;  // displacements at the end of the last call; empty before the first
+  Displacements before_;  // displacements at the beginning of the last call; empty before the first
+  Indices untried_;       // vertices that there were too many others for in the last call
 };
 
 }  // namespace vdb_offset

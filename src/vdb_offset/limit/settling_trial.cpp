@@ -20,7 +20,7 @@ constexpr std::size_t kMostFaults = 150;
 constexpr double kWorthLosing = 0.8;
 // With Aim::Distance up to so many times that share may be lost if room is found elsewhere for some of what is lost: of
 // so many vertices. See docs/dev/tuning.md.
-constexpr double kMayFindRoom = 5;
+constexpr double kMayFindRoom = 8;
 constexpr std::size_t kMostElsewhere = 4;
 // In a trial, a vertex in the way keeps this share of its displacement in a round, less than in pull_back(), so that
 // few rounds are needed; below the last share it keeps none.
@@ -110,7 +110,8 @@ bool SettlingTrial::is_worth_it(std::uint32_t vertex, const OldOnes& old, double
 bool SettlingTrial::try_out(const Moves& moves, const SlideAside* aside) {
   ++count_;
   OldOnes old;
-  put(moves, old);
+  for (const Move& move : moves) old.push_back(old_of(move.vertex));
+  put(moves);
   const std::uint32_t vertex = moves.front().vertex;
   if (state_.is_short(vertex) || (aside && !slide_aside(vertex, *aside, old))) {
     put_back(old);
@@ -137,10 +138,9 @@ bool SettlingTrial::try_out(const Moves& moves, const SlideAside* aside) {
   return true;
 }
 
-void SettlingTrial::put(const Moves& moves, OldOnes& old) {
+void SettlingTrial::put(const Moves& moves) {
   Indices moved, mitred;
   for (const auto& [v, displacement] : moves) {
-    old.push_back(old_of(v));
     moved.push_back(v);
     state_.whole[v] = round_displacement(displacement, std::abs(state_.distances[v]));
     state_.share[v] = 1;
@@ -200,17 +200,14 @@ void SettlingTrial::put_lost_elsewhere(std::uint32_t vertex, const OldOnes& old)
 
 /// Puts a short vertex where it has room, or beside a neighbour, if that makes no fault; else leaves it where it is.
 bool SettlingTrial::find_room(std::uint32_t v) {
-  const double distance = std::abs(state_.distances[v]);
   std::vector<Vec3d> ends;
-  for (const Vec3d& position : state_.live_area.positions_with_room(v, LiveArea::Lines::All))
-    ends.push_back(round_displacement(position - state_.surface.vertices[v], distance));
+  for (const Vec3d& position : state_.live_area.positions_with_room(v, LiveArea::Lines::KeepBorder))
+    ends.push_back(position - state_.surface.vertices[v]);
   for (const Contraction::Place& place : Contraction{state_}.places(v)) ends.push_back(place.end);
   const Vec3d whole = state_.whole[v];
   const double share = state_.share[v];
   for (const Vec3d& end : ends) {
-    state_.whole[v] = end;
-    state_.share[v] = 1;
-    state_.move({v});
+    put({{v, end}});
     if (!state_.faults.any() && state_.faults.misplaced().empty() && !state_.is_short(v)) return true;
   }
   state_.whole[v] = whole;

@@ -57,7 +57,7 @@ class SettlingTrial {
   Moves with_near_vertices(const Move& move, double reach) const;
   bool may_go_along(std::uint32_t v) const { return state_.may_leave_path(v) && !state_.is_held(v); }
   Old old_of(std::uint32_t v) const;
-  void put(const Moves& moves, OldOnes& old);
+  void put(const Moves& moves);
   void pull(const Indices& vertices, OldOnes& old);
   bool slide_aside(std::uint32_t vertex, const SlideAside& aside, OldOnes& old);
   void put_lost_elsewhere(std::uint32_t vertex, const OldOnes& old);
