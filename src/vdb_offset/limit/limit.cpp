@@ -45,7 +45,7 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
   if (state.keeps_faces && return_to_faces.settle()) let_out(progress);
   if (Contraction contract(state); contract()) {
     let_out(progress);
-    // What has been contracted makes room for others; miters have had theirs.
+    // What has been contracted makes room for others to settle; with miters, they would take that of miters.
     if (!state.keeps_faces && settle(LiveArea::Lines::All)) let_out(progress);
     if (!state.keeps_faces && contract()) let_out(progress);
     if (return_to_faces(Which::All)) let_out(progress);

@@ -33,7 +33,7 @@ class PlaceTrials {
   PlaceTrials(LimitState& state, IsBetter is_better) : state_(state), is_better_(std::move(is_better)) {}
 
   /// Tries the places of some vertices, each at most once. Returns the vertices that stay at one, sorted. The number of
-  /// the pass decides who goes together.
+  /// the pass decides which vertices go together.
   Indices operator()(std::vector<Candidate> all, std::uint64_t pass);
 
  private:
