@@ -39,6 +39,7 @@ WeldOptions weld_of(const py::object& given) {
     }
   } else if (!is_truth(given) && PyNumber_Check(given.ptr()) == 1) {
     weld.tolerance = given.cast<double>();
+    weld.join_hanging = weld.tolerance > 0;
     if (weld.tolerance >= 0) return weld;
   }
   throw InvalidOption("weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got " +

@@ -936,6 +936,20 @@ TEST_CASE("command: a scene brings what its shape is to fit, unless a distance i
   CHECK(!run.has("no.obj"));
 }
 
+TEST_CASE("command: triangles of polygons with corners on straight sides are told from each other", "[command]") {
+  const ShellCommand run;
+  std::ofstream(run.file("box.obj"))
+      << "v 0 0 0\nv 1 0 0\nv 1 1.3 0\nv 0 1.3 0\nv 0 0 0.7\nv 1 0 0.7\nv 1 1.3 0.7\nv 0 1.3 0.7\n"
+         "v 0.614602089 1.3 0\nv 1 1.3 0.00372784028\nv 1 1.3 0.473696659\nv 1 1.3 0.559246629\n"
+         "v 0.991383328 1.3 0.7\nv 0 0 0.295524067\nv 0.0665995215 0 0.7\nv 0.267023636 0 0.7\n"
+         "v 0.580481092 0 0.7\nf 3 2 1 4 9\nf 10 11 12 7 6 2 3\nf 12 11 10 3 9 4 8 13 7\nf 5 8 4 1 14\n"
+         "f 13 8 5 15 16 17 6 7\nf 16 15 5 14 1 2 6 17\n";
+  for (const std::string distance : {" -d 0.05", " --distance=-0.05"}) {
+    CHECK(run("box.obj box.stl" + distance).code == 0);
+    CHECK_THAT(run("check box.obj box.stl" + distance).out, Catch::EndsWith("\nvalid\n"));
+  }
+}
+
 TEST_CASE("command: what becomes of a scene in STL is judged as it is written", "[command][scene]") {
   const ShellCommand run;
   const std::string scene = "'" + test::scenes_path() + "/naca_wing.json'";

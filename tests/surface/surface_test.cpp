@@ -43,6 +43,34 @@ TEST_CASE("triangulate: a concave polygon is covered once", "[surface]") {
   CHECK(area_of(p, triangles) == Approx(3));
 }
 
+TEST_CASE("triangulate: a corner on a straight side is one of triangles with an area", "[surface]") {
+  // A triangle with corners on its sides, begun at each of its corners.
+  const std::vector<Vec3d> p = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {1.5, 2, 0}, {0, 4, 0}, {0, 1, 0}};
+  const auto check = [&](std::vector<std::uint32_t> corners) {
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+      std::vector<std::array<std::uint32_t, 3>> triangles;
+      triangulate_without_lines(p, corners, triangles);
+      REQUIRE(triangles.size() == corners.size() - 2);
+      for (const auto& t : triangles) CHECK(area_of(p, {t}) > 0.1);
+      CHECK(area_of(p, triangles) == Approx(6));
+    }
+  };
+  check({0, 1, 2, 4});
+  check({0, 2, 3, 4});
+  check({0, 2, 4, 5});
+  check({0, 1, 2, 3, 4});
+  check({0, 1, 2, 3, 4, 5});
+}
+
+TEST_CASE("triangulate: a spike, which has no area, does not turn a triangle over", "[surface]") {
+  // From the first corner to the second, and back to the third, which is on the way.
+  const std::vector<Vec3d> p = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {0, 2, 0}};
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangulate_without_lines(p, std::vector<std::uint32_t>{0, 1, 2, 3}, triangles);
+  CHECK(triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}});
+}
+
 TEST_CASE("triangulate: a polygon with a bridge to a hole leaves the hole open", "[surface]") {
   // A square of side 3 with a hole of side 1, joined by a bridge that is run through twice.
   const std::vector<Vec3d> p = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}};

@@ -257,6 +257,11 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
     fmt::print(out,
                "seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",
                result.facts.seams.vertices, result.facts.seams.widest);
+  if (result.facts.seams.hanging > 0)
+    fmt::print(out,
+               "hanging     {} vertices of the source lie on edges of faces that have no corner there, {:.2g} off at "
+               "most\n",
+               result.facts.seams.hanging, result.facts.seams.widest_hanging);
   if (result.obstacles)
     fmt::print(out, "obstacles   gap {:.6g}, {:.6g} at the start; {} triangles nearer than the clearance\n",
                result.obstacles->gap, result.obstacles->starting_gap, result.obstacles->near);

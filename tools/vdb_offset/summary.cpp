@@ -68,6 +68,11 @@ void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
                "{} vertices at borders are one with others but for rounding, {:.2g} apart at most, and count as welded "
                "(--weld exact leaves these borders open)\n",
                seams.vertices, seams.widest);
+  if (seams.hanging > 0)
+    fmt::print(out,
+               "{} vertices lie on edges of faces that have no corner there, {:.2g} off at most, and count as joined "
+               "to these (--weld exact leaves them hanging)\n",
+               seams.hanging, seams.widest_hanging);
   constexpr double kFarBelow =
       0.1;  // share of the distance: borders nearer to each other hold the offset back; not measured
   if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)

@@ -30,7 +30,7 @@ IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options
     normal = metric.to(normal);  // a gradient
     if (const double length = normal.length(); length > 0) normal /= length;
   });
-  result.statistics.source = build_surface(mesh, options.weld, options.orient).facts;
+  result.statistics.source = build_surface(mesh, options.weld.without_joins(), options.orient).facts;
   result.source = unscaled(result.source->surface, metric, options.orient);
   return result;
 }
@@ -38,7 +38,7 @@ IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options
 IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric) {
   IsoStatistics statistics = plan_iso_surface(InMetric(mesh, metric).view(), options);
   // Facts of the mesh are those of the mesh in the file.
-  if (!metric.even()) statistics.source = build_surface(mesh, options.weld, options.orient).facts;
+  if (!metric.even()) statistics.source = build_surface(mesh, options.weld.without_joins(), options.orient).facts;
   return statistics;
 }
 

@@ -148,7 +148,7 @@ void require_usable(const IsoOptions& options) {
 void IsoSurfaceMaker::prepare() {
   const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
   IsoStatistics& statistics = result_.statistics;
-  Surface surface = build_surface(mesh_, options_.weld, options_.orient);
+  Surface surface = build_surface(mesh_, options_.weld.without_joins(), options_.orient);
   const Solids solids = find_solids(surface, options_, statistics);
   const IsoPlan plan = plan_voxels(surface, options_, solids.has_inside);
   statistics.plan = plan;
@@ -334,7 +334,7 @@ IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options) {
   require_usable(options);
   IsoStatistics statistics;
   statistics.threads = thread_count(options.threads);
-  const Surface surface = build_surface(mesh, options.weld, options.orient);
+  const Surface surface = build_surface(mesh, options.weld.without_joins(), options.orient);
   const Solids solids = find_solids(surface, options, statistics);
   statistics.plan = plan_voxels(surface, options, solids.has_inside);
   return statistics;

@@ -59,6 +59,24 @@ std::vector<Point2> project(std::span<const Vec3d> positions, std::span<const st
   return flat;
 }
 
+/// Splits a flat polygon by clipping ears.
+void clip(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {
+  for (const auto& [a, b, c] : clip_ears(project(positions, polygon, area_vector(positions, polygon))))
+    triangles.push_back({polygon[a], polygon[b], polygon[c]});
+}
+
+/// The least height of triangles, each as a share of its longest side; below 0 of one that faces against `area`.
+double least_height(std::span<const Vec3d> positions, std::span<const Triangle> triangles, const Vec3d& area) {
+  const double whole = area.length();
+  double least = 1;
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3d ab = positions[b] - positions[a], bc = positions[c] - positions[b], ca = positions[a] - positions[c];
+    const double longest = std::max({ab.lengthSqr(), bc.lengthSqr(), ca.lengthSqr()});
+    least = std::min(least, longest > 0 && whole > 0 ? ab.cross(bc).dot(area) / (whole * longest) : 0);
+  }
+  return least;
+}
+
 }  // namespace
 
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
@@ -67,12 +85,27 @@ void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t
     return !is_flat(positions, polygon, area) ||
            (polygon.size() <= kLargePolygon && fan_turns_one_way(positions, polygon, area));
   };
-  if (polygon.size() <= 4 || is_fan(area_vector(positions, polygon))) {
-    for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
-    return;
-  }
-  for (const auto& [a, b, c] : clip_ears(project(positions, polygon, area_vector(positions, polygon))))
-    triangles.push_back({polygon[a], polygon[b], polygon[c]});
+  if (polygon.size() > 4 && !is_fan(area_vector(positions, polygon))) return clip(positions, polygon, triangles);
+  for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
+}
+
+void triangulate_without_lines(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
+                               std::vector<Triangle>& triangles) {
+  // Height, as a share of the longest side, below which a triangle is a line, as in is_needle(). Other programs take
+  // the fan: where its triangles have an area, faces that are valid here have to be valid there.
+  constexpr double kLine = 1e-12;
+  const auto first = static_cast<std::ptrdiff_t>(triangles.size());
+  triangulate(positions, polygon, triangles);
+  if (polygon.size() < 4) return;
+  const Vec3d area = area_vector(positions, polygon);
+  const double height = least_height(positions, std::span(triangles).subspan(static_cast<std::size_t>(first)), area);
+  if (std::abs(height) >= kLine || !is_flat(positions, polygon, area)) return;
+  std::vector<Triangle> others;
+  if (polygon.size() > 4) clip(positions, polygon, others);
+  else others = {{polygon[1], polygon[2], polygon[3]}, {polygon[1], polygon[3], polygon[0]}};
+  if (!(least_height(positions, others, area) > std::max(0.0, height))) return;
+  triangles.erase(triangles.begin() + first, triangles.end());
+  triangles.insert(triangles.end(), others.begin(), others.end());
 }
 
 }  // namespace vdb_offset

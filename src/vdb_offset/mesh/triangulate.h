@@ -19,4 +19,9 @@ namespace vdb_offset {
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                  std::vector<std::array<std::uint32_t, 3>>& triangles);
 
+/// Does what triangulate() does, but where that makes a line of a triangle, as a corner of a flat polygon is on a
+/// straight side, ears or a quad's other diagonal are taken, if all triangles have an area then.
+void triangulate_without_lines(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
+                               std::vector<std::array<std::uint32_t, 3>>& triangles);
+
 }  // namespace vdb_offset

@@ -15,6 +15,7 @@
 #include "vdb_offset/parts/part_miters.h"
 #include "vdb_offset/paths/planes_around.h"
 #include "vdb_offset/pipeline/field_stage.h"
+#include "vdb_offset/pipeline/prepared_mesh.h"
 #include "vdb_offset/proof/certified_faces.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/surface/border_planes.h"
@@ -295,9 +296,10 @@ void find_faults(FaultFinder& finder, std::span<const Vec3d> in_offset, std::siz
 
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
   const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
-  MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
-  result.facts =
-      options.metric.even() ? parts.surface().facts : build_surface(mesh, options.weld, options.orient).facts;
+  const bool by_corner = has_tolerance(options) || (options.distance && !options.distance->at_corner().empty());
+  const WeldOptions weld = weld_for({.only = options.only, .weld = options.weld}, {.by_corner = by_corner});
+  MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, weld, options.orient});
+  result.facts = options.metric.even() ? parts.surface().facts : build_surface(mesh, weld, options.orient).facts;
   // Planes that are found tell where miters are. No walls: whoever made the offset may have left these planes.
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), options.symmetry, 0);
   const Surface& surface = parts.surface();

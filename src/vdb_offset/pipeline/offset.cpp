@@ -45,6 +45,12 @@ std::vector<OffsetResult> offset_prepared(PreparedMesh& mesh, std::span<const Di
   return results;
 }
 
+Yield yield_of(std::span<const Distances> distances, std::size_t layers) {
+  const bool by_corner =
+      std::any_of(distances.begin(), distances.end(), [](const Distances& each) { return !each.at_corner().empty(); });
+  return {.results = distances.size(), .layers = layers, .by_corner = by_corner};
+}
+
 }  // namespace
 
 std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
@@ -54,7 +60,7 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
   require_metric(options);
   std::vector<OffsetResult> results = in_arena(options.threads, [&](int threads) {
     const InMetric space(mesh, options.metric);
-    PreparedMesh prepared(space, options, threads, farthest_of(distances), {.results = distances.size()});
+    PreparedMesh prepared(space, options, threads, farthest_of(distances), yield_of(distances, 0));
     return offset_prepared(prepared, distances);
   });
   for (OffsetResult& result : results) count_states(result.states, result.statistics);
@@ -74,12 +80,13 @@ OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> dista
   OffsetStatistics statistics;
   statistics.threads = thread_count(options.threads);
   const InMetric space(mesh, options.metric);
+  const Yield yield = yield_of(distances, layers);
   const MeshParts parts =
-      build_mesh_parts(space.view(), {options.only, options.obstacles, options.weld, options.orient});
+      build_mesh_parts(space.view(), {options.only, options.obstacles, weld_for(options, yield), options.orient});
   statistics.facts = parts.surface().facts;
   const Reach farthest = farthest_of(distances);
   if (goes_anywhere(farthest))
-    statistics.plan = plan_run(parts, space.view(), farthest, options, statistics.threads, {distances.size(), layers});
+    statistics.plan = plan_run(parts, space.view(), farthest, options, statistics.threads, yield);
   return statistics;
 }
 

@@ -71,6 +71,11 @@ GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthes
   return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads, {beside});
 }
 
+WeldOptions weld_for(const OffsetOptions& options, const Yield& yield) {
+  // Cells stand on whole faces. At the edge of a part, what moves would be split where what stays has a vertex.
+  return options.only.empty() && yield.layers == 0 && !yield.by_corner ? options.weld : options.weld.without_joins();
+}
+
 PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, int threads, const Reach& farthest,
                            const Yield& yield)
     : space_(space), mesh_(space.view()), options_(options) {
@@ -78,7 +83,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
   GridPlan plan;
   {
     const StageTimer timer(statistics_.seconds, Stage::Rasterise);
-    parts_ = build_mesh_parts(mesh_, {options.only, options.obstacles, options.weld, options.orient});
+    parts_ = build_mesh_parts(mesh_, {options.only, options.obstacles, weld_for(options, yield), options.orient});
     statistics_.facts = parts_.surface().facts;
     statistics_.threads = threads;
     if (moves) {

@@ -128,6 +128,10 @@ struct MeshVertices {
 /// \throw InvalidInput for distances that are not one for each vertex, or a clearance that is no length
 void require_usable(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options);
 
+/// How the vertices of a mesh are welded: hanging ones are joined if all of it is offset, and whole faces are not
+/// needed.
+WeldOptions weld_for(const OffsetOptions& options, const Yield& yield);
+
 /// The plan of the grid for parts of a mesh, with the bytes of all else that the run needs. \throw as plan_grid()
 GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthest, const OffsetOptions& options,
                   int threads, const Yield& yield);

@@ -62,7 +62,7 @@ class RefinedRun {
         tolerance_(tolerance),
         threads_(threads),
         space_(mesh, options.metric),
-        prepared_(space_, options, threads, farthest_of({&options.distance, 1}), {}) {}
+        prepared_(space_, options, threads, farthest_of({&options.distance, 1}), {.by_corner = true}) {}
 
   RefinedOffset run() {
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});

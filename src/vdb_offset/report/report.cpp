@@ -59,7 +59,9 @@ Json facts_json(const MeshFacts& facts) {
            {{"welded_vertices", facts.seams.vertices},
             {"widest", facts.seams.widest},
             {"near_vertices", facts.seams.near_vertices},
-            {"widest_near", facts.seams.widest_near}}},
+            {"widest_near", facts.seams.widest_near},
+            {"hanging_vertices", facts.seams.hanging},
+            {"widest_hanging", facts.seams.widest_hanging}}},
           {"sliver_edges", facts.sliver_edges},
           {"longest_sliver", facts.longest_sliver}};
 }

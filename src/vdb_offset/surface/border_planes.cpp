@@ -97,7 +97,10 @@ class PlaneFinder {
       while (last < holds_.size() && holds_[last].vertex == holds_[first].vertex) ++last;
       settle(std::span(holds_).subspan(first, last - first));
     }
-    raise_walls();
+    std::vector<Indices> held(surface_.planes.size());
+    for (const auto& [v, number] : holds_)
+      if (is_wall_[number]) held[number].push_back(v);
+    raise_walls(surface_, held, reach_, tolerance_);
   }
 
  private:
@@ -362,38 +365,6 @@ class PlaneFinder {
     if (count == 2) surface_.second_conormals.emplace_back(v, conormal[1]);
   }
 
-  /// Makes a plane a wall for the vertices that are connected, within `reach_` of it, with those that it holds, if all
-  /// of them are on one side of it.
-  void raise_walls() {
-    std::vector<std::vector<std::uint32_t>> of_plane(surface_.planes.size());
-    for (const auto& [v, number] : holds_) of_plane[number].push_back(v);
-    IndexGatherer region(surface_.vertices.size());
-    for (std::uint32_t number = 0; number < of_plane.size(); ++number) {
-      if (!is_wall_[number]) continue;
-      const SymmetryPlane& plane = surface_.planes[number];
-      const double far = number < surface_.named_planes ? std::numeric_limits<double>::infinity() : reach_;
-      if (!(far > 0)) continue;
-      for (const auto v : of_plane[number]) region.add(v);
-      double low = 0, high = 0;
-      for (std::size_t i = 0; i < region.so_far().size(); ++i)
-        for (const auto t : surface_.triangles_around(region.so_far()[i]))
-          for (const auto v : surface_.triangles[t]) {
-            const double height = plane.height(surface_.vertices[v]);
-            if (!(std::abs(height) <= far)) continue;
-            low = std::min(low, height), high = std::max(high, height);
-            region.add(v);
-          }
-      const double slack = 2 * tolerance_;
-      const bool below = high <= slack, above = low >= -slack;
-      for (const auto v : region.take()) {
-        if (below) surface_.walls.push_back({v, plane, slack});
-        else if (above) surface_.walls.push_back({v, {-plane.normal, -plane.offset}, slack});
-      }
-    }
-    std::stable_sort(surface_.walls.begin(), surface_.walls.end(),
-                     [](const Wall& a, const Wall& b) { return a.vertex < b.vertex; });
-  }
-
   Surface& surface_;
   double reach_, tolerance_;
   std::vector<std::uint8_t> is_wall_;  // of each plane: 1 if it may be a wall
@@ -427,13 +398,6 @@ PlaneNormals planes_along(const Surface& surface, std::span<const std::uint32_t>
       if (left.length() > kSamePlane) found.normal[found.count++] = left.unit();
     }
   return found;
-}
-
-bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack) {
-  if (surface.walls.empty()) return false;
-  const auto [first, last] = std::equal_range(surface.walls.begin(), surface.walls.end(), Wall{vertex, {}, 0},
-                                              [](const Wall& a, const Wall& b) { return a.vertex < b.vertex; });
-  return std::any_of(first, last, [&](const Wall& wall) { return wall.plane.height(x) > wall.slack + slack; });
 }
 
 }  // namespace vdb_offset

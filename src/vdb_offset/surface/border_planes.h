@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "vdb_offset/base/index_set.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/polygons.h"
 
@@ -30,8 +31,10 @@ struct Wall {
 /// displacements in the plane lead off all of them; and vertices of straight pieces along which the
 /// faces are in one plane: they stay in the plane at right angles to it. Where the surface lies on one side of a plane,
 /// that becomes a wall: for a border's plane, of the vertices that are connected with it within `reach`, the farthest
-/// that vertices go, if that is not 0; for a named plane, of all that are connected with it. \pre conormals and normals
-/// are those of the surface as it stands. \throw InvalidInput if there is no vertex on a plane that is named
+/// that vertices go, if that is not 0, but not of those that lie in it away from that border, nor farther on from
+/// these: the surface goes on along the plane there. For a named plane, of all that are connected with it. \pre
+/// conormals and normals are those of the surface as it stands. \throw InvalidInput if there is no vertex on a plane
+/// that is named
 void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
 
 /// Normals of planes, at right angles to each other.
@@ -49,6 +52,12 @@ struct PlaneNormals {
 /// The planes that hold what is between some vertices of a surface: those that hold all of these. What is not on the
 /// border itself is held by planes that are named alone.
 PlaneNormals planes_along(const Surface& surface, std::span<const std::uint32_t> vertices, bool is_on_border);
+
+/// Makes planes of the surface walls, as hold_in_planes() says.
+/// \param held for each plane the vertices that it holds; none of one that is to be no wall
+/// \param reach the farthest that vertices go
+/// \param tolerance how far a vertex in a plane may be off it
+void raise_walls(Surface& surface, std::span<const Indices> held, double reach, double tolerance);
 
 /// Whether a position of a vertex is beyond one of its walls, by more than `slack`.
 bool is_beyond_wall(const Surface& surface, std::uint32_t vertex, const Vec3d& x, double slack);

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/surface/seams.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -18,6 +14,7 @@
 
 #include "vdb_offset/base/hash_mix.h"
 #include "vdb_offset/mesh/edge_sides.h"
+#include "vdb_offset/mesh/single_edges.h"
 
 namespace vdb_offset {
 namespace {
@@ -37,71 +34,11 @@ struct BorderEdge {
   std::uint32_t a, b;
 };
 
-/// Sums over the sides of all faces, in buckets by the hash of their edge. The two sides of an edge with two faces
-/// cancel out, so that only edges in a bucket with a sum other than zero can be borders. A closed surface has none.
-class EdgeSums {
- public:
-  EdgeSums(PolygonView polygons, std::span<const std::uint32_t> welded_to) : sums_(kBuckets, 0) {
-    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> parts(kBuckets, 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), kRun), [&](const auto& range) {
-      std::vector<std::uint64_t>& part = parts.local();
-      for (std::size_t f = range.begin(); f != range.end(); ++f)
-        visit_sides(polygons, welded_to, f, [&](auto, std::uint32_t from, std::uint32_t to) {
-          const std::uint64_t hash = mix(key(from, to)), value = mix(hash + 1);
-          part[hash % kBuckets] += from < to ? value : -value;
-        });
-    });
-    for (const std::vector<std::uint64_t>& part : parts)
-      for (std::size_t i = 0; i < kBuckets; ++i) sums_[i] += part[i];
-  }
-  bool all_cancel() const {
-    return std::all_of(sums_.begin(), sums_.end(), [](std::uint64_t sum) { return sum == 0; });
-  }
-  bool cancels(std::uint32_t from, std::uint32_t to) const { return sums_[mix(key(from, to)) % kBuckets] == 0; }
-
-  static std::uint64_t key(std::uint32_t from, std::uint32_t to) {
-    return std::uint64_t{std::min(from, to)} << 32 | std::max(from, to);
-  }
-
- private:
-  // kBuckets: sums that stay in a core's cache, 256 KiB. kRun: faces that a thread takes at a time. Not measured beside
-  // other sizes.
-  static constexpr std::size_t kBuckets = 1 << 15, kRun = 1 << 14;
-
-  std::vector<std::uint64_t> sums_;
-};
-
-/// The edges with a single face.
-std::vector<BorderEdge> find_single_edges(PolygonView polygons, std::span<const std::uint32_t> welded_to) {
-  const EdgeSums sums(polygons, welded_to);
-  if (sums.all_cancel()) return {};
-  std::atomic<std::size_t> count = 0;
-  const auto for_each_doubtful = [&](auto&& visit) {
-    for_each_side(polygons, welded_to, [&](auto, std::uint32_t from, std::uint32_t to) {
-      if (!sums.cancels(from, to)) visit(EdgeSums::key(from, to));
-    });
-  };
-  for_each_doubtful([&](std::uint64_t) { count.fetch_add(1, std::memory_order_relaxed); });
-  std::vector<std::uint64_t> keys(count);
-  count = 0;
-  for_each_doubtful([&](std::uint64_t key) { keys[count.fetch_add(1, std::memory_order_relaxed)] = key; });
-  std::sort(keys.begin(), keys.end());
-  std::vector<BorderEdge> border;
-  for (std::size_t i = 0; i < keys.size();) {
-    std::size_t end = i + 1;
-    while (end < keys.size() && keys[end] == keys[i]) ++end;
-    if (end == i + 1)
-      border.push_back({static_cast<std::uint32_t>(keys[i] >> 32), static_cast<std::uint32_t>(keys[i])});
-    i = end;
-  }
-  return border;
-}
-
 /// The vertices of a border and their neighbours along it.
 class Borders {
  public:
-  Borders(std::span<const Vec3d> positions, const std::vector<BorderEdge>& edges) : positions_(positions) {
-    for (const auto& [a, b] : edges) {
+  Borders(std::span<const Vec3d> positions, const std::vector<SingleEdge>& edges) : positions_(positions) {
+    for (const auto& [a, b, corner] : edges) {
       ends_.push_back({a, b});
       ends_.push_back({b, a});
     }
@@ -115,7 +52,7 @@ class Borders {
     begin_.push_back(ends_.size());
     std::vector<double> lengths;
     lengths.reserve(edges.size());
-    for (const auto& [a, b] : edges) lengths.push_back((positions[a] - positions[b]).length());
+    for (const auto& [a, b, corner] : edges) lengths.push_back((positions[a] - positions[b]).length());
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
     median_edge_ = *middle;
@@ -366,14 +303,14 @@ double unit_in_last_place(const std::vector<double>& numbers, double largest) {
   return std::max(std::ldexp(1.0, std::ilogb(largest) - digits + 1), decimal_unit(those_from(most / 10), most) / 2);
 }
 
-SeamFacts close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first) {
-  SeamFacts facts;
-  const std::vector<BorderEdge> edges = find_single_edges(polygons, first);
-  if (edges.empty()) return facts;
+ClosedSeams close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first) {
+  const std::vector<SingleEdge> edges = find_single_edges(polygons, first);
+  if (edges.empty()) return {};
   const Extent extent = extent_of(polygons, first);
-  if (!(extent.diagonal > 0) || !std::isfinite(extent.diagonal)) return facts;
+  if (!(extent.diagonal > 0) || !std::isfinite(extent.diagonal)) return {};
   const Borders borders(polygons.positions, edges);
   const double tolerance = tolerance_of(borders, extent, precision);
+  SeamFacts facts;
   SeamWelder welder(polygons, borders, first);
   std::vector<std::uint8_t> suspicious(borders.vertices().size(), 0);
   for_each_pair(borders, std::max(tolerance, kSuspiciousOfEdge * borders.median_edge()), [&](auto i, auto j) {
@@ -387,7 +324,7 @@ SeamFacts close_seams(PolygonView polygons, double precision, std::vector<std::u
   });
   facts.near_vertices = static_cast<std::size_t>(std::count(suspicious.begin(), suspicious.end(), 1));
   welder.weld(tolerance, facts);
-  return facts;
+  return {facts, tolerance};
 }
 
 }  // namespace vdb_offset

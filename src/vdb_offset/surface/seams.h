@@ -2,11 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
+
+/// What close_seams() has done.
+struct ClosedSeams {
+  SeamFacts facts;
+  std::optional<double> tolerance;  ///< How far apart borders are that count as one; none if there is no border.
+};
 
 /// Closes cracks that rounding has left: welds vertices at which two borders begin to run along each other, no farther
 /// apart than the coordinates are precise, four units in the last place of the largest of them (or a billionth of the
@@ -15,8 +22,8 @@ namespace vdb_offset {
 /// \param precision of a coordinate, relative to the largest; 0: found out from the coordinates at the borders, which
 ///                  may be those of a file in single precision or with few digits
 /// \param first of each vertex in use the first that it is welded with already, kNone of others; changed
-/// \return what was welded, and which borders are still suspiciously close to each other
-SeamFacts close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first);
+/// \return what was welded, which borders are still suspiciously close to each other, and what counts as one
+ClosedSeams close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first);
 
 /// The unit in the last place of a number as large as `largest` (> 0), judged by numbers that a file holds: that of
 /// single precision if they all are, or look like ones that were; half that of their decimal digits if these are as

@@ -56,7 +56,7 @@ void split_faces(PolygonView polygons, Surface& surface) {
       face.clear();
       triangles.clear();
       for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
-      triangulate(surface.vertices, face, triangles);
+      triangulate_without_lines(surface.vertices, face, triangles);
       const auto at = static_cast<std::ptrdiff_t>(polygons.face_begin[f] - 2 * f);
       std::copy(triangles.begin(), triangles.end(), surface.triangles.begin() + at);
       std::fill_n(surface.face.begin() + at, triangles.size(), static_cast<std::uint32_t>(f));
@@ -299,6 +299,7 @@ Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient
   find_bounds(surface);
   find_vertex_error(surface);
   split_faces(polygons, surface);
+  if (welding.hanging) join_hanging_vertices(surface, *welding.hanging);
   sort_in_space(surface);
   measure(polygons, surface);
   join_and_settle(polygons, orient, surface);

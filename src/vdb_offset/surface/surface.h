@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -92,9 +93,9 @@ struct Surface {
   Vec3d pseudonormal(std::uint32_t triangle, Feature feature) const;
 };
 
-/// Builds the surface of polygons: welds, triangulates, connects faces, counts, and settles which side is outward (see
-/// orientation.h). Origin and normals are left to to_local_frame(). \throw InvalidInput if there is no face, an index
-/// is out of range, a coordinate is not finite, or there are 2^31 triangles or more.
+/// Builds the surface of polygons: welds, triangulates, joins hanging vertices, connects faces, counts, and settles
+/// which side is outward (see orientation.h). Origin and normals are left to to_local_frame(). \throw InvalidInput if
+/// there is no face, an index is out of range, a coordinate is not finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
 
 /// Which vertices of a mesh are one.
@@ -102,6 +103,8 @@ struct Welding {
   /// For each vertex the one that gives the position of all that are welded with it; kNone for one in no face.
   std::vector<std::uint32_t> first;
   SeamFacts seams;
+  /// How far a border's vertex may be from another border's edge to count as on it; none: such are not joined.
+  std::optional<double> hanging;
 };
 /// Finds which vertices are one, in polygons with any number of corners. \throw InvalidInput as build_surface(), or for
 /// a tolerance or a precision that cannot be used

@@ -182,9 +182,15 @@ Welding find_welding(PolygonView polygons, const WeldOptions& options) {
 
 Welding weld_usable(PolygonView polygons, const WeldOptions& options) {
   require_tolerance(polygons, options);
-  Welding welding{find_firsts(polygons, options), {}};
-  if (options.enabled && options.tolerance == 0 && options.close_seams)
-    welding.seams = close_seams(polygons, options.precision, welding.first);
+  Welding welding{find_firsts(polygons, options), {}, {}};
+  if (!options.enabled) return welding;
+  if (options.tolerance == 0 && options.close_seams) {
+    const ClosedSeams closed = close_seams(polygons, options.precision, welding.first);
+    welding.seams = closed.facts;
+    if (options.join_hanging) welding.hanging = closed.tolerance;
+  } else if (options.tolerance > 0 && options.join_hanging) {
+    welding.hanging = options.tolerance;
+  }
   return welding;
 }
 

@@ -21,4 +21,11 @@ Welding restricted(Welding welding, PolygonView some_faces);
 /// vertex that it is part of.
 void give_vertices(PolygonView polygons, const Welding& welding, Surface& surface);
 
+/// Joins borders that run along each other, but have vertices where the other has none (T-junctions): splits the
+/// triangle beside such a hanging vertex there, so that the triangles meet edge to edge. The pieces are of the same
+/// face. Vertices stay where they are. Borders that only touch stay as they are, and so do edges of two faces.
+/// \param reach how far a vertex may be from an edge to count as on it, >= 0
+/// \pre the surface has vertices and triangles, and nothing was made of these yet
+void join_hanging_vertices(Surface& surface, double reach);
+
 }  // namespace vdb_offset

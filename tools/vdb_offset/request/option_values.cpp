@@ -228,6 +228,7 @@ WeldOptions parse_weld(const std::string& text) {
   require(tolerance && *tolerance >= 0,
           fmt::format("--weld: expected 'auto', 'exact', 'none' or a tolerance >= 0 in world units, got '{}'", text));
   weld.tolerance = *tolerance;
+  weld.join_hanging = *tolerance > 0;
   return weld;
 }
 

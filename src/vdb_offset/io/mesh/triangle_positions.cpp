@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -43,20 +46,69 @@ class TrianglePlaces {
   static constexpr std::size_t kQuad = 4;  // corners
 
   /// Takes the positions of a polygon's corners from its triangles. These are those of the offset, in which the polygon
-  /// is split around its first corner or as in the source. Where both are possible, the corners have moved less far.
+  /// is split around its first corner, as in the source, or as its shape there asks for. Where both of the first are
+  /// possible, the corners have moved less far.
   bool take(std::span<const std::uint32_t> face, std::size_t first) {
     Split fan, ears;
     for (std::size_t k = 2; k < face.size(); ++k) fan.push_back({face[0], face[k - 1], face[k]});
     if (face.size() > kQuad) triangulate(mesh_.positions, face, ears);
     const std::optional<double> by_fan = squared_displacements(fan, first),
                                 by_ears = ears.empty() ? std::nullopt : squared_displacements(ears, first);
-    if (!by_fan && !by_ears) return false;
+    if (!by_fan && !by_ears) return take_ring(face, first);
     const Split& split = !by_fan || (by_ears && *by_ears < *by_fan) ? ears : fan;
     for_each_corner(split, first, [&](std::uint32_t v, const Vec3d& there) {
       known_[v] = 1;
       position_[v] = there;
     });
     return true;
+  }
+
+  /// Takes the positions of a polygon that was split in another way: its corners' are all around what its triangles
+  /// cover. Of the corners that this ring may begin with that counts with which the corners have moved least far.
+  bool take_ring(std::span<const std::uint32_t> face, std::size_t first) {
+    const std::vector<Vec3d> ring = ring_around(face.size(), first);
+    std::size_t best = ring.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t begin = 0; begin < ring.size(); ++begin) {
+      double way = 0;
+      for (std::size_t k = 0; k < face.size() && way < least; ++k) {
+        const Vec3d& there = ring[(begin + k) % ring.size()];
+        const bool fits = !known_[face[k]] || position_[face[k]] == there;
+        way += fits ? (there - mesh_.positions[face[k]]).lengthSqr() : std::numeric_limits<double>::infinity();
+      }
+      if (way < least) least = way, best = begin;
+    }
+    for (std::size_t k = 0; k < face.size() && best < ring.size(); ++k) {
+      known_[face[k]] = 1;
+      position_[face[k]] = ring[(best + k) % ring.size()];
+    }
+    return best < ring.size();
+  }
+
+  /// The positions all around some triangles, in order: the ends of the sides that no other of them has the other way
+  /// round. Empty unless that is one ring of so many different positions, or if those are very many.
+  std::vector<Vec3d> ring_around(std::size_t count, std::size_t first) const {
+    constexpr std::size_t kMostOnRing = 1000;  // all of which it may begin with; reasoned: few polygons have as many
+    using Point = std::array<double, 3>;
+    std::set<std::pair<Point, Point>> sides;
+    for (std::size_t i = 0; i + 2 < count && count <= kMostOnRing; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d &a = triangles_.positions[triangles_.face(first + i)[k]],
+                    &b = triangles_.positions[triangles_.face(first + i)[(k + 1) % 3]];
+        const Point from = {a[0], a[1], a[2]}, to = {b[0], b[1], b[2]};
+        if (sides.erase({to, from}) == 0) sides.insert({from, to});
+      }
+    std::map<Point, Point> next(sides.begin(), sides.end());
+    if (next.size() != count || sides.size() != count) return {};
+    std::vector<Vec3d> ring;
+    for (Point at = next.begin()->first; !next.empty();) {
+      const auto side = next.find(at);
+      if (side == next.end()) return {};
+      ring.emplace_back(at[0], at[1], at[2]);
+      at = side->second;
+      next.erase(side);
+    }
+    return ring;
   }
 
   template <class Visit>
