@@ -148,6 +148,26 @@ TEST_CASE("hanging vertices: sheets that lie on each other, and vertices of what
   CHECK(result.statistics.facts.seams.hanging == 0);
 }
 
+TEST_CASE("hanging vertices: a face is turned over though its pieces are not", "[hanging]") {
+  Polygons mesh;  // three triangles below y = 0 with a vertex at (1, 0), and a flat one above, without
+  mesh.positions = {{0, 0, 0}, {2, 0, 0}, {1, 0.2, 0}, {1, 0, 0}, {0, -1, 0}, {2, -1, 0}};
+  mesh.add_face({0, 1, 2});
+  mesh.add_face({0, 4, 3});
+  mesh.add_face({4, 5, 3});
+  mesh.add_face({5, 1, 3});
+  CheckOptions options;
+  options.distance = 0.1;
+  std::vector<Vec3d> moved = mesh.positions;
+  for (Vec3d& p : moved) p[2] = 0.1;
+  CheckResult check = check_offset(mesh.view(), moved, options);
+  CHECK(check.facts.seams.hanging == 1);
+  CHECK(check.valid());
+  moved[2][1] = -0.1;
+  moved[3][1] = -0.5;
+  check = check_offset(mesh.view(), moved, options);
+  CHECK(check.faults.inverted > 0);
+}
+
 TEST_CASE("hanging vertices: of so many long edges across each other that nobody can tell", "[hanging]") {
   Polygons mesh;  // each between the ends of all that follow
   for (int i = 1; i <= 2000; ++i) {
@@ -161,7 +181,6 @@ TEST_CASE("hanging vertices: of so many long edges across each other that nobody
 
 TEST_CASE("hanging vertices: a body that has many goes where it would go without", "[hanging]") {
   const Polygons gear = scene::gear(8, 1, 1.2, 0.4, 0.5, 3);
-  int joined = 0;
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     const Polygons mesh = with_hanging(gear, seed);
     const MeshFacts facts = facts_of(mesh);
@@ -172,17 +191,14 @@ TEST_CASE("hanging vertices: a body that has many goes where it would go without
       options.threads = 1;
       const OffsetResult result = offset(mesh.view(), options);
       CHECK(check_offset(mesh.view(), result.positions, {}).valid());
-      // Where a whole face would be turned over, though its pieces are not, all are left hanging.
-      joined += result.statistics.facts.seams.hanging > 0;
-      if (result.statistics.facts.seams.hanging > 0) CHECK(result.statistics.faces.mean < 0.003);
-      if (result.statistics.facts.seams.hanging > 0) CHECK(summarise(result).share_reached == 1);
+      CHECK(result.statistics.faces.mean < 0.003);  // 0.02 and more where they are not joined
+      CHECK(summarise(result).share_reached == 1);
       options.threads = 2;
       CHECK(offset(mesh.view(), options).positions == result.positions);
       options.weld = {};
       CHECK(offset(mesh.view(), options).statistics.faces.mean > 0.005);
     }
   }
-  CHECK(joined >= 4);
 }
 
 }  // namespace hanging

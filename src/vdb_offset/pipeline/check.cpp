@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "vdb_offset/base/progress_count.h"
 #include "vdb_offset/base/rounding.h"
@@ -357,24 +356,6 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   result.certified = prove_faces(parts, query, source, in_offset, distances, states, options, progress);
 }
 
-/// Judges whole faces, too, where hanging vertices were joined to them and pieces were judged: none of them may be
-/// turned over either. If there is a fault, those count that all faces have as they are, with vertices left hanging.
-void judge_whole_faces(PolygonView mesh, std::span<const Vec3d> positions, CheckOptions options, CheckResult& result) {
-  options.weld = options.weld.without_joins();
-  options.progress = {};
-  CheckResult whole;
-  whole.states.assign(positions.size(), VertexState::Unused);
-  whole.achieved.assign(positions.size(), 0.0);
-  measure(mesh, positions, options, whole);
-  if (result.valid() && whole.faults.inverted + whole.faults.collapsed == 0) return;
-  result.faults = whole.faults;
-  result.wrong_side = whole.wrong_side;  // of closed sources
-  result.face_faults = std::move(whole.face_faults);
-  result.source_crossings = whole.source_crossings;
-  result.crossings_near_source = whole.crossings_near_source;
-  result.more_source_crossings = whole.more_source_crossings;
-}
-
 }  // namespace
 
 CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
@@ -383,10 +364,7 @@ CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions, c
   result.states.assign(positions.size(), VertexState::Unused);
   result.achieved.assign(positions.size(), 0.0);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    measure(source, positions, options, result);
-    if (result.facts.seams.hanging > 0) judge_whole_faces(source, positions, options, result);
-  });
+  arena.execute([&] { measure(source, positions, options, result); });
   return result;
 }
 

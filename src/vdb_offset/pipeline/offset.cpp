@@ -5,7 +5,6 @@
 #include <memory>
 #include <utility>
 
-#include "vdb_offset/check.h"
 #include "vdb_offset/data/count_states.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/direction_field.h"
@@ -53,32 +52,6 @@ Yield yield_of(std::span<const Distances> distances, std::size_t layers) {
   return {.results = distances.size(), .layers = layers, .by_corner = by_corner};
 }
 
-/// Whether all faces are valid as they are, if hanging vertices were joined to some, and pieces of these were judged.
-bool has_valid_faces(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options) {
-  if (result.statistics.facts.seams.hanging == 0) return true;
-  const CheckOptions as_made{.distance = result.distances,
-                             .symmetry = options.symmetry,
-                             .obstacles = options.obstacles,
-                             .clearance = options.clearance,
-                             .corners = options.corners,
-                             .miter_limit = options.miter_limit,
-                             .weld = options.weld,
-                             .metric = options.metric,
-                             .orient = options.orient,
-                             .precision = options.precision,
-                             .threads = options.threads};
-  return check_offset(mesh, result.positions, as_made).faults.total() == 0;
-}
-
-std::vector<OffsetResult> offset_as_welded(PolygonView mesh, std::span<const Distances> distances,
-                                           const OffsetOptions& options) {
-  return in_arena(options.threads, [&](int threads) {
-    const InMetric space(mesh, options.metric);
-    PreparedMesh prepared(space, options, threads, farthest_of(distances), yield_of(distances, 0));
-    return offset_prepared(prepared, distances);
-  });
-}
-
 }  // namespace
 
 std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
@@ -86,14 +59,11 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   require_usable(mesh, distances, options);
   require_metric(options);
-  std::vector<OffsetResult> results = offset_as_welded(mesh, distances, options);
-  if (options.collision == Collision::Limit &&
-      !std::all_of(results.begin(), results.end(),
-                   [&](const OffsetResult& result) { return has_valid_faces(mesh, result, options); })) {
-    OffsetOptions as_they_hang = options;
-    as_they_hang.weld = options.weld.without_joins();
-    results = offset_as_welded(mesh, distances, as_they_hang);
-  }
+  std::vector<OffsetResult> results = in_arena(options.threads, [&](int threads) {
+    const InMetric space(mesh, options.metric);
+    PreparedMesh prepared(space, options, threads, farthest_of(distances), yield_of(distances, 0));
+    return offset_prepared(prepared, distances);
+  });
   for (OffsetResult& result : results) count_states(result.states, result.statistics);
   return results;
 }

@@ -201,6 +201,7 @@ void split_at(const std::array<std::uint32_t, 3>& corner, const std::array<std::
 
 /// Splits triangles at the vertices on their sides, which are sorted. The first piece of each takes its place.
 void split_triangles(std::span<const Hanging> all, Surface& surface) {
+  surface.piece_of.assign(surface.triangles.size(), kNone);
   while (!all.empty()) {
     const std::uint32_t t = all.front().side / 3;
     std::array<std::span<const Hanging>, 3> on_side;
@@ -212,9 +213,12 @@ void split_triangles(std::span<const Hanging> all, Surface& surface) {
     }
     std::vector<std::array<std::uint32_t, 3>> pieces;
     split_at(surface.triangles[t], on_side, pieces);
+    surface.piece_of[t] = static_cast<std::uint32_t>(surface.split.size());
+    surface.split.push_back({surface.triangles[t], {}});
     surface.triangles[t] = pieces.front();
     surface.triangles.insert(surface.triangles.end(), pieces.begin() + 1, pieces.end());
     surface.face.resize(surface.triangles.size(), surface.face[t]);
+    surface.piece_of.resize(surface.triangles.size(), surface.piece_of[t]);
   }
 }
 

@@ -115,6 +115,8 @@ void renumber_vertices(Surface& surface) {
   for_each_index(surface.triangles.size(), [&](std::size_t t) {
     for (auto& v : surface.triangles[t]) v = number[v];
   });
+  for (SplitTriangle& split : surface.split)
+    for (auto& v : split.corners) v = number[v];
   for_each_index(surface.welded.size(), [&](std::size_t v) {
     if (surface.welded[v] != kNone) surface.welded[v] = number[surface.welded[v]];
   });
@@ -158,13 +160,15 @@ void sort_in_space(Surface& surface) {
   });
   tbb::parallel_sort(on_curve.begin(), on_curve.end());
   std::vector<std::array<std::uint32_t, 3>> triangles(count);
-  std::vector<std::uint32_t> faces(count);
+  std::vector<std::uint32_t> faces(count), piece_of(surface.piece_of.size());
   for_each_index(count, [&](std::size_t i) {
     triangles[i] = surface.triangles[on_curve[i].second];
     faces[i] = surface.face[on_curve[i].second];
+    if (!piece_of.empty()) piece_of[i] = surface.piece_of[on_curve[i].second];
   });
   surface.triangles = std::move(triangles);
   surface.face = std::move(faces);
+  surface.piece_of = std::move(piece_of);
   renumber_vertices(surface);
 }
 
@@ -288,6 +292,18 @@ void list_incident_triangles(Surface& surface) {
   });
 }
 
+namespace {
+
+/// Lists the pieces of triangles that were split, which have their directions and numbers now.
+void list_pieces(Surface& surface) {
+  for (std::uint32_t t = 0; t < surface.piece_of.size(); ++t)
+    if (surface.piece_of[t] != kNone) surface.split[surface.piece_of[t]].pieces.push_back(t);
+  for (SplitTriangle& split : surface.split)
+    if (!split.pieces.empty() && surface.is_turned(split.pieces[0])) std::swap(split.corners[1], split.corners[2]);
+}
+
+}  // namespace
+
 Surface build_surface(PolygonView polygons, const WeldOptions& options, Orient orient) {
   require_usable(polygons);
   return build_welded(polygons, weld_usable(polygons, options), orient);
@@ -303,6 +319,7 @@ Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient
   sort_in_space(surface);
   measure(polygons, surface);
   join_and_settle(polygons, orient, surface);
+  list_pieces(surface);
   list_incident_triangles(surface);
   return surface;
 }
@@ -388,6 +405,7 @@ void append(Surface& surface, const Surface& other) {
     return std::array<std::uint32_t, 3>{t[0] + vertices, t[1] + vertices, t[2] + vertices};
   });
   add_all(surface.face, other.face, as_it_is);
+  if (!surface.piece_of.empty()) surface.piece_of.resize(triangles + other.triangles.size(), kNone);
   surface.turned.resize(triangles, 0);
   add_all(surface.turned, other.turned, as_it_is);
   surface.turned.resize(surface.triangles.size(), 0);

@@ -17,6 +17,12 @@
 
 namespace vdb_offset {
 
+/// A triangle of a face that was split where vertices hang on its sides (see weld.h), in the direction of its pieces.
+struct SplitTriangle {
+  std::array<std::uint32_t, 3> corners;
+  std::vector<std::uint32_t> pieces;  ///< Triangles of the surface, in ascending order.
+};
+
 /// The surface that is offset, as the stages see it: welded vertices and triangles in a local frame.
 ///
 /// Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t. Lengths are in world units; positions are
@@ -27,6 +33,9 @@ struct Surface {
   std::vector<Vec3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Sorted along a space-filling curve, as are the vertices.
   std::vector<std::uint32_t> face;                      ///< The input's face that each triangle is part of.
+  std::vector<SplitTriangle> split;
+  /// For each triangle the one in `split` that it is a piece of; kNone for others. Empty if none was split.
+  std::vector<std::uint32_t> piece_of;
   std::vector<std::uint8_t>
       turned;  ///< Of each triangle: 1 if it runs against its face. Empty if none was turned round.
   /// The next half-edge around the same edge, cyclic: itself at a border, the twin on a manifold.
@@ -61,6 +70,10 @@ struct Surface {
   std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
   std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
   bool is_turned(std::uint32_t triangle) const { return !turned.empty() && turned[triangle]; }
+  /// What a triangle is a piece of; nothing if it is whole.
+  const SplitTriangle* whole_of(std::uint32_t triangle) const {
+    return piece_of.empty() || piece_of[triangle] == kNone ? nullptr : &split[piece_of[triangle]];
+  }
   TrianglePoint closest_on(std::uint32_t triangle, const Vec3d& x) const {
     const auto& t = triangles[triangle];
     return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);

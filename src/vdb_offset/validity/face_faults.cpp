@@ -54,12 +54,20 @@ FaultCounts FaceFaults::count() const {
 /// Faces that have not moved may be anywhere, obstacles themselves above all.
 FaceFaults::Fault FaceFaults::fault_of(std::uint32_t t) const {
   if (constrained_.rests(t) || !positions_.has_moved_corner(t)) return Fault::None;
-  const Vec3d before = twice_area(surface_, t, source_), now = twice_area(surface_, t, positions_.all());
-  if (!(before.lengthSqr() > 0)) return Fault::None;
+  const bool is_on_part = constrained_.triangle_on_part(t);
+  if (!(twice_area(surface_.triangles[t], source_).lengthSqr() > 0)) return Fault::None;
+  Fault fault = shape_of(surface_.triangles[t], is_on_part);
+  if (const SplitTriangle* const whole = surface_.whole_of(t); whole && fault == Fault::None)
+    fault = shape_of(whole->corners, is_on_part);
+  return fault == Fault::None && is_crowded(t) ? Fault::Crowded : fault;
+}
+
+/// What is wrong with the shape of a triangle that has an area in the source.
+FaceFaults::Fault FaceFaults::shape_of(const std::array<std::uint32_t, 3>& corners, bool is_on_part) const {
+  const Vec3d before = twice_area(corners, source_), now = twice_area(corners, positions_.all());
   if (now.length() <= kCollapsed * before.length()) return Fault::Collapsed;
-  const bool against = constrained_.triangle_on_part(t) ? positions_.faces_against_part(t) : now.dot(before) < 0;
-  if (against) return Fault::Inverted;
-  return is_crowded(t) ? Fault::Crowded : Fault::None;
+  const bool against = is_on_part ? positions_.faces_against_part(corners) : now.dot(before) < 0;
+  return against ? Fault::Inverted : Fault::None;
 }
 
 bool FaceFaults::is_crowded(std::uint32_t t) const {

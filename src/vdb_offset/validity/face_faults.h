@@ -23,9 +23,10 @@ namespace vdb_offset {
 ///
 /// A face is inverted if it faces against the direction away from the moving part at its centre and at each corner
 /// (there, its distance has folded over; see VertexPositions) or, if it is not on the moving part, against its own
-/// source. It is collapsed if its area is below 1e-6 of the source's. It is crowded if it is too near to an obstacle;
-/// or if it meets the source, or the other skin of a shell, where it must not: anywhere but where sheets of the source
-/// cross (see source_crossings.h).
+/// source. It is collapsed if its area is below 1e-6 of the source's. Pieces of a triangle that was split at hanging
+/// vertices are so as well if it is, as the offset's file has it whole. A face is crowded if it is too near to an
+/// obstacle; or if it meets the source, or the other skin of a shell, where it must not: anywhere but where sheets of
+/// the source cross (see source_crossings.h).
 class FaceFaults {
  public:
   enum class Fault : std::uint8_t { None, Inverted, Collapsed, Crowded };
@@ -54,6 +55,7 @@ class FaceFaults {
 
  private:
   Fault fault_of(std::uint32_t triangle) const;
+  Fault shape_of(const std::array<std::uint32_t, 3>& corners, bool is_on_part) const;
   bool is_crowded(std::uint32_t triangle) const;
   bool is_near_obstacle(std::uint32_t triangle) const;
   bool meets_source(std::uint32_t triangle) const;

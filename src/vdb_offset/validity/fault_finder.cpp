@@ -63,7 +63,11 @@ Indices FaultFinder::Parts::triangles_around(const Indices& some) {
     return all;
   }
   for (const auto v : some)
-    for (const auto t : surface.triangles_around(v)) triangles.add(t);
+    for (const auto t : surface.triangles_around(v)) {
+      triangles.add(t);
+      if (const SplitTriangle* const whole = surface.whole_of(t))  // which all of its pieces are judged by
+        for (const auto piece : whole->pieces) triangles.add(piece);
+    }
   return triangles.take();
 }
 

@@ -209,7 +209,7 @@ void VertexPositions::find_ties_around(const Indices& triangles) {
         }))
       continue;
     // The corner where the triangle most clearly is the right way round, as far as is known.
-    const Vec3d outward = twice_area(surface_, t, position_) * side_of(distances_, surface_.triangles[t]);
+    const Vec3d outward = twice_area(surface_.triangles[t], position_) * side_of(distances_, surface_.triangles[t]);
     std::uint32_t best = kNone;
     double most = 0;
     for (const auto v : corners) {
@@ -276,9 +276,9 @@ bool VertexPositions::looks_away(const Vec3d& outward, std::uint32_t v) const {
   return looks_away(outward, x, x - closest.point, closest.distance, closest.tied);
 }
 
-bool VertexPositions::faces_against_part(std::uint32_t t) const {
-  const auto& [a, b, c] = surface_.triangles[t];
-  const Vec3d now = twice_area(surface_, t, position_), outward = now * side_of(distances_, surface_.triangles[t]);
+bool VertexPositions::faces_against_part(const std::array<std::uint32_t, 3>& triangle) const {
+  const auto& [a, b, c] = triangle;
+  const Vec3d now = twice_area(triangle, position_), outward = now * side_of(distances_, triangle);
   bool any = false;
   // Corners of which ties are known cost next to nothing, and go first.
   for (const bool known : {true, false})
@@ -291,7 +291,7 @@ bool VertexPositions::faces_against_part(std::uint32_t t) const {
   const Closest closest = constrained_.moving_part(centre, constrained_.hint(a));
   if (closest.distance >= near_)
     return !looks_away(outward, centre, centre - closest.point, closest.distance, closest.tied);
-  return any || now.dot(twice_area(surface_, t, source_)) < 0;
+  return any || now.dot(twice_area(triangle, source_)) < 0;
 }
 
 }  // namespace vdb_offset

@@ -16,8 +16,8 @@ namespace vdb_offset {
 struct Paths;
 
 /// Twice a triangle's area, as a vector along its normal, with its corners at some positions.
-inline Vec3d twice_area(const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> at) {
-  const auto& [a, b, c] = surface.triangles[triangle];
+inline Vec3d twice_area(const std::array<std::uint32_t, 3>& triangle, std::span<const Vec3d> at) {
+  const auto& [a, b, c] = triangle;
   return (at[b] - at[a]).cross(at[c] - at[a]);
 }
 
@@ -79,7 +79,7 @@ class VertexPositions {
   /// Whether a triangle of the moving part turns its back to the direction that leads away from the part, at each
   /// corner and at the centre, as far as these are off the part: where several points are as near, to the direction
   /// from any of them. With nothing off the part, whether the triangle turns its back to its source.
-  bool faces_against_part(std::uint32_t triangle) const;
+  bool faces_against_part(const std::array<std::uint32_t, 3>& triangle) const;
 
  private:
   void put(std::uint32_t vertex, const Vec3d& position);
