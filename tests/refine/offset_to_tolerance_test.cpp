@@ -243,6 +243,26 @@ TEST_CASE("tolerance: a tenth of it takes no more than ten times the faces", "[t
   }
 }
 
+TEST_CASE("tolerance: faces that the source has twice are split like others", "[tolerance][check]") {
+  const Polygons ball = scene::icosphere(1, 1);
+  Polygons twice = ball;
+  for (std::uint32_t f = 0; f < ball.face_count(); ++f) {
+    const auto face = ball.view().face(f);
+    twice.add_face({face[2], face[1], face[0]});
+  }
+  const OffsetOptions options = options_for(0.1);
+  const RefinedOffset one = offset_all(ball, options, 0.01), both = offset_all(twice, options, 0.01);
+  CHECK(one.refinement.polygons.face_count() > ball.face_count());
+  CHECK(both.refinement.polygons.face_count() == 2 * one.refinement.polygons.face_count());
+  CHECK(both.result.positions == one.result.positions);
+  CHECK(certified_of(both).certified == certified_of(one).certified);
+  // No more faces than may be, with both of them counted.
+  constexpr std::size_t kMost = 400;
+  const RefinedOffset few = offset_to_tolerance(twice.view(), options, tolerance_of(0.01, kMost));
+  CHECK(few.refinement.polygons.face_count() <= kMost);
+  CHECK(certified_of(few).out_of_faces);
+}
+
 TEST_CASE("tolerance: miters need no split, inward or outward", "[tolerance][miter]") {
   for (const int divisions : {1, 3})
     for (const double share : {0.01, 0.05, -0.01, -0.05}) {

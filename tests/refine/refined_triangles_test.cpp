@@ -371,6 +371,54 @@ TEST_CASE("refined triangles: pieces of turned faces run as their face does", "[
   CHECK(std::count(refined.parent.begin(), refined.parent.end(), 1U) > 2);
 }
 
+TEST_CASE("refined triangles: faces that repeat one are split as it is, in their own direction",
+          "[refined_triangles]") {
+  // Every face of a box again: in reverse, and with vertices of its own from another corner on.
+  Polygons mesh = scene::box(Vec3d(16), 1, false);
+  const auto count = static_cast<std::uint32_t>(mesh.face_count()),
+             own = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const std::array<std::uint32_t, 4> at{mesh.corners[4 * f], mesh.corners[4 * f + 1], mesh.corners[4 * f + 2],
+                                          mesh.corners[4 * f + 3]};
+    mesh.add_face({at[3], at[2], at[1], at[0]});
+  }
+  mesh.positions.insert(mesh.positions.end(), mesh.positions.begin(), mesh.positions.begin() + own);
+  for (std::uint32_t f = 0; f < count; ++f)
+    mesh.add_face({mesh.corners[4 * f + 1] + own, mesh.corners[4 * f + 2] + own, mesh.corners[4 * f + 3] + own,
+                   mesh.corners[4 * f] + own});
+  SplitMesh split(mesh);
+  REQUIRE(split.surface.repeated.size() == 2 * count);
+  CHECK(split.triangles.most_alike() == 3);
+  std::mt19937 random(5);
+  for (int round = 0; round < 3; ++round) split.split_at_random(0.4, random);
+  const Refinement refined = split.refinement();
+  require_refinement(mesh, refined);
+  CHECK(split.triangles.face_count(mesh.face_count()) == refined.polygons.face_count());
+  // The pieces by the positions of their corners, from the least one on, for each copy of a face.
+  const auto pieces_of = [&](std::uint32_t face, bool is_reversed) {
+    std::set<std::array<Vec3d, 3>> pieces;
+    for (std::uint32_t f = 0; f < refined.parent.size(); ++f) {
+      if (refined.parent[f] != face) continue;
+      const auto corners = refined.polygons.view().face(f);
+      REQUIRE(corners.size() == 3);
+      std::array<Vec3d, 3> piece;
+      for (std::size_t k = 0; k < 3; ++k) piece[k] = refined.polygons.positions[corners[is_reversed ? 2 - k : k]];
+      std::rotate(piece.begin(), std::min_element(piece.begin(), piece.end()), piece.end());
+      pieces.insert(piece);
+    }
+    return pieces;
+  };
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const auto pieces = pieces_of(f, false);
+    CHECK(pieces.size() > 4);
+    CHECK(pieces == pieces_of(count + f, true));
+    CHECK(pieces == pieces_of(2 * count + f, false));
+  }
+  for (std::uint32_t f = 0; f < refined.parent.size(); ++f)
+    for (const auto v : refined.polygons.view().face(f))
+      if (v < 2 * own) CHECK((v >= own) == (refined.parent[f] >= 2 * count));
+}
+
 TEST_CASE("refined triangles: at seams each side has vertices of its own, at the same positions",
           "[refined_triangles]") {
   // Every face has corners of its own.

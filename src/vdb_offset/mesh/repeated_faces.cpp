@@ -25,9 +25,12 @@ std::uint32_t hash(FaceCorners face) {
   return static_cast<std::uint32_t>(mix(sum));
 }
 
-bool same_cycle(FaceCorners a, FaceCorners b) {
+enum class Cycle : std::uint8_t { Other, Same, Reversed };
+
+/// How the corners of b run that are those of a.
+Cycle compare_cycles(FaceCorners a, FaceCorners b) {
   const std::size_t n = a.size();
-  if (b.size() != n) return false;
+  if (b.size() != n) return Cycle::Other;
   for (std::size_t start = 0; start < n; ++start) {
     if (b[start] != a[0]) continue;
     bool forwards = true, backwards = true;
@@ -35,9 +38,9 @@ bool same_cycle(FaceCorners a, FaceCorners b) {
       forwards = forwards && b[(start + k) % n] == a[k];
       backwards = backwards && b[(start + n - k) % n] == a[k];
     }
-    if (forwards || backwards) return true;
+    if (forwards || backwards) return forwards ? Cycle::Same : Cycle::Reversed;
   }
-  return false;
+  return Cycle::Other;
 }
 
 /// Sorted by the hash; faces with the same hash by their number.
@@ -58,7 +61,7 @@ std::uint32_t greatest(FaceCorners corners) {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_repeated_faces(std::span<const std::uint32_t> corners,
+std::vector<RepeatedFace> find_repeated_faces(std::span<const std::uint32_t> corners,
                                               std::span<const std::uint32_t> begin) {
   VDB_OFFSET_ASSERT(!begin.empty() && begin.back() <= corners.size());
   const std::size_t count = begin.size() - 1;
@@ -75,14 +78,23 @@ std::vector<std::uint8_t> find_repeated_faces(std::span<const std::uint32_t> cor
     if (has_corners(f)) faces[buckets.next(smallest(f))] = {hash(face(f)), static_cast<std::uint32_t>(f)};
   });
   const std::vector<std::uint32_t> bucket_begin = buckets.take();
-  std::vector<std::uint8_t> repeated(count, 0);
+  std::vector<std::uint32_t> first(count);  // of those that repeat it
+  std::vector<Cycle> cycle(count, Cycle::Other);
   for_each_index(bucket_begin.size() - 1, [&](std::size_t v) {
     const auto around = std::span(faces).subspan(bucket_begin[v], bucket_begin[v + 1] - bucket_begin[v]);
     std::sort(around.begin(), around.end());
-    for (std::size_t i = 1; i < around.size(); ++i)
-      for (std::size_t j = i; j-- > 0 && around[j].hash == around[i].hash && repeated[around[i].face] == 0;)
-        repeated[around[i].face] = same_cycle(face(around[j].face), face(around[i].face));
+    for (std::size_t i = 1; i < around.size(); ++i) {
+      const std::uint32_t f = around[i].face;
+      for (std::size_t j = i; j-- > 0 && around[j].hash == around[i].hash && cycle[f] == Cycle::Other;) {
+        const std::uint32_t earlier = around[j].face;
+        first[f] = cycle[earlier] == Cycle::Other ? earlier : first[earlier];
+        cycle[f] = compare_cycles(face(first[f]), face(f));
+      }
+    }
   });
+  std::vector<RepeatedFace> repeated;
+  for (std::uint32_t f = 0; f < count; ++f)
+    if (cycle[f] != Cycle::Other) repeated.push_back({f, first[f], cycle[f] == Cycle::Reversed});
   return repeated;
 }
 

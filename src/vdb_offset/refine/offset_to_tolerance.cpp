@@ -127,12 +127,14 @@ class RefinedRun {
                                      : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
   }
 
-  /// Calls visit(corners) for the triangles of faces that the surface does not have all triangles of: repeated faces,
-  /// and such as are lines.
+  /// Calls visit(corners) for the triangles of faces that the surface does not have all triangles of, such as are
+  /// lines; but not of repeated faces, which are split as those are that they repeat.
   template <class Visit>
   void for_each_left_out(Visit&& visit) const {
     std::vector<std::uint32_t> count(mesh_.face_count(), 0);
     for (std::size_t t = 0; t < mesh_triangles(); ++t) ++count[surface().face[t]];
+    for (const RepeatedFace& repeated : surface().repeated)
+      count[repeated.face] = static_cast<std::uint32_t>(mesh_.face(repeated.face).size());
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
       if (count[f] + 2 >= mesh_.face(f).size()) continue;
       std::vector<std::uint32_t> face;

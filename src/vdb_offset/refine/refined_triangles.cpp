@@ -121,21 +121,34 @@ struct RefinedTriangles::AddedCorner {
   }
 };
 
-/// The triangles of each face of the mesh.
+/// The triangles of each face of the mesh; those of the face that it repeats, if it has none of its own for that.
 struct RefinedTriangles::ByFace {
   std::vector<std::uint32_t> begin;   // of each face: where its triangles begin in `order`
   std::vector<std::uint32_t> order;   // the triangles, face by face, as they were made
   std::vector<std::uint32_t> before;  // of each face: how many triangles it had before any was split
+  std::span<const RepeatedFace> repeated;
 
-  std::span<const std::uint32_t> of(std::size_t face) const {
-    return std::span(order).subspan(begin[face], begin[face + 1] - begin[face]);
+  const RepeatedFace* repeats(std::uint32_t face) const {
+    const auto at = std::lower_bound(repeated.begin(), repeated.end(), face,
+                                     [](const RepeatedFace& each, std::uint32_t f) { return each.face < f; });
+    return at != repeated.end() && at->face == face ? &*at : nullptr;
   }
-  bool is_split(std::size_t face) const { return of(face).size() != before[face]; }
+  std::span<const std::uint32_t> of(std::uint32_t face) const {
+    const std::uint32_t own = with_triangles(face);
+    return std::span(order).subspan(begin[own], begin[own + 1] - begin[own]);
+  }
+  bool is_split(std::uint32_t face) const { return of(face).size() != before[with_triangles(face)]; }
+
+ private:
+  std::uint32_t with_triangles(std::uint32_t face) const {
+    const RepeatedFace* const repeated_face = repeats(face);
+    return repeated_face ? repeated_face->of : face;
+  }
 };
 
 RefinedTriangles::ByFace RefinedTriangles::by_face(std::size_t mesh_faces) const {
   ByFace faces{std::vector<std::uint32_t>(mesh_faces + 1, 0), std::vector<std::uint32_t>(triangles_.size()),
-               std::vector<std::uint32_t>(mesh_faces, 0)};
+               std::vector<std::uint32_t>(mesh_faces, 0), surface_->repeated};
   const auto face_of = [&](const Triangle& triangle) { return surface_->face[triangle.source]; };
   for (const Triangle& triangle : triangles_) ++faces.begin[face_of(triangle) + 1];
   for (std::size_t f = 0; f < mesh_faces; ++f) faces.begin[f + 1] += faces.begin[f];
@@ -151,8 +164,21 @@ RefinedTriangles::ByFace RefinedTriangles::by_face(std::size_t mesh_faces) const
 std::size_t RefinedTriangles::face_count(std::size_t mesh_faces) const {
   const ByFace faces = by_face(mesh_faces);
   std::size_t count = 0;
-  for (std::size_t f = 0; f < mesh_faces; ++f) count += faces.is_split(f) ? faces.of(f).size() : 1;
+  for (std::uint32_t f = 0; f < mesh_faces; ++f) count += faces.is_split(f) ? faces.of(f).size() : 1;
   return count;
+}
+
+std::size_t RefinedTriangles::most_alike() const {
+  std::vector<std::uint32_t> repeated;
+  for (const RepeatedFace& each : surface_->repeated) repeated.push_back(each.of);
+  std::sort(repeated.begin(), repeated.end());
+  std::size_t most = 1;
+  for (auto same = repeated.begin(); same != repeated.end();) {
+    const auto next = std::upper_bound(same, repeated.end(), *same);
+    most = std::max(most, 1 + static_cast<std::size_t>(next - same));
+    same = next;
+  }
+  return most;
 }
 
 Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
@@ -174,8 +200,11 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
       close_face(f, kNone);
       continue;
     }
+    const RepeatedFace* const repeats = faces.repeats(f);
     for (const std::uint32_t t : faces.of(f)) {
-      add_piece(mesh, f, triangles_[t], polygons, added);
+      std::array<std::uint32_t, 3> piece = triangles_[t].vertex;
+      if (surface_->is_turned(triangles_[t].source) != (repeats && repeats->is_reversed)) std::swap(piece[1], piece[2]);
+      add_piece(mesh, f, piece, polygons, added);
       close_face(f, t);
     }
   }
@@ -183,11 +212,11 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
   return refinement;
 }
 
-/// Adds the corners of a piece of a face; those at vertices that were added have no number yet.
-void RefinedTriangles::add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
-                                 std::vector<AddedCorner>& added) const {
-  if (surface_->is_turned(piece.source)) std::swap(piece.vertex[1], piece.vertex[2]);
-  for (const auto v : piece.vertex) {
+/// Adds the corners of a piece of a face, in the face's direction; those at vertices that were added have no number
+/// yet.
+void RefinedTriangles::add_piece(PolygonView mesh, std::uint32_t face, std::array<std::uint32_t, 3> piece,
+                                 Polygons& polygons, std::vector<AddedCorner>& added) const {
+  for (const auto v : piece) {
     if (v < source_vertices()) {
       polygons.corners.push_back(corner_of(mesh, face, v));
       continue;

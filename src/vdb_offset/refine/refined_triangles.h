@@ -57,6 +57,8 @@ class RefinedTriangles {
 
   /// The number of faces of a refinement, of a mesh with so many.
   std::size_t face_count(std::size_t mesh_faces) const;
+  /// How many faces of the mesh have one triangle here at most: those that repeat one are split as it is.
+  std::size_t most_alike() const;
   /// The refinement of the mesh that the surface was built from. `numbers` receives for each vertex here one of those
   /// that it is in the refinement; `triangle_of_face`, if given, for each of its faces the triangle here, or kNone for
   /// a face that is not split.
@@ -67,7 +69,7 @@ class RefinedTriangles {
   struct AddedCorner;
   struct ByFace;
   ByFace by_face(std::size_t mesh_faces) const;
-  void add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
+  void add_piece(PolygonView mesh, std::uint32_t face, std::array<std::uint32_t, 3> piece, Polygons& polygons,
                  std::vector<AddedCorner>& added) const;
   void number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
                     std::vector<std::uint32_t>& numbers) const;

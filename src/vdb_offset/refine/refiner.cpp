@@ -328,7 +328,8 @@ void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
     if (marked[i]) some.push_back(i);
   // An edge of two triangles gives two more, and beside it there may be two faces that are whole polygons yet. Where
   // more faces meet there are few.
-  const std::size_t count = triangles_.face_count(options_.mesh_faces), each = 2 * (options_.most_corners - 2),
+  const std::size_t count = triangles_.face_count(options_.mesh_faces),
+                    each = 2 * (options_.most_corners - 2) * triangles_.most_alike(),
                     room = (options_.most_faces > count ? options_.most_faces - count : 0) / each;
   if (some.size() <= room) return;
   is_cut_short_ = true;

@@ -191,8 +191,8 @@ std::vector<std::uint8_t> find_folded_triangles(PolygonView polygons, const Surf
     corners.insert(corners.end(), triangle.begin(), triangle.end());
     begin[i + 1] = static_cast<std::uint32_t>(corners.size());
   }
-  const std::vector<std::uint8_t> repeated = find_repeated_faces(corners, begin);
-  for (std::size_t i = 0; i < count; ++i) result[order[i]] = repeated[i] && folded[order[i]];
+  for (const RepeatedFace& repeated : find_repeated_faces(corners, begin))
+    result[order[repeated.face]] = folded[order[repeated.face]];
   return result;
 }
 
@@ -201,8 +201,10 @@ std::vector<std::uint8_t> find_folded_triangles(PolygonView polygons, const Surf
 bool leave_out_repeated_faces(PolygonView polygons, Surface& surface) {
   std::vector<std::uint32_t> corners(polygons.corners.size());
   for_each_index(corners.size(), [&](std::size_t i) { corners[i] = surface.welded[polygons.corners[i]]; });
-  const std::vector<std::uint8_t> repeats = find_repeated_faces(corners, polygons.face_begin);
-  surface.facts.repeated_faces = static_cast<std::size_t>(std::count(repeats.begin(), repeats.end(), 1));
+  surface.repeated = find_repeated_faces(corners, polygons.face_begin);
+  surface.facts.repeated_faces = surface.repeated.size();
+  std::vector<std::uint8_t> repeats(polygons.face_count(), 0);
+  for (const RepeatedFace& repeated : surface.repeated) repeats[repeated.face] = 1;
   const std::size_t before = surface.triangles.size();
   keep_triangles(surface, [&](std::size_t t) { return !repeats[surface.face[t]]; });
   const std::vector<std::uint8_t> folded = find_folded_triangles(polygons, surface);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vdb_offset/mesh/point_triangle.h"
+#include "vdb_offset/mesh/repeated_faces.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/surface/border_planes.h"
@@ -33,6 +34,7 @@ struct Surface {
   std::vector<Vec3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Sorted along a space-filling curve, as are the vertices.
   std::vector<std::uint32_t> face;                      ///< The input's face that each triangle is part of.
+  std::vector<RepeatedFace> repeated;                   ///< Faces of the input that have no triangles for that.
   std::vector<SplitTriangle> split;
   /// For each triangle the one in `split` that it is a piece of; kNone for others. Empty if none was split.
   std::vector<std::uint32_t> piece_of;

@@ -106,7 +106,8 @@ std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const s
   // Columns ahead whose stacks, which are far apart in memory, are prefetched. For speed alone; not measured.
   constexpr std::size_t kAhead = 8;
   std::vector<std::uint8_t> repeated(columns.count(), 0);
-  if (!layers.known.paired) repeated = find_repeated_faces(columns.corners, columns.begin);
+  if (!layers.known.paired)
+    for (const RepeatedFace& each : find_repeated_faces(columns.corners, columns.begin)) repeated[each.face] = 1;
   const bool none_turned = layers.known.none_turned;
   std::vector<ColumnRole> roles(columns.count());
   for_each_index(columns.count(), [&](std::size_t c) {
