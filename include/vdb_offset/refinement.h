@@ -22,7 +22,9 @@ struct VertexOrigin {
 /// but for what rounding does (see Tolerance::precision). but
 struct VDB_OFFSET_API Refinement {
   /// The source's vertices in their order, then the ones that were added. In the place of each face of the source there
-  /// are its pieces, in a row and the same way round: triangles, or the face itself where it is not split.
+  /// are its pieces, in a row and the same way round: triangles, or the face itself where it is not split. Where
+  /// vertices of the source hang on the sides of a face (see WeldOptions::join_hanging), its pieces have vertices of
+  /// their own that were added at the same positions.
   Polygons polygons;
   std::vector<std::uint32_t> parent;  ///< Of each face: the source's face that it is a piece of; ascending.
   std::vector<VertexOrigin> added;    ///< Of each vertex that was added, in order.

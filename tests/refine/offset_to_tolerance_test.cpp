@@ -263,6 +263,42 @@ TEST_CASE("tolerance: faces that the source has twice are split like others", "[
   CHECK(certified_of(few).out_of_faces);
 }
 
+TEST_CASE("tolerance: vertices that hang on edges hold nothing back", "[tolerance][hanging][check]") {
+  // Triangles of a cylinder, each tenth of which is split at the middle of a side where its neighbour is not.
+  const Polygons clean = triangles_of(scene::cylinder(0.5, 1, 24, 4, 2));
+  Polygons mesh;
+  mesh.positions = clean.positions;
+  for (std::uint32_t f = 0; f < clean.face_count(); ++f) {
+    const auto face = clean.view().face(f);
+    if (f % 10 != 0) {
+      mesh.add_face({face[0], face[1], face[2]});
+      continue;
+    }
+    const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back((mesh.positions[face[0]] + mesh.positions[face[1]]) / 2.0);
+    mesh.add_face({face[0], middle, face[2]});
+    mesh.add_face({middle, face[1], face[2]});
+  }
+  for (const double distance : {0.05, -0.05})
+    for (const Corners corners : {Corners::Round, Corners::Miter}) {
+      CAPTURE(distance, static_cast<int>(corners));
+      OffsetOptions options = options_for(distance, corners);
+      options.weld = WeldOptions::automatic();
+      const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01));
+      require_source_kept(mesh, refined);
+      CHECK(refined.result.statistics.facts.seams.hanging > 0);
+      CHECK(certified_of(refined).certified > 0.9999);
+      CheckOptions check;
+      check.distance = refined.result.distances;
+      check.corners = corners;
+      check.weld = options.weld;
+      check.tolerance_share = 0.01;
+      const CheckResult checked = check_offset(refined.refinement.polygons.view(), refined.result.positions, check);
+      CHECK(checked.valid());
+      CHECK(checked.certified.value().certified == Approx(certified_of(refined).certified).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("tolerance: miters need no split, inward or outward", "[tolerance][miter]") {
   for (const int divisions : {1, 3})
     for (const double share : {0.01, 0.05, -0.01, -0.05}) {

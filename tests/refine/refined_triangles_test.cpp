@@ -21,9 +21,9 @@ using Corners3 = std::array<std::uint32_t, 3>;
 
 /// A mesh whose triangles are split.
 struct SplitMesh {
-  explicit SplitMesh(Polygons polygons, Orient orient = Orient::Keep)
+  explicit SplitMesh(Polygons polygons, const WeldOptions& weld = {})
       : mesh(std::move(polygons)),
-        surface(build_surface(mesh.view(), {}, orient)),
+        surface(build_surface(mesh.view(), weld)),
         triangles(surface, source_positions(mesh, surface), surface.triangles.size()) {}
   SplitMesh(const SplitMesh&) = delete;
 
@@ -417,6 +417,53 @@ TEST_CASE("refined triangles: faces that repeat one are split as it is, in their
   for (std::uint32_t f = 0; f < refined.parent.size(); ++f)
     for (const auto v : refined.polygons.view().face(f))
       if (v < 2 * own) CHECK((v >= own) == (refined.parent[f] >= 2 * count));
+}
+
+TEST_CASE("refined triangles: pieces have corners of their own where vertices hang on their face",
+          "[refined_triangles]") {
+  // A box whose top has two vertices on an edge that the front has not, and the front one that the top has not.
+  Polygons mesh = scene::box(Vec3d(16), 1, false);
+  const auto at = [&](const Vec3d& position) {
+    const auto found = std::find(mesh.positions.begin(), mesh.positions.end(), position);
+    if (found == mesh.positions.end()) mesh.positions.push_back(position);
+    return static_cast<std::uint32_t>(
+        std::min(found - mesh.positions.begin(), static_cast<std::ptrdiff_t>(mesh.positions.size()) - 1));
+  };
+  const double low = mesh.positions[0][0], high = low + 16;
+  Polygons hanging;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    const Vec3d normal = newell_normal(mesh.view(), f);
+    std::vector<std::uint32_t> corners;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Vec3d from = mesh.positions[face[k]], to = mesh.positions[face[(k + 1) % face.size()]];
+      corners.push_back(face[k]);
+      if (from[1] != low || to[1] != low || from[2] != high || to[2] != high) continue;
+      std::vector<double> shares = normal[2] > 0 ? std::vector<double>{0.25, 0.75} : std::vector<double>{0.5};
+      if (from[0] > to[0]) std::reverse(shares.begin(), shares.end());
+      for (const double share : shares) corners.push_back(at(Vec3d(low + 16 * share, low, high)));
+    }
+    hanging.corners.insert(hanging.corners.end(), corners.begin(), corners.end());
+    hanging.close_face();
+  }
+  hanging.positions = mesh.positions;
+  SplitMesh split(hanging, WeldOptions::automatic());
+  REQUIRE(split.surface.facts.seams.hanging == 3);
+  REQUIRE(split.surface.facts.closed());
+  std::mt19937 random(6);
+  for (int round = 0; round < 4; ++round) {
+    const Refinement refined = split.refinement();
+    require_refinement(hanging, refined);
+    CHECK(split.triangles.face_count(hanging.face_count()) == refined.polygons.face_count());
+    // Welded again, it is closed, edge to edge.
+    Polygons welded = refined.polygons;
+    const std::vector<std::uint32_t> first = weld_by_position(welded.view(), {});
+    for (auto& v : welded.corners) v = first[v];
+    CHECK(is_closed_and_oriented(welded));
+    // Faces that nothing hangs on are whole at first.
+    if (round == 0) CHECK(std::count(refined.parent.begin(), refined.parent.end(), 0U) == 1);
+    split.split_at_random(0.5, random);
+  }
 }
 
 TEST_CASE("refined triangles: at seams each side has vertices of its own, at the same positions",

@@ -62,7 +62,7 @@ class RefinedRun {
         tolerance_(tolerance),
         threads_(threads),
         space_(mesh, options.metric),
-        prepared_(space_, options, threads, farthest_of({&options.distance, 1}), {.by_corner = true}) {}
+        prepared_(space_, options, threads, farthest_of({&options.distance, 1}), {}) {}
 
   RefinedOffset run() {
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
@@ -235,6 +235,9 @@ class RefinedRun {
     RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_);
     refined_.result = refined.offset(refiner.vertices());
     refined_.refinement = refined.take_refinement();
+    SeamFacts& seams = refined_.result.statistics.facts.seams;
+    seams.hanging = surface().facts.seams.hanging;
+    seams.widest_hanging = surface().facts.seams.widest_hanging;
     numbers_ = refined.numbers();
     for (std::size_t s = 0; s < kStageCount; ++s) seconds_[s] += refined_.result.statistics.seconds[s];
   }

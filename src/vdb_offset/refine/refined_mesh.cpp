@@ -43,8 +43,7 @@ void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
   }
   if (!each.empty()) options_.distance = Distances(std::move(each));
   space_.emplace(refinement_.polygons.view(), options_.metric);
-  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}),
-                    Yield{.has_targets = true, .by_corner = true});
+  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}), Yield{.has_targets = true});
   asked_ = ask(*prepared_, {&options_.distance, 1});
   marched_.push_back(prepared_->marched_to(asked_->moved.front(), targets));
 }

@@ -4,6 +4,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -99,25 +100,76 @@ std::vector<std::uint32_t> RefinedTriangles::split(std::span<const Edge> edges, 
   return pieces;
 }
 
-/// The first corner of a face of the input that is a vertex of the surface.
+/// The first corner of a face of the input that is a vertex of the surface; kNone for one that hangs on its sides.
 std::uint32_t RefinedTriangles::corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const {
   for (const auto v : mesh.face(face))
     if (surface_->welded[v] == vertex) return v;
-  VDB_OFFSET_ASSERT(false);
   return kNone;
 }
 
-/// A corner of a piece at a vertex that was added: which vertices of the input it is made of there. Several have one
-/// position where the input's vertices are welded.
+/// Shares of a triangle's corners in a vertex that hangs on one of its sides, the nearest one.
+std::array<double, 3> RefinedTriangles::shares_on_side(const std::array<std::uint32_t, 3>& corners,
+                                                       std::uint32_t hanging) const {
+  std::array<double, 3> shares{0, 0, 0};
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d &from = positions_[corners[k]], along = positions_[corners[(k + 1) % 3]] - from;
+    const double share = std::clamp(along.dot(positions_[hanging] - from) / along.lengthSqr(), 0.0, 1.0);
+    const double off = (from + along * share - positions_[hanging]).lengthSqr();
+    if (!(off < nearest)) continue;
+    nearest = off;
+    shares = {0, 0, 0};
+    shares[k] = 1 - share;
+    shares[(k + 1) % 3] = share;
+  }
+  return shares;
+}
+
+/// Where a vertex of a piece lies in the face that it is a piece of: where vertices hang on that face's sides, the
+/// surface's triangles have corners that the face has not.
+SurfacePlace RefinedTriangles::place_in_face(std::uint32_t vertex, std::uint32_t source) const {
+  const SurfacePlace place = vertex < source_vertices() ? SurfacePlace{source, {vertex, kNone, kNone}, {1, 0, 0}}
+                                                        : added_[vertex - source_vertices()];
+  const SplitTriangle* const whole = surface_->whole_of(source);
+  if (!whole) return place;
+  const auto corner = [&](std::uint32_t v) { return std::find(whole->corners.begin(), whole->corners.end(), v); };
+  const auto hangs = [&](std::uint32_t v) { return v != kNone && corner(v) == whole->corners.end(); };
+  if (std::none_of(place.vertex.begin(), place.vertex.end(), hangs)) return place;
+  std::array<std::pair<double, std::uint32_t>, 3> shares;
+  for (std::size_t j = 0; j < 3; ++j) shares[j] = {0, whole->corners[j]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = place.vertex[k];
+    if (v == kNone) continue;
+    std::array<double, 3> in_whole{0, 0, 0};
+    if (hangs(v)) in_whole = shares_on_side(whole->corners, v);
+    else in_whole[static_cast<std::size_t>(corner(v) - whole->corners.begin())] = 1;
+    for (std::size_t j = 0; j < 3; ++j) shares[j].first += place.share[k] * in_whole[j];
+  }
+  // The largest share comes last, as what the others leave of 1: so their sum is 1 exactly.
+  std::sort(shares.begin(), shares.end());
+  SurfacePlace in_face{source, {kNone, kNone, kNone}, {0, 0, 0}};
+  std::size_t count = 0;
+  double left = 1;
+  for (const auto& [share, v] : shares) {
+    if (!(share > 0)) continue;
+    in_face.vertex[count] = v;
+    in_face.share[count] = v == shares[2].second ? left : share;
+    left -= in_face.share[count++];
+  }
+  return in_face;
+}
+
+/// A corner of a piece at a vertex that is no corner of the piece's face: which vertices of the input it is made of
+/// there. Several have one position where the input's vertices are welded.
 struct RefinedTriangles::AddedCorner {
-  std::uint32_t added;
+  std::uint32_t at;                     // the vertex here
   std::array<std::uint32_t, 3> vertex;  // of the input
-  std::uint32_t face;
+  std::uint32_t face, source;
   std::size_t corner;
 
-  auto key() const { return std::tie(added, vertex); }
+  auto key() const { return std::tie(at, vertex); }
   bool operator<(const AddedCorner& other) const {
-    return std::tie(added, vertex, corner) < std::tie(other.added, other.vertex, other.corner);
+    return std::tie(at, vertex, corner) < std::tie(other.at, other.vertex, other.corner);
   }
 };
 
@@ -156,7 +208,9 @@ RefinedTriangles::ByFace RefinedTriangles::by_face(std::size_t mesh_faces) const
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const std::uint32_t face = face_of(triangles_[t]);
     faces.order[next[face]++] = t;
-    faces.before[face] += triangles_[t].source == t;  // the first piece stands where the triangle stood
+    // The first piece stands where the triangle stood; what is split at hanging vertices was one triangle, too.
+    const SplitTriangle* const whole = surface_->whole_of(triangles_[t].source);
+    faces.before[face] += triangles_[t].source == t && (!whole || whole->pieces.front() == t);
   }
   return faces;
 }
@@ -202,8 +256,9 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
     }
     const RepeatedFace* const repeats = faces.repeats(f);
     for (const std::uint32_t t : faces.of(f)) {
-      std::array<std::uint32_t, 3> piece = triangles_[t].vertex;
-      if (surface_->is_turned(triangles_[t].source) != (repeats && repeats->is_reversed)) std::swap(piece[1], piece[2]);
+      Triangle piece = triangles_[t];
+      if (surface_->is_turned(piece.source) != (repeats && repeats->is_reversed))
+        std::swap(piece.vertex[1], piece.vertex[2]);
       add_piece(mesh, f, piece, polygons, added);
       close_face(f, t);
     }
@@ -212,26 +267,24 @@ Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t
   return refinement;
 }
 
-/// Adds the corners of a piece of a face, in the face's direction; those at vertices that were added have no number
+/// Adds the corners of a piece of a face, in the face's direction; those that are no corners of the face have no number
 /// yet.
-void RefinedTriangles::add_piece(PolygonView mesh, std::uint32_t face, std::array<std::uint32_t, 3> piece,
-                                 Polygons& polygons, std::vector<AddedCorner>& added) const {
-  for (const auto v : piece) {
-    if (v < source_vertices()) {
-      polygons.corners.push_back(corner_of(mesh, face, v));
-      continue;
+void RefinedTriangles::add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
+                                 std::vector<AddedCorner>& added) const {
+  for (const auto v : piece.vertex) {
+    const std::uint32_t own = v < source_vertices() ? corner_of(mesh, face, v) : kNone;
+    if (own == kNone) {
+      AddedCorner corner{v, place_in_face(v, piece.source).vertex, face, piece.source, polygons.corners.size()};
+      for (std::uint32_t& of : corner.vertex)
+        if (of != kNone) of = corner_of(mesh, face, of);
+      added.push_back(corner);
     }
-    const std::uint32_t number = v - static_cast<std::uint32_t>(source_vertices());
-    AddedCorner corner{number, {kNone, kNone, kNone}, face, polygons.corners.size()};
-    for (std::size_t k = 0; k < 3; ++k)
-      if (added_[number].vertex[k] != kNone) corner.vertex[k] = corner_of(mesh, face, added_[number].vertex[k]);
-    added.push_back(corner);
-    polygons.corners.push_back(kNone);
+    polygons.corners.push_back(own);
   }
 }
 
-/// Makes vertices of the refinement of corners at vertices that were added: one for each set of the input's vertices
-/// that such a vertex lies between.
+/// Makes vertices of the refinement of corners that have none: one for each set of the input's vertices that such a
+/// corner lies between.
 void RefinedTriangles::number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
                                     std::vector<std::uint32_t>& numbers) const {
   Polygons& polygons = refinement.polygons;
@@ -241,15 +294,15 @@ void RefinedTriangles::number_added(PolygonView mesh, std::vector<AddedCorner>& 
     if (w < surface_->representative.size()) numbers[w] = surface_->representative[w];
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (i == 0 || added[i - 1].key() != added[i].key()) {
-      const SurfacePlace& place = added_[added[i].added];
+      const SurfacePlace place = place_in_face(added[i].at, added[i].source);
       VertexOrigin origin{added[i].face, added[i].vertex, place.share};
       // On an edge the third corner counts for nothing; any of the face's will do.
       if (place.on_edge()) origin.vertex[2] = other_corner(mesh.face(origin.face), origin.vertex);
       refinement.added.push_back(origin);
-      polygons.positions.push_back(positions_[source_vertices() + added[i].added]);
+      polygons.positions.push_back(positions_[added[i].at]);
     }
     const auto last = static_cast<std::uint32_t>(polygons.positions.size() - 1);
-    std::uint32_t& first = numbers[source_vertices() + added[i].added];
+    std::uint32_t& first = numbers[added[i].at];
     if (first == kNone) first = last;
     polygons.corners[added[i].corner] = last;
   }

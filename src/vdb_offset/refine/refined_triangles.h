@@ -69,11 +69,13 @@ class RefinedTriangles {
   struct AddedCorner;
   struct ByFace;
   ByFace by_face(std::size_t mesh_faces) const;
-  void add_piece(PolygonView mesh, std::uint32_t face, std::array<std::uint32_t, 3> piece, Polygons& polygons,
+  void add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
                  std::vector<AddedCorner>& added) const;
   void number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
                     std::vector<std::uint32_t>& numbers) const;
   std::uint32_t corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const;
+  SurfacePlace place_in_face(std::uint32_t vertex, std::uint32_t source) const;
+  std::array<double, 3> shares_on_side(const std::array<std::uint32_t, 3>& corners, std::uint32_t hanging) const;
 
   const Surface* surface_;
   std::vector<Vec3d> positions_;
