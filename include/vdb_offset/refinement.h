@@ -19,7 +19,8 @@ struct VertexOrigin {
 };
 
 /// A mesh whose faces are split, on the same surface: no vertex of the source is moved, and no face leaves its plane,
-/// but for what rounding does (see Tolerance::precision). but
+/// but for what rounding does (see Tolerance::precision), and where vertices hang on its sides, by how far off these
+/// are.
 struct VDB_OFFSET_API Refinement {
   /// The source's vertices in their order, then the ones that were added. In the place of each face of the source there
   /// are its pieces, in a row and the same way round: triangles, or the face itself where it is not split. Where

@@ -11,9 +11,11 @@ namespace vdb_offset {
 
 /// How far the faces of an offset may be off their distance.
 struct VDB_OFFSET_API Tolerance {
-  double share = 0;            ///< Of the distance at each point, above 1e-5 and below 1; or 0, and
-  double length = 0;           ///< world units, above 1e-5 of the largest distance.
-  std::size_t most_faces = 0;  ///< No more are made; 0: 20 times as many as the mesh has, at least a million.
+  double share = 0;   ///< Of the distance at each point, above 1e-5 and below 1; or 0, and
+  double length = 0;  ///< world units, above 1e-5 of the largest distance.
+  /// No more are made, but for the pieces of faces that vertices hang on; 0: 20 times as many as the mesh has, at least
+  /// a million.
+  std::size_t most_faces = 0;
   /// What the file that the refined mesh is for keeps of coordinates: those of vertices that are added are rounded to
   /// that; if it `rounds_all`, those of the mesh first, so that what is offset is what will be read.
   Precision precision;

@@ -492,6 +492,30 @@ TEST_CASE("tolerance: a pair in single precision is what it says", "[tolerance][
       }
 }
 
+TEST_CASE("tolerance: check takes faces for one plane that rounding has tilted against each other",
+          "[tolerance][miter][check]") {
+  // In single precision, and turned, so that no coordinates of a flat face are alike.
+  Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (Vec3d& p : mesh.positions) {
+    const Vec3d turned(c * p[0] - s * p[1], c * (s * p[0] + c * p[1]) - s * p[2], s * (s * p[0] + c * p[1]) + c * p[2]);
+    for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(turned[k]);
+  }
+  const OffsetOptions options = options_for(0.056, Corners::Miter);
+  const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01));
+  CheckOptions check;
+  check.distance = refined.result.distances;
+  check.corners = Corners::Miter;
+  check.tolerance_share = 0.01;
+  const CheckResult checked = check_offset(refined.refinement.polygons.view(), refined.result.positions, check);
+  const auto get_there = [](const std::vector<VertexState>& states) {
+    return std::count_if(states.begin(), states.end(), [](VertexState state) { return !falls_short(state); });
+  };
+  CHECK(checked.beyond == 0);
+  CHECK(get_there(checked.states) == get_there(refined.result.states));
+  CHECK(checked.certified.value().certified == Approx(certified_of(refined).certified).epsilon(1e-9));
+}
+
 TEST_CASE("tolerance: pieces of needles do not get narrower and narrower", "[tolerance][miter]") {
   const Polygons loft = test::open_loft(64);
   const RefinedOffset refined = offset_to_tolerance(loft.view(), options_for(0.54, Corners::Miter), tolerance_of(0.01));
@@ -536,6 +560,34 @@ TEST_CASE("tolerance: distances that differ from vertex to vertex", "[tolerance]
     worst = std::max(worst, std::abs(refined.result.distances[mesh.positions.size() + i] - asked));
   }
   CHECK(worst < 1e-15);
+}
+
+TEST_CASE("tolerance: distances that differ hold where vertices share positions, or hang", "[tolerance][hanging]") {
+  const auto at = [](const Polygons& mesh) {
+    std::vector<double> each;
+    for (const Vec3d& p : mesh.positions) each.push_back(0.1 + 0.03 * p[2]);
+    return Distances(std::move(each));
+  };
+  const Polygons ball = scene::icosphere(1, 1), torn = test::torn(ball);
+  const RefinedOffset whole = offset_to_tolerance(ball.view(), options_for(at(ball)), tolerance_of(0.01)),
+                      in_pieces = offset_to_tolerance(torn.view(), options_for(at(torn)), tolerance_of(0.01));
+  CHECK(certified_of(whole).certified > 0.9999);
+  CHECK(certified_of(in_pieces).certified == Approx(certified_of(whole).certified).epsilon(1e-9));
+  CHECK(in_pieces.refinement.polygons.face_count() == whole.refinement.polygons.face_count());
+  CHECK(in_pieces.result.statistics.disagreeing_distances == 0);
+  Polygons hanging = scene::box(Vec3d(1), 1, true);
+  const auto first = hanging.view().face(0);
+  const std::array<std::uint32_t, 3> split{first[0], first[1], first[2]};
+  const auto middle = static_cast<std::uint32_t>(hanging.positions.size());
+  hanging.positions.push_back((hanging.positions[split[0]] + hanging.positions[split[1]]) / 2.0);
+  hanging.corners[1] = middle;  // the first face is the half at its first corner, and the other half is added
+  hanging.add_face({middle, split[1], split[2]});
+  OffsetOptions options = options_for(at(hanging));
+  options.weld = WeldOptions::automatic();
+  const RefinedOffset joined = offset_to_tolerance(hanging.view(), options, tolerance_of(0.01));
+  CHECK(joined.result.statistics.facts.seams.hanging == 1);
+  CHECK(joined.result.statistics.disagreeing_distances == 0);
+  CHECK(certified_of(joined).certified > 0.9999);
 }
 
 TEST_CASE("tolerance: a part of a mesh is split, and little of what stays", "[tolerance]") {

@@ -208,10 +208,11 @@ bool is_on_planes(const MeshParts& parts, std::uint32_t vertex, const Vec3d& dis
   if (has_tolerance(options)) take_nearest(part, on_part, displacement, asked, around);
   MovedPlanes planes{around.normals, around.tilts, asked, tolerance};
   const auto triangles = part.triangles_around(on_part);
-  if (std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
-        return normal_of(t).lengthSqr() == 0 || tilt_of(t) > kMostTilt ||
-               planes.is_on(normal_of(t), tilt_of(t), displacement);
-      }))
+  // Faces that rounding has tilted against each other count as one plane, and what was added may lie on any of them.
+  if (has_tolerance(options) ? planes.is_on_all(displacement)
+                             : std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+                                 return normal_of(t).lengthSqr() == 0 || planes.is_on(normal_of(t), 0, displacement);
+                               }))
     return true;
   for (Vec3d& normal : planes.normals) normal = part.along_border(on_part, normal);
   if (is_nearest_of_some(planes, displacement, miter)) return true;

@@ -62,7 +62,8 @@ class RefinedRun {
         tolerance_(tolerance),
         threads_(threads),
         space_(mesh, options.metric),
-        prepared_(space_, options, threads, farthest_of({&options.distance, 1}), {}) {}
+        prepared_(space_, options, threads, farthest_of({&options.distance, 1}),
+                  {.by_corner = !options.distance.at_corner().empty()}) {}
 
   RefinedOffset run() {
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
@@ -127,21 +128,33 @@ class RefinedRun {
                                      : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
   }
 
-  /// Calls visit(corners) for the triangles of faces that the surface does not have all triangles of, such as are
-  /// lines; but not of repeated faces, which are split as those are that they repeat.
+  /// Calls visit(face, corners) for the triangles of faces that the surface has not, such as are lines; but not of
+  /// repeated faces, which are split as those are that they repeat.
   template <class Visit>
   void for_each_left_out(Visit&& visit) const {
+    using Corners3 = std::array<std::uint32_t, 3>;
     std::vector<std::uint32_t> count(mesh_.face_count(), 0);
     for (std::size_t t = 0; t < mesh_triangles(); ++t) ++count[surface().face[t]];
     for (const RepeatedFace& repeated : surface().repeated)
       count[repeated.face] = static_cast<std::uint32_t>(mesh_.face(repeated.face).size());
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
-      if (count[f] + 2 >= mesh_.face(f).size()) continue;
+    const auto is_left_out = [&](std::uint32_t f) { return count[f] + 2 < mesh_.face(f).size(); };
+    const auto in_order = [](Corners3 corners) {
+      std::sort(corners.begin(), corners.end());
+      return corners;
+    };
+    std::vector<std::pair<std::uint32_t, Corners3>> had;  // of those faces
+    for (std::size_t t = 0; t < mesh_triangles(); ++t)
+      if (const std::uint32_t f = surface().face[t]; is_left_out(f))
+        had.emplace_back(f, in_order(surface().triangles[t]));
+    std::sort(had.begin(), had.end());
+    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
+      if (!is_left_out(f)) continue;
       std::vector<std::uint32_t> face;
-      std::vector<std::array<std::uint32_t, 3>> triangles;
+      std::vector<Corners3> triangles;
       for (const auto v : mesh_.face(f)) face.push_back(surface().welded[v]);
-      triangulate(surface().vertices, face, triangles);
-      for (const auto& corners : triangles) visit(static_cast<std::uint32_t>(f), corners);
+      triangulate_without_lines(surface().vertices, face, triangles);
+      for (const auto& corners : triangles)
+        if (!std::binary_search(had.begin(), had.end(), std::pair(f, in_order(corners)))) visit(f, corners);
     }
   }
 
@@ -235,6 +248,7 @@ class RefinedRun {
     RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_);
     refined_.result = refined.offset(refiner.vertices());
     refined_.refinement = refined.take_refinement();
+    // Where vertices hung, the refined mesh has no more than equal positions.
     SeamFacts& seams = refined_.result.statistics.facts.seams;
     seams.hanging = surface().facts.seams.hanging;
     seams.widest_hanging = surface().facts.seams.widest_hanging;

@@ -17,7 +17,8 @@ RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, co
       options_(options),
       precision_(precision),
       threads_(threads),
-      crosses_nothing_(crosses_nothing) {
+      crosses_nothing_(crosses_nothing),
+      by_corner_(!options.distance.at_corner().empty()) {
   refinement_ = triangles.of_mesh(mesh, numbers_, &triangle_of_face_);
   if (options.only.empty()) return;
   options_.only.clear();
@@ -31,19 +32,23 @@ void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
   for (const Vec3d& position : refinement_.polygons.positions)
     targets.vertex_error = std::max(targets.vertex_error, precision_.most_off_together(position));
   std::vector<double> each(options_.distance.uniform() ? 0 : count);
-  for (std::size_t v = 0; v < mesh_.positions.size() && !each.empty(); ++v) each[v] = options_.distance[v];
+  if (!each.empty()) {
+    for (std::size_t v = 0; v < mesh_.positions.size(); ++v) each[v] = options_.distance[v];
+    for (std::size_t v = mesh_.positions.size(); v < count; ++v)
+      each[v] = vertices[numbers_.of_added[v - mesh_.positions.size()]].asked;
+  }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const std::uint32_t v = numbers_[i];
+    const std::uint32_t v = numbers_.of_vertex[i];
     if (v == kNone) continue;
     targets.displacement[v] = vertices[i].target.displacement;
     targets.state[v] = !vertices[i].target.is_there   ? vertices[i].otherwise
                        : vertices[i].target.is_mitred ? VertexState::Mitred
                                                       : VertexState::Reached;
-    if (!each.empty() && i >= triangles_.source_vertices()) each[v] = vertices[i].asked;
   }
   if (!each.empty()) options_.distance = Distances(std::move(each));
   space_.emplace(refinement_.polygons.view(), options_.metric);
-  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}), Yield{.has_targets = true});
+  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}),
+                    Yield{.has_targets = true, .by_corner = by_corner_});
   asked_ = ask(*prepared_, {&options_.distance, 1});
   marched_.push_back(prepared_->marched_to(asked_->moved.front(), targets));
 }

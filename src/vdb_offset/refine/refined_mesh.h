@@ -34,7 +34,7 @@ class RefinedMesh {
   OffsetResult offset(const std::vector<RefinedVertex>& vertices);
 
   /// For each vertex of the triangles one of those that it is in the refinement; kNone for an obstacle's.
-  const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+  const std::vector<std::uint32_t>& numbers() const { return numbers_.of_vertex; }
   Refinement take_refinement() { return std::move(refinement_); }
 
  private:
@@ -45,8 +45,9 @@ class RefinedMesh {
   OffsetOptions options_;
   const Rounding precision_;
   int threads_;
-  bool crosses_nothing_;
-  std::vector<std::uint32_t> numbers_, triangle_of_face_;
+  bool crosses_nothing_, by_corner_;
+  RefinedTriangles::Numbers numbers_;
+  std::vector<std::uint32_t> triangle_of_face_;
   Refinement refinement_;
   std::optional<InMetric> space_;
   std::optional<PreparedMesh> prepared_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "vdb_offset/base/assert.h"
+#include "vdb_offset/base/index_set.h"
 #include "vdb_offset/base/parallel.h"
 
 namespace vdb_offset {
@@ -38,6 +39,14 @@ RefinedTriangles::RefinedTriangles(const Surface& surface, std::span<const Vec3d
     : surface_(&surface), positions_(positions.begin(), positions.end()) {
   triangles_.reserve(count);
   for (std::uint32_t t = 0; t < count; ++t) triangles_.push_back({surface.triangles[t], t});
+  if (surface.repeated.empty()) return;
+  Indices repeated;
+  for (const RepeatedFace& each : surface.repeated) repeated.push_back(each.of);
+  std::sort(repeated.begin(), repeated.end());
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const auto same = std::equal_range(repeated.begin(), repeated.end(), surface.face[t]);
+    copies_.push_back(1 + static_cast<std::uint32_t>(same.second - same.first));
+  }
 }
 
 SurfacePlace RefinedTriangles::middle(const Edge& edge, std::uint32_t source) const {
@@ -149,12 +158,10 @@ SurfacePlace RefinedTriangles::place_in_face(std::uint32_t vertex, std::uint32_t
   std::sort(shares.begin(), shares.end());
   SurfacePlace in_face{source, {kNone, kNone, kNone}, {0, 0, 0}};
   std::size_t count = 0;
-  double left = 1;
   for (const auto& [share, v] : shares) {
     if (!(share > 0)) continue;
     in_face.vertex[count] = v;
-    in_face.share[count] = v == shares[2].second ? left : share;
-    left -= in_face.share[count++];
+    in_face.share[count++] = v == shares[2].second ? 1 - (shares[0].first + shares[1].first) : share;
   }
   return in_face;
 }
@@ -222,20 +229,7 @@ std::size_t RefinedTriangles::face_count(std::size_t mesh_faces) const {
   return count;
 }
 
-std::size_t RefinedTriangles::most_alike() const {
-  std::vector<std::uint32_t> repeated;
-  for (const RepeatedFace& each : surface_->repeated) repeated.push_back(each.of);
-  std::sort(repeated.begin(), repeated.end());
-  std::size_t most = 1;
-  for (auto same = repeated.begin(); same != repeated.end();) {
-    const auto next = std::upper_bound(same, repeated.end(), *same);
-    most = std::max(most, 1 + static_cast<std::size_t>(next - same));
-    same = next;
-  }
-  return most;
-}
-
-Refinement RefinedTriangles::of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
+Refinement RefinedTriangles::of_mesh(PolygonView mesh, Numbers& numbers,
                                      std::vector<std::uint32_t>* triangle_of_face) const {
   const ByFace faces = by_face(mesh.face_count());
   Refinement refinement;
@@ -286,12 +280,12 @@ void RefinedTriangles::add_piece(PolygonView mesh, std::uint32_t face, Triangle 
 /// Makes vertices of the refinement of corners that have none: one for each set of the input's vertices that such a
 /// corner lies between.
 void RefinedTriangles::number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
-                                    std::vector<std::uint32_t>& numbers) const {
+                                    Numbers& numbers) const {
   Polygons& polygons = refinement.polygons;
   tbb::parallel_sort(added.begin(), added.end());
-  numbers.assign(positions_.size(), kNone);
+  numbers = {std::vector<std::uint32_t>(positions_.size(), kNone), {}};
   for (std::size_t w = 0; w < source_vertices(); ++w)
-    if (w < surface_->representative.size()) numbers[w] = surface_->representative[w];
+    if (w < surface_->representative.size()) numbers.of_vertex[w] = surface_->representative[w];
   for (std::size_t i = 0; i < added.size(); ++i) {
     if (i == 0 || added[i - 1].key() != added[i].key()) {
       const SurfacePlace place = place_in_face(added[i].at, added[i].source);
@@ -300,9 +294,10 @@ void RefinedTriangles::number_added(PolygonView mesh, std::vector<AddedCorner>& 
       if (place.on_edge()) origin.vertex[2] = other_corner(mesh.face(origin.face), origin.vertex);
       refinement.added.push_back(origin);
       polygons.positions.push_back(positions_[added[i].at]);
+      numbers.of_added.push_back(added[i].at);
     }
     const auto last = static_cast<std::uint32_t>(polygons.positions.size() - 1);
-    std::uint32_t& first = numbers[added[i].at];
+    std::uint32_t& first = numbers.of_vertex[added[i].at];
     if (first == kNone) first = last;
     polygons.corners[added[i].corner] = last;
   }

@@ -57,13 +57,16 @@ class RefinedTriangles {
 
   /// The number of faces of a refinement, of a mesh with so many.
   std::size_t face_count(std::size_t mesh_faces) const;
-  /// How many faces of the mesh have one triangle here at most: those that repeat one are split as it is.
-  std::size_t most_alike() const;
-  /// The refinement of the mesh that the surface was built from. `numbers` receives for each vertex here one of those
-  /// that it is in the refinement; `triangle_of_face`, if given, for each of its faces the triangle here, or kNone for
-  /// a face that is not split.
-  Refinement of_mesh(PolygonView mesh, std::vector<std::uint32_t>& numbers,
-                     std::vector<std::uint32_t>* triangle_of_face = nullptr) const;
+  /// How many faces of the mesh are split as a triangle is: its own, and those that repeat that one.
+  std::size_t copies(const Triangle& triangle) const { return copies_.empty() ? 1 : copies_[triangle.source]; }
+  /// Which vertices here are which in a refinement.
+  struct Numbers {
+    std::vector<std::uint32_t> of_vertex;  ///< For each vertex here one of those that it is; kNone for an obstacle's.
+    std::vector<std::uint32_t> of_added;   ///< For each one that was added the vertex here.
+  };
+  /// The refinement of the mesh that the surface was built from. `triangle_of_face`, if given, receives for each of its
+  /// faces the triangle here, or kNone for a face that is not split.
+  Refinement of_mesh(PolygonView mesh, Numbers& numbers, std::vector<std::uint32_t>* triangle_of_face = nullptr) const;
 
  private:
   struct AddedCorner;
@@ -71,8 +74,7 @@ class RefinedTriangles {
   ByFace by_face(std::size_t mesh_faces) const;
   void add_piece(PolygonView mesh, std::uint32_t face, Triangle piece, Polygons& polygons,
                  std::vector<AddedCorner>& added) const;
-  void number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement,
-                    std::vector<std::uint32_t>& numbers) const;
+  void number_added(PolygonView mesh, std::vector<AddedCorner>& added, Refinement& refinement, Numbers& numbers) const;
   std::uint32_t corner_of(PolygonView mesh, std::size_t face, std::uint32_t vertex) const;
   SurfacePlace place_in_face(std::uint32_t vertex, std::uint32_t source) const;
   std::array<double, 3> shares_on_side(const std::array<std::uint32_t, 3>& corners, std::uint32_t hanging) const;
@@ -81,6 +83,7 @@ class RefinedTriangles {
   std::vector<Vec3d> positions_;
   std::vector<SurfacePlace> added_;
   std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> copies_;  // of each triangle of the surface; empty if no face repeats another
 };
 
 }  // namespace vdb_offset

@@ -245,11 +245,11 @@ Refiner::Candidate Refiner::candidate(const Edge& edge, std::uint32_t source) co
   return one;
 }
 
-const Refiner::Candidate& Refiner::find(const Edge& edge) const {
+/// The candidate of an edge; null if there is none.
+const Refiner::Candidate* Refiner::find(const Edge& edge) const {
   const auto at = std::lower_bound(candidates_.begin(), candidates_.end(), edge,
                                    [](const Candidate& c, const Edge& wanted) { return c.edge < wanted; });
-  VDB_OFFSET_ASSERT(at != candidates_.end() && at->edge == edge);
-  return *at;
+  return at != candidates_.end() && at->edge == edge ? &*at : nullptr;
 }
 
 /// Chooses edges of a triangle whose vertices all get there. Where no edge bulges and all are short, splits gain
@@ -292,7 +292,10 @@ void Refiner::mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) co
   if (is_narrow_piece(triangles_.triangles()[triangle])) return;
   const Corners3& v = triangles_.triangles()[triangle].vertex;
   std::array<const Candidate*, 3> of_edge;
-  for (std::size_t k = 0; k < 3; ++k) of_edge[k] = &find(edge_between(v[k], v[(k + 1) % 3]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    of_edge[k] = find(edge_between(v[k], v[(k + 1) % 3]));
+    VDB_OFFSET_ASSERT(of_edge[k]);
+  }
   const auto split = [&](const Candidate* one) { marked[static_cast<std::size_t>(one - candidates_.data())] = 1; };
   if (state_[triangle] == State::Off) return mark_off(of_edge, split);
   for (const Candidate* one : of_edge) {
@@ -326,17 +329,23 @@ void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
   std::vector<std::uint32_t> some;
   for (std::uint32_t i = 0; i < marked.size(); ++i)
     if (marked[i]) some.push_back(i);
-  // An edge of two triangles gives two more, and beside it there may be two faces that are whole polygons yet. Where
-  // more faces meet there are few.
-  const std::size_t count = triangles_.face_count(options_.mesh_faces),
-                    each = 2 * (options_.most_corners - 2) * triangles_.most_alike(),
-                    room = (options_.most_faces > count ? options_.most_faces - count : 0) / each;
-  if (some.size() <= room) return;
-  is_cut_short_ = true;
+  // An edge gives one more for each triangle there and each copy of its face, which may be a whole polygon yet.
+  std::vector<std::size_t> more(candidates_.size(), 0);
+  for (const RefinedTriangles::Triangle& triangle : triangles_.triangles())
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const Candidate* const one = find(edge_between(triangle.vertex[k], triangle.vertex[(k + 1) % 3])))
+        more[static_cast<std::size_t>(one - candidates_.data())] +=
+            (options_.most_corners - 2) * triangles_.copies(triangle);
+  const std::size_t count = triangles_.face_count(options_.mesh_faces);
+  std::size_t room = options_.most_faces > count ? options_.most_faces - count : 0;
   std::stable_sort(some.begin(), some.end(), [&](std::uint32_t a, std::uint32_t b) {
     return candidates_[a].vertex.bulge > candidates_[b].vertex.bulge;
   });
-  for (std::size_t i = room; i < some.size(); ++i) marked[some[i]] = 0;
+  for (const std::uint32_t i : some) {
+    if (more[i] > room) is_cut_short_ = true;
+    if (is_cut_short_) marked[i] = 0;
+    else room -= more[i];
+  }
 }
 
 void Refiner::split(const std::vector<std::uint8_t>& marked) {

@@ -100,7 +100,7 @@ class Refiner {
   bool is_narrow_piece(const RefinedTriangles::Triangle& triangle) const;
   void propose(const std::vector<std::uint32_t>& triangles);
   Candidate candidate(const Edge& edge, std::uint32_t source) const;
-  const Candidate& find(const Edge& edge) const;
+  const Candidate* find(const Edge& edge) const;
   void mark(std::uint32_t triangle, std::vector<std::uint8_t>& marked) const;
   template <class Split>
   void mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& split) const;
