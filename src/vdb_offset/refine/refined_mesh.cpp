@@ -12,8 +12,7 @@ namespace vdb_offset {
 
 RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
                          const Rounding& precision, int threads, bool crosses_nothing)
-    : triangles_(triangles),
-      mesh_(mesh),
+    : mesh_(mesh),
       options_(options),
       precision_(precision),
       threads_(threads),

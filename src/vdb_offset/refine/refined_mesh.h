@@ -20,7 +20,7 @@ namespace vdb_offset {
 /// A mesh with its faces split, which is offset like any other, with its vertices at their targets.
 class RefinedMesh {
  public:
-  /// Keeps references to the triangles and the mesh that they are of. `options` are those of the mesh, `precision` that
+  /// Keeps a reference to the mesh that the triangles are of. `options` are those of the mesh, `precision` that
   /// which vertices were rounded to when they were added.
   /// \param crosses_nothing the mesh is known not to cross itself
   RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
@@ -40,7 +40,6 @@ class RefinedMesh {
  private:
   void prepare(const std::vector<RefinedVertex>& vertices);
 
-  const RefinedTriangles& triangles_;
   PolygonView mesh_;
   OffsetOptions options_;
   const Rounding precision_;
