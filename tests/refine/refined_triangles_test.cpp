@@ -425,9 +425,9 @@ TEST_CASE("refined triangles: pieces have corners of their own where vertices ha
   Polygons mesh = scene::box(Vec3d(16), 1, false);
   const auto at = [&](const Vec3d& position) {
     const auto found = std::find(mesh.positions.begin(), mesh.positions.end(), position);
-    if (found == mesh.positions.end()) mesh.positions.push_back(position);
-    return static_cast<std::uint32_t>(
-        std::min(found - mesh.positions.begin(), static_cast<std::ptrdiff_t>(mesh.positions.size()) - 1));
+    const auto number = static_cast<std::uint32_t>(found - mesh.positions.begin());
+    if (number == mesh.positions.size()) mesh.positions.push_back(position);
+    return number;
   };
   const double low = mesh.positions[0][0], high = low + 16;
   Polygons hanging;
