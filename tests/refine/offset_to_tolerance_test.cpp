@@ -637,6 +637,15 @@ TEST_CASE("tolerance: no more faces are made than may be", "[tolerance]") {
   CHECK(certified.worst_left > 0.01);
 }
 
+TEST_CASE("tolerance: where a round is done again, as many faces are made as may be", "[tolerance]") {
+  const Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
+  constexpr std::size_t kMost = 10000;
+  const RefinedOffset refined = offset_to_tolerance(mesh.view(), options_for(0.0284), tolerance_of(0.01, kMost));
+  CHECK(certified_of(refined).out_of_faces);
+  CHECK(refined.refinement.polygons.face_count() <= kMost);
+  CHECK(refined.refinement.polygons.face_count() > 0.8 * kMost);
+}
+
 TEST_CASE("tolerance: the same bits for any number of threads", "[tolerance]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.2, 1, 3, 2);
   OffsetOptions options = options_for(0.15);

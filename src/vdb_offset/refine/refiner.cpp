@@ -331,21 +331,25 @@ void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
     if (marked[i]) some.push_back(i);
   // An edge gives one more for each triangle there and each copy of its face, which may be a whole polygon yet.
   std::vector<std::size_t> more(candidates_.size(), 0);
+  std::size_t all_more = 0;
   for (const RefinedTriangles::Triangle& triangle : triangles_.triangles())
-    for (std::size_t k = 0; k < 3; ++k)
-      if (const Candidate* const one = find(edge_between(triangle.vertex[k], triangle.vertex[(k + 1) % 3])))
-        more[static_cast<std::size_t>(one - candidates_.data())] +=
-            (options_.most_corners - 2) * triangles_.copies(triangle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Candidate* const one = find(edge_between(triangle.vertex[k], triangle.vertex[(k + 1) % 3]));
+      if (!one || !marked[static_cast<std::size_t>(one - candidates_.data())]) continue;
+      const std::size_t here = (options_.most_corners - 2) * triangles_.copies(triangle);
+      more[static_cast<std::size_t>(one - candidates_.data())] += here;
+      all_more += here;
+    }
   const std::size_t count = triangles_.face_count(options_.mesh_faces);
   std::size_t room = options_.most_faces > count ? options_.most_faces - count : 0;
+  if (all_more <= room) return;
+  is_cut_short_ = true;
   std::stable_sort(some.begin(), some.end(), [&](std::uint32_t a, std::uint32_t b) {
     return candidates_[a].vertex.bulge > candidates_[b].vertex.bulge;
   });
-  for (const std::uint32_t i : some) {
-    if (more[i] > room) is_cut_short_ = true;
-    if (is_cut_short_) marked[i] = 0;
-    else room -= more[i];
-  }
+  auto one = some.begin();
+  for (; one != some.end() && more[*one] <= room; ++one) room -= more[*one];
+  for (; one != some.end(); ++one) marked[*one] = 0;
 }
 
 void Refiner::split(const std::vector<std::uint8_t>& marked) {
