@@ -48,7 +48,7 @@ Polygons box(const Vec3d& least, const Vec3d& most) {
 
 }  // namespace
 
-TEST_CASE("cad held: the walls of a narrow groove stop before they meet, and stay planes", "[cad]") {
+TEST_CASE("cad held: the walls of a narrow groove stop before they meet, and stay planes", "[cad][long]") {
   const io::MeshFile grooves = model_of("grooves.step");
   for (const double d : {1.4, 2.5}) {
     const CadFileFacts facts = io::write_cad(place_for("grooves_held.step"), grooves, d, {}, held());
@@ -136,7 +136,7 @@ TEST_CASE("cad held: bodies that touch stay where they touch", "[cad]") {
   CHECK(facts.volume == Approx(2 * 1.1 * 1.2 * 1.2).epsilon(1e-9));
 }
 
-TEST_CASE("cad held: faces keep clear of an obstacle, and go all the way beside it", "[cad]") {
+TEST_CASE("cad held: faces keep clear of an obstacle, and go all the way beside it", "[cad][long]") {
   const io::MeshFile block = model_of("block.step");
   const Polygons obstacle = box(Vec3d(28, 20, 21.5), Vec3d(32, 24, 30));
   for (const double clearance : {0.0, 0.5}) {

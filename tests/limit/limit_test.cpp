@@ -301,7 +301,7 @@ TEST_CASE("limit: what is written of a thin wall is what is judged", "[limit][no
   }
 }
 
-TEST_CASE("limit: points as near to two sides are judged by both", "[limit][no_races]") {
+TEST_CASE("limit: points as near to two sides are judged by both", "[limit][long]") {
   // Symmetric to the last bit.
   for (const double share : {0.5, 0.6, 0.8}) {
     check_agreement(scene::box(Vec3d(1, 0.125, 1), 8, true), -share * 0.125, {});
@@ -567,7 +567,7 @@ TEST_CASE("limit: vertices that gave up their miters are at their distance, or n
   }
 }
 
-TEST_CASE("limit: what is short with round corners goes where there is room", "[limit][miter]") {
+TEST_CASE("limit: what is short with round corners goes where there is room", "[limit][miter][long]") {
   // Distance, the share that reaches it, and how far faces are off: 83.8 and 59.3 % otherwise, and 8.0 and 16.9 % off,
   // if vertices went straight above live points alone and not beside their neighbours.
   const std::tuple<const char*, Polygons, double, double, double> cases[] = {

@@ -467,7 +467,7 @@ TEST_CASE("miter: a limit of 1 cuts all of them, and says so", "[miter]") {
 }
 
 TEST_CASE("miter: what has no room costs next to no distance that round corners have, and faces keep theirs",
-          "[miter][no_races]") {
+          "[miter][long]") {
   const Polygons gear = scene::gear(12, 0.8, 1, 0.3, 0.3, 4);
   // Teeth are 0.2 high. Distance, share of the area that is at it, and how far faces are off; 9, 6 and 6 %, and 18, 17
   // and 15 %, with round corners. If miters that were taken back could not return: 67, 51 and 46 %, and 5, 7 and 7 %;

@@ -344,7 +344,7 @@ TEST_CASE("tolerance: beside a miter that is cut, faces hold to it", "[tolerance
   }
 }
 
-TEST_CASE("tolerance: what is added on a border stays in its plane", "[tolerance][symmetry][miter][check]") {
+TEST_CASE("tolerance: what is added on a border stays in its plane", "[tolerance][symmetry][miter][check][long]") {
   for (const auto& [mesh, size] : {std::pair{test::oblique_tube(), 1.0}, {test::open_loft(64), 30.0}})
     for (const double distance : {0.02, -0.02, 0.08})
       for (const Corners corners : {Corners::Round, Corners::Miter}) {
@@ -493,7 +493,7 @@ TEST_CASE("tolerance: a pair in single precision is what it says", "[tolerance][
 }
 
 TEST_CASE("tolerance: check takes faces for one plane that rounding has tilted against each other",
-          "[tolerance][miter][check]") {
+          "[tolerance][miter][check][long]") {
   // In single precision, and turned, so that no coordinates of a flat face are alike.
   Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
   const double c = std::cos(0.7), s = std::sin(0.7);
@@ -528,7 +528,7 @@ TEST_CASE("tolerance: pieces of needles do not get narrower and narrower", "[tol
   CHECK(shortest > 1e-4);  // a twentieth of the tolerance; they came down to 6e-11
 }
 
-TEST_CASE("tolerance: added vertices keep to the miter limit where faces are folded", "[tolerance][miter]") {
+TEST_CASE("tolerance: added vertices keep to the miter limit where faces are folded", "[tolerance][miter][long]") {
   for (const unsigned seed : {1U, 2U}) {
     CAPTURE(seed);
     constexpr double kDistance = 0.05, kLimit = 4;
@@ -637,7 +637,7 @@ TEST_CASE("tolerance: no more faces are made than may be", "[tolerance]") {
   CHECK(certified.worst_left > 0.01);
 }
 
-TEST_CASE("tolerance: where a round is done again, as many faces are made as may be", "[tolerance]") {
+TEST_CASE("tolerance: where a round is done again, as many faces are made as may be", "[tolerance][no_races]") {
   const Polygons mesh = scene::gear(18, 0.8, 1, 0.3, 0.3, 6);
   constexpr std::size_t kMost = 10000;
   const RefinedOffset refined = offset_to_tolerance(mesh.view(), options_for(0.0284), tolerance_of(0.01, kMost));
