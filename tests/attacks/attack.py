@@ -16,12 +16,14 @@ ATTACKS = []
 
 # An error is one line of at most so many characters, whatever the input.
 LONGEST_LINE = 600
-# Seconds that anything may take; sanitized, so many times as long. Everything takes a fifth of that at most: others run
-# beside it, on machines that may be half as fast, and what takes time out of all proportion takes minutes.
+# Seconds that anything may take, others beside it, and of processors' time, whatever runs beside it; sanitized, so many
+# times as long. What takes longest takes 12 s of either.
 MOST_SECONDS = 60
+MOST_PROCESSOR_SECONDS = 30
 SANITIZED_FACTOR = 6
-# Seconds within which a signal ends what is under way, whatever else the machine does.
+# The same from a signal to the end.
 SOON = 5
+SOON_PROCESSOR_SECONDS = 1
 
 
 def attack(function):
@@ -45,6 +47,18 @@ def attack_each(cases):
 
 class Failed(Exception):
     """What an attack must give, and did not."""
+
+
+def processor_seconds():
+    """Of all children that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def processor_seconds_so_far(process):
+    """Of a child under way, or that nobody has waited for."""
+    fields = pathlib.Path(f'/proc/{process.pid}/stat').read_text().rpartition(')')[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
 
 
 @dataclasses.dataclass
@@ -93,9 +107,25 @@ class Place:
         return subprocess.Popen([self.command, *map(str, arguments)], cwd=self.folder, preexec_fn=prepare,
                                 **{'stdin': subprocess.DEVNULL, 'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, **more})
 
-    def run(self, *arguments, seconds=MOST_SECONDS, input=None, **more):
+    def longer(self, seconds):
+        return seconds * (SANITIZED_FACTOR if self.sanitized else 1)
+
+    def end(self, process, by):
+        """Sends a signal to a run, which has to end at once, by it or by itself."""
+        before = processor_seconds() + processor_seconds_so_far(process)
+        process.send_signal(by)
+        try:
+            process.communicate(timeout=self.longer(SOON))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            raise Failed(f'{by.name}: not ended after {self.longer(SOON)} s') from None
+        worked = processor_seconds() - before
+        self.check(worked < self.longer(SOON_PROCESSOR_SECONDS), f'{by.name}: took {worked:.1f} s of processors\' time to end')
+
+    def run(self, *arguments, input=None, **more):
         """Runs the command to its end, which has to come in time."""
-        most = seconds * (SANITIZED_FACTOR if self.sanitized else 1)
+        most, before = self.longer(MOST_SECONDS), processor_seconds()
         if input is not None:
             more['stdin'] = subprocess.PIPE
         began = time.monotonic()
@@ -106,6 +136,9 @@ class Place:
             process.kill()
             process.communicate()
             raise Failed(f'not ended after {most} s\n  $ ' + ' '.join(map(str, arguments))[:300]) from None
+        worked = processor_seconds() - before
+        if worked > self.longer(MOST_PROCESSOR_SECONDS):
+            raise Failed(f'took {worked:.1f} s of processors\' time\n  $ ' + ' '.join(map(str, arguments))[:300])
         # Of all children so far; as each attack has a process of its own, of this run or one before it.
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
         return Run(list(arguments), process.returncode, out or b'', err or b'', time.monotonic() - began, peak)

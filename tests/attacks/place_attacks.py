@@ -4,7 +4,7 @@ import os
 import signal
 import time
 
-from attack import MOST_SECONDS, SANITIZED_FACTOR, attack, attack_each
+from attack import MOST_SECONDS, attack, attack_each
 from hostile import OBJ, refused
 
 ROLES = {
@@ -90,7 +90,7 @@ def pipe_that_is_cut(place):
     process = place.start('odd.obj', 'out.obj', '-d', '0.1')
     with open(place.folder / 'odd.obj', 'wb') as pipe:
         pipe.write(OBJ.encode() + b'f 1 2')
-    out, err = process.communicate(timeout=MOST_SECONDS * SANITIZED_FACTOR)
+    out, err = process.communicate(timeout=place.longer(MOST_SECONDS))
     place.check(process.returncode == 2 and b'line 9: expected at least 3 corners' in err, f'expected a refusal: {err}')
     place.check(place.names() == ['odd.obj'], f'expected no file: {place.names()}')
 
@@ -104,7 +104,6 @@ def pipe_without_a_writer(place, role):
     process = place.start(*arguments_of(role, name_in(role)))
     time.sleep(3 if place.sanitized else 0.5)
     place.check(process.poll() is None, 'expected it to wait')
-    process.send_signal(signal.SIGTERM)
-    process.communicate(timeout=MOST_SECONDS)
+    place.end(process, signal.SIGTERM)
     place.check(process.returncode == -signal.SIGTERM, f'expected the end by the signal, got {process.returncode}')
     place.check(place.names() == before, f'expected no file: {place.names()}')
