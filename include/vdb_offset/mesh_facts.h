@@ -15,13 +15,13 @@ namespace vdb_offset {
 struct WeldOptions {
   bool enabled = true;
   double tolerance = 0;      ///< World units, >= 0. Vertices closer than this get the position of the first one.
-  bool close_seams = false;  ///< Without a tolerance: also borders that are one but for rounding (see seams.h).
+  bool close_seams = false;  ///< Without a tolerance: also what is one but for rounding (see seams.h).
   double precision = 0;      ///< For that: of a coordinate, relative to the largest; 0: as the coordinates have it.
   /// Also, within the tolerance or as seams are: borders that run along each other, but have vertices where the other
   /// has none (T-junctions). Such hanging vertices become corners of the faces beside them as far as the offset goes.
   bool join_hanging = false;
 
-  /// Equal positions, seams and hanging vertices.
+  /// Equal positions, seams, slivers and hanging vertices.
   static WeldOptions automatic() { return {true, 0, true, 0, true}; }
   /// The same, but hanging vertices are left hanging.
   WeldOptions without_joins() const { return {enabled, tolerance, close_seams, precision, false}; }
@@ -35,6 +35,9 @@ struct SeamFacts {
   double widest_near = 0;         ///< How far apart these are at most.
   std::size_t hanging = 0;    ///< Positions on edges of faces that have no corner there, which were joined to these.
   double widest_hanging = 0;  ///< The largest distance between such a position and such an edge.
+  std::size_t slivers =
+      0;  ///< Positions that were moved to the other end of an edge that single precision cannot hold.
+  double widest_sliver = 0;  ///< The largest distance by which one was moved.
 };
 
 /// Which side of a closed component is outward.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -19,7 +20,14 @@ struct VDB_OFFSET_API PolygonView {
   std::span<const Vec3d> positions;
   std::span<const std::uint32_t> corners;
   std::span<const std::uint32_t> face_begin;
+  /// The triangles that stand for the faces, over the same vertices, face by face: n - 2 for one of n corners. Empty:
+  /// those of split_polygons() at these positions. Positions that moved keep the triangles of the source.
+  std::span<const std::array<std::uint32_t, 3>> triangles = {};
 
+  /// The triangles of a face, if they are given.
+  std::span<const std::array<std::uint32_t, 3>> triangles_of(std::size_t f) const {
+    return triangles.subspan(face_begin[f] - 2 * f, face_begin[f + 1] - face_begin[f] - 2);
+  }
   std::size_t face_count() const { return face_begin.empty() ? 0 : face_begin.size() - 1; }
   std::span<const std::uint32_t> face(std::size_t f) const {
     return corners.subspan(face_begin[f], face_begin[f + 1] - face_begin[f]);
@@ -42,5 +50,11 @@ struct VDB_OFFSET_API Polygons {
     close_face();
   }
 };
+
+/// Splits the faces of a mesh into the triangles that are offset, judged, and written in formats of triangles, as
+/// PolygonView::triangles has them: the fan around a face's first corner; ears of a flat face of five corners or more
+/// that its fan does not cover once; and where a triangle would be a line, another split. \pre faces of three corners
+/// or more
+VDB_OFFSET_API std::vector<std::array<std::uint32_t, 3>> split_polygons(PolygonView mesh);
 
 }  // namespace vdb_offset

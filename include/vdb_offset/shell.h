@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,6 +62,8 @@ struct VDB_OFFSET_API Shell {
   };
 
   Polygons polygons;
+  /// As PolygonView::triangles: faces of the skins are split as they are in the mesh, those of the rim by themselves.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> faces;  ///< The mesh's faces that the shell is made from, ascending. Empty: all of them.
   std::vector<Split> splits;
   std::vector<RimOrigin> rim;
@@ -70,6 +73,7 @@ struct VDB_OFFSET_API Shell {
   std::vector<std::uint8_t> is_junction;  ///< Of each of the mesh's vertices: 1 where sheets meet. Empty likewise.
   ShellFacts facts;
 
+  PolygonView view() const { return {polygons.positions, polygons.corners, polygons.face_begin, triangles}; }
   /// Vertices of the mesh.
   std::size_t source_vertices() const { return (polygons.positions.size() - splits.size()) / 2; }
   /// Faces of each skin.

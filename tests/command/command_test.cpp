@@ -9,15 +9,19 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 #include <thread>
 
 #include "command/shell_command.h"
 #include "support/dxf_text.h"
 #include "support/places.h"
+#include "support/solids.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/scene.h"
+#include "vdb_offset/surface/surface.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;
@@ -948,6 +952,95 @@ TEST_CASE("command: triangles of polygons with corners on straight sides are tol
     CHECK(run("box.obj box.stl" + distance).code == 0);
     CHECK_THAT(run("check box.obj box.stl" + distance).out, Catch::EndsWith("\nvalid\n"));
   }
+}
+
+TEST_CASE("command: what is judged of a polygon is what is written in formats of triangles", "[command]") {
+  const ShellCommand run;
+  const auto crossings_in = [&](const std::string& name) {
+    const Polygons written = io::read_mesh(run.file(name)).polygons;
+    const Surface surface = build_surface(written.view(), {});
+    return CrossingFinder(surface, surface.vertices).all().size();
+  };
+  for (const std::uint32_t arcs : {4u, 8u, 20u}) {
+    io::write_mesh(run.file("letter.off"), test::letter_c(arcs).view());
+    for (const std::string distance : {" -d 0.5% ", " --distance=-1% ", " --distance-xy 0.02 --distance-z 0.05 "})
+      for (const std::string name : {"out.stl", "out.3mf", "out.glb", "out.ply"}) {
+        CAPTURE(arcs, distance, name);
+        CHECK(run("letter.off " + name + distance).code == 0);
+        CHECK(run("check letter.off " + name + distance).code == 0);
+        if (!name.ends_with("ply")) CHECK(crossings_in(name) == 0);
+      }
+    CHECK(run("letter.off shell.stl -d 0.5% --shell").code == 0);
+    CHECK(crossings_in("shell.stl") == 0);
+  }
+  // The ends in fans, which cover them several times over.
+  const Polygons letter = test::letter_c(8);
+  CHECK(run("letter.off out.obj -d 0.5%").code == 0);
+  Polygons fans;
+  fans.positions = io::read_mesh(run.file("out.obj")).polygons.positions;
+  for (std::size_t f = 0; f < letter.face_count(); ++f) {
+    const auto face = letter.view().face(f);
+    for (std::size_t k = 2; k < face.size(); ++k) fans.add_face({face[0], face[k - 1], face[k]});
+  }
+  io::write_mesh(run.file("letter.off"), letter.view());
+  io::write_mesh(run.file("fans.stl"), fans.view());
+  CHECK(crossings_in("fans.stl") > 0);
+  CHECK(run("check letter.off fans.stl -d 0.5%").code == 3);
+}
+
+TEST_CASE("command: a distance that no vertex reaches is refused, with one that most reach", "[command]") {
+  const ShellCommand run;
+  // A box of 2 by 2 by 0.4: nothing inside is farther than 0.2 from it.
+  io::write_mesh(run.file("box.obj"), scene::box(Vec3d(2, 2, 0.4), 8, true).view());
+  const Run none = run("box.obj out.obj --distance=-0.5");
+  CHECK(none.code == 3);
+  CHECK_THAT(none.err, Catch::Contains("reaches the distance of -0.5") && Catch::Contains("comes to 0.2") &&
+                           Catch::Contains("--distance -0."));
+  const auto at = none.err.find("--distance ") + 11;
+  const Run most = run("box.obj out.obj --distance=" + none.err.substr(at, none.err.find(' ', at) - at));
+  CHECK(most.code == 0);
+  const Run some = run("box.obj out.obj --distance=-0.1");
+  CHECK(some.code == 0);
+  CHECK(some.err.empty());
+  CHECK(run("box.obj out.obj --distance 0").code == 0);
+}
+
+TEST_CASE("command: a mesh without any area is refused", "[command]") {
+  const ShellCommand run;
+  std::ofstream(run.file("line.obj")) << "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
+  for (const std::string how : {" -d 0.1", " -d 0.1 --mode iso", " -d 0.1 --shell", " --layers 2 --first-height 0.1"}) {
+    const std::string out = how.find("layers") == std::string::npos ? "out.obj" : "out.vtu";
+    const Run refused = run("line.obj " + out + how);
+    CAPTURE(how, refused.err);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("expected a face with an area"));
+    CHECK_FALSE(run.has(out));
+  }
+}
+
+TEST_CASE("command: planes that borders are kept in, or leave, are reported", "[command]") {
+  const ShellCommand run;
+  // Cones' sides, whose rims lie in z = 0 and z = 1 and meet these at 45 and at 8 degrees.
+  const auto cone = [](double rise) {
+    Polygons mesh;
+    for (const bool top : {false, true})
+      for (int i = 0; i < 48; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 48, r = top ? 1 : 2;
+        mesh.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), top ? rise : 0);
+      }
+    for (std::uint32_t i = 0; i < 48; ++i) mesh.add_face({i, (i + 1) % 48, 48 + (i + 1) % 48, 48 + i});
+    return mesh;
+  };
+  io::write_mesh(run.file("steep.obj"), cone(1).view());
+  io::write_mesh(run.file("flat.obj"), cone(std::tan(8 * std::numbers::pi / 180)).view());
+  const auto kKept = Catch::Contains("borders are kept in z = 0, z = 1 (--symmetry none lets them leave)");
+  CHECK_THAT(run("steep.obj out.obj -d 0.05").out, kKept);
+  CHECK_THAT(run("steep.obj out.obj -d 0.05 --symmetry none").out, !Catch::Contains("kept in"));
+  const Run flat = run("flat.obj out.obj -d 0.05");
+  CHECK_THAT(flat.out, !Catch::Contains("kept in") &&
+                           Catch::Contains("borders in z = 0, z = 0.140541 leave that plane by up to 0.0") &&
+                           Catch::Contains("(--symmetry z=0 keeps them there)"));
+  CHECK_THAT(run("flat.obj out.obj -d 0.05 --symmetry z=0").out, !Catch::Contains("borders in z = 0,"));
 }
 
 TEST_CASE("command: what becomes of a scene in STL is judged as it is written", "[command][scene]") {

@@ -2,11 +2,16 @@
 #include <fmt/format.h>
 #include <openvdb/Types.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
 
 #include "support/folder.h"
+#include "support/random_scenes.h"
+#include "support/solids.h"
+#include "vdb_offset/check.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/offset.h"
 
 using namespace vdb_offset;
 
@@ -31,9 +36,10 @@ Converted converted(const std::string& from, const std::string& bytes, const std
     CHECK(back.polygons.corners == file.polygons.corners);
     CHECK(back.polygons.face_begin == file.polygons.face_begin);
   } else {
-    const auto in_triangles = io::positions_in_triangles(file.polygons.view(), back.polygons.view());
+    const auto in_triangles = io::find_in_triangles(file.polygons.view(), back.polygons.view());
     REQUIRE(in_triangles.has_value());
-    for (std::size_t v = 0; v < positions.size(); ++v) CHECK((*in_triangles)[v] == Vec3d(openvdb::Vec3s(positions[v])));
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      CHECK(in_triangles->positions[v] == Vec3d(openvdb::Vec3s(positions[v])));
   }
   return {slurp(folder.file("out." + to)), result.lost};
 }
@@ -213,14 +219,93 @@ TEST_CASE("convert: where vertices stand is told by triangles", "[io]") {
   io::write_mesh(folder.file("a.stl"), mesh.polygons.view());
   Polygons triangles = io::read_mesh(folder.file("a.stl")).polygons;
   REQUIRE(triangles.face_count() == 5);
-  const auto in_triangles = io::positions_in_triangles(mesh.polygons.view(), triangles.view());
+  const auto in_triangles = io::find_in_triangles(mesh.polygons.view(), triangles.view());
   REQUIRE(in_triangles.has_value());
-  CHECK(*in_triangles == mesh.polygons.positions);
-  CHECK_FALSE(io::positions_in_triangles(triangles.view(), mesh.polygons.view()));
+  CHECK(in_triangles->positions == mesh.polygons.positions);
+  CHECK(in_triangles->triangles == split_polygons(mesh.polygons.view()));
+  CHECK_FALSE(io::find_in_triangles(triangles.view(), mesh.polygons.view()));
   // Ears of this one, cut one after the other, look like the fan of another that is turned by a corner.
   converted("obj", "v 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nf 1 2 3 4 5 6\n", "stl", Vec3d(0.25, 0, 0));
   triangles.positions[4][2] += 1;  // of a corner that a vertex has more of
-  CHECK_FALSE(io::positions_in_triangles(mesh.polygons.view(), triangles.view()));
+  CHECK_FALSE(io::find_in_triangles(mesh.polygons.view(), triangles.view()));
+}
+
+TEST_CASE("convert: polygons are split as in the source, wherever their corners have moved", "[io]") {
+  const Polygons letter = test::letter_c(8);
+  std::vector<Vec3d> moved = letter.positions;
+  // Far enough out of plane that the ends are no polygons that could be split as such.
+  for (std::size_t v = 0; v < moved.size(); ++v) moved[v] += Vec3d(0, 0, v % 3 == 0 ? 0.0625 : -0.0625);
+  const auto right = split_polygons(letter.view());
+  CHECK(split_polygons({moved, letter.corners, letter.face_begin}) != right);
+  const Folder folder;
+  io::write_mesh(folder.file("letter.obj"), letter.view());
+  const io::MeshFile source = io::read_mesh(folder.file("letter.obj"));
+  for (const std::string to : {"stl", "3mf", "glb", "gltf"}) {
+    CAPTURE(to);
+    const std::string of_file = folder.file("of_file." + to), of_arrays = folder.file("of_arrays." + to);
+    io::write_mesh(of_file, source, moved);
+    io::write_mesh(of_arrays, letter.view(), moved);
+    for (const std::string& path : {of_file, of_arrays}) {
+      const Polygons back = io::read_mesh(path).polygons;
+      REQUIRE(back.face_count() == right.size());
+      for (std::size_t t = 0; t < right.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k)
+          CHECK(Vec3d(openvdb::Vec3s(back.positions[back.view().face(t)[k]])) ==
+                Vec3d(openvdb::Vec3s(moved[right[t][k]])));
+      const auto found = io::find_in_triangles(letter.view(), back.view());
+      REQUIRE(found.has_value());
+      CHECK(found->triangles == right);
+    }
+  }
+  // Another program's choice is taken as it is.
+  Polygons fans;
+  fans.positions = moved;
+  for (std::size_t f = 0; f < letter.face_count(); ++f) {
+    const auto face = letter.view().face(f);
+    for (std::size_t k = 2; k < face.size(); ++k) fans.add_face({face[0], face[k - 1], face[k]});
+  }
+  const auto as_fans = io::find_in_triangles(letter.view(), fans.view());
+  REQUIRE(as_fans.has_value());
+  CHECK(as_fans->positions == moved);
+  for (std::size_t t = 0; t < fans.face_count(); ++t)
+    CHECK(std::equal(as_fans->triangles[t].begin(), as_fans->triangles[t].end(), fans.view().face(t).begin()));
+}
+
+TEST_CASE("convert: in every format, random offsets are to check what they were to the run",
+          "[io][check][property][random][no_races]") {
+  const Folder folder;
+  const test::Seeds seeds = test::random_seeds(20);
+  for (unsigned seed = seeds.first; seed < seeds.end; ++seed) {
+    const test::RandomScene scene = test::random_scene(seed);
+    io::write_mesh(folder.file("source.obj"), scene.mesh.view());
+    const io::MeshFile source = io::read_mesh(folder.file("source.obj"));
+    for (const std::string format : {"obj", "off", "ply", "stl", "3mf", "glb", "gltf", "vtp", "vtk"}) {
+      CAPTURE(seed, format);
+      const std::string path = folder.file("out." + format);
+      OffsetOptions options;
+      options.distance = scene.distance;
+      options.weld = WeldOptions::automatic();
+      options.precision = io::precision_of(path, source);
+      const OffsetResult result = offset(source.polygons.view(), options);
+      io::write_mesh(path, source, result.positions);
+      const Polygons back = io::read_mesh(path).polygons;
+      io::InTriangles found{back.positions, {}};
+      if (back.corners != source.polygons.corners) {
+        const auto in_triangles = io::find_in_triangles(source.polygons.view(), back.view());
+        REQUIRE(in_triangles.has_value());
+        found = *in_triangles;
+      }
+      PolygonView judged = source.polygons.view();
+      judged.triangles = found.triangles;
+      const CheckResult check =
+          check_offset(judged, found.positions,
+                       {.distance = options.distance, .weld = options.weld, .precision = options.precision});
+      CHECK(check.valid());
+      CHECK(check.beyond == 0);
+      CHECK(result.statistics.limit.left.total() == 0);
+      CHECK(result.statistics.limit.crossings_near_source == check.crossings_near_source);
+    }
+  }
 }
 
 TEST_CASE("convert: all at once, there and back", "[io]") {

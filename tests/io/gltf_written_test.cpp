@@ -104,7 +104,7 @@ TEST_CASE("gltf: a mesh of another format becomes a new file", "[gltf]") {
     // Vertices 2 and 3 have two pairs of texture coordinates each: copies behind the others.
     REQUIRE(back.polygons.positions.size() == 6);
     CHECK(back.polygons.corners == std::vector<std::uint32_t>{0, 1, 2, 4, 3, 5});
-    CHECK(io::positions_in_triangles(obj.polygons.view(), back.polygons.view()).has_value());
+    CHECK(io::find_in_triangles(obj.polygons.view(), back.polygons.view()).has_value());
     const io::Attributes with = io::read_attributes(back);
     CHECK(with.texture.value == std::vector<Vec2d>{{0, 0}, {0.25, 0}, {0, 0.125}, {1, 1}, {0.5, 1}, {0.75, 0.5}});
     CHECK(with.colours[4] == with.colours[1]);

@@ -4,10 +4,12 @@
 #include <openvdb/math/Quat.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <random>
 
+#include "support/solids.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::test {
@@ -26,9 +28,24 @@ class Dice {
   std::mt19937 engine_;
 };
 
+/// A ring with a chamfer below, of any angle.
+Polygons chamfered_ring(Dice& dice) {
+  const double wide = dice.between(0.05, 0.3), high = dice.between(0.05, 0.3);
+  const std::array<std::array<double, 2>, 5> profile{{{0.4, 0}, {1 - wide, 0}, {1, high}, {1, 0.8}, {0.4, 0.8}}};
+  return lathe(profile, static_cast<std::uint32_t>(4 + dice.pick(20)));
+}
+
+/// A ring whose hole has a countersink of any angle.
+Polygons countersunk_ring(Dice& dice) {
+  const double wide = dice.between(0.1, 0.4), deep = dice.between(0.05, 0.5);
+  const std::array<std::array<double, 2>, 5> profile{
+      {{0.3, 0}, {1, 0}, {1, 0.8}, {0.3 + wide, 0.8}, {0.3, 0.8 - deep}}};
+  return lathe(profile, static_cast<std::uint32_t>(4 + dice.pick(20)));
+}
+
 Polygons random_shape(Dice& dice, bool& closed) {
-  const int kind = dice.pick(10);
-  closed = kind < 7;
+  const int kind = dice.pick(14);
+  closed = kind < 7 || kind > 10;
   switch (kind) {
     case 0:
       return scene::box(Vec3d(1, dice.between(0.05, 1), dice.between(0.2, 2)), 3 + dice.pick(8), dice.pick(2) == 0);
@@ -49,8 +66,16 @@ Polygons random_shape(Dice& dice, bool& closed) {
       return scene::patch(1, dice.between(0, 0.3), 6 + dice.pick(12));
     case 8:
       return scene::wedge(dice.between(20, 160), 1, 1, 4 + dice.pick(8));
-    default:
+    case 9:
       return scene::diffuser(dice.between(0.2, 0.6), dice.between(0.6, 1.2), 1, 5 + dice.pick(10));
+    case 10:
+      return nose_strip(dice.between(0.1, 1), dice.between(0.3, 1), dice.between(1.2, 2.5), dice.between(1, 20), 40);
+    case 11:
+      return letter_c(static_cast<std::uint32_t>(4 + dice.pick(20)));
+    case 12:
+      return chamfered_ring(dice);
+    default:
+      return countersunk_ring(dice);
   }
 }
 

@@ -50,7 +50,7 @@ TEST_CASE("triangulate: a corner on a straight side is one of triangles with an 
     for (std::size_t k = 0; k < corners.size(); ++k) {
       std::rotate(corners.begin(), corners.begin() + 1, corners.end());
       std::vector<std::array<std::uint32_t, 3>> triangles;
-      triangulate_without_lines(p, corners, triangles);
+      triangulate(p, corners, triangles);
       REQUIRE(triangles.size() == corners.size() - 2);
       for (const auto& t : triangles) CHECK(area_of(p, {t}) > 0.1);
       CHECK(area_of(p, triangles) == Approx(6));
@@ -67,7 +67,7 @@ TEST_CASE("triangulate: a spike, which has no area, does not turn a triangle ove
   // From the first corner to the second, and back to the third, which is on the way.
   const std::vector<Vec3d> p = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {0, 2, 0}};
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  triangulate_without_lines(p, std::vector<std::uint32_t>{0, 1, 2, 3}, triangles);
+  triangulate(p, std::vector<std::uint32_t>{0, 1, 2, 3}, triangles);
   CHECK(triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}});
 }
 

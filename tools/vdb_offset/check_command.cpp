@@ -20,7 +20,7 @@
 #include "request/option_values.h"
 #include "run_files.h"
 #include "source.h"
-#include "summary.h"
+#include "summary/summary.h"
 #include "terminal.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_offset.h"
@@ -188,16 +188,15 @@ void require_outputs_apart(const CheckRequest& request) {
 }
 
 /// The positions of the source's vertices in the offset, which has the same faces or, in another format, as STL and
-/// glTF, their triangles.
-std::vector<Vec3d> positions_in_offset(const Request& made, const io::MeshFile& source_file,
-                                       const io::MeshFile& offset_file) {
+/// glTF, their triangles; these then are what is judged.
+io::InTriangles find_in_offset(const Request& made, const io::MeshFile& source_file, const io::MeshFile& offset_file) {
   const Polygons &source = source_file.polygons, &offset = offset_file.polygons;
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
-    return offset.positions;
+    return {offset.positions, {}};
   const bool may_be_triangles = offset_file.format != source_file.format || offset_file.format == io::Format::Stl;
   if (may_be_triangles)
-    if (auto positions = io::positions_in_triangles(source.view(), offset.view())) return std::move(*positions);
+    if (auto found = io::find_in_triangles(source.view(), offset.view())) return std::move(*found);
   throw InvalidInput(
       fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
@@ -316,7 +315,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
   tell_remarks(offset);
-  const std::vector<Vec3d> positions = positions_in_offset(made, *source.file, offset);
+  const auto [positions, triangles] = find_in_offset(made, *source.file, offset);
   const Job job = resolve_options(made, source);
   CheckOptions options;
   options.only = job.options.only;
@@ -343,7 +342,9 @@ CheckResult measure_meshes(const CheckRequest& request) {
     options.distance = distance;
   }
   options.keep_face_errors = made.states.ends_with(".vtp") || !made.html.empty();
-  CheckResult result = check_offset(source.view(), positions, options);
+  PolygonView judged = source.view();
+  judged.triangles = triangles;
+  CheckResult result = check_offset(judged, positions, options);
   const WallNames groups = io::wall_names(*source.file);
   write_findings(made, source.view(), positions, result, {result.face_errors, &groups, false, result.face_faults});
   return result;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +13,7 @@
 #include <vector>
 
 #include "messages.h"
-#include "summary.h"
+#include "summary/summary.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/cad_file.h"
@@ -53,6 +54,35 @@ bool is_as_asked(const OffsetResult& result, bool of_curves) {
     tell(fmt::format("--strict: {:.4f} % of the {} fall short of the distance", 100 * (1 - reached),
                      of_curves ? "points" : "vertices"));
   return reached == 1;
+}
+
+/// A length of two digits that is no more than this one.
+double rounded_down(double length) {
+  const double step = std::pow(10.0, std::floor(std::log10(length)) - 1);
+  return std::floor(length / step) * step;
+}
+
+/// Whether any vertex that was to move arrives. If none does, says how far most come.
+bool reaches_anything(const OffsetResult& result, const std::string& output, bool of_curves) {
+  std::vector<double> achieved;
+  for (std::size_t v = 0; v < result.states.size(); ++v) {
+    if (result.states[v] == VertexState::Unused || result.distances[v] == 0) continue;
+    if (!falls_short(result.states[v])) return true;
+    achieved.push_back(result.achieved[v]);
+  }
+  if (achieved.empty()) return true;
+  const auto middle = achieved.begin() + static_cast<std::ptrdiff_t>(achieved.size() / 2);
+  std::nth_element(achieved.begin(), middle, achieved.end());
+  const double farthest = *std::max_element(achieved.begin(), achieved.end()), asked = result.distances.farthest();
+  std::string most;
+  if (*middle > 0)
+    most = fmt::format(", and about half of them to {0:.2g} (--distance {0:.2g} is reached there)",
+                       std::copysign(rounded_down(*middle), asked));
+  tell(
+      fmt::format("{}: none of {} {} reaches the distance of {:.6g}, for which there is no room: the farthest comes "
+                  "to {:.3g}{}",
+                  output, achieved.size(), of_curves ? "points" : "vertices", asked, farthest, most));
+  return false;
 }
 
 std::string in_words(const FaultCounts& counts) {
@@ -118,10 +148,12 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
     for (std::string& expectation : scene::unmet(job.expect, *shell)) failed.push_back(std::move(expectation));
   for (const std::string& expectation : failed) tell(fmt::format("{}: {}", job.request.input, expectation));
   if (!failed.empty() || tell_faults(job, results)) return kProcessing;
+  const auto output = [&](std::size_t i) { return i < job.outputs.size() ? job.outputs[i].mesh : "--inner"; };
   bool faces_there = true;
+  for (std::size_t i = 0; i < results.size() && !job.to_fit; ++i)
+    faces_there &= reaches_anything(results[i], output(i), job.curves());
   for (std::size_t i = 0; i < results.size() && job.request.strict_faces; ++i)
-    faces_there &= are_within(results[i].statistics.faces, *job.request.strict_faces,
-                              i < job.outputs.size() ? job.outputs[i].mesh : "--inner");
+    faces_there &= are_within(results[i].statistics.faces, *job.request.strict_faces, output(i));
   if (!faces_there) return kProcessing;
   bool as_asked = true;
   for (std::size_t i = 0; i < results.size() && job.request.strict; ++i)

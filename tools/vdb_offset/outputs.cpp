@@ -140,8 +140,7 @@ io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome
     return {};
   }
   if (source.file) return io::write_mesh(path, *source.file, outcome.result.positions, options);
-  const PolygonView made = source.view();
-  io::write_mesh(path, PolygonView{outcome.result.positions, made.corners, made.face_begin}, options);
+  io::write_mesh(path, source.view(), outcome.result.positions, options);
   return {};
 }
 

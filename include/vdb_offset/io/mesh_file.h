@@ -145,9 +145,19 @@ VDB_OFFSET_API Precision precision_of_new(const std::string& path, const MeshFil
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
 VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
 
-/// Where a mesh's vertices stand in a file of its triangles alone, face by face, as STL is written of it, with three
-/// vertices for each, and glTF, where a vertex may be several. Vertices of no face are where they are in the mesh. None
-/// if these are not its triangles, or if the corners of a vertex are apart.
-VDB_OFFSET_API std::optional<std::vector<Vec3d>> positions_in_triangles(PolygonView mesh, PolygonView triangles);
+/// Writes polygons with other positions. In formats of triangles they are split as at their own positions.
+/// \pre one position a vertex
+VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView source, std::span<const Vec3d> positions,
+                               const WriteOptions& options = {});
+
+/// A mesh in a file of its triangles alone.
+struct InTriangles {
+  std::vector<Vec3d> positions;                         ///< Of the mesh's vertices; those of no face have their own.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< As PolygonView::triangles: how the file splits the faces.
+};
+/// Finds where a mesh's vertices stand in a file of its triangles alone, face by face, as STL is written of it, with
+/// three vertices for each, and glTF, where a vertex may be several. None if these are not its triangles, or if the
+/// corners of a vertex are apart.
+VDB_OFFSET_API std::optional<InTriangles> find_in_triangles(PolygonView mesh, PolygonView triangles);
 
 }  // namespace vdb_offset::io

@@ -82,7 +82,7 @@ std::vector<OffsetResult> offset_prepared(PreparedCurves& curves, std::span<cons
 
 std::vector<OffsetResult> offset_curves_in_metric(CurvesView curves, std::span<const Distances> distances,
                                                   const OffsetOptions& options) {
-  const InMetric space(curves, options.metric);
+  const InMetric space(curves, options.metric, InMetric::Of::Lines);
   OffsetOptions even = options;
   even.metric = {};
   std::vector<OffsetResult> results = offset_curves(space.view(), distances, even);
@@ -101,7 +101,7 @@ std::vector<OffsetResult> offset_curves_in_metric(CurvesView curves, std::span<c
 
 OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances, const OffsetOptions& options,
                              std::size_t layers) {
-  const InMetric space(curves, options.metric);
+  const InMetric space(curves, options.metric, InMetric::Of::Lines);
   OffsetStatistics statistics = plan_ribbon(space.view(), options, thread_count(options.threads),
                                             farthest_of(distances), {distances.size(), layers})
                                     .statistics;

@@ -149,6 +149,7 @@ void IsoSurfaceMaker::prepare() {
   const StageTimer timer(result_.statistics.seconds, Stage::Rasterise);
   IsoStatistics& statistics = result_.statistics;
   Surface surface = build_surface(mesh_, options_.weld.without_joins(), options_.orient);
+  require_area(surface);
   const Solids solids = find_solids(surface, options_, statistics);
   const IsoPlan plan = plan_voxels(surface, options_, solids.has_inside);
   statistics.plan = plan;

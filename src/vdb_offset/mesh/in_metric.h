@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,10 +15,13 @@ namespace vdb_offset {
 /// A mesh, or curves, in the space of a metric. Refers to them.
 class InMetric {
  public:
+  enum class Of { Faces, Lines };
   /// \throw InvalidInput for a scale that is not above 0 and finite
-  InMetric(PolygonView mesh, const Metric& metric);
+  InMetric(PolygonView mesh, const Metric& metric, Of of = Of::Faces);
 
-  PolygonView view() const { return metric_.even() ? file_ : PolygonView{scaled_, file_.corners, file_.face_begin}; }
+  PolygonView view() const {
+    return metric_.even() ? file_ : PolygonView{scaled_, file_.corners, file_.face_begin, triangles_};
+  }
   /// The mesh in the file's own coordinates.
   PolygonView file() const { return file_; }
   const Metric& metric() const { return metric_; }
@@ -31,6 +36,7 @@ class InMetric {
   PolygonView file_;
   Metric metric_;
   std::vector<Vec3d> scaled_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;  // faces are split as in the file
 };
 
 }  // namespace vdb_offset

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/mesh/triangulate.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -77,27 +80,28 @@ double least_height(std::span<const Vec3d> positions, std::span<const Triangle> 
   return least;
 }
 
+/// The fan around the first corner, or ears where that does not cover a flat polygon once.
+void split(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon, const Vec3d& area,
+           std::vector<Triangle>& triangles) {
+  const auto is_fan = [&] {
+    return !is_flat(positions, polygon, area) ||
+           (polygon.size() <= kLargePolygon && fan_turns_one_way(positions, polygon, area));
+  };
+  if (polygon.size() > 4 && !is_fan()) return clip(positions, polygon, triangles);
+  for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
+}
+
 }  // namespace
 
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                  std::vector<Triangle>& triangles) {
-  const auto is_fan = [&](const Vec3d& area) {
-    return !is_flat(positions, polygon, area) ||
-           (polygon.size() <= kLargePolygon && fan_turns_one_way(positions, polygon, area));
-  };
-  if (polygon.size() > 4 && !is_fan(area_vector(positions, polygon))) return clip(positions, polygon, triangles);
-  for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
-}
-
-void triangulate_without_lines(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
-                               std::vector<Triangle>& triangles) {
   // Height, as a share of the longest side, below which a triangle is a line, as in is_needle(). Other programs take
   // the fan: where its triangles have an area, faces that are valid here have to be valid there.
   constexpr double kLine = 1e-12;
+  if (polygon.size() == 3) return triangles.push_back({polygon[0], polygon[1], polygon[2]});
   const auto first = static_cast<std::ptrdiff_t>(triangles.size());
-  triangulate(positions, polygon, triangles);
-  if (polygon.size() < 4) return;
   const Vec3d area = area_vector(positions, polygon);
+  split(positions, polygon, area, triangles);
   const double height = least_height(positions, std::span(triangles).subspan(static_cast<std::size_t>(first)), area);
   if (std::abs(height) >= kLine || !is_flat(positions, polygon, area)) return;
   std::vector<Triangle> others;
@@ -106,6 +110,26 @@ void triangulate_without_lines(std::span<const Vec3d> positions, std::span<const
   if (!(least_height(positions, others, area) > std::max(0.0, height))) return;
   triangles.erase(triangles.begin() + first, triangles.end());
   triangles.insert(triangles.end(), others.begin(), others.end());
+}
+
+void append_triangles(PolygonView mesh, std::size_t face, std::vector<Triangle>& triangles) {
+  if (mesh.triangles.empty()) return triangulate(mesh.positions, mesh.face(face), triangles);
+  const auto given = mesh.triangles_of(face);
+  triangles.insert(triangles.end(), given.begin(), given.end());
+}
+
+std::vector<Triangle> split_polygons(PolygonView mesh) {
+  std::vector<Triangle> triangles(mesh.corners.size() - 2 * mesh.face_count());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.face_count(), 1024), [&](const auto& range) {
+    std::vector<Triangle> of_face;
+    for (std::size_t f = range.begin(); f != range.end(); ++f) {
+      of_face.clear();
+      append_triangles(mesh, f, of_face);
+      std::copy(of_face.begin(), of_face.end(),
+                triangles.begin() + static_cast<std::ptrdiff_t>(mesh.face_begin[f] - 2 * f));
+    }
+  });
+  return triangles;
 }
 
 }  // namespace vdb_offset

@@ -2,10 +2,12 @@
 #include "vdb_offset/parts/mesh_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh/mean_distances.h"
+#include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/surface/weld.h"
 
 namespace vdb_offset {
@@ -14,6 +16,7 @@ namespace {
 /// The faces of a mesh whose mark is `kept`, over the mesh's own vertices.
 struct SomeFaces {
   std::vector<std::uint32_t> corners, face_begin{0};
+  std::vector<std::array<std::uint32_t, 3>> triangles;
 
   SomeFaces(PolygonView mesh, std::span<const std::uint8_t> marks, std::uint8_t kept) {
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -21,9 +24,10 @@ struct SomeFaces {
       const auto face = mesh.face(f);
       corners.insert(corners.end(), face.begin(), face.end());
       face_begin.push_back(static_cast<std::uint32_t>(corners.size()));
+      if (!mesh.triangles.empty()) append_triangles(mesh, f, triangles);
     }
   }
-  PolygonView of(PolygonView mesh) const { return {mesh.positions, corners, face_begin}; }
+  PolygonView of(PolygonView mesh) const { return {mesh.positions, corners, face_begin, triangles}; }
   bool empty() const { return corners.empty(); }
 };
 
@@ -74,6 +78,7 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
     parts.whole = build_welded(mesh, welding, options.orient);
     if (!left.empty()) parts.rest = build(left.of(mesh));
   }
+  require_area(parts.moving_part);
   if (options.obstacles.face_count() > 0) {
     if (!parts.whole) parts.whole = parts.moving_part;
     parts.obstacle_mesh = options.obstacles;

@@ -296,7 +296,8 @@ void find_faults(FaultFinder& finder, std::span<const Vec3d> in_offset, std::siz
 }
 
 void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOptions& options, CheckResult& result) {
-  const InMetric space(mesh, options.metric), moved({positions, mesh.corners, mesh.face_begin}, options.metric);
+  const InMetric space(mesh, options.metric),
+      moved({positions, mesh.corners, mesh.face_begin, mesh.triangles}, options.metric);
   const bool by_corner = options.distance && !options.distance->at_corner().empty();
   const WeldOptions weld = weld_for({.only = options.only, .weld = options.weld}, {.by_corner = by_corner});
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, weld, options.orient});

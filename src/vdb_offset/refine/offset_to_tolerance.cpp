@@ -149,12 +149,12 @@ class RefinedRun {
     std::sort(had.begin(), had.end());
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (!is_left_out(f)) continue;
-      std::vector<std::uint32_t> face;
       std::vector<Corners3> triangles;
-      for (const auto v : mesh_.face(f)) face.push_back(surface().welded[v]);
-      triangulate_without_lines(surface().vertices, face, triangles);
-      for (const auto& corners : triangles)
+      append_triangles(mesh_, f, triangles);
+      for (Corners3& corners : triangles) {
+        for (auto& v : corners) v = surface().welded[v];
         if (!std::binary_search(had.begin(), had.end(), std::pair(f, in_order(corners)))) visit(f, corners);
+      }
     }
   }
 

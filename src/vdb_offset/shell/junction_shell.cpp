@@ -133,6 +133,7 @@ class JunctionShell {
         polygons.close_face();
       }
     add_rim();
+    split_shell(mesh_, shell_);
   }
 
   // --- rim
@@ -308,7 +309,8 @@ class JunctionShell {
 
   /// Marks faces that meet others, away from where the mesh crosses itself.
   void mark_crossing(std::span<const Vec3d> written, std::vector<std::uint8_t>& faulty) {
-    const Surface surface = build_surface({written, shell_.polygons.corners, shell_.polygons.face_begin}, {});
+    const Surface surface =
+        build_surface({written, shell_.polygons.corners, shell_.polygons.face_begin, shell_.triangles}, {});
     const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
     if (pairs.empty()) return;
     if (near_crossings_.empty()) near_crossings_ = find_near_crossings(mesh_, input_.weld);
@@ -323,13 +325,11 @@ class JunctionShell {
 
   /// Marks faces of the skins with a triangle that faces against its triangle in the mesh.
   void mark_inverted(std::span<const Vec3d> written, std::vector<std::uint8_t>& faulty) const {
-    std::vector<std::array<std::uint32_t, 3>> triangles;
+    const PolygonView shell = shell_.view();
     for (std::size_t f = 0; f < 2 * shell_.skin_faces(); ++f) {
-      const auto face = shell_.polygons.view().face(f);
+      const auto face = shell.face(f);
       if (std::none_of(face.begin(), face.end(), [&](auto v) { return can_go_back(wedge_[v]); })) continue;
-      triangles.clear();
-      triangulate(written, face, triangles);
-      for (const auto& [a, b, c] : triangles) {
+      for (const auto& [a, b, c] : shell.triangles_of(f)) {
         const Vec3d now = (written[b] - written[a]).cross(written[c] - written[a]);
         const auto before = [&](std::uint32_t v) { return mesh_.positions[shell_.source_vertex(v)]; };
         if (now.dot((before(b) - before(a)).cross(before(c) - before(a))) < 0) faulty[f] = 1;

@@ -2,6 +2,7 @@
 #include "vdb_offset/shell.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "vdb_offset/data/count_states.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh/edge_sides.h"
+#include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/shell/junction_shell.h"
 #include "vdb_offset/shell/shell_facts.h"
 
@@ -42,10 +44,11 @@ class Part {
       corners_.insert(corners_.end(), face.begin(), face.end());
       face_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
       faces_.push_back(f);
+      if (!mesh.triangles.empty()) append_triangles(mesh, f, triangles_);
     }
   }
 
-  PolygonView view() const { return all_ ? mesh_ : PolygonView{mesh_.positions, corners_, face_begin_}; }
+  PolygonView view() const { return all_ ? mesh_ : PolygonView{mesh_.positions, corners_, face_begin_, triangles_}; }
   const std::vector<std::uint32_t>& faces() const { return faces_; }
   /// An edge of the part as one of the mesh.
   Shell::RimOrigin in_mesh(Shell::RimOrigin edge) const {
@@ -59,6 +62,7 @@ class Part {
   PolygonView mesh_;
   bool all_;
   std::vector<std::uint32_t> corners_, face_begin_{0}, faces_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
 /// Both skins, without a rim.
@@ -150,6 +154,7 @@ Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, std::span<const
   Shell shell = both_skins(faces, outer, inner);
   const std::vector<std::uint32_t> welded_to = welded_in_shell(shell, welded_in_mesh, weld.enabled);
   add_rim(faces, find_border(faces, welded_in_mesh), welded_to, shell);
+  split_shell(faces, shell);
   count_facts(faces, weld, precision, welded_to, shell);
   shell.faces = part.faces();
   for (Shell::RimOrigin& edge : shell.rim) edge = part.in_mesh(edge);

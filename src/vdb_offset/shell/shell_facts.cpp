@@ -35,7 +35,7 @@ double enclosed_volume(PolygonView mesh) {
   double six_times = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     triangles.clear();
-    triangulate(mesh.positions, mesh.face(f), triangles);
+    append_triangles(mesh, f, triangles);
     for (const auto& [i, j, k] : triangles)
       six_times += (mesh.positions[i] - origin).dot((mesh.positions[j] - origin).cross(mesh.positions[k] - origin));
   }
@@ -62,7 +62,8 @@ void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const 
   std::vector<Vec3d> joined(written.begin(), written.end());
   for (std::size_t v = 0; v < joined.size(); ++v)
     if (welded_to[v] != kNone) joined[v] = written[welded_to[v]];
-  const Surface surface = build_surface({joined, shell.polygons.corners, shell.polygons.face_begin}, {});
+  const Surface surface =
+      build_surface({joined, shell.polygons.corners, shell.polygons.face_begin, shell.triangles}, {});
   const std::vector<TrianglePair> pairs = CrossingFinder(surface, surface.vertices).all();
   if (pairs.empty()) return;
   const std::vector<std::uint8_t> near = find_near_crossings(mesh, weld);
@@ -91,6 +92,34 @@ std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const
   return written;
 }
 
+void split_shell(PolygonView mesh, Shell& shell) {
+  const PolygonView faces = shell.polygons.view();
+  shell.triangles.clear();
+  shell.triangles.reserve(faces.corners.size() - 2 * faces.face_count());
+  std::vector<std::array<std::uint32_t, 3>> of_mesh;
+  const auto corner_at = [&](std::size_t f, std::uint32_t v) {
+    const auto face = mesh.face(f);
+    return static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
+  };
+  const std::size_t count = shell.skin_faces();
+  for (std::size_t f = 0; f < 2 * count; ++f) {
+    const bool inner = f >= count;
+    const auto face = faces.face(f);
+    of_mesh.clear();
+    append_triangles(mesh, f % count, of_mesh);
+    if (inner) std::reverse(of_mesh.begin(), of_mesh.end());
+    for (auto triangle : of_mesh) {
+      if (inner) std::swap(triangle[1], triangle[2]);
+      for (auto& v : triangle) {
+        const std::size_t k = corner_at(f % count, v);
+        v = face[inner ? (face.size() - k) % face.size() : k];
+      }
+      shell.triangles.push_back(triangle);
+    }
+  }
+  for (std::size_t f = 2 * count; f < faces.face_count(); ++f) append_triangles(faces, f, shell.triangles);
+}
+
 std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld) {
   const Surface surface = build_surface(mesh, weld);
   const SourceCrossings crossings(surface, CrossingFinder(surface, surface.vertices).listed());
@@ -107,7 +136,7 @@ void count_facts(PolygonView mesh, const WeldOptions& weld, const Rounding& prec
   count_edges(welded_to, shell);
   count_pinched(mesh, written, shell);
   count_crossings(mesh, weld, written, welded_to, precision, shell);
-  shell.facts.volume = enclosed_volume({written, shell.polygons.corners, shell.polygons.face_begin});
+  shell.facts.volume = enclosed_volume({written, shell.polygons.corners, shell.polygons.face_begin, shell.triangles});
 }
 
 }  // namespace vdb_offset

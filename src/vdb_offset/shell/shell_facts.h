@@ -13,6 +13,9 @@ namespace vdb_offset {
 /// The positions of a shell's vertices as they will be written. Vertices that have not moved keep their bytes.
 std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Rounding& precision);
 
+/// Finds the triangles of a shell's faces. \param mesh the faces that the shell is made from
+void split_shell(PolygonView mesh, Shell& shell);
+
 /// For each vertex of the mesh: 1 if it is within two rings of where the mesh crosses itself.
 std::vector<std::uint8_t> find_near_crossings(PolygonView mesh, const WeldOptions& weld);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/surface/seams.h"
 
+#include <tbb/concurrent_vector.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -325,6 +327,112 @@ ClosedSeams close_seams(PolygonView polygons, double precision, std::vector<std:
   facts.near_vertices = static_cast<std::size_t>(std::count(suspicious.begin(), suspicious.end(), 1));
   welder.weld(tolerance, facts);
   return {facts, tolerance};
+}
+
+namespace {
+
+/// Edges that are too short, by the vertices that their ends are welded to, and the sets that these make.
+class Slivers {
+ public:
+  Slivers(PolygonView polygons, std::vector<std::uint32_t>& first, double longest)
+      : polygons_(polygons), first_(first), edges_(edges_up_to(longest)) {
+    for (const auto& [a, b] : edges_) vertices_.insert(vertices_.end(), {a, b});
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  }
+
+  bool empty() const { return edges_.empty(); }
+
+  void weld(double longest, SeamFacts& facts) {
+    SeamClusters sets(vertices_.size());
+    for (const auto& [a, b] : edges_)
+      if ((at(a) - at(b)).length() <= longest) sets.unite(number(a), number(b));
+    const std::vector<std::uint8_t> held = held_by_faces(sets);
+    std::vector<std::uint8_t> wide(vertices_.size(), 0);
+    for (std::uint32_t i = 0; i < wide.size(); ++i)
+      if ((at(vertices_[i]) - at(vertices_[sets.root(i)])).length() > 2 * longest) wide[sets.root(i)] = 1;
+    std::vector<std::uint32_t> target = vertices_;
+    for (std::uint32_t i = 0; i < target.size(); ++i) {
+      const std::uint32_t root = sets.root(i);
+      if (root == i || wide[root] || !held[root]) continue;
+      target[i] = vertices_[root];
+      ++facts.slivers;
+      facts.widest_sliver = std::max(facts.widest_sliver, (at(vertices_[i]) - at(target[i])).length());
+    }
+    for (auto& v : first_)
+      if (is_end(v)) v = target[number(v)];
+  }
+
+ private:
+  const Vec3d& at(std::uint32_t v) const { return polygons_.positions[v]; }
+  bool is_end(std::uint32_t v) const { return std::binary_search(vertices_.begin(), vertices_.end(), v); }
+  std::uint32_t number(std::uint32_t v) const {
+    return static_cast<std::uint32_t>(std::lower_bound(vertices_.begin(), vertices_.end(), v) - vertices_.begin());
+  }
+
+  std::vector<BorderEdge> edges_up_to(double longest) const {
+    tbb::concurrent_vector<BorderEdge> found;
+    for_each_side(polygons_, first_, [&](auto, std::uint32_t from, std::uint32_t to) {
+      if ((at(from) - at(to)).lengthSqr() <= longest * longest)
+        found.push_back({std::min(from, to), std::max(from, to)});
+    });
+    std::vector<BorderEdge> edges(found.begin(), found.end());
+    std::sort(edges.begin(), edges.end(),
+              [](const BorderEdge& l, const BorderEdge& r) { return std::pair(l.a, l.b) < std::pair(r.a, r.b); });
+    return edges;
+  }
+
+  /// Of each root: 1 if a face beside its set keeps three corners, or one that is a line then leads to such a set.
+  std::vector<std::uint8_t> held_by_faces(SeamClusters& sets) const {
+    std::vector<std::vector<std::uint32_t>> faces;  // that have corners in sets, as what is left of them
+    for (std::size_t f = 0; f < polygons_.face_count(); ++f) {
+      const auto face = polygons_.face(f);
+      if (std::none_of(face.begin(), face.end(), [&](std::uint32_t v) { return is_end(first_[v]); })) continue;
+      auto& corners = faces.emplace_back();
+      for (const auto v : face)
+        corners.push_back(is_end(first_[v]) ? vertices_[sets.root(number(first_[v]))] : first_[v]);
+      std::sort(corners.begin(), corners.end());
+      corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    }
+    std::vector<std::uint8_t> held(vertices_.size(), 0);
+    for (bool any = true; any;) {
+      any = false;
+      for (const auto& corners : faces) {
+        const auto is_held = [&](std::uint32_t v) { return !is_end(v) || held[number(v)]; };
+        if (corners.size() < 3 && std::none_of(corners.begin(), corners.end(), is_held)) continue;
+        for (const auto v : corners)
+          if (!is_held(v)) held[number(v)] = 1, any = true;
+      }
+    }
+    return held;
+  }
+
+  PolygonView polygons_;
+  std::vector<std::uint32_t>& first_;
+  std::vector<BorderEdge> edges_;
+  std::vector<std::uint32_t> vertices_;  // ends of these edges, ascending
+};
+
+double median_side(PolygonView polygons, std::span<const std::uint32_t> first) {
+  std::vector<double> lengths(polygons.corners.size(), 0);
+  for_each_side(polygons, first, [&](std::uint32_t corner, std::uint32_t from, std::uint32_t to) {
+    lengths[corner] = (polygons.positions[from] - polygons.positions[to]).length();
+  });
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+}  // namespace
+
+void weld_slivers(PolygonView polygons, std::vector<std::uint32_t>& first, SeamFacts& facts) {
+  // Share of the diagonal: half a unit in the last place of single precision, which most programs hand on.
+  constexpr double kOfDiagonal = std::numeric_limits<float>::epsilon() / 2;
+  const double diagonal = extent_of(polygons, first).diagonal, longest = kOfDiagonal * diagonal;
+  if (!(diagonal > 0) || !std::isfinite(diagonal)) return;
+  Slivers slivers(polygons, first, longest);
+  if (slivers.empty()) return;
+  slivers.weld(std::min(longest, MeshFacts::kSliver * median_side(polygons, first)), facts);
 }
 
 }  // namespace vdb_offset

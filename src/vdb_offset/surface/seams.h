@@ -25,6 +25,13 @@ struct ClosedSeams {
 /// \return what was welded, which borders are still suspiciously close to each other, and what counts as one
 ClosedSeams close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first);
 
+/// Makes one vertex of the ends of edges that are nothing but rounding: no longer than single precision can tell apart
+/// across the mesh, and than MeshFacts::kSliver of the median edge. Marching tetrahedra, for one, leave such edges; the
+/// slivers between them would fold. A set of vertices stays apart if it is wider than that, or if it is all that
+/// there is.
+/// \param first as close_seams() takes it; changed
+void weld_slivers(PolygonView polygons, std::vector<std::uint32_t>& first, SeamFacts& facts);
+
 /// The unit in the last place of a number as large as `largest` (> 0), judged by numbers that a file holds: that of
 /// single precision if they all are, or look like ones that were; half that of their decimal digits if these are as
 /// many for most of those near the largest; else that of double precision.

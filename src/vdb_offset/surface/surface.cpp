@@ -44,23 +44,17 @@ void count_corners(PolygonView polygons, MeshFacts& facts) {
   }
 }
 
-/// Triangulates all faces: one of n corners has n - 2 triangles, so that each knows where its triangles go.
+/// Takes the triangles of all faces.
 void split_faces(PolygonView polygons, Surface& surface) {
   count_corners(polygons, surface.facts);
-  surface.triangles.resize(polygons.corners.size() - 2 * polygons.face_count());
+  surface.triangles = split_polygons(polygons);
   surface.face.resize(surface.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.face_count(), 1024), [&](const auto& range) {
-    std::vector<std::uint32_t> face;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (std::size_t f = range.begin(); f != range.end(); ++f) {
-      face.clear();
-      triangles.clear();
-      for (const auto v : polygons.face(f)) face.push_back(surface.welded[v]);
-      triangulate_without_lines(surface.vertices, face, triangles);
-      const auto at = static_cast<std::ptrdiff_t>(polygons.face_begin[f] - 2 * f);
-      std::copy(triangles.begin(), triangles.end(), surface.triangles.begin() + at);
-      std::fill_n(surface.face.begin() + at, triangles.size(), static_cast<std::uint32_t>(f));
-    }
+  for_each_index(surface.triangles.size(), [&](std::size_t t) {
+    for (auto& v : surface.triangles[t]) v = surface.welded[v];
+  });
+  for_each_index(polygons.face_count(), [&](std::size_t f) {
+    std::fill_n(surface.face.begin() + static_cast<std::ptrdiff_t>(polygons.face_begin[f] - 2 * f),
+                polygons.face(f).size() - 2, static_cast<std::uint32_t>(f));
   });
   leave_out_lines(surface);
 }
@@ -324,6 +318,12 @@ Surface build_welded(PolygonView polygons, const Welding& welding, Orient orient
   return surface;
 }
 
+void require_area(const Surface& surface) {
+  if (surface.facts.area > 0) return;
+  throw InvalidInput("mesh: expected a face with an area, got corners at one point or on a line in all of " +
+                     std::to_string(surface.facts.degenerate_faces));
+}
+
 void to_local_frame(Surface& surface, double voxel_size) {
   VDB_OFFSET_ASSERT(voxel_size > 0 &&
                     surface.triangle_normals.empty());  // a surface with normals has been moved already
@@ -357,21 +357,48 @@ void to_frame(Surface& surface, const Vec3d& origin) {
   find_conormals(surface);
 }
 
+namespace {
+
+// Length of the sum of two unit vectors below which a border turns back on itself, within six degrees, and leads
+// nowhere. Not measured.
+constexpr double kTurnsBack = 0.1;
+
+/// Calls visit(along, over) for the border's edges at a vertex: their direction, and what leads over them in the plane
+/// of their face; both of unit length.
+template <class Visit>
+void visit_border(const Surface& surface, std::uint32_t vertex, Visit&& visit) {
+  for (const auto t : surface.triangles_around(vertex))
+    for (std::uint32_t edge = 3 * t; edge < 3 * t + 3; ++edge) {
+      if (surface.next_around_edge[edge] != edge || (surface.from(edge) != vertex && surface.to(edge) != vertex))
+        continue;
+      const Vec3d along = surface.vertices[surface.to(edge)] - surface.vertices[surface.from(edge)],
+                  over = along.cross(surface.triangle_normals[t]);
+      const bool is_flat = over.lengthSqr() > 0;
+      visit(is_flat ? along.unit() : Vec3d(0.0), is_flat ? over.unit() : Vec3d(0.0));
+    }
+}
+
+}  // namespace
+
 Vec3d Surface::own_conormal(std::uint32_t vertex) const {
-  // Length of the sum of two unit vectors below which a border turns back on itself, within six degrees, and leads
-  // nowhere. Not measured.
-  constexpr double kTurnsBack = 0.1;
   Vec3d sum(0.0);
   int edges = 0;
-  for (const auto t : triangles_around(vertex))
-    for (std::uint32_t edge = 3 * t; edge < 3 * t + 3; ++edge) {
-      if (next_around_edge[edge] != edge || (from(edge) != vertex && to(edge) != vertex)) continue;
-      const Vec3d over = (vertices[to(edge)] - vertices[from(edge)]).cross(triangle_normals[t]);
-      if (over.lengthSqr() > 0) sum += over.unit();
-      ++edges;
-    }
+  visit_border(*this, vertex, [&](const Vec3d&, const Vec3d& over) {
+    sum += over;
+    ++edges;
+  });
   const double length = sum.length();
   return edges == 2 && length > kTurnsBack ? sum / length : Vec3d(0.0);
+}
+
+Vec3d Surface::over_border_beside_plane(std::uint32_t vertex) const {
+  if (held.empty() || held[vertex] != 1) return Vec3d(0.0);
+  constexpr double kInPlane = 1e-3;  // sine; reasoned: far above rounding, far below a corner
+  Vec3d sum(0.0), normal = conormals[vertex];
+  visit_border(*this, vertex, [&](const Vec3d& along, const Vec3d& over) {
+    if (std::abs(normal.dot(along)) > kInPlane) sum += over - normal * normal.dot(over);
+  });
+  return sum.length() > kTurnsBack ? sum.unit() : Vec3d(0.0);
 }
 
 double Surface::tilt(std::uint32_t triangle) const {

@@ -51,6 +51,8 @@ struct Surface {
   /// Planes that vertices stay in (see border_planes.h), in this frame.
   std::vector<SymmetryPlane> planes;
   std::size_t named_planes = 0;  ///< How many of them, the first ones, the user has named.
+  /// Planes that borders lie in whose faces rise from them by too little to stay there, and the vertices of these.
+  std::vector<std::pair<SymmetryPlane, std::vector<std::uint32_t>>> left_planes;
   /// Of each vertex, how many planes hold it, 0 .. 3. Empty if there are no planes.
   std::vector<std::uint8_t> held;
   /// Of vertices that two planes hold, a second conormal, at right angles to the first one. Sorted by vertex.
@@ -94,6 +96,10 @@ struct Surface {
   /// The conormal of a vertex on a border by its faces alone, whether or not a plane holds it; zero where several
   /// borders meet, or one turns back on itself.
   Vec3d own_conormal(std::uint32_t vertex) const;
+  /// Of a vertex that one plane holds, and at which the border leaves that plane: the unit vector in the plane that
+  /// leads over the border beside it; else zero. Without it, such a corner has nothing to keep it from leaning out
+  /// there.
+  Vec3d over_border_beside_plane(std::uint32_t vertex) const;
   /// Sine of the angle by which the errors of its corners may tilt a triangle.
   double tilt(std::uint32_t triangle) const;
   /// Whether a vertex must not leave the plane that along_border() keeps to.
@@ -112,6 +118,9 @@ struct Surface {
 /// which side is outward (see orientation.h). Origin and normals are left to to_local_frame(). \throw InvalidInput if
 /// there is no face, an index is out of range, a coordinate is not finite, or there are 2^31 triangles or more.
 Surface build_surface(PolygonView polygons, const WeldOptions& weld, Orient orient = Orient::Keep);
+
+/// \throw InvalidInput if none of the surface's faces has an area: such a mesh has no side to go to
+void require_area(const Surface& surface);
 
 /// Which vertices of a mesh are one.
 struct Welding {

@@ -173,6 +173,16 @@ void require_usable(PolygonView polygons, std::uint32_t least_corners) {
       i != kNone64)
     throw InvalidInput("mesh: expected finite coordinates, got a NaN or an infinity at vertex " +
                        std::to_string(corners[i]));
+  if (polygons.triangles.empty()) return;
+  if (polygons.triangles.size() + 2 * polygons.face_count() != corners.size())
+    throw InvalidInput("mesh: expected two triangles fewer than corners for each face, " +
+                       std::to_string(corners.size() - 2 * polygons.face_count()) + ", got " +
+                       std::to_string(polygons.triangles.size()));
+  for (const auto& triangle : polygons.triangles)
+    for (const auto v : triangle)
+      if (v >= positions.size())
+        throw InvalidInput("mesh: expected corners of triangles below " + std::to_string(positions.size()) + ", got " +
+                           std::to_string(v));
 }
 
 Welding find_welding(PolygonView polygons, const WeldOptions& options) {
@@ -187,6 +197,7 @@ Welding weld_usable(PolygonView polygons, const WeldOptions& options) {
   if (options.tolerance == 0 && options.close_seams) {
     const ClosedSeams closed = close_seams(polygons, options.precision, welding.first);
     welding.seams = closed.facts;
+    weld_slivers(polygons, welding.first, welding.seams);
     if (options.join_hanging) welding.hanging = closed.tolerance;
   } else if (options.tolerance > 0 && options.join_hanging) {
     welding.hanging = options.tolerance;

@@ -139,6 +139,10 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
                Normals normals, WriteResult& result) {
   const PolygonView mesh{positions, source.polygons.corners, source.polygons.face_begin};
   const auto content = std::make_shared<Content>(Content{mesh, precision, read_attributes(source), {}, {}});
+  if (is_of_triangles(target)) {
+    content->triangles = split_polygons(source.polygons.view());
+    content->mesh.triangles = content->triangles;
+  }
   Attributes& with = content->with;
   if (target == Format::ThreeMf || is_gltf(target) || (source.document && target == Format::Obj))
     if (Materials materials = read_materials(source); !materials.of_face.empty()) {

@@ -11,7 +11,6 @@
 #include "vdb_offset/io/base/append_number.h"
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/documents/documents.h"
-#include "vdb_offset/mesh/triangulate.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -181,7 +180,7 @@ struct TextureLists {
 bool has_byte_parts(const Content& content) { return content.parts.size() <= 256; }
 
 std::string ply_header(const Content& content, const TextureLists& lists) {
-  const auto& [mesh, precision, with, parts, materials, unit] = content;
+  const auto& [mesh, precision, with, parts, materials, unit, triangles] = content;
   std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.size());
   const auto add = [&](const char* type, std::initializer_list<const char*> names) {
     for (const char* name : names) header += fmt::format("property {} {}\n", type, name);
@@ -237,19 +236,19 @@ void append_facet(std::string& bytes, const std::array<Vec3d, 3>& corner) {
   append_binary(bytes, std::uint16_t{0});
 }
 
-Pieces to_stl(PolygonView mesh) {
+Pieces to_stl(const SharedContent& content) {
+  const PolygonView& mesh = content->mesh;
   using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-  const auto triangles = std::make_shared<Triangles>();
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) triangulate(mesh.positions, mesh.face(f), *triangles);
+  const auto made = std::make_shared<const Triangles>(mesh.triangles.empty() ? split_polygons(mesh) : Triangles());
+  const std::span<const std::array<std::uint32_t, 3>> triangles = mesh.triangles.empty() ? *made : mesh.triangles;
   std::string header(80, '\0');
-  append_binary(header, static_cast<std::uint32_t>(triangles->size()));
-  return in_sections(
-      header,
-      {{triangles->size(), [=](std::string& bytes, std::size_t t) {
-          const Rounding single{Rounding::Kind::Single};
-          const auto& [a, b, c] = (*triangles)[t];
-          append_facet(bytes, {single(mesh.positions[a]), single(mesh.positions[b]), single(mesh.positions[c])});
-        }}});
+  append_binary(header, static_cast<std::uint32_t>(triangles.size()));
+  return in_sections(header, {{triangles.size(), [content, made, triangles](std::string& bytes, std::size_t t) {
+                                 const auto& at = content->mesh.positions;
+                                 const Rounding single{Rounding::Kind::Single};
+                                 const auto& [a, b, c] = triangles[t];
+                                 append_facet(bytes, {single(at[a]), single(at[b]), single(at[c])});
+                               }}});
 }
 
 }  // namespace
@@ -311,7 +310,7 @@ Pieces encode(Format format, const SharedContent& content) {
     case Format::Brep:
       break;
   }
-  return to_stl(content->mesh);
+  return to_stl(content);
 }
 
 }  // namespace vdb_offset::io

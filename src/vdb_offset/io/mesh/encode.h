@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "vdb_offset/base/rounding.h"
@@ -23,6 +24,8 @@ struct Content {
   std::vector<Part> parts;                      ///< Of all faces, in their order; or empty.
   Materials materials;                          ///< Kept in OBJ, glTF and 3MF.
   std::optional<double> unit_micrometres = {};  ///< Of the coordinates, if known; kept in 3MF.
+  /// What `mesh.triangles` refers to, if these were made for this file.
+  std::vector<std::array<std::uint32_t, 3>> triangles = {};
 };
 using SharedContent = std::shared_ptr<const Content>;
 

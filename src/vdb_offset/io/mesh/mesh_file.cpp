@@ -219,4 +219,10 @@ void write_mesh(const std::string& path, PolygonView polygons, const WriteOption
   write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})));
 }
 
+void write_mesh(const std::string& path, PolygonView source, std::span<const Vec3d> positions,
+                const WriteOptions& options) {
+  const auto triangles = split_polygons(source);
+  write_mesh(path, {positions, source.corners, source.face_begin, triangles}, options);
+}
+
 }  // namespace vdb_offset::io

@@ -23,39 +23,42 @@ class TrianglePlaces {
       : mesh_(mesh),
         triangles_(triangles),
         position_(mesh.positions.begin(), mesh.positions.end()),
-        known_(position_.size(), 0) {}
+        known_(position_.size(), 0),
+        split_(triangles.face_count()) {}
 
-  /// Finds the positions. Triangles and quads can only be split in one way, and go first: larger polygons are matched
+  /// Finds the positions. Triangles can only be split in one way, and go first, then quads: larger polygons are matched
   /// with the corners that are known from them.
-  std::optional<std::vector<Vec3d>> find() {
+  std::optional<InTriangles> find() {
     std::size_t count = 0;
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) count += mesh_.face(f).size() - 2;
     if (count != triangles_.face_count()) return std::nullopt;
-    for (const bool large : {false, true}) {
+    for (const std::size_t large : {std::size_t{3}, kQuad, kQuad + 1}) {
       std::size_t first = 0;
       for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
         const auto face = mesh_.face(f);
-        if ((face.size() > kQuad) == large && !take(face, first)) return std::nullopt;
+        if (std::min(face.size(), kQuad + 1) == large && !take(f, first)) return std::nullopt;
         first += face.size() - 2;
       }
     }
-    return std::move(position_);
+    return InTriangles{std::move(position_), std::move(split_)};
   }
 
  private:
   static constexpr std::size_t kQuad = 4;  // corners
 
   /// Takes the positions of a polygon's corners from its triangles. These are those of the offset, in which the polygon
-  /// is split around its first corner, as in the source, or as its shape there asks for. Where both of the first are
+  /// is split as in the source, around its first corner, or as another program has chosen. Where both of the first are
   /// possible, the corners have moved less far.
-  bool take(std::span<const std::uint32_t> face, std::size_t first) {
-    Split fan, ears;
+  bool take(std::size_t f, std::size_t first) {
+    const auto face = mesh_.face(f);
+    Split fan, as_source;
     for (std::size_t k = 2; k < face.size(); ++k) fan.push_back({face[0], face[k - 1], face[k]});
-    if (face.size() > kQuad) triangulate(mesh_.positions, face, ears);
+    append_triangles(mesh_, f, as_source);
     const std::optional<double> by_fan = squared_displacements(fan, first),
-                                by_ears = ears.empty() ? std::nullopt : squared_displacements(ears, first);
-    if (!by_fan && !by_ears) return take_ring(face, first);
-    const Split& split = !by_fan || (by_ears && *by_ears < *by_fan) ? ears : fan;
+                                by_source = squared_displacements(as_source, first);
+    if (!by_fan && !by_source) return take_ring(face, first);
+    const Split& split = !by_source || (by_fan && *by_fan < *by_source) ? fan : as_source;
+    std::copy(split.begin(), split.end(), split_.begin() + static_cast<std::ptrdiff_t>(first));
     for_each_corner(split, first, [&](std::uint32_t v, const Vec3d& there) {
       known_[v] = 1;
       position_[v] = there;
@@ -82,6 +85,11 @@ class TrianglePlaces {
       known_[face[k]] = 1;
       position_[face[k]] = ring[(best + k) % ring.size()];
     }
+    for (std::size_t i = first; i + 2 < first + face.size() && best < ring.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = std::find(ring.begin(), ring.end(), triangles_.positions[triangles_.face(i)[k]]);
+        split_[i][k] = face[(static_cast<std::size_t>(at - ring.begin()) + ring.size() - best) % ring.size()];
+      }
     return best < ring.size();
   }
 
@@ -136,11 +144,12 @@ class TrianglePlaces {
   PolygonView mesh_, triangles_;
   std::vector<Vec3d> position_;
   std::vector<std::uint8_t> known_;
+  Split split_;  // how the file splits the faces
 };
 
 }  // namespace
 
-std::optional<std::vector<Vec3d>> positions_in_triangles(PolygonView mesh, PolygonView triangles) {
+std::optional<InTriangles> find_in_triangles(PolygonView mesh, PolygonView triangles) {
   return TrianglePlaces(mesh, triangles).find();
 }
 

@@ -72,8 +72,8 @@ std::vector<Part> parts_of(const Shell& shell) {
 Pieces convert(const MeshFile& source, Format target, const Shell& shell, const Rounding& precision, Normals normals,
                WriteResult& result) {
   const PolygonView mesh = source.polygons.view();
-  const auto content = std::make_shared<Content>(
-      Content{shell.polygons.view(), precision, read_attributes(source), parts_of(shell), {}});
+  const auto content =
+      std::make_shared<Content>(Content{shell.view(), precision, read_attributes(source), parts_of(shell), {}});
   Attributes& with = content->with;
   double_up(shell, with.colours);
   if (!with.texture.of_corner.empty()) with.texture.of_corner = values_of_shell(mesh, shell, with.texture);
@@ -91,7 +91,7 @@ Pieces convert(const MeshFile& source, Format target, const Shell& shell, const 
 
 Pieces convert(Format target, const Shell& shell, const Rounding& precision, WriteResult& result) {
   if (!keeps_parts(target, {})) result.lost = kShellParts;
-  return encode(target, std::make_shared<Content>(Content{shell.polygons.view(), precision, {}, parts_of(shell), {}}));
+  return encode(target, std::make_shared<Content>(Content{shell.view(), precision, {}, parts_of(shell), {}}));
 }
 
 }  // namespace vdb_offset::io

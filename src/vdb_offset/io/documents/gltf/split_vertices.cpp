@@ -117,7 +117,7 @@ SplitVertices::SplitVertices(const Content& content) {
     made.clear();
     for (std::size_t k = 0; k < face.size(); ++k) made.push_back(splitting.vertex_of(f, mesh.face_begin[f] + k));
     pieces.clear();
-    triangulate(mesh.positions, face, pieces);
+    append_triangles(mesh, f, pieces);
     for (const auto& piece : pieces) {
       auto& triangle = triangles.emplace_back();
       for (std::size_t k = 0; k < 3; ++k)

@@ -110,7 +110,7 @@ struct NewModel {
     if (colours.empty()) take_materials();
     const PolygonView& mesh = content->mesh;
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-      triangulate(mesh.positions, mesh.face(f), triangles);
+      append_triangles(mesh, f, triangles);
       if (!materials.empty()) face_of.resize(triangles.size(), static_cast<std::uint32_t>(f));
     }
   }
