@@ -70,12 +70,19 @@ struct LimitStatistics {
 
 /// What became of borders, and of what stays in planes.
 struct BorderFacts {
+  /// A plane that a border lies in, and does not stay in: its faces rise from that plane by too little.
+  struct LeftPlane {
+    SymmetryPlane plane;  ///< World coordinates.
+    double farthest;      ///< How far from it a vertex of the border ends at most, world units.
+  };
   std::vector<SymmetryPlane> planes;  ///< World coordinates.
-  std::size_t held_vertices = 0;      ///< Of the surface, that stay in them.
-  std::size_t beyond = 0;             ///< Vertices of the surface that end beyond a plane which it lies on one side of.
-  std::size_t across_vertices = 0;    ///< Other vertices at borders, which go in the plane across these if they can.
-  std::size_t strayed_vertices = 0;   ///< Those of them that leave it by more than a degree,
-  double worst_angle = 0;             ///< and the worst of all, in degrees.
+  std::size_t named_planes = 0;       ///< How many of them, the first ones, were named by the user.
+  std::vector<LeftPlane> left;
+  std::size_t held_vertices = 0;     ///< Of the surface, that stay in them.
+  std::size_t beyond = 0;            ///< Vertices of the surface that end beyond a plane which it lies on one side of.
+  std::size_t across_vertices = 0;   ///< Other vertices at borders, which go in the plane across these if they can.
+  std::size_t strayed_vertices = 0;  ///< Those of them that leave it by more than a degree,
+  double worst_angle = 0;            ///< and the worst of all, in degrees.
 };
 
 /// How far faces are off their distance, at points evenly spread over their area in the offset: the difference to the

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 #include "support/oracles.h"
+#include "support/solids.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
@@ -274,4 +276,20 @@ TEST_CASE("symmetry: results do not depend on the number of threads", "[symmetry
   const auto one = offset(mesh.view(), options).positions;
   options.threads = 4;
   CHECK(offset(mesh.view(), options).positions == one);
+}
+
+TEST_CASE("symmetry: vertices that stay in planes may slide within them", "[symmetry][limit]") {
+  // A rough nose between two planes: its corners' own faces lead them away from what is beside them.
+  Polygons strip = test::nose_strip(2.2, 1.67, 2, 192, 400);
+  std::mt19937 dice(3);
+  for (std::size_t v = 0; v < strip.positions.size(); v += 2)
+    for (int k = 0; k < 2; ++k) {
+      const double off = 0.006 * (static_cast<double>(dice()) / 4294967296.0 - 0.5);
+      for (const std::size_t end : {v, v + 1}) strip.positions[end][k] += off;
+    }
+  const OffsetResult result = offset(strip.view(), options_at(0.96));
+  CHECK(result.statistics.borders.planes.size() == 2);
+  CHECK(result.statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)] == strip.positions.size());
+  for (std::size_t v = 0; v < strip.positions.size(); ++v) CHECK(result.positions[v][2] == strip.positions[v][2]);
+  CHECK(result.statistics.faces.at_distance > 0.999);  // 0.848 where corners may not slide
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "run_files.h"
-#include "summary.h"
+#include "summary/summary.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/iso_file.h"
 #include "vdb_offset/iso_surface.h"

@@ -7,7 +7,7 @@
 
 #include "page/run_pages.h"
 #include "run_files.h"
-#include "summary.h"
+#include "summary/summary.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
@@ -80,8 +80,7 @@ void write_surfaces(const Job& job, const LayersResult& layers) {
       tell_losses(job.request, path, io::write_mesh(path, *source.file, surface, options));
       continue;
     }
-    const PolygonView mesh = source.view();
-    io::write_mesh(path, PolygonView{surface, mesh.corners, mesh.face_begin}, options);
+    io::write_mesh(path, source.view(), surface, options);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -9,6 +10,9 @@ namespace vdb_offset::tool {
 
 /// A text of at most so many bytes: what is longer loses its middle, never a part of a character.
 std::string shortened(std::string_view text, std::size_t most);
+
+/// What a noun ends in where there are so many.
+constexpr const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
 /// Bytes as text on one line: those that are no text, and control characters, as `\xff`.
 std::string as_text(std::string_view bytes);

@@ -51,9 +51,7 @@ bool Contraction::operator()() {
   return any;
 }
 
-bool Contraction::is_contractible(std::uint32_t v) const {
-  return state_.may_leave_path(v) && !state_.is_held(v) && state_.is_short(v);
-}
+bool Contraction::is_contractible(std::uint32_t v) const { return state_.may_leave_path(v) && state_.is_short(v); }
 
 /// The vertices of the moving part that places of a vertex may be beside, each once: those at the border for one at a
 /// border.
@@ -73,8 +71,8 @@ Indices Contraction::neighbours(std::uint32_t v) const {
   return along_border.empty() ? all : along_border;
 }
 
-/// A displacement to a position at a vertex's distance near one; none in narrow grooves, where steps away from one wall
-/// lead to the other.
+/// A displacement to a position at a vertex's distance near one, within the planes that the vertex has to stay in; none
+/// in narrow grooves, where steps away from one wall lead to the other.
 std::optional<Vec3d> Contraction::at_distance(std::uint32_t v, Vec3d position) const {
   // Steps along the gradient, and share of the distance that the last may be off. Reasoned: the gradient has length 1,
   // so that the first step is exact unless another part is nearer at its end.
@@ -82,13 +80,17 @@ std::optional<Vec3d> Contraction::at_distance(std::uint32_t v, Vec3d position) c
   constexpr double kSettled = 1e-9;
   const double distance = std::abs(state_.distances[v]);
   std::uint32_t hint = state_.constrained.hint(v);
+  const Vec3d& from = state_.surface.vertices[v];
+  if (state_.is_held(v)) position = from + state_.in_planes(v, position - from);
   for (int step = 0; step < kMostSteps; ++step) {
     const Closest closest = state_.constrained.moving_part(position, hint);
     hint = closest.triangle;
     if (std::abs(closest.distance - distance) <= kSettled * distance)
-      return round_displacement(position - state_.surface.vertices[v], distance);
-    if (!(closest.distance > 0)) break;
-    position += (position - closest.point) * (distance / closest.distance - 1);
+      return round_displacement(position - from, distance);
+    const Vec3d away = position - closest.point, along = state_.in_planes(v, away);
+    if (!(along.lengthSqr() > 0)) break;
+    // Of the gradient, what lies in the planes; the step is as much longer as the distance rises more slowly along it.
+    position += along * ((distance / closest.distance - 1) * away.lengthSqr() / along.lengthSqr());
   }
   return std::nullopt;
 }

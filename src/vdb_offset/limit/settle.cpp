@@ -85,7 +85,6 @@ bool Settling::settle_with_room(std::uint32_t v, LiveArea::Lines lines, Settling
 
 /// Tries a vertex beside its neighbours. \pre no faces are kept: it would take room that miters need
 bool Settling::settle_beside(std::uint32_t v, SettlingTrial& trial) {
-  if (state_.is_held(v)) return false;
   const std::vector<Contraction::Place> places = Contraction{state_}.places(v);
   return std::any_of(places.begin(), places.end(), [&](const Contraction::Place& place) {
     return trial.try_alone({SettlingTrial::Move{v, place.end}});

@@ -69,8 +69,8 @@ SettlingTrial::Moves SettlingTrial::with_near_vertices(const Move& move, double 
       for (const auto w : surface.triangles[t]) {
         const bool is_near = (surface.vertices[w] - from).length() <= longest &&
                              (surface.vertices[w] - surface.vertices[move.vertex]).length() <= 2 * longest;
-        if (!is_near || !may_go_along(w) || holds(moves, w)) continue;
-        moves.push_back({w, move.displacement});
+        if (!is_near || !state_.may_leave_path(w) || holds(moves, w)) continue;
+        moves.push_back({w, state_.in_planes(w, move.displacement)});
       }
   }
   return moves;
@@ -190,7 +190,7 @@ void SettlingTrial::put_lost_elsewhere(std::uint32_t vertex, const OldOnes& old)
   if (is_worth_it(vertex, old)) return;
   std::vector<std::pair<double, std::uint32_t>> lost;
   for (const Old& o : old)
-    if (!o.was_short && state_.is_short(o.vertex) && may_go_along(o.vertex))
+    if (!o.was_short && state_.is_short(o.vertex) && state_.may_leave_path(o.vertex))
       lost.emplace_back(-state_.live_area[o.vertex], o.vertex);
   std::sort(lost.begin(), lost.end());
   lost.resize(std::min(lost.size(), kMostElsewhere));
@@ -202,7 +202,7 @@ void SettlingTrial::put_lost_elsewhere(std::uint32_t vertex, const OldOnes& old)
 bool SettlingTrial::find_room(std::uint32_t v) {
   std::vector<Vec3d> ends;
   for (const Vec3d& position : state_.live_area.positions_with_room(v, LiveArea::Lines::KeepBorder))
-    ends.push_back(position - state_.surface.vertices[v]);
+    ends.push_back(state_.in_planes(v, position - state_.surface.vertices[v]));
   for (const Contraction::Place& place : Contraction{state_}.places(v)) ends.push_back(place.end);
   const Vec3d whole = state_.whole[v];
   const double share = state_.share[v];

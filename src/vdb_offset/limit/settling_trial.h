@@ -55,7 +55,6 @@ class SettlingTrial {
 
   bool try_out(const Moves& moves, const SlideAside* aside);
   Moves with_near_vertices(const Move& move, double reach) const;
-  bool may_go_along(std::uint32_t v) const { return state_.may_leave_path(v) && !state_.is_held(v); }
   Old old_of(std::uint32_t v) const;
   void put(const Moves& moves);
   void pull(const Indices& vertices, OldOnes& old);

@@ -63,6 +63,7 @@ class VertexMarch {
     normal_ = start.direction * side_;
     slope_ = start.slope;
     if (obstacles) guard_.emplace(*obstacles, origin_, side);
+    if constexpr (std::is_same_v<ShapeOf<Query>, Surface>) over_ = surface_.over_border_beside_plane(vertex_);
   }
 
   /// The end of the path on which the distance rises fastest, at the distance `target` or where it rises no further, if
@@ -347,11 +348,13 @@ class VertexMarch {
   }
 
   /// The velocity that a vertex follows. Beyond a border phi is the distance to that, and its gradient leans out: a
-  /// vertex of a border stays in the plane across it, so that the offset's border is the source's.
+  /// vertex of a border stays in the plane across it, so that the offset's border is the source's; one at a corner,
+  /// which a plane holds, across the border beside that plane as well.
   Vec3d course(const Vec3d& x, double phi, const Vec3d& fallback) {
     const Vec3d v = velocity(x, phi, fallback);
     if (surface_.conormals.empty()) return v;
-    const Vec3d along = surface_.along_border(vertex_, v);
+    Vec3d along = surface_.along_border(vertex_, v);
+    along -= over_ * over_.dot(along);
     return along.lengthSqr() > kLeastGradient * kLeastGradient ? along.unit() : normal_;
   }
 
@@ -417,6 +420,7 @@ class VertexMarch {
   bool sided_;
   std::uint32_t vertex_;
   Vec3d origin_, normal_;  // of the vertex: position and start direction, to the side asked for
+  Vec3d over_{0.0};        // leads over the border beside the plane that holds the vertex; else 0
   double slope_;
   std::uint32_t hint_;
   March march_;

@@ -61,7 +61,9 @@ Json facts_json(const MeshFacts& facts) {
             {"near_vertices", facts.seams.near_vertices},
             {"widest_near", facts.seams.widest_near},
             {"hanging_vertices", facts.seams.hanging},
-            {"widest_hanging", facts.seams.widest_hanging}}},
+            {"widest_hanging", facts.seams.widest_hanging},
+            {"sliver_vertices", facts.seams.slivers},
+            {"widest_sliver", facts.seams.widest_sliver}}},
           {"sliver_edges", facts.sliver_edges},
           {"longest_sliver", facts.longest_sliver}};
 }
@@ -84,7 +86,13 @@ Json borders_json(const BorderFacts& borders) {
   Json planes = Json::array();
   for (const auto& [normal, offset] : borders.planes)
     planes.push_back({{"normal", {normal[0], normal[1], normal[2]}}, {"offset", offset}});
+  Json left = Json::array();
+  for (const auto& [plane, farthest] : borders.left)
+    left.push_back({{"normal", {plane.normal[0], plane.normal[1], plane.normal[2]}},
+                    {"offset", plane.offset},
+                    {"farthest", farthest}});
   return {{"planes", planes},
+          {"left", left},
           {"held", borders.held_vertices},
           {"beyond", borders.beyond},
           {"across", borders.across_vertices},

@@ -25,6 +25,9 @@ constexpr double kRoughest = 1e-5;
 // Least cosine between a direction in a plane and the normals of the faces around a vertex, for the vertex to move
 // within the plane. Not measured.
 constexpr double kWithinReach = 0.2;
+// The same of a plane that a border lies in, but is not held in, for it to be reported: the sine of the angle by which
+// faces have to rise from it, as others do from their own border's plane. Not measured.
+constexpr double kWorthTelling = 0.02;
 // Share of a piece's length along which vertices must be able to move within its plane. Not measured.
 constexpr double kMostInReach = 0.9;
 // Least number of edges of a piece that lies in a plane: so many hardly do by chance. Fewer are enough for a plane at
@@ -144,6 +147,15 @@ class PlaneFinder {
   /// Whether a direction within the plane leads away from all faces around a vertex.
   bool is_in_reach(std::uint32_t v, const Vec3d& normal) const { return leads_off(v, {&normal, 1}, kWithinReach); }
 
+  /// Whether that is so along most of a piece.
+  bool is_in_reach(std::span<const std::uint32_t> piece, const Vec3d& normal, double least) const {
+    double reached = 0;
+    for (std::size_t i = 1; i < piece.size(); ++i)
+      if (leads_off(piece[i], {&normal, 1}, least) && leads_off(piece[i - 1], {&normal, 1}, least))
+        reached += length_of(piece.subspan(i - 1, 2));
+    return reached >= kMostInReach * length_of(piece);
+  }
+
   /// Whether one of the faces around a vertex lies in the plane: its offset leaves the plane, and the vertex with it.
   bool has_face_in(const SymmetryPlane& plane, std::uint32_t v) const {
     const auto around = surface_.triangles_around(v);
@@ -202,12 +214,11 @@ class PlaneFinder {
 
   /// Holds the vertices of a piece in its plane, if most of them can move within the plane.
   bool hold_piece(std::span<const std::uint32_t> piece, const SymmetryPlane& plane, bool is_wall = true) {
-    std::vector<std::uint8_t> in_reach;
-    for (const auto v : piece) in_reach.push_back(is_in_reach(v, plane.normal));
-    double reached = 0;
-    for (std::size_t i = 1; i < piece.size(); ++i)
-      if (in_reach[i] && in_reach[i - 1]) reached += length_of(piece.subspan(i - 1, 2));
-    if (!(reached >= kMostInReach * length_of(piece))) return false;
+    if (!is_in_reach(piece, plane.normal, kWithinReach)) {
+      if (is_wall && is_in_reach(piece, plane.normal, kWorthTelling))
+        surface_.left_planes.push_back({plane, {piece.begin(), piece.end()}});
+      return false;
+    }
     const std::uint32_t number = number_of(plane, is_wall);
     for (const auto v : piece)
       if (!has_face_in(plane, v)) holds_.push_back({v, number});

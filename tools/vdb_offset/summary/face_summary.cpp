@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "messages.h"
-#include "summary.h"
+#include "summary/summary.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "job.h"
 #include "outputs.h"
@@ -19,6 +21,18 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
 /// What is printed of one output; with --verbose all that is known of the mesh and the grid. Goes to standard output
 /// unless the mesh does.
 void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds);
+
+/// Planes by their equations, the first few of them.
+std::string planes_in_words(std::span<const SymmetryPlane> planes);
+
+/// Where it is not clear which side is outward, and what to do about it: a line for each doubt.
+void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient);
+
+/// What was closed or joined as it is one but for rounding, and which borders look as if they should be.
+void print_seams(std::FILE* out, const SeamFacts& seams, double distance);
+
+/// What about the input may make the result wrong.
+void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances);
 
 /// How far faces are off their distance, as a part of a line.
 void print_faces(std::FILE* out, const FaceError& faces, bool curves);

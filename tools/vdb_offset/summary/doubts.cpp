@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of an input that may make the result other than was meant, and the option that helps.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "messages.h"
+#include "summary/summary.h"
+#include "vdb_offset/curves.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+std::string text_of(const SymmetryPlane& plane) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    if (plane.normal[k] == 0) continue;
+    if (!text.empty()) text += " + ";
+    if (plane.normal[k] != 1) text += fmt::format("{:.6g} ", plane.normal[k]);
+    text += "xyz"[k];
+  }
+  return fmt::format("{} = {:.6g}", text, plane.offset);
+}
+
+/// Says that slivers may have held vertices back.
+void print_slivers(std::FILE* out, const MeshFacts& facts) {
+  if (facts.sliver_edges > 0)
+    fmt::print(out,
+               "{} edges are no longer than {:.2g}, where the median is {:.2g}; such slivers hold back what is around "
+               "them: --weld {:g} makes one place of their ends\n",
+               facts.sliver_edges, facts.longest_sliver, facts.median_edge,
+               MeshFacts::tolerance_above(facts.longest_sliver));
+}
+
+/// The plane as --symmetry takes it.
+std::string as_option(const SymmetryPlane& plane) {
+  for (int k = 0; k < 3; ++k)
+    if (plane.normal[k] == 1) return fmt::format("{}={:.9g}", "xyz"[k], plane.offset);
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset);
+}
+
+/// Says which planes borders stay in without having been asked to, and where borders of the offset are not as one would
+/// expect from the input.
+void print_borders(std::FILE* out, const BorderFacts& borders) {
+  if (borders.planes.size() > borders.named_planes)
+    fmt::print(out, "borders are kept in {} (--symmetry none lets them leave)\n",
+               planes_in_words(std::span(borders.planes).subspan(borders.named_planes)));
+  if (borders.strayed_vertices > 0)
+    fmt::print(out, "{} of {} vertices at borders leave the plane across these, by {:.3g} degrees at most\n",
+               borders.strayed_vertices, borders.across_vertices + borders.held_vertices, borders.worst_angle);
+  if (borders.beyond > 0)
+    fmt::print(out, "{} vertices end beyond a plane that the surface lies on one side of, and borders stay in\n",
+               borders.beyond);
+  if (borders.left.empty()) return;
+  std::vector<SymmetryPlane> left;
+  double farthest = 0;
+  for (const BorderFacts::LeftPlane& each : borders.left) {
+    left.push_back(each.plane);
+    farthest = std::max(farthest, each.farthest);
+  }
+  fmt::print(out,
+             "borders in {} leave that plane by up to {:.3g}, as their faces rise from it by less than 12 degrees "
+             "(--symmetry {} "
+             "keeps them there)\n",
+             planes_in_words(left), farthest, as_option(left.front()));
+}
+
+/// A distance as it was given, with the other sign.
+std::string turned_round(const std::string& text) {
+  if (text.starts_with('-') && text.find_first_of("+*/^( ", 1) == std::string::npos) return text.substr(1);
+  const bool number = text.find_first_not_of("0123456789.eE%") == std::string::npos;
+  return number ? "-" + text : fmt::format("'-({})'", text);
+}
+
+/// The option that asks for the same offset to the other side.
+std::string option_for_other_side(const Job& job) {
+  const std::optional<LayersRequest>& layers = job.request.layers;
+  const DistanceRequest* const asked = !layers         ? &job.asked.front()
+                                       : layers->first ? &*layers->first
+                                       : layers->total ? &*layers->total
+                                                       : nullptr;
+  if (!asked) return "heights below 0";
+  if (!asked->from.empty()) return "distances of the other sign";
+  const char* const option = !layers ? "--distance" : layers->first ? "--first-height" : "--total-thickness";
+  return fmt::format("{} {}", option, turned_round(asked->text));
+}
+
+void print_room(std::FILE* out, const Job& job, const SideRoom& room) {
+  if (!room.suggests_other()) return;
+  fmt::print(
+      out,
+      "there is room for that on this side of {:.0f} % of the {}, on the other side of {:.0f} %: if {} the wrong "
+      "way, {} goes there\n",
+      100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
+      job.curves() ? "curves run" : "faces point", option_for_other_side(job));
+}
+
+void print_curve_ends(std::FILE* out, const Source& source) {
+  if (const std::size_t flattened = source.curves->flattened_shapes; flattened > 0)
+    fmt::print(out, "{} curved shape{} flattened to within {:.3g} (--flatten)\n", flattened, plural(flattened),
+               source.curves->flattened_to);
+  for (const OpenCurve& closed : source.closed) fmt::print(out, "closed by a straight segment of {:.6g}\n", closed.gap);
+  std::vector<OpenCurve> open = open_curves(source.view());
+  std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
+  if (open.empty()) return;
+  fmt::print(out,
+             "{} open curve{} with ends near each other ({:.6g} apart, of a length of {:.6g}): nothing lies between "
+             "these, nor beyond them (--close joins them)\n",
+             open.size(), plural(open.size()), open.front().gap, open.front().length);
+}
+
+}  // namespace
+
+std::string planes_in_words(std::span<const SymmetryPlane> planes) {
+  constexpr std::size_t kMostNamed = 6;  // planes that are named on a line
+  std::vector<std::string> names;
+  for (const SymmetryPlane& plane : planes.first(std::min(planes.size(), kMostNamed))) names.push_back(text_of(plane));
+  return fmt::format("{}{}", fmt::join(names, ", "),
+                     planes.size() > kMostNamed ? fmt::format(" and {} more", planes.size() - kMostNamed) : "");
+}
+
+void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient) {
+  if (facts.inside_out_components > 0)
+    fmt::print(out, "{} of {} closed components point inward as a whole: {}\n", facts.inside_out_components,
+               facts.closed_components,
+               orient == Orient::Keep
+                   ? "a distance above 0 shrinks them (--orient fix-direction-only enlarges them)"
+                   : "taken as turned, a distance above 0 enlarges them; the faces stay as they are");
+  if (facts.orientation_conflicts > 0)
+    fmt::print(out,
+               "{} edges between faces that disagree about the outside: {} triangles taken as turned, {} edges left\n",
+               facts.orientation_conflicts, facts.turned_triangles, facts.unsettled_conflicts);
+}
+
+void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
+  if (seams.vertices > 0)
+    fmt::print(out,
+               "{} vertices at borders are one with others but for rounding, {:.2g} apart at most, and count as welded "
+               "(--weld exact leaves these borders open)\n",
+               seams.vertices, seams.widest);
+  if (seams.hanging > 0)
+    fmt::print(out,
+               "{} vertices lie on edges of faces that have no corner there, {:.2g} off at most, and count as joined "
+               "to these (--weld exact leaves them hanging)\n",
+               seams.hanging, seams.widest_hanging);
+  if (seams.slivers > 0)
+    fmt::print(
+        out,
+        "{} vertices are at ends of edges of {:.2g} at most, which single precision could not hold, and count as "
+        "welded (--weld exact leaves them apart)\n",
+        seams.slivers, seams.widest_sliver);
+  constexpr double kFarBelow =
+      0.1;  // share of the distance: borders nearer to each other hold the offset back; not measured
+  if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)
+    fmt::print(out,
+               "{} vertices are at borders that run along each other, {:.2g} apart at most: --weld {:g} closes them if "
+               "they are not meant\n",
+               seams.near_vertices, seams.widest_near, MeshFacts::tolerance_above(seams.widest_near));
+}
+
+void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances) {
+  print_seams(out, statistics.facts.seams, std::abs(distances.farthest()));
+  const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
+  if (in(VertexState::Limited) + in(VertexState::Collision) > 0) print_slivers(out, statistics.facts);
+  if (job.curves()) print_curve_ends(out, job.source);
+  else print_orientation(out, statistics.facts, job.options.orient);
+  print_room(out, job, statistics.room);
+  print_borders(out, statistics.borders);
+  const LimitStatistics& limit = statistics.limit;
+  if (limit.source_crossings > 0)
+    fmt::print(out, "the input crosses itself: {}{} pairs of {} meet, left as they are; {}\n",
+               limit.more_source_crossings ? "more than " : "", limit.source_crossings,
+               job.curves() ? "segments" : "triangles",
+               limit.more_source_crossings ? "what is beside them is not looked at"
+                                           : fmt::format("{} more beside them", limit.crossings_near_source));
+}
+
+}  // namespace vdb_offset::tool
