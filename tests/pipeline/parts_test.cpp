@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
+#include <numbers>
+#include <tuple>
 
 #include "support/folder.h"
 #include "support/oracles.h"
@@ -43,6 +47,56 @@ Distances per_vertex(const Polygons& mesh, const std::function<double(const Vec3
 /// What crosses or is folded over in a result, of all its faces.
 FaultCounts faults_of(const Polygons& mesh, const OffsetResult& result) {
   return check_offset(mesh.view(), result.positions, {.distance = result.distances.farthest()}).faults;
+}
+
+/// A round plate, 9 high, with a hole of radius 3 through it that a cone widens from a height of 6 on, and the marks of
+/// the hole's wall.
+struct Countersink {
+  Polygons mesh;
+  std::vector<std::uint8_t> wall;
+  std::uint32_t sides;
+  double slope;  // by how much the cone's radius grows with the height
+
+  Countersink(std::uint32_t count, double angle) : sides(count), slope(std::tan(angle / 2 * std::numbers::pi / 180)) {
+    const std::pair<double, double> outline[] = {{3, 0}, {3, 2}, {3, 6}, {3 + 3 * slope, 9}, {20, 9}, {20, 0}};
+    for (const auto& [radius, z] : outline)
+      for (std::uint32_t i = 0; i < count; ++i) mesh.positions.push_back(at(i, radius, z));
+    for (std::uint32_t ring = 0; ring < 6; ++ring)
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t next = (i + 1) % count, low = ring * count, high = (ring + 1) % 6 * count;
+        mesh.add_face({low + next, low + i, high + i});  // triangles, of which some vertices have more than others
+        mesh.add_face({low + next, high + i, high + next});
+        wall.insert(wall.end(), 2, ring < 2);
+      }
+  }
+
+  Vec3d at(std::uint32_t i, double radius, double z) const {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    return {radius * std::cos(angle), radius * std::sin(angle), z};
+  }
+};
+
+/// A box, 20 wide and 8 high, on which a chamfer leads to a lid that is 2 from its sides: the bottom, four sides, four
+/// faces of the chamfer, and the lid.
+Polygons chamfered_box(double slope) {
+  Polygons mesh;
+  for (const auto& [low, high, z] : {std::tuple(0.0, 20.0, 0.0), {0.0, 20.0, 8.0}, {2.0, 18.0, 8 + 2 * slope}})
+    for (const auto& [x, y] : {std::pair(low, low), {high, low}, {high, high}, {low, high}})
+      mesh.positions.emplace_back(x, y, z);
+  mesh.add_face({3, 2, 1, 0});
+  for (const std::uint32_t low : {0u, 4u})
+    for (std::uint32_t i = 0; i < 4; ++i)
+      mesh.add_face({low + i, low + (i + 1) % 4, low + (i + 1) % 4 + 4, low + i + 4});
+  mesh.add_face({8, 9, 10, 11});
+  return mesh;
+}
+
+/// Whether check_offset() finds every vertex of a part's offset in the state that it was given, and no fault.
+bool is_confirmed(const Polygons& mesh, const OffsetResult& result, const OffsetOptions& options) {
+  const CheckResult check = check_offset(
+      mesh.view(), result.positions,
+      {.distance = options.distance, .only = options.only, .border = options.border, .corners = options.corners});
+  return check.states == result.states && check.faults.total() == 0 && check.beyond == 0;
 }
 
 }  // namespace
@@ -206,6 +260,84 @@ TEST_CASE("part: a border that slides stays on a bent surface", "[part][oracle]"
     CHECK(result.achieved[v] == Approx(0.02));
   }
   CHECK(border > 20);
+}
+
+TEST_CASE("part: a hole's wall slides on the cone above it to where its moved faces meet that", "[part][oracle]") {
+  for (const auto& [sides, angle] : {std::pair(8u, 90.0), {8u, 120.0}, {16u, 82.0}, {24u, 90.0}, {32u, 120.0}})
+    for (const double distance : {-0.1, -0.5, 0.1})
+      for (const Corners corners : {Corners::Round, Corners::Miter}) {
+        CAPTURE(sides, angle, distance, corners == Corners::Miter);
+        const Countersink plate(sides, angle);
+        OffsetOptions options;
+        options.distance = distance;
+        options.only = plate.wall;
+        options.corners = corners;
+        const OffsetResult result = offset(plate.mesh.view(), options);
+        // Edges that bend by less than 20 degrees are no creases, and stay as with round corners.
+        const bool mitred = distance > 0 || (corners == Corners::Miter && sides <= 16);
+        const double radius = 3 - distance * (mitred ? 1 / std::cos(std::numbers::pi / sides) : 1);
+        double worst = 0;
+        for (std::uint32_t v = 0; v < plate.mesh.positions.size(); ++v) {
+          const std::uint32_t ring = v / sides;
+          const double z = ring == 2 ? 6 + (radius - 3) / plate.slope : plate.mesh.positions[v][2];
+          const Vec3d expected = ring < 3 ? plate.at(v % sides, radius, z) : plate.mesh.positions[v];
+          worst = std::max(worst, (result.positions[v] - expected).length());
+        }
+        CHECK(worst < 1e-8);
+        CHECK(test::share(result, VertexState::Reached) + test::share(result, VertexState::Mitred) == 1);
+        CHECK(is_confirmed(plate.mesh, result, options));
+      }
+}
+
+TEST_CASE("part: a chamfer moves to where its planes meet the faces beside it, at any angle", "[part][oracle]") {
+  for (const double angle : {30.0, 45.0, 60.0})
+    for (const double distance : {0.1, -0.1})
+      for (const Corners corners : {Corners::Round, Corners::Miter}) {
+        CAPTURE(angle, distance, corners == Corners::Miter);
+        const double t = std::tan(angle * std::numbers::pi / 180);
+        const Polygons box = chamfered_box(t);
+        OffsetOptions options;
+        options.distance = distance;
+        options.corners = corners;
+        options.only = faces_where(box, [](const Vec3d& p) { return p[2] >= 8; });
+        options.only.back() = 0;
+        const OffsetResult result = offset(box.view(), options);
+        // Round: at the distance from the edge between two faces of the chamfer, which leads along (1, 1, t).
+        const bool at_planes = corners == Corners::Miter || distance < 0;
+        const double rise = distance * (at_planes ? std::sqrt(1 + t * t) : std::sqrt((2 + t * t) / 2));
+        CHECK((result.positions[4] - Vec3d(0, 0, 8 + rise)).length() < 1e-9);
+        CHECK((result.positions[8] - Vec3d(2 - rise / t, 2 - rise / t, 8 + 2 * t)).length() < 1e-9);
+        CHECK(test::share(result, VertexState::Reached) + test::share(result, VertexState::Mitred) == 1);
+        CHECK(is_confirmed(box, result, options));
+
+        options.only = {0, 1, 1, 1, 1, 0, 0, 0, 0, 0};  // the sides, whose upper edge is the chamfer's lower one
+        const OffsetResult sides = offset(box.view(), options);
+        const double out = distance * (at_planes ? 1 : std::sqrt(0.5));
+        CHECK((sides.positions[4] - Vec3d(-out, -out, 8 - out * t)).length() < 1e-9);
+        CHECK((sides.positions[0] - Vec3d(-out, -out, 0)).length() < 1e-9);
+        CHECK(is_confirmed(box, sides, options));
+      }
+}
+
+TEST_CASE("part: its edge meets the faces that stay in a plane of symmetry, too", "[part][symmetry]") {
+  // Half a hole under half a cone, open where the other half would be.
+  const Countersink whole(16, 90);
+  Polygons half;
+  half.positions = whole.mesh.positions;
+  OffsetOptions options;
+  options.distance = -0.25;
+  for (std::size_t f = 0; f < whole.mesh.face_count(); ++f) {
+    const auto face = whole.mesh.view().face(f);
+    if (std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return whole.mesh.positions[v][1] < -1e-9; }))
+      continue;
+    half.corners.insert(half.corners.end(), face.begin(), face.end());
+    half.close_face();
+    options.only.push_back(whole.wall[f]);
+  }
+  const OffsetResult result = offset(half.view(), options);
+  for (std::uint32_t i = 0; i <= 8; ++i)
+    CHECK((result.positions[2 * 16 + i] - whole.at(i, 3.25, 6.25)).length() < 1e-8);
+  CHECK(is_confirmed(half, result, options));
 }
 
 TEST_CASE("part: a border that is fixed stays, one that is free goes with the part", "[part]") {

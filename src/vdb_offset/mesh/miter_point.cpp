@@ -184,6 +184,16 @@ std::optional<Vec3d> common_point(std::span<const Vec3d> normals) {
 
 }  // namespace
 
+void keep_to_walls(std::span<const Vec3d> walls, std::vector<Vec3d>& normals) {
+  const Vec3d first = walls[0];
+  std::optional<Vec3d> second;
+  if (walls.size() > 1) second = (walls[1] - first * first.dot(walls[1])).unit();
+  for (Vec3d& n : normals) {
+    n -= first * first.dot(n);
+    if (second) n -= *second * second->dot(n);
+  }
+}
+
 double excess_of(std::span<const Vec3d> normals, const Vec3d& x) {
   double most = 0;
   for (const Vec3d& n : normals) most = std::max(most, n.dot(x) - 1);

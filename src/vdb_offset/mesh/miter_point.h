@@ -3,10 +3,14 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
+
+/// A miter with which a plane would go farther than the distance by more than this share of it is none. Not measured.
+inline constexpr double kMostExcess = 0.5;
 
 /// Where a vertex has to go for the planes around it to be moved by 1, each along its normal.
 struct MiterPoint {
@@ -22,6 +26,9 @@ struct MiterPoint {
 /// \param normals of unit length, or shorter by what a plane that x has to lie in takes from them
 /// \return nothing if there is none: the normals do not all face one direction
 std::optional<MiterPoint> miter_point(std::span<const Vec3d> normals);
+
+/// Takes from normals their parts along those of one or two walls, planes that x has to lie in.
+void keep_to_walls(std::span<const Vec3d> walls, std::vector<Vec3d>& normals);
 
 /// By how much more than 1 x moves the plane that it moves farthest; 0 if it moves none by more.
 double excess_of(std::span<const Vec3d> normals, const Vec3d& x);

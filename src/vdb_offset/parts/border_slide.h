@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <vector>
+
 #include "vdb_offset/distances.h"
 #include "vdb_offset/parts/mesh_parts.h"
 #include "vdb_offset/paths/propagate.h"
@@ -23,6 +27,10 @@ class BorderSlides {
   /// The position at which a vertex of the whole mesh, on the border, is at this distance from the part, negative
   /// inward; or as near to that distance as it gets. In the moving part's frame.
   Vec3d operator()(std::uint32_t vertex, double distance) const;
+  /// The position at which a vertex of the whole mesh, on the border, is at this distance from the faces of the part as
+  /// if these went on beyond the border, in their planes: where the moved faces meet the faces that stay, or those
+  /// faces' extension. Nothing if they meet farther than a slide may lead, or nowhere.
+  std::optional<Vec3d> meet(std::uint32_t vertex, double distance) const;
   /// Whether a vertex on the border slides at all.
   bool lead(std::uint32_t vertex) const;
 
@@ -31,6 +39,9 @@ class BorderSlides {
   const ClosestQuery& moving_part_;
   ClosestQuery rest_;
 };
+
+/// The normals of the planes of the faces that stay around a vertex of the whole mesh, each plane once.
+std::vector<Vec3d> planes_that_stay(const MeshParts& parts, std::uint32_t vertex);
 
 /// Gives the border vertices new paths, to their distances, which they are bound to from then on. Distances and paths
 /// are those of the moving part's vertices. The result does not depend on the number of threads. Replaces

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "vdb_offset/error.h"
@@ -46,7 +47,31 @@ void relate(PolygonView mesh, std::span<const std::uint8_t> only, MeshParts& par
   }
 }
 
+/// Where the faces that stay lead out of planes that borders of the moving part lie in. Refers to the parts.
+LeadsOn beyond_part(const MeshParts& parts) {
+  return [&parts, of_whole = vertices_of_whole(parts)](std::uint32_t vertex, std::uint32_t other, const Vec3d& plane) {
+    constexpr double kInPlane = 1e-6;  // of a normal's cosine
+    const Surface& whole = *parts.whole;
+    bool goes_on = false, leads_out = false;
+    for (const auto t : whole.triangles_around(of_whole[vertex])) {
+      const auto& corners = whole.triangles[t];
+      const Vec3d& normal = whole.triangle_normals[t];
+      if (!parts.off_part[t]) continue;
+      goes_on = goes_on || std::find(corners.begin(), corners.end(), of_whole[other]) != corners.end();
+      leads_out = leads_out || (normal.lengthSqr() > 0 && std::abs(normal.dot(plane)) < 1 - kInPlane);
+    }
+    return goes_on && leads_out;
+  };
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> vertices_of_whole(const MeshParts& parts) {
+  std::vector<std::uint32_t> of_whole(parts.moving_part.vertices.size(), kNone);
+  for (std::uint32_t w = 0; w < parts.part_vertex.size(); ++w)
+    if (parts.part_vertex[w] != kNone) of_whole[parts.part_vertex[w]] = w;
+  return of_whole;
+}
 
 std::vector<Vec3d> MeshParts::source(PolygonView mesh) const {
   std::vector<Vec3d> positions;
@@ -90,9 +115,9 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
 
 void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
   to_local_frame(parts.moving_part, voxel_size);
-  hold_in_planes(parts.moving_part, symmetry, reach);
   for (std::optional<Surface>* other : {&parts.whole, &parts.rest, &parts.obstacles})
     if (*other) to_frame(**other, parts.moving_part.origin);
+  hold_in_planes(parts.moving_part, symmetry, reach, parts.rest ? beyond_part(parts) : LeadsOn());
   if (!parts.obstacles) return;
   append(*parts.whole, *parts.obstacles);
   parts.part_vertex.resize(parts.whole->vertices.size(), kNone);

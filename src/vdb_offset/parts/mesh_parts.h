@@ -42,6 +42,9 @@ struct MeshParts {
   std::vector<Vec3d> source(PolygonView mesh) const;
 };
 
+/// The vertices of the whole that the moving part's are.
+std::vector<std::uint32_t> vertices_of_whole(const MeshParts& parts);
+
 /// Sorts a mesh into its parts.
 /// \throw InvalidInput as build_surface(), and if `only` has not one mark for each face or marks no face
 MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options);

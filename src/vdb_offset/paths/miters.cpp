@@ -23,8 +23,6 @@ constexpr std::size_t kMitersTogether = 64;
 // How far from a vertex, in distances, what is nearer to the end of its miter than its own faces still belongs to its
 // corner. See docs/dev/tuning.md.
 constexpr double kDetail = 1;
-// A miter with which a plane would go farther than the distance by more than this share of it is none. Not measured.
-constexpr double kMostExcess = 0.5;
 // Planes that are closer to each other, as the length between their normals, and have different distances of their own
 // meet nowhere near the vertex. Reasoned: the miter would be ten times as long as the distances differ.
 constexpr double kTooAlike = 0.1;
@@ -38,17 +36,6 @@ PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, const Exact
   return planes_around(shape, vertex, [&](std::uint32_t t) -> const Vec3d& {
     return exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
   });
-}
-
-/// Normals less their parts along those of walls, which are in the way.
-void keep_to_walls(std::span<const Vec3d> walls, std::vector<Vec3d>& normals) {
-  const Vec3d first = walls[0];
-  std::optional<Vec3d> second;
-  if (walls.size() > 1) second = (walls[1] - first * first.dot(walls[1])).unit();
-  for (Vec3d& n : normals) {
-    n -= first * first.dot(n);
-    if (second) n -= *second * second->dot(n);
-  }
 }
 
 /// Planes around a vertex that move by distances of their own.
@@ -152,7 +139,6 @@ MiterFinder<Query>::MiterFinder(const Query& query, Corners corners, double long
     : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles), walls_(walls), exact_(exact) {
   VDB_OFFSET_ASSERT(longest >= 1);
   std::vector<std::uint8_t> on_crease = vertices_on_creases(query.surface());
-  for (const MiterWalls& each : walls) on_crease[each.vertex] = 1;
   for (std::uint32_t v = 0; v < on_crease.size(); ++v)
     if (on_crease[v] || (exact && exact->knows(v))) miters_.push_back({v, Vec3d(0.0), 0, {}, on_crease[v] != 0, false});
   for_each_index(

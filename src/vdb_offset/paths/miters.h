@@ -33,8 +33,8 @@ struct Miter {
   double excess;          ///< By how much more than its distance a plane is moved, as a share of the distance.
 };
 
-/// Planes through a vertex at the edge of what is offset that its miter has to lie in, whether or not the vertex is on
-/// a crease: those of the faces beside it that stay.
+/// Planes through a vertex at the edge of what is offset that its miter has to lie in: those of the faces beside it
+/// that stay.
 struct MiterWalls {
   std::uint32_t vertex;
   std::vector<Vec3d> normals;  ///< One or two, of unit length.

@@ -96,28 +96,46 @@ double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3
   return outside < 0 ? -*middle : *middle;
 }
 
-/// The miters of the vertices of all parts, and how far from the moving part each of them may be therefore.
+/// The miters of the vertices of all parts, the ends of borders that slide, and how far from the moving part each
+/// vertex may be therefore.
 struct WantedMiters {
-  std::vector<Miter> of_vertex;         // sorted by vertex
-  std::vector<double> farther, nearer;  // as of ConstrainedSurface
+  std::vector<Miter> of_vertex, at_edge;  // sorted by vertex
+  std::vector<double> farther, nearer;    // as of ConstrainedSurface
+
+  /// The miter of a vertex, or that at the edge of a part, that a displacement leads to; nullptr if it leads to
+  /// neither.
+  const Miter* at(std::uint32_t vertex, const Vec3d& displacement, double tolerance) const {
+    for (const auto& some : {std::span(of_vertex), std::span(at_edge)})
+      if (const Miter* const miter = find_miter(some, vertex);
+          miter && (displacement - miter->displacement).length() <= tolerance)
+        return miter;
+    return nullptr;
+  }
 };
 
 WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, const Obstacles* obstacles,
                          const ExactCorners* exact, const Distances& distances, PolygonView mesh,
                          const CheckOptions& options) {
-  if (options.corners == Corners::Round && !exact) return {};
-  const auto walls =
-      options.corners == Corners::Miter ? walls_at_edge(parts, options.border) : std::vector<MiterWalls>();
-  const MiterFinder finder(query, options.corners, options.miter_limit, obstacles, walls, exact);
+  const bool slides = options.border == Border::Slide && parts.rest;
+  const bool on_creases = options.corners == Corners::Miter || exact;
+  if (!on_creases && !slides) return {};
   const std::size_t count = parts.surface().vertices.size();
   const Distances on_part = distances_of_part(parts, distances);
   const auto own = OwnDistances::of(on_part, mesh, options.only, parts.moving_part);
-  WantedMiters miters{miters_of_all(parts, finder.all(on_part, own ? &*own : nullptr)), std::vector<double>(count, 0.0),
-                      std::vector<double>(count, 0.0)};
-  for (const Miter& miter : miters.of_vertex) {
-    miters.farther[miter.vertex] = miter.distance;
-    miters.nearer[miter.vertex] = miter.nearer;
+  const OwnDistances* const own_distances = own ? &*own : nullptr;
+  WantedMiters miters{{}, {}, std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  if (on_creases) {
+    const auto walls =
+        options.corners == Corners::Miter ? walls_at_edge(parts, options.border) : std::vector<MiterWalls>();
+    const MiterFinder finder(query, options.corners, options.miter_limit, obstacles, walls, exact);
+    miters.of_vertex = miters_of_all(parts, finder.all(on_part, own_distances));
   }
+  if (slides) miters.at_edge = edge_miters_of(parts, BorderSlides(parts, query), query, on_part, own_distances);
+  for (const auto* const some : {&miters.of_vertex, &miters.at_edge})
+    for (const Miter& miter : *some) {
+      miters.farther[miter.vertex] = std::max(miters.farther[miter.vertex], miter.distance);
+      miters.nearer[miter.vertex] = std::max(miters.nearer[miter.vertex], miter.nearer);
+    }
   return miters;
 }
 
@@ -237,10 +255,11 @@ void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const
                              std::max(epsilon * finder.positions()[w].length(), finder.rounding(w));
     result.achieved[v] = finder.distance_of(w);
     const Vec3d displacement = finder.positions()[w] - source[w];
-    const Miter* const miter = find_miter(miters.of_vertex, w);
-    const bool is_at_miter = miter && (displacement - miter->displacement).length() <= tolerance,
+    const Miter* const miter = miters.at(w, displacement, tolerance);
+    const bool is_at_miter = miter != nullptr,
                is_beside_miter = !is_at_miter && error > tolerance && options.corners == Corners::Miter &&
-                                 is_on_planes(parts, w, displacement, distances[w], options, tolerance, miter);
+                                 is_on_planes(parts, w, displacement, distances[w], options, tolerance,
+                                              find_miter(miters.of_vertex, w));
     result.states[v] = is_at_miter                    ? miter->state
                        : is_beside_miter              ? VertexState::Mitred
                        : std::abs(error) <= tolerance ? VertexState::Reached

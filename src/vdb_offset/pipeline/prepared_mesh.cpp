@@ -103,6 +103,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);
   if (parts_.obstacles) surroundings_.emplace(parts_, source_, options.clearance);
   if (moves && options.border == Border::Slide && parts_.rest) slides_.emplace(parts_, *query_);
+  has_edge_miters_ = slides_ && yield.layers == 0;
 }
 
 std::optional<SelfCrossings> PreparedMesh::known_crossings() const {
@@ -124,27 +125,37 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   for (std::size_t i = 0; i < of_part.size(); ++i)
     hold(distances[i], marched.emplace_back(of_all(on_part[i], std::move(of_part[i]))));
   // Paths along sharp ridges are what is asked for: they end where those do.
-  if (options_.corners == Corners::Miter || ridges == Ridges::Smooth || exact_) miter(on_part, marched);
+  const bool on_creases = options_.corners == Corners::Miter || ridges == Ridges::Smooth || exact_;
+  if (on_creases || has_edge_miters_) miter(on_part, marched, on_creases);
   return marched;
 }
 
-/// Gives vertices on creases their miters, or with Corners::Round those whose ends are at the distance.
-void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> marched) const {
+/// Gives vertices on creases their miters, or with Corners::Round those whose ends are at the distance; and border
+/// vertices of a part that slide theirs where the moved faces meet those that stay.
+void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> marched, bool on_creases) const {
   const bool may_go_farther = options_.corners == Corners::Miter;
   const std::vector<MiterWalls> walls =
       may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
-  const MiterFinder miters(*query_, options_.corners, options_.miter_limit, obstacles(), walls, exact());
+  std::optional<MiterFinder<ClosestQuery>> miters;
+  if (on_creases)
+    miters.emplace(*query_, options_.corners, options_.miter_limit, obstacles(), std::span<const MiterWalls>(walls),
+                   exact());
   for (std::size_t i = 0; i < marched.size(); ++i) {
     Marched& each = marched[i];
     MiterFacts facts;
     const auto own = OwnDistances::of(on_part[i], mesh_, options_.only, parts_.moving_part);
-    std::vector<Miter> found = miters_of_all(parts_, miters(on_part[i], facts, own ? &*own : nullptr));
+    const OwnDistances* const own_distances = own ? &*own : nullptr;
+    std::vector<Miter> found;
+    if (miters) found = miters_of_all(parts_, (*miters)(on_part[i], facts, own_distances));
     // What is bound to its path stays there, but for the edge of a part where that slides.
     facts.unproven += std::erase_if(found, [&](const Miter& miter) {
       const std::uint32_t v = miter.vertex;
       const bool slides = slides_ && parts_.at_border[v] && each.paths.displacement[v] != Vec3d(0.0);
       return !each.bound.empty() && each.bound[v] && !slides;
     });
+    if (has_edge_miters_)
+      found = with_edge_miters(parts_, *slides_, std::move(found),
+                               edge_miters_of(parts_, *slides_, *query_, on_part[i], own_distances), walls);
     each.mitred = MitredPaths(found, each.paths);
     if (!may_go_farther) continue;
     each.miters = std::move(found);

@@ -72,8 +72,8 @@ double plane_tolerance(const Surface& surface) {
 
 class PlaneFinder {
  public:
-  PlaneFinder(Surface& surface, double reach)
-      : surface_(surface), reach_(reach), tolerance_(plane_tolerance(surface)) {}
+  PlaneFinder(Surface& surface, double reach, const LeadsOn& leads_on)
+      : surface_(surface), reach_(reach), tolerance_(plane_tolerance(surface)), leads_on_(leads_on) {}
 
   void name(const SymmetryPlane& in_world) {
     const SymmetryPlane plane{in_world.normal, in_world.offset - in_world.normal.dot(surface_.origin)};
@@ -219,10 +219,21 @@ class PlaneFinder {
         surface_.left_planes.push_back({plane, {piece.begin(), piece.end()}});
       return false;
     }
-    const std::uint32_t number = number_of(plane, is_wall);
-    for (const auto v : piece)
+    Indices held;
+    for (std::size_t i = 0; i < piece.size(); ++i)
+      if (!leads_on_at(piece, i, plane)) held.push_back(piece[i]);
+    if (held.empty()) return false;
+    const std::uint32_t number = number_of(plane, is_wall && held.size() == piece.size());
+    for (const auto v : held)
       if (!has_face_in(plane, v)) holds_.push_back({v, number});
     return true;
+  }
+
+  /// Whether the mesh leads on out of a plane at a vertex of a piece, beyond all edges that the piece has there.
+  bool leads_on_at(std::span<const std::uint32_t> piece, std::size_t i, const SymmetryPlane& plane) const {
+    if (!leads_on_) return false;
+    const auto beyond = [&](std::size_t other) { return leads_on_(piece[i], piece[other], plane.normal); };
+    return (i == 0 || beyond(i - 1)) && (i + 1 == piece.size() || beyond(i + 1));
   }
 
   void find_in(const BorderLoop& loop) {
@@ -378,6 +389,7 @@ class PlaneFinder {
 
   Surface& surface_;
   double reach_, tolerance_;
+  const LeadsOn& leads_on_;
   std::vector<std::uint8_t> is_wall_;  // of each plane: 1 if it may be a wall
   std::vector<Hold> holds_;
 };
@@ -386,9 +398,9 @@ class PlaneFinder {
 
 double SymmetryPlane::height(const Vec3d& x) const { return normal.dot(x) - offset; }
 
-void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach) {
+void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach, const LeadsOn& leads_on) {
   if (surface.conormals.empty() && options.planes.empty()) return;
-  PlaneFinder finder(surface, reach);
+  PlaneFinder finder(surface, reach, leads_on);
   for (const SymmetryPlane& plane : options.planes) finder.name(plane);
   if (options.find && surface.facts.boundary_left > 0) finder.find();
   finder.settle();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct Wall {
   double slack;  ///< World units: vertices may be above the plane by this, by the input's own rounding.
 };
 
+/// Whether, beyond the edge of a border from one vertex to another, the mesh goes on with faces that this surface has
+/// not, and at the first vertex leads out of a plane with this normal.
+using LeadsOn = std::function<bool(std::uint32_t vertex, std::uint32_t other, const Vec3d& normal)>;
+
 /// Decides which vertices of a surface stay in planes, and has its conormals say so: along_border() takes from a vector
 /// what leads out of those planes, exactly where these are at right angles to an axis.
 ///
@@ -32,10 +37,11 @@ struct Wall {
 /// faces are in one plane: they stay in the plane at right angles to it. Where the surface lies on one side of a plane,
 /// that becomes a wall: for a border's plane, of the vertices that are connected with it within `reach`, the farthest
 /// that vertices go, if that is not 0, but not of those that lie in it away from that border, nor farther on from
-/// these: the surface goes on along the plane there. For a named plane, of all that are connected with it. \pre
-/// conormals and normals are those of the surface as it stands. \throw InvalidInput if there is no vertex on a plane
-/// that is named
-void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach);
+/// these: the surface goes on along the plane there. For a named plane, of all that are connected with it. Where the
+/// mesh leads on out of a plane that was found, that holds nothing, and is no wall: what slides on the faces there
+/// leaves it. \pre conormals and normals are those of the surface as it stands. \throw InvalidInput if there is no
+/// vertex on a plane that is named
+void hold_in_planes(Surface& surface, const SymmetryOptions& options, double reach, const LeadsOn& leads_on = {});
 
 /// Normals of planes, at right angles to each other.
 struct PlaneNormals {
