@@ -205,6 +205,12 @@ TEST_CASE("command: parts, obstacles and shells", "[command]") {
   CHECK(io::read_mesh(shell.file("fixed.obj")).polygons.positions[1][2] == 0);
   check_failure(shell, "two.obj no.obj -d 0.1 --only group=top", 1, "left, right");
   check_failure(shell, "two.obj no.obj -d 0.1 --only top", 1, "group=NAME");
+  check_failure(shell, "two.obj no.obj -d 0.1 --only holes", 1, "round holes");
+  CHECK(shell("two.obj right.obj -d 0.1 --only not:group=left --border free").code == 0);
+  CHECK(io::read_mesh(shell.file("right.obj")).polygons.positions[4][2] == Approx(0.1));
+  CHECK(io::read_mesh(shell.file("right.obj")).polygons.positions[0][2] == 0);
+  CHECK(shell("two.obj both.obj --distance-of group=left:0.1 --distance-of not:group=left:0.2").code == 0);
+  CHECK(io::read_mesh(shell.file("both.obj")).polygons.positions[4][2] == Approx(0.2));
   check_failure(shell, "two.obj no.obj -d 0.1 --border round", 1, "'slide', 'fixed' or 'free'");
 
   Polygons lid = scene::patch(6, 0, 2);

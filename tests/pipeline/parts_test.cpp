@@ -448,6 +448,83 @@ TEST_CASE("obstacle: distance between triangles", "[obstacle][oracle]") {
   CHECK(distance_between(flat, {Vec3d(0.5, -1, 0.25), Vec3d(0.5, 1, 0.25), Vec3d(0.5, 0, 5)}) == Approx(0.25));
 }
 
+namespace {
+
+io::MeshFile as_file(const Polygons& mesh) {
+  std::string text;
+  for (const Vec3d& p : mesh.positions) text += fmt::format("v {:.17g} {:.17g} {:.17g}\n", p[0], p[1], p[2]);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    text += 'f';
+    for (const auto v : mesh.view().face(f)) text += fmt::format(" {}", v + 1);
+    text += '\n';
+  }
+  return io::parse_mesh("mesh.obj", io::Format::Obj, text);
+}
+
+std::vector<std::uint8_t> selected(const Polygons& mesh, const std::vector<std::string>& names) {
+  std::vector<io::Selector> selectors;
+  selectors.reserve(names.size());
+  for (const std::string& name : names) selectors.push_back(io::parse_selector(name));
+  return io::select_faces(as_file(mesh), selectors);
+}
+
+std::vector<std::uint8_t> negated(std::vector<std::uint8_t> marks) {
+  for (auto& mark : marks) mark = mark == 0;
+  return marks;
+}
+
+}  // namespace
+
+TEST_CASE("selection: round holes by their faces and diameters, wherever they stand", "[selection]") {
+  for (const std::uint32_t sides : {8u, 16u, 24u, 32u, 64u}) {
+    CAPTURE(sides);
+    const Countersink plate(sides, 90);
+    Polygons turned = plate.mesh;  // about an axis, and moved away
+    for (Vec3d& p : turned.positions) p = Vec3d(p[0] * 0.6 + p[2] * 0.8 + 100, p[1] - 40, p[2] * 0.6 - p[0] * 0.8);
+    const auto of_rings = [&](std::initializer_list<std::uint32_t> rings) {
+      std::vector<std::uint8_t> marks;
+      for (std::uint32_t ring = 0; ring < 6; ++ring)
+        marks.insert(marks.end(), 2 * sides, std::find(rings.begin(), rings.end(), ring) != rings.end());
+      return marks;
+    };
+    for (const Polygons& mesh : {plate.mesh, turned, test::torn(turned)}) {
+      CHECK(selected(mesh, {"holes"}) == of_rings({0, 1, 2}));  // the cone, whose smaller end is as wide, among them
+      CHECK(selected(mesh, {"holes<6.001"}) == of_rings({0, 1, 2}));
+      CHECK(selected(mesh, {"holes>5.999"}) == of_rings({0, 1, 2}));
+      CHECK_THROWS_WITH(selected(mesh, {"holes<5.999"}), Catch::Contains("below 5.999, found 2 from 6 to 6"));
+      CHECK_THROWS_WITH(selected(mesh, {"holes>6.001"}), Catch::Contains("above 6.001"));
+      CHECK(selected(mesh, {"concave"}) == of_rings({0, 1, 2}));
+      CHECK(selected(mesh, {"convex"}) == of_rings({4}));
+      CHECK(selected(mesh, {"not:holes"}) == of_rings({3, 4, 5}));
+    }
+    CHECK(selected(plate.mesh, {"down"}) == of_rings({5}));
+    CHECK(selected(plate.mesh, {"up"}) == of_rings({3}));  // not the cone, at 45 degrees
+  }
+}
+
+TEST_CASE("selection: what is round and no hole, or has too few sides", "[selection]") {
+  CHECK_THROWS_WITH(selected(scene::cylinder(1, 2, 32, 2, 2), {"holes"}), Catch::Contains("found none"));
+  CHECK_THROWS_WITH(selected(Countersink(6, 90).mesh, {"holes"}), Catch::Contains("found none"));
+  CHECK_THROWS_WITH(selected(scene::box(Vec3d(1, 1, 1), 2, true), {"concave"}), Catch::Contains("'concave'"));
+  CHECK_THROWS_WITH(selected(scene::icosphere(1, 3), {"holes"}), Catch::Contains("found none"));
+  const auto all = selected(scene::icosphere(1, 3), {"convex"});
+  CHECK(std::count(all.begin(), all.end(), 1) == static_cast<std::ptrdiff_t>(all.size()));
+}
+
+TEST_CASE("selection: what is behind not: is taken from all else that is named", "[selection]") {
+  const Polygons box = scene::box(Vec3d(1, 1, 1), 2, false);
+  const auto up = selected(box, {"up"}), down = selected(box, {"down"});
+  CHECK(std::count(up.begin(), up.end(), 1) == static_cast<std::ptrdiff_t>(up.size() / 6));
+  CHECK(selected(box, {"not:up"}) == negated(up));
+  CHECK(selected(box, {"up", "not:down"}) == up);
+  auto neither = negated(up);
+  for (std::size_t f = 0; f < neither.size(); ++f) neither[f] &= down[f] == 0;
+  CHECK(selected(box, {"not:up", "not:down"}) == neither);
+  CHECK_THROWS_WITH(selected(box, {"up", "not:up"}), Catch::Contains("'not:'"));
+  for (const char* const wrong : {"not:", "not:not:up", "not:roof", "holes<", "holes<0", "holes<x", "holes=3", "hole"})
+    CHECK_THROWS_AS(io::parse_selector(wrong), InvalidOption);
+}
+
 TEST_CASE("selection: groups, objects, materials and files of faces", "[selection]") {
   const Folder folder;
   const std::string text =

@@ -71,10 +71,12 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
               "Instead: a number for each vertex, as text or .npy, 'ply:NAME', a vertex "
               "property of SOURCE, or 'vtk:NAME', an array of its points",
               request.distance_from);
-  line.repeated("--only", "PART",
-                "The part that was offset: 'group=NAME', 'material=NAME', 'faces=FILE', 'face=N', 'name=NAME' or "
-                "'color=RRGGBB'; may be repeated",
-                [&made](const std::string& text) { made.only.push_back(parse_part("--only", text)); });
+  line.repeated(
+      "--only", "PART",
+      "The part that was offset: 'group=NAME', 'material=NAME', 'faces=FILE', 'holes' ('holes<8', 'holes>8'), "
+      "'concave', 'convex', 'up', 'down', 'face=N', 'name=NAME', 'color=RRGGBB', or 'not:PART'; may be "
+      "repeated",
+      [&made](const std::string& text) { made.only.push_back(parse_part("--only", text)); });
   line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
               [&made](const std::string& text) { made.border = parse_border(text); });
   line.repeated("--symmetry", "PLANE",

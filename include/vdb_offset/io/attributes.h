@@ -70,19 +70,30 @@ struct Selector {
     Face,      ///< Of a CAD model: the number of a face, from 1.
     Name,      ///< Of a CAD model: the name of a face, its layer, or the solid or part that it is of.
     Colour,    ///< Of a CAD model: the colour of faces, as six hexadecimal digits, red first.
+    Holes,     ///< Round holes: closed cylinders and cones that are curved inward, of eight flat faces around and more.
+    Concave,   ///< Faces of surfaces that are curved inward.
+    Convex,    ///< Faces of surfaces that are curved outward.
+    Up,        ///< Faces that look up the z axis, within less than 45 degrees.
+    Down,      ///< Faces that look down, likewise.
   };
   By by;
-  std::string name;
+  std::string name;         ///< Empty of those by shape.
+  bool is_negated = false;  ///< All faces but those.
+  /// Of holes: those alone whose diameter, world units, is less or more. A cone's is the least, or if it ends in a tip
+  /// the largest.
+  std::optional<double> narrower_than = {}, wider_than = {};
 };
 
-/// \throw InvalidOption unless the text is `group=NAME`, `material=NAME`, `faces=FILE`, `face=N`, `name=NAME` or
-/// `color=RRGGBB`.
+/// \throw InvalidOption unless the text is `group=NAME`, `material=NAME`, `faces=FILE`, `face=N`, `name=NAME`,
+/// `color=RRGGBB`, `holes`, `holes<D`, `holes>D`, `concave`, `convex`, `up` or `down`, or one of these behind `not:`.
 VDB_OFFSET_API Selector parse_selector(const std::string& text);
-/// The word before the equals sign.
+/// The word before the equals sign, or of those by shape the word.
 VDB_OFFSET_API const char* in_words(Selector::By by);
 
-/// One number a face: 1 if any of the selectors names it. \throw InvalidOption for a name that no face has; it tells
-/// those that there are. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this mesh.
+/// One number a face: 1 if any of the selectors names it that are not negated, or if all are, and none of those that
+/// are names it. \throw InvalidOption for a name that no face has, which tells those that there are; for a shape that
+/// none has; and if no face is left. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this
+/// mesh.
 VDB_OFFSET_API std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors);
 
 /// Reads a number for each of `count` vertices, in their order: from text (numbers between blanks and line ends, '#'

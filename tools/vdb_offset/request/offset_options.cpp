@@ -151,8 +151,9 @@ void declare_parts(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.repeated("--only", "PART",
                 "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME', "
-                "'faces=FILE' (indices from 0, or a 0 or 1 for each face), or of a CAD model 'face=N' (from 1), "
-                "'name=NAME' or 'color=RRGGBB'; may be repeated",
+                "'faces=FILE' (indices from 0, or a 0 or 1 for each face), 'holes' (round ones; 'holes<8' or 'holes>8' "
+                "by diameter), 'concave', 'convex', 'up', 'down', or of a CAD model 'face=N' (from 1), 'name=NAME' or "
+                "'color=RRGGBB'; 'not:PART' is all but that; may be repeated",
                 [&request](const std::string& text) {
                   request.only_texts.push_back(text);
                   request.only.push_back(parse_part("--only", text));
