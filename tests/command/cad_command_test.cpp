@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the command tells of CAD models.
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command/shell_command.h"
@@ -24,4 +25,13 @@ TEST_CASE("command: of a CAD model that is written, no faces of a mesh are told"
   // Round corners leave no vertex of this model on a single face's offset.
   CHECK_THAT(model, !Catch::Contains("from the faces of the CAD model"));
   CHECK_THAT(told("out.step -d 1mm --corners miter"), Catch::Contains("\nfrom the faces of the CAD model, "));
+}
+
+TEST_CASE("command: beside what stays, a CAD model's vertices are measured from what moves", "[command][cad]") {
+  const ShellCommand shell;
+  const Run run =
+      shell(test::scenes_path() + "/bracket.step top.obj -d -0.2 --only face=7 --only face=8 --report top.json");
+  CHECK(run.code == 0);
+  const auto facts = nlohmann::json::parse(shell.slurp(shell.file("top.json")))["cad_faces"];
+  CHECK(facts["worst_error"].get<double>() < 1e-9);
 }

@@ -47,7 +47,9 @@ ExactFacts measure_exactness(const PreparedMesh& mesh, const PreparedMesh::March
       continue;
     const std::uint32_t w = mesh.surface().welded[v];
     Measured* to = &along;
-    if (!marched.mitred.is_miter(w, marched.paths.displacement[w])) {
+    // Not from the faces that stay: those beside the part go on from where they are.
+    const bool is_at_rim = !mesh.parts().at_border.empty() && mesh.parts().at_border[w];
+    if (is_at_rim || !marched.mitred.is_miter(w, marched.paths.displacement[w])) {
       const std::uint32_t t = marched.paths.closest[w];
       const TrianglePoint foot = part.closest_on(t, result.positions[v] - part.origin);
       if (is_on_sharp_edge(part, exact, t, foot.feature)) continue;
