@@ -27,17 +27,21 @@ io::MeshFile model(const std::string& name) {
   return io::read_mesh(place_of(name), reading);
 }
 
-/// Marks the faces of the mesh that are on a plane across an axis.
-std::vector<std::uint32_t> on_plane(const io::MeshFile& file, int axis, double at) {
+/// Marks the faces of the mesh all of whose corners are such points.
+template <class Is>
+std::vector<std::uint32_t> faces_of(const io::MeshFile& file, Is&& is_of) {
   std::vector<std::uint32_t> marks;
   for (std::size_t f = 0; f < file.polygons.face_count(); ++f) {
     const auto face = file.polygons.view().face(f);
-    marks.push_back(std::all_of(face.begin(), face.end(),
-                                [&](auto v) { return std::abs(file.polygons.positions[v][axis] - at) < 1e-9; })
-                        ? 1
-                        : 0);
+    marks.push_back(
+        std::all_of(face.begin(), face.end(), [&](auto v) { return is_of(file.polygons.positions[v]); }) ? 1 : 0);
   }
   return marks;
+}
+
+/// Marks the faces of the mesh that are on a plane across an axis.
+std::vector<std::uint32_t> on_plane(const io::MeshFile& file, int axis, double at) {
+  return faces_of(file, [&](const Vec3d& p) { return std::abs(p[axis] - at) < 1e-9; });
 }
 
 /// The distance of those faces, in place of what the others have.
@@ -137,6 +141,58 @@ TEST_CASE("cad uneven: distances change over a length where faces are joined smo
   const CadFileFacts all = io::write_cad(place_of("all.step"), block, 0.5, {});
   CHECK(blended.volume > all.volume + 0.45 * 20 * 20);
   CHECK(blended.volume < all.volume + 0.55 * 20 * 40);
+}
+
+TEST_CASE("cad uneven: a wall of a tube whose other wall stays is good until they meet", "[cad]") {
+  const io::MeshFile tube = model("tube.step");
+  for (const double radius : {10.0, 8.0}) {
+    const auto wall =
+        faces_of(tube, [&](const Vec3d& p) { return std::abs(std::hypot(p.x(), p.y()) - radius) < 1e-6; });
+    const double outward = radius > 9 ? 1 : -1;
+    for (const double distance : {1.0, -1.0, -1.9}) {
+      INFO(radius << " by " << distance);
+      const double moved = radius + outward * distance, other = 18 - radius;
+      const CadFileFacts facts = io::write_cad(place_of("wall.step"), tube, with_face(wall, 0, distance), {});
+      CHECK(facts.made == Made::Solid);
+      CHECK(facts.volume == Approx(20 * std::numbers::pi * std::abs(moved * moved - other * other)).epsilon(1e-6));
+    }
+    // The ring from 7 to 8, as one of material, is where nothing is.
+    for (const double distance : {-2.1, -3.0, -6.0}) {
+      INFO(radius << " by " << distance);
+      const CadFileFacts facts = io::write_cad(place_of("gone.step"), tube, with_face(wall, 0, distance), {});
+      CHECK(facts.made == Made::Faces);
+      REQUIRE_FALSE(facts.gaps.empty());
+      CHECK_THAT(facts.gaps.front(), Catch::StartsWith("walls are gone"));
+    }
+  }
+  // A bore that closes is gone, and the solid is whole.
+  const auto bore = faces_of(tube, [&](const Vec3d& p) { return std::hypot(p.x(), p.y()) < 9; });
+  const CadFileFacts closed = io::write_cad(place_of("closed.step"), tube, with_face(bore, 0, 9), {});
+  CHECK(closed.made == Made::Solid);
+  CHECK(closed.volume == Approx(20 * std::numbers::pi * 100).epsilon(1e-9));
+}
+
+TEST_CASE("cad uneven: no wall of a cavity is beyond that of its block", "[cad][long]") {
+  const io::MeshFile block = model("hollow.step"), ball = model("hollow_ball.step");
+  const auto cavity =
+      faces_of(block, [](const Vec3d& p) { return std::abs(p.x() - 20) < 16 && std::abs(p.z() - 10) < 6; });
+  const auto outside = faces_of(block, [](const Vec3d& p) { return std::abs(p.x() - 20) > 16; });
+  const auto inner = faces_of(ball, [](const Vec3d& p) { return p.length() < 9; });
+  const auto made = [&](const io::MeshFile& file, const std::vector<std::uint32_t>& marks, double others, double own) {
+    return io::write_cad(place_of("walls.step"), file, with_face(marks, others, own), {});
+  };
+  // Walls of 5: what goes too far, alone, or with the others, is beyond.
+  CHECK(made(block, cavity, 0, -4.9).volume == Approx(24000 - 39.8 * 29.8 * 19.8).epsilon(1e-9));
+  CHECK(made(block, cavity, 0, -7).made == Made::Faces);
+  CHECK(made(block, outside, 0, -7).made == Made::Faces);
+  CHECK(made(block, on_plane(block, 2, 15), -3, -2.8).made == Made::Faces);
+  const double third = 4 * std::numbers::pi / 3;
+  CHECK(made(ball, inner, 0, 1).volume == Approx(third * (1000 - 343)).epsilon(1e-6));
+  CHECK(made(ball, inner, -1, 0).volume == Approx(third * (729 - 512)).epsilon(1e-6));
+  for (const double distance : {-3.0, -6.0}) {
+    CHECK(made(ball, inner, 0, distance).made == Made::Faces);
+    CHECK(made(ball, inner, distance, 0).made == Made::Faces);
+  }
 }
 
 TEST_CASE("cad uneven: an expression that has no value is told", "[cad]") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the worker's judge says of offsets that are right, and of one that looks like it. A program of its own, as it is
+// What the worker's judge says of offsets that are right, and of some that look like it. A program of its own, as it is
 // linked to OpenCASCADE.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeSolid.hxx>
@@ -8,6 +8,8 @@
 #include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -54,8 +56,38 @@ TopoDS_Shape holes_in_each_other(double d) {
   return solid;
 }
 
+/// A ball with a cavity that is one, its middle at x, wherever that lies.
+TopoDS_Shape balls(double outer, double inner, double x) {
+  const TopoDS_Shape void_of = BRepPrimAPI_MakeSphere(gp_Pnt(x, 0, 0), inner).Shape();
+  TopoDS_Solid solid;
+  BRep_Builder builder;
+  builder.MakeSolid(solid);
+  builder.Add(solid, TopExp_Explorer(BRepPrimAPI_MakeSphere(outer).Shape(), TopAbs_SHELL).Current());
+  builder.Add(solid, TopExp_Explorer(void_of, TopAbs_SHELL).Current().Reversed());
+  return solid;
+}
+
+/// Of uneven distances: whether shells lie in each other as they have to.
+bool is_nested(const char* what, bool expected, const TopoDS_Shape& source, const TopoDS_Shape& result,
+               const vdb_offset::cad::AskedDistance& asked) {
+  const vdb_offset::cad::Verdict verdict = vdb_offset::cad::judge_offset(source, result, result, asked, {});
+  std::printf("%s: %s\n", what, verdict.is_good ? "good" : "not good");
+  for (const std::string& fault : verdict.faults) std::printf("  %s\n", fault.c_str());
+  return verdict.is_good == expected;
+}
+
+bool are_shells_right() {
+  const vdb_offset::cad::AskedDistance both{0.5, 1, 1, false}, inward{0, 3, 3, false};
+  const TopoDS_Shape source = balls(10, 3, 6);
+  bool all = is_nested("a cavity that stays within", true, source, balls(9.5, 2.5, 6), both);
+  // Passed by the wall, and now beside the ball; and around it.
+  all = is_nested("a cavity that is outside", false, source, balls(7, 3, 11), both) && all;
+  return is_nested("a cavity around its ball", false, balls(10, 8, 0), balls(7, 8, 0), inward) && all;
+}
+
 bool is_as_expected(const char* what, bool expected, const TopoDS_Shape& source, const TopoDS_Shape& result, double d) {
-  const vdb_offset::cad::Verdict verdict = vdb_offset::cad::judge_offset(source, result, d, {});
+  const vdb_offset::cad::Verdict verdict =
+      vdb_offset::cad::judge_offset(source, result, result, vdb_offset::cad::AskedDistance::even(d), {});
   std::printf("%s: %s\n", what, verdict.is_good ? "good" : "not good");
   for (const std::string& fault : verdict.faults) std::printf("  %s\n", fault.c_str());
   return verdict.is_good == expected;
@@ -71,5 +103,6 @@ int main() {
   const bool is_right = is_as_expected("a groove that is closed", true, source, right, kDistance);
   const bool is_wrong =
       is_as_expected("two holes in each other", false, source, holes_in_each_other(kDistance), kDistance);
-  return is_right && is_wrong ? 0 : 1;
+  const bool is_nesting_right = are_shells_right();
+  return is_right && is_wrong && is_nesting_right ? 0 : 1;
 }

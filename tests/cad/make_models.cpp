@@ -205,6 +205,10 @@ TopoDS_Shape box(const gp_Pnt& low, const gp_Pnt& high) { return BRepPrimAPI_Mak
 /// A block of 40 x 30 x 20 with a cavity: walls of 5 all round.
 TopoDS_Shape hollow() { return BRepAlgoAPI_Cut(box({0, 0, 0}, {40, 30, 20}), box({5, 5, 5}, {35, 25, 15})).Shape(); }
 
+/// A tube of radii 10 and 8, and 20 high; a ball of radius 10 with a cavity of radius 8.
+TopoDS_Shape tube() { return BRepAlgoAPI_Cut(upright(0, 0, 0, 10, 20), upright(0, 0, -1, 8, 22)).Shape(); }
+TopoDS_Shape hollow_ball() { return BRepAlgoAPI_Cut(BRepPrimAPI_MakeSphere(10), BRepPrimAPI_MakeSphere(8)).Shape(); }
+
 /// Cylinders on each other: radius and height of each.
 TopoDS_Shape turned(const std::vector<std::array<double, 2>>& steps) {
   TopoDS_Shape all;
@@ -373,6 +377,8 @@ int main(int count, char** words) {
   write_step(grooves(), "grooves.step", "MM");
   write_step(waist(), "waist.step", "MM");
   write_step(hollow(), "hollow.step", "MM");
+  write_step(tube(), "tube.step", "MM");
+  write_step(hollow_ball(), "hollow_ball.step", "MM");
   // Grooves of a width of 1 in a shaft, beside a shoulder and in one radius; a flange; a groove in a bore.
   write_step(turned({{10, 20}, {8, 1}, {9, 19}, {7, 1}, {9, 19}}), "grooved.step", "MM");
   write_step(turned({{5, 10}, {9, 1}, {6, 9}}), "flange.step", "MM");

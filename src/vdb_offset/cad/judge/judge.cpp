@@ -4,9 +4,11 @@
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepGProp.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -109,7 +111,9 @@ Counts counts_of(const TopoDS_Shape& s) {
 
 // How much nearer than the distance a tessellation may make a point seem.
 constexpr double kDoubtful = 0.1;
-constexpr double kNoVolume = 1e-9;  // of the source's
+constexpr double kBeyondDoubt = 0.2;     // of the scale, twice what the source's triangles may be off
+constexpr double kNoVolume = 1e-9;       // of the source's
+constexpr double kMostVolumeOff = 1e-3;  // of a volume, as it is found by numbers
 
 // How far beside triangles it is counted how often the result goes round, in distances; and the most triangles that are
 // counted for it, for all points together.
@@ -167,18 +171,22 @@ double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point) {
 
 class Judge {
  public:
-  Judge(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance, const JudgeOptions& options)
+  Judge(const TopoDS_Shape& source, const TopoDS_Shape& made, const TopoDS_Shape& result, const AskedDistance& asked,
+        const JudgeOptions& options)
       : source_(source),
+        made_(made),
         result_(result),
         source_faces_(faces_of(source)),
         result_faces_(faces_of(result)),
-        distance_(distance),
-        far_(std::abs(distance)),
+        asked_(asked),
+        distance_(asked.outward - asked.inward),
+        far_(asked.scale),
         mitred_(sharp_edges_of(source), kMitreOverFace * far_),
         options_(options) {}
 
   Verdict judge() {
     check_topology();
+    if (is_closed_) check_turned_round();
     if (!verdict_.faults.empty()) return verdict_;
     const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.02 * far_, 0.3);
     if (!result.is_complete()) fault("a face has no triangles");
@@ -187,13 +195,17 @@ class Judge {
     if (const std::size_t open = result.open_sides(); is_closed_ && open > 0)
       fault("triangles of the result are open at " + std::to_string(open) + " sides");
     verdict_.volume = result.volume();
-    if (is_closed_ && (verdict_.volume > source.volume()) != (distance_ > 0))
-      fault("the volume is not on the right side");
     if (is_closed_ && verdict_.volume >= 0 && verdict_.volume < kNoVolume * std::abs(source.volume()))
       fault("the result encloses nothing");
     if (is_closed_ && verdict_.volume < 0) fault("the result is turned inside out");
-    check_points(source, result);
-    check_cover(source, result);
+    if (asked_.is_even) {
+      if (is_closed_ && (verdict_.volume > source.volume()) != (distance_ > 0))
+        fault("the volume is not on the right side");
+      check_points(source, result);
+      check_cover(source, result);
+    } else if (is_closed_ && asked_.has_one_side()) {
+      check_side(source, result);
+    }
     if (is_closed_) check_turns(result);
     if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
     return verdict_;
@@ -212,6 +224,30 @@ class Judge {
     if (is.shells != was.shells) fault(std::to_string(is.shells) + " shells in place of " + std::to_string(was.shells));
     if (is.open > was.open) fault(std::to_string(is.open) + " shells are open");
     is_closed_ = was.open == 0;
+  }
+
+  // Walls that have passed each other by less than triangles tell: who reads the file takes the inner shell for the
+  // outer one.
+  void check_turned_round() {
+    const double was = volume_of(source_), made = volume_of(made_), is = volume_of(result_);
+    if (made * was < 0) fault("walls are gone: the result is turned inside out");
+    if (std::abs(std::abs(made) - std::abs(is)) > kMostVolumeOff * std::max(std::abs(made), std::abs(is)))
+      fault("walls are gone: who reads the result turns a part of it round");
+  }
+
+  // Of an offset to one side alone: whether points are on that side of the source, or near to it, where triangles leave
+  // doubt, as what stays is.
+  void check_side(const Soup& source, const Soup& result) {
+    const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
+    const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / kMostTurns);
+    for (std::size_t i = 0; i < points.size(); i += every) {
+      const gp_Pnt& point = points[i].point;
+      if (source.contains(point) == (asked_.inward > 0)) continue;
+      if (source.closest(point).distance <= kBeyondDoubt * far_) continue;
+      fault("walls are gone: points are on the wrong side, as at " + text_of(point) + " on face " +
+            std::to_string(result.triangles()[points[i].triangle].face + 1));
+      return;
+    }
   }
 
   void check_points(const Soup& source, const Soup& result) {
@@ -308,10 +344,11 @@ class Judge {
             place);
   }
 
-  TopoDS_Shape source_, result_;
+  TopoDS_Shape source_, made_, result_;
   TopoDS_Shape source_faces_, result_faces_;
-  double distance_, far_;
-  EdgePoints mitred_;  // the sharp edges
+  AskedDistance asked_;
+  double distance_, far_;  // an even one, and the scale
+  EdgePoints mitred_;      // the sharp edges
   JudgeOptions options_;
   Verdict verdict_;
   bool is_closed_ = false;
@@ -319,10 +356,16 @@ class Judge {
 
 }  // namespace
 
-Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance,
-                     const JudgeOptions& options) {
+double volume_of(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties);
+  return properties.Mass();
+}
+
+Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& made, const TopoDS_Shape& result,
+                     const AskedDistance& asked, const JudgeOptions& options) {
   try {
-    return Judge(source, result, distance, options).judge();
+    return Judge(source, made, result, asked, options).judge();
   } catch (const Standard_Failure& failure) {
     Verdict v;
     v.is_good = false;

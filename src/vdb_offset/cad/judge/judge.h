@@ -2,6 +2,8 @@
 #pragma once
 
 #include <TopoDS_Shape.hxx>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -13,6 +15,23 @@ struct JudgeOptions {
   double tolerance = 0.01;  ///< Of |distance|: how near or far points may be.
 };
 
+/// How far the faces of a source were to go.
+struct AskedDistance {
+  double outward = 0, inward = 0;  ///< The largest distance to either side, 0 or more.
+  double scale = 0;                ///< What is small is small compared to this, > 0.
+  bool is_even = false;            ///< All faces go by the scale, to one side.
+
+  static AskedDistance even(double distance) {
+    return {std::max(distance, 0.0), std::max(-distance, 0.0), std::abs(distance), true};
+  }
+  /// Takes a distance towards the outside in.
+  void add(double distance) {
+    outward = std::max(outward, distance);
+    inward = std::max(inward, -distance);
+  }
+  bool has_one_side() const { return outward == 0 || inward == 0; }
+};
+
 struct Verdict {
   bool is_good = true;
   std::vector<std::string> faults;  ///< In words; empty if it is good.
@@ -21,12 +40,18 @@ struct Verdict {
   std::size_t samples = 0;  ///< How many points these are of.
 };
 
+/// The volume of a closed shape, below 0 if it is turned inside out.
+double volume_of(const TopoDS_Shape& shape);
+
 /// Judges an offset by what it is, not by how it was made: valid topology; as many solids and shells as the source, and
-/// as closed; every sampled point of the result at least |distance| from the source, on its right side, and no farther
-/// but over edges and vertices; every point of the source whose offset is no nearer to another part of the source has
-/// it in the result; its tessellation is closed if the source is, no triangles of it cross, and it goes round its
-/// material once.
-Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& result, double distance,
-                     const JudgeOptions& options);
+/// as closed; its tessellation is closed if the source is, no triangles of it cross, and it goes round its material
+/// once, so that none of its walls have passed each other. Where all faces go to one side, sampled points of it are on
+/// that side of the source.
+///
+/// Of an even offset, too: every such point is at least the distance from the source, and no farther but over edges and
+/// vertices; every point of the source whose offset is no nearer to another part of the source has it in the result.
+/// \param made the result before it was written: who reads a file may turn what is inside out
+Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& made, const TopoDS_Shape& result,
+                     const AskedDistance& asked, const JudgeOptions& options);
 
 }  // namespace vdb_offset::cad

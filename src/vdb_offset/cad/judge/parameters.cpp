@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gp_Pnt2d.hxx>
+#include <optional>
 
 namespace vdb_offset::cad {
 namespace {
@@ -21,29 +22,35 @@ double fraction(double x) { return x - std::floor(x); }
 }  // namespace
 
 AtParameters measure_at_parameters(const TopoDS_Face& source, const TopoDS_Face& made, const FaceDistance& distance,
-                                   std::size_t count) {
+                                   std::size_t count, AskedDistance& asked) {
   AtParameters measured;
   Box2 box{};
   BRepTools::UVBounds(source, box.u0, box.u1, box.v0, box.v1);
-  const Handle(Geom_Surface) from = surface_of(source), to = surface_of(made);
+  const Handle(Geom_Surface) from = surface_of(source);
   const double sign = source.Orientation() == TopAbs_REVERSED ? -1 : 1;
-  BRepTopAdaptor_FClass2d in_source(source, 0), in_made(made, 0);
+  BRepTopAdaptor_FClass2d in_source(source, 0);
+  Handle(Geom_Surface) to;
+  std::optional<BRepTopAdaptor_FClass2d> in_made;
+  if (!made.IsNull()) to = surface_of(made), in_made.emplace(made, 0);
+  if (!distance.at) asked.add(distance.constant);
   for (std::size_t i = 1; i <= count; ++i) {
     const auto k = static_cast<double>(i);
     const gp_Pnt2d uv(box.u0 + (box.u1 - box.u0) * fraction(k * kStepU),
                       box.v0 + (box.v1 - box.v0) * fraction(k * kStepV));
-    if (in_source.Perform(uv) != TopAbs_IN || in_made.Perform(uv) != TopAbs_IN) continue;
+    if (in_source.Perform(uv) != TopAbs_IN) continue;
+    const double here = distance(uv.X(), uv.Y());
+    asked.add(here);
+    if (!in_made || in_made->Perform(uv) != TopAbs_IN) continue;
     const gp_Vec normal = unit_normal(*from, uv.X(), uv.Y(), box) * sign;
     if (normal.Magnitude() < 0.5) continue;
-    const double asked = distance(uv.X(), uv.Y());
     const gp_Vec moved(from->Value(uv.X(), uv.Y()), to->Value(uv.X(), uv.Y()));
-    const double off = (moved - normal * asked).Magnitude();
+    const double off = (moved - normal * here).Magnitude();
     measured.worst = std::max(measured.worst, off);
     ++measured.samples;
     // Of what hardly goes anywhere, the share is that of the rounding of fits.
-    if (off >= kMostShare * std::abs(asked)) continue;
-    measured.least = std::min(measured.least, moved.Dot(normal) / asked);
-    measured.most = std::max(measured.most, moved.Dot(normal) / asked);
+    if (off >= kMostShare * std::abs(here)) continue;
+    measured.least = std::min(measured.least, moved.Dot(normal) / here);
+    measured.most = std::max(measured.most, moved.Dot(normal) / here);
   }
   return measured;
 }

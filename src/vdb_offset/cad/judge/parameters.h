@@ -4,6 +4,7 @@
 #include <TopoDS_Face.hxx>
 #include <cstddef>
 
+#include "vdb_offset/cad/judge/judge.h"
 #include "vdb_offset/cad/offset/offset_surface.h"
 
 namespace vdb_offset::cad {
@@ -16,8 +17,10 @@ struct AtParameters {
 };
 
 /// Measures some points of a face, spread evenly over the (u, v) that lie in both faces.
+/// \param made null if nothing became of the face
 /// \param distance towards the outside of the source face
+/// \param asked takes in what the distance is at the points of the source
 AtParameters measure_at_parameters(const TopoDS_Face& source, const TopoDS_Face& made, const FaceDistance& distance,
-                                   std::size_t count);
+                                   std::size_t count, AskedDistance& asked);
 
 }  // namespace vdb_offset::cad

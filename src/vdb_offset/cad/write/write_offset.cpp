@@ -2,9 +2,7 @@
 #include "vdb_offset/cad/write/write_offset.h"
 
 #include <BRepCheck_Analyzer.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
-#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -191,12 +189,6 @@ class OffsetWriter {
     return true;
   }
 
-  static double volume_of(const TopoDS_Shape& shape) {
-    GProp_GProps properties;
-    BRepGProp::VolumeProperties(shape, properties);
-    return properties.Mass();
-  }
-
   /// The length of the unit of a file that is read again.
   double in_millimetres(const CadModel& again) const {
     return again.has_unit ? again.unit_micrometres / 1000 : millimetres_;
@@ -204,50 +196,42 @@ class OffsetWriter {
 
   bool is_good(const OffsetBody& body, const Body& again, double millimetres) {
     const TopoDS_Shape shape = scaled(shape_of(again).shape, millimetres);
-    if (!body.is_even()) {
-      const bool is_valid = BRepCheck_Analyzer(shape).IsValid() && again.is_solid == body.body.is_solid;
-      if (!is_valid) written_.gaps.emplace_back("read again, the result is not valid");
-      const bool is_apart = soup_of(shape).crossings(1).empty();
-      if (!is_apart) written_.gaps.emplace_back("read again, the result crosses itself");
-      if (!is_valid || !is_apart || !is_at_distances(body)) return false;
-      add_volume(again, shape);
-      return true;
-    }
-    // Walls that have passed each other by less than the judge sees: who reads the file takes the inner shell for the
-    // outer one.
-    if (body.body.is_solid && volume_of(body.result.shape) * volume_of(body.source.shape) < 0) {
-      written_.gaps.emplace_back("walls are gone: the result is turned inside out");
-      return false;
-    }
-    const Verdict verdict = judge_offset(body.source.shape, shape, millimetres_ * write_.distance, {});
-    written_.samples += verdict.samples;
-    written_.least = std::min(written_.least, verdict.least);
-    written_.most = std::max(written_.most, verdict.most);
+    AskedDistance asked = AskedDistance::even(millimetres_ * write_.distance);
+    if (!body.is_even() && !is_at_distances(body, asked)) return false;
+    const Verdict verdict = judge_offset(body.source.shape, body.result.shape, shape, asked, {});
+    if (body.is_even()) tell_measured(verdict.samples, verdict.least, verdict.most);
     if (verdict.is_good) add_volume(again, shape);
     written_.gaps.insert(written_.gaps.end(), verdict.faults.begin(), verdict.faults.end());
     return verdict.is_good;
   }
 
+  void tell_measured(std::size_t samples, double least, double most) {
+    written_.samples += samples;
+    written_.least = std::min(written_.least, least);
+    written_.most = std::max(written_.most, most);
+  }
+
   /// Whether the faces of an uneven offset are where they ought to be at the same (u, v), to 1 % of the largest
-  /// distance.
-  bool is_at_distances(const OffsetBody& body) {
+  /// distance; `asked` receives how far that is.
+  bool is_at_distances(const OffsetBody& body, AskedDistance& asked) {
     constexpr std::size_t kSamples = 10000;  // of all faces
     constexpr double kMostOff = 0.01;
-    AtParameters all;
+    asked = {0, 0, largest(), false};
+    std::size_t samples = 0;
+    double least = 1, most = 1, worst = 0;
     const OffsetCadResult& result = body.result;
     std::size_t k = 0;
     for (TopExp_Explorer face(body.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k) {
-      if (result.made_of[k].IsNull()) continue;
       const AtParameters here = measure_at_parameters(TopoDS::Face(face.Current()), TopoDS::Face(result.made_of[k]),
-                                                      body.distances[k], kSamples / result.made_of.size() + 1);
-      all = {all.samples + here.samples, std::min(all.least, here.least), std::max(all.most, here.most),
-             std::max(all.worst, here.worst)};
+                                                      body.distances[k], kSamples / result.made_of.size() + 1, asked);
+      samples += here.samples;
+      least = std::min(least, here.least);
+      most = std::max(most, here.most);
+      worst = std::max(worst, here.worst);
     }
-    written_.samples += all.samples;
-    written_.least = std::min(written_.least, all.least);
-    written_.most = std::max(written_.most, all.most);
-    if (all.worst <= kMostOff * largest()) return true;
-    written_.gaps.push_back("a face is off its distance by up to " + std::to_string(all.worst / millimetres_));
+    tell_measured(samples, least, most);
+    if (worst <= kMostOff * largest()) return true;
+    written_.gaps.push_back("a face is off its distance by up to " + std::to_string(worst / millimetres_));
     return false;
   }
 
