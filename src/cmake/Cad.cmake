@@ -30,7 +30,7 @@ function(vdb_offset_cad_folder folder)
   set_source_files_properties(${sources} PROPERTIES UNITY_GROUP cad_${folder})
 endfunction()
 vdb_offset_cad_folder(read document name_instances read_model)
-vdb_offset_cad_folder(surface face_surface offset_points)
+vdb_offset_cad_folder(surface face_grid face_surface make_triangles offset_points)
 vdb_offset_cad_folder(tessellate append_body divide_to_deflection flip_slivers orient place_on_surfaces sew_open_edges take_mesh
   tessellate)
 vdb_offset_cad_folder(offset arrange build contact contract edge_curve mend_pcurve model offset_solid offset_surface place resolve

@@ -298,6 +298,18 @@ TEST_CASE("cad: coordinates are those of the file, in its own unit", "[cad]") {
   }
 }
 
+TEST_CASE("cad: a face that OpenCASCADE finds no triangles for has those of a grid", "[cad]") {
+  REQUIRE(test::cad_files().is_made());
+  const CadMesh cone = open_cad("missed_seam.brep").take_mesh();
+  check_closed(cone);
+  CHECK(cone.remarks.empty());
+  CHECK(cone.faces.size() == 3);
+  // Triangles lie inside of the cone, by the deflection at most.
+  const double exact = kPi * 6 / 3 * (144 + 72 + 36);
+  CHECK(volume(cone) <= exact * (1 + 1e-9));
+  CHECK(volume(cone) > exact - 0.01 * kPi * (12 + 6) * std::hypot(6, 6));
+}
+
 TEST_CASE("cad: what is open is sewn and told, and no more", "[cad]") {
   REQUIRE(test::cad_files().is_made());
   const CadMesh faces = open_cad("faces.igs").take_mesh();

@@ -135,6 +135,15 @@ TEST_CASE("cad written: some faces go, and the others stay", "[cad]") {
         Approx(volume_of_block(0) * 22 / 20).epsilon(2e-3));
 }
 
+TEST_CASE("cad written: a face that OpenCASCADE finds no triangles for goes with the others", "[cad]") {
+  const Written written = write("missed_seam.brep", 1, "wider.step");
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.kept == 3);
+  const double low = 13 + std::numbers::sqrt2, high = 5 + std::numbers::sqrt2;
+  CHECK(written.facts.volume ==
+        Approx(std::numbers::pi * 8 / 3 * (low * low + low * high + high * high)).epsilon(1e-6));
+}
+
 TEST_CASE("cad written: a model in inches stays one", "[cad]") {
   const Written written = write("inch.stp", 0.1, "inch.step");
   CHECK(written.facts.made == Made::Solid);

@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the worker's judge says of offsets that are right, and of some that look like it. A program of its own, as it is
-// linked to OpenCASCADE.
+// What the worker's judge says of offsets that are right, and of some that look like it, and what its grids cover. A
+// program of its own, as it is linked to OpenCASCADE.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepGProp.hxx>
 #include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <IMeshTools_Parameters.hxx>
+#include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <gp_Ax2.hxx>
+#include <gp_Vec.hxx>
 
 #include "vdb_offset/cad/judge/judge.h"
+#include "vdb_offset/cad/surface/face_grid.h"
+#include "vdb_offset/cad/surface/make_triangles.h"
 
 namespace {
 
@@ -76,6 +87,40 @@ bool is_nested(const char* what, bool expected, const TopoDS_Shape& source, cons
   return verdict.is_good == expected;
 }
 
+/// Whether grids over (u, v) in place of OpenCASCADE's triangles have a shape's area, less what flat triangles take.
+bool is_covered(const char* what, double area, const TopoDS_Shape& shape) {
+  IMeshTools_Parameters parameters;
+  parameters.Deflection = 0.01;
+  parameters.Angle = 0.1;
+  vdb_offset::cad::make_triangles(shape, parameters);
+  double found = 0;
+  for (TopExp_Explorer each(shape, TopAbs_FACE); each.More(); each.Next()) {
+    const TopoDS_Face& face = TopoDS::Face(each.Current());
+    BRep_Builder().UpdateFace(face, Handle(Poly_Triangulation)());
+    vdb_offset::cad::FaceGrid(face, parameters).make_triangles();
+    TopLoc_Location place;
+    const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, place);
+    for (int t = 1; !mesh.IsNull() && t <= mesh->NbTriangles(); ++t) {
+      std::array<int, 3> n{};
+      mesh->Triangle(t).Get(n[0], n[1], n[2]);
+      const gp_Pnt a = mesh->Node(n[0]), b = mesh->Node(n[1]), c = mesh->Node(n[2]);
+      found += gp_Vec(a, b).Crossed(gp_Vec(a, c)).Magnitude() / 2;
+    }
+  }
+  std::printf("%s: %.6g of %.6g\n", what, found, area);
+  constexpr double kMostLess = 0.005;
+  return found <= area * (1 + 1e-9) && found > area * (1 - kMostLess);
+}
+
+bool are_grids_right() {
+  const TopoDS_Shape plate = BRepAlgoAPI_Cut(block(0), upright(-5, 40, 5)).Shape();
+  const double around = 2 * M_PI * 5;
+  bool all = is_covered("a ball", 4 * M_PI * 100, BRepPrimAPI_MakeSphere(10).Shape());
+  all = is_covered("a ring", 4 * M_PI * M_PI * 30, BRepPrimAPI_MakeTorus(10, 3).Shape()) && all;
+  all = is_covered("a cone with its apex", M_PI * (60 + 36), BRepPrimAPI_MakeCone(6, 0, 8).Shape()) && all;
+  return is_covered("a bored block", 2 * 1600 + 4 * 1200 - around * 5 + around * 30, plate) && all;
+}
+
 bool are_shells_right() {
   const vdb_offset::cad::AskedDistance both{0.5, 1, 1, false}, inward{0, 3, 3, false};
   const TopoDS_Shape source = balls(10, 3, 6);
@@ -103,6 +148,6 @@ int main() {
   const bool is_right = is_as_expected("a groove that is closed", true, source, right, kDistance);
   const bool is_wrong =
       is_as_expected("two holes in each other", false, source, holes_in_each_other(kDistance), kDistance);
-  const bool is_nesting_right = are_shells_right();
-  return is_right && is_wrong && is_nesting_right ? 0 : 1;
+  const bool is_nesting_right = are_shells_right(), is_grid_right = are_grids_right();
+  return is_right && is_wrong && is_nesting_right && is_grid_right ? 0 : 1;
 }

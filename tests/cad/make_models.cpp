@@ -209,6 +209,43 @@ TopoDS_Shape hollow() { return BRepAlgoAPI_Cut(box({0, 0, 0}, {40, 30, 20}), box
 TopoDS_Shape tube() { return BRepAlgoAPI_Cut(upright(0, 0, 0, 10, 20), upright(0, 0, -1, 8, 22)).Shape(); }
 TopoDS_Shape hollow_ball() { return BRepAlgoAPI_Cut(BRepPrimAPI_MakeSphere(10), BRepPrimAPI_MakeSphere(8)).Shape(); }
 
+/// A trimming curve that is a line, and misses where it is to begin and to end by these.
+Handle(Geom2d_Curve)
+    missed(const Handle(Geom2d_Curve) & curve, const std::array<double, 2>& range, const std::array<double, 2>& by) {
+  TColgp_Array1OfPnt2d ends(1, 2);
+  TColStd_Array1OfReal knots(1, 2);
+  TColStd_Array1OfInteger multiplicities(1, 2);
+  for (const int k : {0, 1}) {
+    ends(k + 1) = curve->Value(range[k]).Translated(gp_Vec2d(by[k], 0));
+    knots(k + 1) = range[k];
+    multiplicities(k + 1) = 2;
+  }
+  return new Geom2d_BSplineCurve(ends, knots, multiplicities, 1);
+}
+
+/// A cone of radii 12 and 6, and 6 high. The trimming curves of its seam miss those that they meet by a millionth,
+/// which is enough for OpenCASCADE to find no triangles.
+TopoDS_Shape missed_seam() {
+  const TopoDS_Shape cone = BRepPrimAPI_MakeCone(12, 6, 6).Shape();
+  for (TopExp_Explorer found(cone, TopAbs_FACE); found.More(); found.Next())
+    for (TopExp_Explorer side(found.Current(), TopAbs_EDGE); side.More(); side.Next()) {
+      const TopoDS_Face face = TopoDS::Face(found.Current().Oriented(TopAbs_FORWARD));
+      const TopoDS_Edge edge = TopoDS::Edge(side.Current().Oriented(TopAbs_FORWARD));
+      if (!BRep_Tool::IsClosed(edge, face)) continue;
+      std::array<double, 2> range{};
+      const auto trim = [&](const TopoDS_Shape& way) {
+        return BRep_Tool::CurveOnSurface(TopoDS::Edge(way), face, range[0], range[1]);
+      };
+      const Handle(Geom2d_Curve) one = trim(edge), other = trim(edge.Reversed());
+      constexpr double kTolerance = 1e-4;
+      for (TopExp_Explorer end(edge, TopAbs_VERTEX); end.More(); end.Next())
+        BRep_Builder().UpdateVertex(TopoDS::Vertex(end.Current()), kTolerance);
+      BRep_Builder().UpdateEdge(edge, missed(one, range, {1e-6, 0}), missed(other, range, {1e-6, 0}), face, kTolerance);
+      return cone;
+    }
+  return cone;
+}
+
 /// Cylinders on each other: radius and height of each.
 TopoDS_Shape turned(const std::vector<std::array<double, 2>>& steps) {
   TopoDS_Shape all;
@@ -379,6 +416,7 @@ int main(int count, char** words) {
   write_step(hollow(), "hollow.step", "MM");
   write_step(tube(), "tube.step", "MM");
   write_step(hollow_ball(), "hollow_ball.step", "MM");
+  write_brep(missed_seam(), "missed_seam.brep");
   // Grooves of a width of 1 in a shaft, beside a shoulder and in one radius; a flange; a groove in a bore.
   write_step(turned({{10, 20}, {8, 1}, {9, 19}, {7, 1}, {9, 19}}), "grooved.step", "MM");
   write_step(turned({{5, 10}, {9, 1}, {6, 9}}), "flange.step", "MM");

@@ -2,7 +2,6 @@
 #include "vdb_offset/cad/judge/soup.h"
 
 #include <BRepBuilderAPI_Copy.hxx>
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_Triangulation.hxx>
@@ -19,6 +18,7 @@
 #include "vdb_offset/cad/judge/triangle_boxes.h"
 #include "vdb_offset/cad/offset/contact.h"
 #include "vdb_offset/cad/offset/offset_surface.h"
+#include "vdb_offset/cad/surface/make_triangles.h"
 
 namespace vdb_offset::cad {
 namespace {
@@ -77,7 +77,7 @@ Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflectio
   parameters.DeflectionInterior = std::max(kLeast, deflection);
   parameters.Angle = angle;
   parameters.AngleInterior = angle;
-  const BRepMesh_IncrementalMesh mesher(copy, parameters);
+  make_triangles(copy, parameters);
   std::map<std::array<double, 3>, int> numbers;
   for (TopExp_Explorer e(copy, TopAbs_FACE); e.More(); e.Next()) {
     const TopoDS_Face& f = TopoDS::Face(e.Current());

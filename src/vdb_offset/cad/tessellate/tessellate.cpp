@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/cad/tessellate/tessellate.h"
 
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
-#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
-#include <TopLoc_Location.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <unordered_map>
 
+#include "vdb_offset/cad/surface/make_triangles.h"
 #include "vdb_offset/cad/tessellate/body_mesh.h"
 
 namespace vdb_offset::cad {
@@ -36,7 +34,7 @@ double diagonal_of(const CadModel& model) {
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
-void mesh_by_opencascade(const CadModel& model, double deflection, double angle) {
+void mesh_faces(const CadModel& model, double deflection, double angle) {
   BRep_Builder builder;
   TopoDS_Compound all;
   builder.MakeCompound(all);
@@ -50,15 +48,14 @@ void mesh_by_opencascade(const CadModel& model, double deflection, double angle)
   parameters.AngleInterior = angle;
   parameters.InParallel = Standard_False;
   parameters.Relative = Standard_False;
-  BRepMesh_IncrementalMesh mesher(all, parameters);
+  make_triangles(all, parameters);
 }
 
 /// Leaves out faces that have no triangles, as those that are no wider than a line; whether there are any.
 bool leave_out_empty(Body& body) {
   bool is_any = false;
   for (BodyFace& face : body.faces) {
-    TopLoc_Location place;
-    face.is_left_out = BRep_Tool::Triangulation(face.face, place).IsNull();
+    face.is_left_out = !has_triangles(face.face);
     is_any = is_any || face.is_left_out;
   }
   return is_any;
@@ -67,24 +64,22 @@ bool leave_out_empty(Body& body) {
 /// Meshes all, and once more where faces came to nothing and their neighbours could be sewn to each other.
 void mesh_all(CadModel& model, double diagonal, double deflection, double angle) {
   for (Body& body : model.bodies) sew_open_edges(body, model.tolerance, diagonal, model.remarks);
-  mesh_by_opencascade(model, deflection, angle);
+  mesh_faces(model, deflection, angle);
   bool is_sewn = false;
   for (Body& body : model.bodies)
     if (leave_out_empty(body)) is_sewn = sew_open_edges(body, model.tolerance, diagonal, model.remarks) || is_sewn;
-  if (is_sewn) mesh_by_opencascade(model, deflection, angle);
+  if (is_sewn) mesh_faces(model, deflection, angle);
 }
 
-/// Faces without triangles, by number and name.
-void tell_missing(const std::vector<std::pair<std::size_t, std::string>>& missing, std::vector<std::string>& remarks) {
-  if (missing.empty()) return;
-  std::string text =
-      missing.size() == 1 ? "OpenCASCADE finds no triangles for face" : "OpenCASCADE finds no triangles for faces";
-  for (std::size_t k = 0; k < std::min(missing.size(), kMostNamed); ++k) {
-    text += (k > 0 ? ", " : " ") + std::to_string(missing[k].first);
-    if (!missing[k].second.empty()) text += " (" + missing[k].second + ")";
+/// Faces, by number and name.
+std::string names_of(const std::vector<std::pair<std::size_t, std::string>>& faces) {
+  std::string text = faces.size() == 1 ? "face" : "faces";
+  for (std::size_t k = 0; k < std::min(faces.size(), kMostNamed); ++k) {
+    text += (k > 0 ? ", " : " ") + std::to_string(faces[k].first);
+    if (!faces[k].second.empty()) text += " (" + faces[k].second + ")";
   }
-  if (missing.size() > kMostNamed) text += " and " + std::to_string(missing.size() - kMostNamed) + " more";
-  remarks.push_back(std::move(text));
+  if (faces.size() > kMostNamed) text += " and " + std::to_string(faces.size() - kMostNamed) + " more";
+  return text;
 }
 
 std::size_t count_open_sides(const BodyMesh& mesh) {
@@ -101,7 +96,8 @@ std::size_t count_open_sides(const BodyMesh& mesh) {
 struct Work {
   std::size_t turned = 0, open_solids = 0, open_sides = 0, unmatched = 0;
   double farthest = 0;
-  std::vector<std::pair<std::size_t, std::string>> missing;
+  std::vector<std::pair<std::size_t, std::string>> missing;  // faces without area
+  std::vector<std::pair<std::size_t, std::string>> holes;    // others that have no triangles
 };
 
 void append_tessellated(const Body& body, double deflection, io::CadMesh& result, Work& work) {
@@ -112,13 +108,15 @@ void append_tessellated(const Body& body, double deflection, io::CadMesh& result
   work.turned += orient(mesh, body.is_solid);
   work.unmatched += mesh.unmatched;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    if (mesh.faces[f].is_missing) work.missing.emplace_back(result.faces.size() + f + 1, body.faces[f].facts.name);
+    if (mesh.faces[f].is_missing)
+      (has_area(body.faces[f].face) ? work.holes : work.missing)
+          .emplace_back(result.faces.size() + f + 1, body.faces[f].facts.name);
   if (const std::size_t open = body.is_solid ? count_open_sides(mesh) : 0) ++work.open_solids, work.open_sides += open;
   append_body(mesh, body, result);
 }
 
 void tell(const Work& work, double deflection, std::vector<std::string>& remarks) {
-  tell_missing(work.missing, remarks);
+  if (!work.missing.empty()) remarks.push_back("OpenCASCADE finds no triangles for " + names_of(work.missing));
   if (work.turned > 0) remarks.push_back(std::to_string(work.turned) + " faces are turned round");
   if (work.unmatched > 0)
     remarks.push_back(std::to_string(work.unmatched) + " edges are divided in two ways by their faces");
@@ -161,7 +159,10 @@ io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
   result.extras = model.extras;
   result.remarks = model.remarks;
   tell(work, deflection, result.remarks);
-  if (result.triangles.empty()) throw InvalidCad("expected faces that OpenCASCADE can tessellate, got none");
+  if (result.triangles.empty()) throw InvalidCad("expected faces that can be tessellated, got none");
+  if (!work.holes.empty())
+    throw InvalidCad("expected faces that can be tessellated, got none of " + names_of(work.holes) +
+                     ", which would be holes");
   return result;
 }
 

@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kFitShare = 1e-4;  // of the distance
 
-/// Which of the distances each face of the model has; one that stays has none. \throw InvalidInput if a part of one has
+/// Which of the distances each face of the model has; one that stays has none. One that is no wider than a line, and
+/// has no triangles, has what the others have, if they have all the same. \throw InvalidInput if a part of one has
 /// another than the rest of it
 std::vector<std::optional<std::size_t>> rules_of_faces(const std::string& path, const CadMesh& mesh,
                                                        const CadDistances& distances,
@@ -37,6 +38,10 @@ std::vector<std::optional<std::size_t>> rules_of_faces(const std::string& path, 
     rules[face] = here;
     is_known[face] = 1;
   }
+  const auto first = static_cast<std::size_t>(std::find(is_known.begin(), is_known.end(), 1) - is_known.begin());
+  bool are_alike = first < rules.size();
+  for (std::size_t f = 0; f < rules.size(); ++f) are_alike = are_alike && (!is_known[f] || rules[f] == rules[first]);
+  if (are_alike) std::fill(rules.begin(), rules.end(), rules[first]);
   return rules;
 }
 
