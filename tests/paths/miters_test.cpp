@@ -81,6 +81,81 @@ Polygons slotted_plate(std::uint32_t points, double half_width, double waves) {
   return mesh;
 }
 
+/// A block of which the corners are round, in facets that touch a circle: an outline that moves inward and stays so.
+Outline rounded_outline(int facets, double radius, double inset) {
+  Outline outline;
+  const double bend = std::numbers::pi / 2 / facets, reach = (radius - inset) / std::cos(bend / 2);
+  for (int corner = 0; corner < 4; ++corner)
+    for (int i = 0; i < facets; ++i) {
+      const double angle = corner * std::numbers::pi / 2 + (i + 0.5) * bend;
+      outline.emplace_back((corner == 0 || corner == 3 ? 6 : -6) + reach * std::cos(angle),
+                           (corner < 2 ? 4 : -4) + reach * std::sin(angle));
+    }
+  return outline;
+}
+
+/// Outlines of as many points, counter-clockwise, one above the other, joined; the lowest and the highest are closed.
+Polygons stacked(const std::vector<std::pair<double, Outline>>& rings) {
+  Polygons mesh;
+  const auto n = static_cast<std::uint32_t>(rings.front().second.size());
+  for (const auto& [z, outline] : rings)
+    for (const auto& [x, y] : outline) mesh.positions.emplace_back(x, y, z);
+  const auto last = static_cast<std::uint32_t>(n * (rings.size() - 1));
+  for (std::uint32_t i = n; i-- > 0;) mesh.corners.push_back(i);
+  mesh.close_face();
+  for (std::uint32_t i = 0; i < n; ++i) mesh.corners.push_back(last + i);
+  mesh.close_face();
+  for (std::uint32_t begin = 0; begin < last; begin += n)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t j = (i + 1) % n;
+      mesh.add_face({begin + i, begin + j, begin + n + j, begin + n + i});
+    }
+  return mesh;
+}
+
+/// A cone of height 4 on a regular polygon of radius 2; its tip is the last vertex.
+Polygons cone_of(int sides) {
+  Polygons mesh;
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (const auto& [x, y] : regular(sides)) mesh.positions.emplace_back(2 * x, 2 * y, 0);
+  mesh.positions.emplace_back(0, 0, 4);
+  for (std::uint32_t i = n; i-- > 0;) mesh.corners.push_back(i);
+  mesh.close_face();
+  for (std::uint32_t i = 0; i < n; ++i) mesh.add_face({i, (i + 1) % n, n});
+  return mesh;
+}
+
+Polygons both_of(const Polygons& one, const Polygons& other) {
+  Polygons both = one;
+  const auto count = static_cast<std::uint32_t>(one.positions.size());
+  both.positions.insert(both.positions.end(), other.positions.begin(), other.positions.end());
+  for (std::size_t f = 0; f < other.face_count(); ++f) {
+    for (const auto v : other.view().face(f)) both.corners.push_back(v + count);
+    both.close_face();
+  }
+  return both;
+}
+
+Curves closed_curves(const std::vector<Outline>& outlines) {
+  Curves curves;
+  for (const Outline& outline : outlines) {
+    const auto first = static_cast<std::uint32_t>(curves.positions.size());
+    for (std::uint32_t i = 0; i < outline.size(); ++i) {
+      curves.positions.emplace_back(outline[i].first, outline[i].second, 0);
+      curves.corners.push_back(first + i);
+    }
+    curves.corners.push_back(first);
+    curves.close_face();
+  }
+  return curves;
+}
+
+/// A wedge whose tip, of 36.9 degrees, points at a wall. Its miter is the root of 10 long.
+Outline wedge() { return {{0, 0}, {-9, 3}, {-9, -3}}; }
+Outline wall_at(double gap, double thickness) {
+  return {{gap, -10}, {gap + thickness, -10}, {gap + thickness, 10}, {gap, 10}};
+}
+
 /// A square plate with a square hole through it.
 Polygons plate_with_hole() {
   Polygons mesh;
@@ -530,4 +605,100 @@ TEST_CASE("miter: corners that face each other across a gap are alike", "[miter]
     const bool faces_gap = v < count ? two.positions[v][0] == 1 : two.positions[v][0] < 1.5;
     CHECK((result.states[v] == VertexState::Mitred) == !faces_gap);
   }
+}
+
+TEST_CASE("miter: a chamfer along coarse round corners has all faces at the distance", "[miter]") {
+  for (const int facets : {5, 6, 8})
+    for (const double degrees : {25, 45, 65})
+      for (const double distance : {0.2, -0.2}) {
+        CAPTURE(facets, degrees, distance);
+        const double height = 1 / std::tan(degrees * std::numbers::pi / 180);
+        const Polygons block = stacked({{0, rounded_outline(facets, 4, 1)},
+                                        {height, rounded_outline(facets, 4, 0)},
+                                        {height + 5, rounded_outline(facets, 4, 0)}});
+        const OffsetOptions options = mitred(distance);
+        const OffsetResult result = offset(block.view(), options);
+        CHECK(result.statistics.miters.on_creases == block.positions.size());
+        CHECK(worst_off_planes(block.view(), result) <= 1e-9 * std::abs(distance));
+        CHECK(result.statistics.faces.worst <= 1e-9);
+        require_valid(block.view(), result, options);
+      }
+}
+
+TEST_CASE("miter: a coarse cylinder that is cut aslant has all faces at the distance", "[miter]") {
+  // Along the cut it bends by 40 degrees and more, along the flank by 18.
+  Polygons cut = prism(regular(20), 3);
+  for (Vec3d& p : cut.positions)
+    if (p[2] > 1) p[2] += p[0] * std::tan(50 * std::numbers::pi / 180);
+  for (const double distance : {0.05, -0.05}) {
+    const OffsetOptions options = mitred(distance);
+    const OffsetResult result = offset(cut.view(), options);
+    CHECK(worst_off_planes(cut.view(), result) <= 1e-9 * std::abs(distance));
+    require_valid(cut.view(), result, options);
+  }
+}
+
+TEST_CASE("miter: the tip of a cone goes to where its planes meet, however many they are", "[miter]") {
+  for (const int sides : {5, 16, 32, 128})
+    for (const double distance : {0.05, -0.05}) {
+      CAPTURE(sides, distance);
+      const Polygons mesh = cone_of(sides);
+      const OffsetOptions options = mitred(distance);
+      const OffsetResult result = offset(mesh.view(), options);
+      const double apothem = 2 * std::cos(std::numbers::pi / sides), slant = std::hypot(apothem, 4.0);
+      const Vec3d tip(0, 0, 4 + distance * slant / apothem);
+      CHECK((result.positions.back() - tip).length() <= 1e-9 * std::abs(distance));
+      CHECK(worst_off_planes(mesh.view(), result) <= 1e-9 * std::abs(distance));
+      require_valid(mesh.view(), result, options);
+    }
+}
+
+TEST_CASE("miter: what is nearer to its end than its own faces, and no nearer than the distance, leaves it its room",
+          "[miter][curves]") {
+  for (const double gap : {4.2, 5.0, 6.5})
+    for (const bool in_space : {false, true}) {
+      CAPTURE(gap, in_space);
+      const OffsetOptions options = mitred(1);
+      if (in_space) {
+        const Polygons mesh = both_of(prism(wedge(), 9), prism(wall_at(gap, 3), 9));
+        const OffsetResult result = offset(mesh.view(), options);
+        CHECK((result.positions[0] - Vec3d(std::sqrt(10), 0, -1)).length() <= 1e-9);
+        CHECK(worst_off_planes(mesh.view(), result) <= 1e-9);
+        require_valid(mesh.view(), result, options);
+      } else {
+        const Curves curves = closed_curves({wedge(), wall_at(gap, 3)});
+        const std::vector<Distances> distances{Distances(1)};
+        const OffsetResult result = offset_curves(curves.view(), distances, options).front();
+        CHECK((result.positions[0] - Vec3d(std::sqrt(10), 0, 0)).length() <= 1e-9);
+        CHECK(result.statistics.faces.worst <= 1e-9);
+        CHECK(result.statistics.miters.unproven == 0);
+      }
+    }
+}
+
+TEST_CASE("miter: no miter is nearer to anything than the distance, nor beyond a wall", "[miter][curves]") {
+  // Nearer than 1 to the wall; and beyond a thin one, by 1.01.
+  for (const auto& [gap, thickness] : {std::pair(4.1, 3.0), {2.05, 0.1}})
+    for (const bool in_space : {false, true}) {
+      CAPTURE(gap, in_space);
+      const OffsetOptions options = mitred(1);
+      const Polygons mesh = both_of(prism(wedge(), 9), prism(wall_at(gap, thickness), 9));
+      const Curves curves = closed_curves({wedge(), wall_at(gap, thickness)});
+      const std::vector<Distances> distances{Distances(1)};
+      const OffsetResult result =
+          in_space ? offset(mesh.view(), options) : offset_curves(curves.view(), distances, options).front();
+      CHECK(result.statistics.miters.unproven == (in_space ? 2 : 1));
+      CHECK(result.states[0] == VertexState::Reached);
+      if (!in_space) CHECK(result.positions[0].x() == Approx(1));
+    }
+}
+
+TEST_CASE("miter: the hole of a letter has its apex where its sides meet, though the top is nearer",
+          "[miter][curves]") {
+  const Curves letter = closed_curves(
+      {{{0, 0}, {4, 0}, {6, 6}, {12, 6}, {14, 0}, {18, 0}, {11, 20}, {7, 20}}, {{9, 15}, {11, 9}, {7, 9}}});
+  const std::vector<Distances> distances{Distances(-0.8)};
+  const OffsetResult result = offset_curves(letter.view(), distances, mitred(-0.8)).front();
+  CHECK((result.positions[8] - Vec3d(9, 15 + 0.8 * std::sqrt(10), 0)).length() <= 1e-9);
+  CHECK(result.statistics.faces.worst <= 1e-9);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "vdb_offset/scene.h"
 #include "vdb_offset/surface/surface.h"
@@ -74,4 +75,22 @@ TEST_CASE("creases: a fold of an open patch runs from border to border", "[creas
   }
   CHECK(on_fold == 5);
   CHECK(count_creased(patch) == on_fold);
+}
+
+TEST_CASE("creases: the tip of a cone of any number of sides, and no vertex of what bends finely both ways",
+          "[creases]") {
+  for (const std::uint32_t sides : {12u, 40u, 200u}) {
+    Polygons cone;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / sides;
+      cone.positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+    }
+    cone.positions.emplace_back(0, 0, 1);
+    for (std::uint32_t i = 0; i < sides; ++i) cone.add_face({i, (i + 1) % sides, sides});
+    CHECK(on_creases(cone).back() == 1);
+    cone.positions.back()[2] = 0.2;  // bends by 22.6 degrees from side to side
+    CHECK(on_creases(cone).back() == 0);
+  }
+  // By 18 degrees along each of its two directions; its quads are flat, so that four planes meet at each vertex.
+  CHECK(count_creased(scene::torus(1, 0.3, 20, 20)) == 0);
 }

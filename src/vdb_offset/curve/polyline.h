@@ -39,6 +39,10 @@ struct Polyline {
   /// See Surface::is_held.
   bool is_held(std::uint32_t) const { return false; }
   TrianglePoint closest_on(std::uint32_t segment, const Vec3d& x) const;
+  /// See Surface::extent.
+  double extent(std::uint32_t segment) const {
+    return (vertices[segments[segment][1]] - vertices[segments[segment][0]]).length();
+  }
   /// Whether the line through a segment is clearly farther from x than a squared distance. A quick test: boxes around
   /// long tilted segments are large, and finding the closest point takes several times as long.
   bool is_farther(std::uint32_t segment, const Vec3d& x, double squared_distance) const {

@@ -7,8 +7,8 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/planes_around.h"
 #include "vdb_offset/mesh/prevailing_point.h"
-#include "vdb_offset/paths/planes_around.h"
 #include "vdb_offset/surface/creases.h"
 
 namespace vdb_offset {

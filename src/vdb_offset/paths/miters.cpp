@@ -20,9 +20,9 @@ namespace {
 
 // Miters that are proven together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kMitersTogether = 64;
-// How far from a vertex, in distances, what is nearer to the end of its miter than its own faces still belongs to its
-// corner. See docs/dev/tuning.md.
-constexpr double kDetail = 1;
+// Most steps back from the end of a miter. Reasoned: of one of four distances, the longest by default, each step takes
+// a fifth of what is left or more.
+constexpr int kMostStepsBack = 64;
 // Planes that are closer to each other, as the length between their normals, and have different distances of their own
 // meet nowhere near the vertex. Reasoned: the miter would be ten times as long as the distances differ.
 constexpr double kTooAlike = 0.1;
@@ -108,27 +108,24 @@ bool is_above_face(const Shape& shape, std::uint32_t vertex, const Vec3d& end, i
   });
 }
 
-std::uint32_t corner_of(const Surface& surface, std::uint32_t triangle) { return surface.triangles[triangle][0]; }
-std::uint32_t corner_of(const Polyline& line, std::uint32_t segment) { return line.segments[segment][0]; }
-
-/// Whether what is closest is a detail of a vertex's corner, for a distance.
-template <class Shape>
-bool is_detail(const Shape& shape, std::uint32_t vertex, const Closest& closest, double distance) {
-  return shape.component[corner_of(shape, closest.triangle)] == shape.component[vertex] &&
-         (closest.point - shape.vertices[vertex]).length() <= kDetail * distance;
-}
-
-/// Whether a triangle of the vertex's component goes on in the plane of one of those around the vertex.
-template <class Shape>
-bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
-  if (shape.component[corner_of(shape, closest.triangle)] != shape.component[vertex]) return false;
-  const Vec3d &normal = shape.triangle_normals[closest.triangle], away = closest.point - shape.vertices[vertex];
-  const auto around = shape.triangles_around(vertex);
-  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
-    const Vec3d& own = shape.triangle_normals[t];
-    return own.lengthSqr() > 0 && (own - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine &&
-           std::abs(own.dot(away)) <= kOnePlaneSine * away.length();
-  });
+/// Whether nothing is in the way of a miter, nor nearer to its end than the distance. If the vertex's own faces are
+/// nearest to the end, nothing is in the way. Else it is gone back towards the vertex until they are, in steps that
+/// cross nothing, as each is shorter than the distance before it; where one ends, nothing may be nearer than the
+/// smaller distance whose miter ends there.
+template <class Query>
+bool is_way_free(const Query& query, std::uint32_t vertex, const Vec3d& end, Closest closest, double distance) {
+  const auto& shape = query.surface();
+  const Vec3d& start = shape.vertices[vertex];
+  const double length = (end - start).length();
+  double share = 1;  // of the way to the end
+  for (int step = 0; step < kMostStepsBack; ++step) {
+    const Vec3d x = start + (end - start) * share;
+    if (step > 0) closest = query(x, closest.triangle);
+    if (closest.distance < share * distance * (1 - kReachedTolerance)) return false;
+    if (closest.distance >= distance_from_fan(shape, vertex, x) * (1 - kSameMiterDistance)) return true;
+    share -= kFreeShare * closest.distance / length;
+  }
+  return false;
 }
 
 }  // namespace
@@ -240,9 +237,7 @@ bool MiterFinder<Query>::is_proven(const Miter& miter, const UnitMiter& unit, co
     return closest.distance >= asked - exact_->deflection() &&
            exact_->is_own(miter.vertex, end, distance < 0 ? -asked : asked, closest.triangle, closest.point) &&
            (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
-  const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
-                      is_detail(shape, miter.vertex, closest, asked) || goes_on(shape, miter.vertex, closest);
-  return is_own && closest.distance >= asked * (1 - kReachedTolerance) &&
+  return is_way_free(query_, miter.vertex, end, closest, asked) &&
          (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
 }
 

@@ -11,10 +11,10 @@
 #include "vdb_offset/base/index_set.h"
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/mesh/planes_around.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/paths/exact_corners.h"
 #include "vdb_offset/paths/own_distances.h"
-#include "vdb_offset/paths/planes_around.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/query/obstacles.h"
@@ -48,11 +48,11 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 /// Distinct planes around a vertex move along their normals by its distance; its miter is the smallest displacement to
 /// a point on all of them, or beyond (see miter_point()); if that moves a plane much too far, or is not proven, with
 /// Corners::Miter that on the planes of most of the area (see prevailing_point()); at a border, of those that keep to
-/// it, or to walls. A miter is proven by one exact distance: the surface is no nearer to its end than the distance, and
-/// what is nearest there is one of the faces around the vertex, goes on in the plane of one, or is a detail of the
-/// corner. Vertices whose miter is not proven have none, nor have those on edges of more than two faces. With
-/// Corners::Round, miters are those whose ends are at the distance themselves, as inward at convex edges: of all
-/// positions that are, the one with the faces at the distance, too.
+/// it, or to walls. A miter is proven by exact distances: the surface is no nearer to its end than the distance, and
+/// what is nearest there is one of the faces around the vertex; or no surface stands between, as is found by going back
+/// from the end to where the vertex's faces are nearest. Vertices whose miter is not proven have none, nor have those
+/// on edges of more than two faces. With Corners::Round, miters are those whose ends are at the distance themselves, as
+/// inward at convex edges: of all positions that are, the one with the faces at the distance, too.
 ///
 /// Where the exact surface is known, its normals are the planes, and all vertices have miters: one that is not on a
 /// crease goes along the normal. There, what is nearest to the end may be nearer than the distance by the deflection,

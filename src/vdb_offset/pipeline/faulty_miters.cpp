@@ -66,10 +66,7 @@ class MiterJudge {
  private:
   double area_around(std::uint32_t v) const {
     double area = 0;
-    for (const auto t : surface_.triangles_around(v)) {
-      const auto& [a, b, c] = surface_.triangles[t];
-      area += (surface_.vertices[b] - surface_.vertices[a]).cross(surface_.vertices[c] - surface_.vertices[a]).length();
-    }
+    for (const auto t : surface_.triangles_around(v)) area += surface_.extent(t);
     return area;
   }
 

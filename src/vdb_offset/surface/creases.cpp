@@ -10,14 +10,19 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/miter_point.h"
+#include "vdb_offset/mesh/planes_around.h"
 
 namespace vdb_offset {
 namespace {
 
 // The least angle between the normals on both sides of a crease, in radians.
 constexpr double kSharpBend = 20 * std::numbers::pi / 180;
-// How many times as much a surface bends at each of a vertex's creases as at any other edge there.
+// How many times as much a surface bends at each of a vertex's creases as at any other edge there, if the planes around
+// the vertex do not meet in one point once they have moved.
 constexpr double kDistinctBend = 3;
+// Planes of at least so many that meet in one point are the tip of a cone: three meet in one anyhow.
+constexpr std::size_t kFewestOfTip = 4;
 // Edges that are as sharp as this are creases, however few they are: the rim of a flat pyramid has three. 60 degrees,
 // not measured.
 constexpr double kUnmistakable = 60 * std::numbers::pi / 180;
@@ -42,6 +47,7 @@ class CreaseFinder {
     }
     leave_small_nets_out();
     std::vector<std::uint8_t> on_crease(least_.size(), 0);
+    for_each_index(on_crease.size(), [&](std::size_t v) { on_crease[v] = is_tip(static_cast<std::uint32_t>(v)); });
     for (const Edge& edge : edges_)
       if (edge.holds) on_crease[edge.from] = 1;
     return on_crease;
@@ -101,8 +107,40 @@ class CreaseFinder {
     return false;
   }
 
+  PlanesAround planes_at(std::uint32_t vertex) const {
+    PlanesAround planes =
+        planes_around(surface_, vertex, [&](std::uint32_t t) -> const Vec3d& { return surface_.triangle_normals[t]; });
+    for (Vec3d& normal : planes.normals) normal = surface_.along_border(vertex, normal);
+    return planes;
+  }
+
+  /// Whether the planes around a vertex meet in one point once they have moved.
+  bool planes_meet(std::uint32_t vertex) const {
+    const auto point = miter_point(planes_at(vertex).normals);
+    return point && point->excess <= kOnePlaneSine;
+  }
+
+  /// Whether a vertex is the tip of a cone whose planes all bend from its axis by as much as creases do. None of its
+  /// edges need be one, as the cone may have any number of sides.
+  bool is_tip(std::uint32_t vertex) const {
+    static const double kCosine = std::cos(kSharpBend);
+    const auto around = surface_.triangles_around(vertex);
+    const auto& normals = surface_.triangle_normals;
+    // For speed: around the axis of a tip, some plane bends from any other one by more than that.
+    if (std::none_of(around.begin(), around.end(),
+                     [&](std::uint32_t t) { return normals[t].dot(normals[around[0]]) <= kCosine; }) ||
+        branches(vertex))
+      return false;
+    const PlanesAround planes = planes_at(vertex);
+    if (planes.normals.size() < kFewestOfTip) return false;
+    const auto point = miter_point(planes.normals);
+    return point && point->excess <= kOnePlaneSine && point->position.length() * kCosine >= 1;
+  }
+
   /// The least angle of the edges at a vertex that may be creases; infinite if none may. There may be several jumps
-  /// among the angles, as where a finely curved flank meets a flat face: the lowest one counts.
+  /// among the angles, as where a finely curved flank meets a flat face: the lowest one counts. Where all planes meet
+  /// in one point, sharp edges need be no sharper than others: a chamfer along a coarse round corner bends little more
+  /// than that.
   float least_sharp_angle(std::uint32_t vertex) const {
     static const double kCosine = std::cos(kSharpBend);
     if (branches(vertex)) return std::numeric_limits<float>::infinity();
@@ -113,9 +151,10 @@ class CreaseFinder {
     visit_bends(vertex,
                 [&](std::uint32_t, double cosine) { angles.push_back(std::acos(std::clamp(cosine, -1.0, 1.0))); });
     std::sort(angles.begin(), angles.end());
-    for (std::size_t i = 1; i < angles.size(); ++i)
-      if (angles[i] >= kSharpBend && angles[i] >= kDistinctBend * angles[i - 1])
-        return static_cast<float>(angles[i] * (1 - kSameBend));
+    const auto sharp = std::lower_bound(angles.begin(), angles.end(), kSharpBend);
+    for (auto angle = sharp; angle != angles.end(); ++angle)
+      if (*angle >= kDistinctBend * *(angle - 1) || (angle == sharp && planes_meet(vertex)))
+        return static_cast<float>(*angle * (1 - kSameBend));
     return std::numeric_limits<float>::infinity();
   }
 

@@ -82,6 +82,11 @@ struct Surface {
     const auto& t = triangles[triangle];
     return closest_on_triangle(x, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
   }
+  /// How large a triangle is beside others: twice its area.
+  double extent(std::uint32_t triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]).length();
+  }
   /// Goes from triangle to triangle, across the edge or around the vertex that the closest point lies on, for as long
   /// as that leads nearer to x: a local minimum of the distance. `triangle` is where to start, and becomes where the
   /// walk ended.

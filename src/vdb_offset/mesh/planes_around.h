@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/curve/polyline.h"
-#include "vdb_offset/surface/surface.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset {
 
@@ -26,15 +25,6 @@ struct PlanesAround {
   std::vector<double> areas, tilts;
 };
 
-inline double extent_of(const Surface& surface, std::uint32_t triangle) {
-  const auto& [a, b, c] = surface.triangles[triangle];
-  return (surface.vertices[b] - surface.vertices[a]).cross(surface.vertices[c] - surface.vertices[a]).length();
-}
-inline double extent_of(const Polyline& line, std::uint32_t segment) {
-  const auto& [a, b] = line.segments[segment];
-  return (line.vertices[b] - line.vertices[a]).length();
-}
-
 /// The planes around a vertex of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
 /// which tells best. normal_of(face) and tilt_of(face), the sine of the angle by which that may be wrong, are called of
 /// faces that have an area; those that may be tilted by more than kMostTilt are left out.
@@ -42,7 +32,7 @@ template <class Shape, class NormalOf, class TiltOf>
 PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of, TiltOf&& tilt_of) {
   std::vector<std::pair<double, std::uint32_t>> faces;
   for (const auto t : shape.triangles_around(vertex))
-    if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-extent_of(shape, t), t);
+    if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-shape.extent(t), t);
   std::sort(faces.begin(), faces.end());
   PlanesAround planes;
   for (const auto& [less, t] : faces) {
