@@ -12,8 +12,8 @@
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/mesh/miter_point.h"
+#include "vdb_offset/mesh/planes_around.h"
 #include "vdb_offset/mesh/point_triangle.h"
-#include "vdb_offset/paths/planes_around.h"
 
 namespace vdb_offset {
 namespace {
