@@ -96,27 +96,23 @@ void split_shell(PolygonView mesh, Shell& shell) {
   const PolygonView faces = shell.polygons.view();
   shell.triangles.clear();
   shell.triangles.reserve(faces.corners.size() - 2 * faces.face_count());
-  std::vector<std::array<std::uint32_t, 3>> of_mesh;
-  const auto corner_at = [&](std::size_t f, std::uint32_t v) {
-    const auto face = mesh.face(f);
-    return static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
-  };
   const std::size_t count = shell.skin_faces();
-  for (std::size_t f = 0; f < 2 * count; ++f) {
-    const bool inner = f >= count;
-    const auto face = faces.face(f);
-    of_mesh.clear();
-    append_triangles(mesh, f % count, of_mesh);
-    if (inner) std::reverse(of_mesh.begin(), of_mesh.end());
-    for (auto triangle : of_mesh) {
-      if (inner) std::swap(triangle[1], triangle[2]);
-      for (auto& v : triangle) {
-        const std::size_t k = corner_at(f % count, v);
-        v = face[inner ? (face.size() - k) % face.size() : k];
+  std::vector<std::array<std::uint32_t, 3>> of_mesh;
+  for (const bool inner : {false, true})
+    for (std::size_t f = 0; f < count; ++f) {
+      const auto source = mesh.face(f), face = faces.face(inner ? count + f : f);
+      of_mesh.clear();
+      append_triangles(mesh, f, of_mesh);
+      if (inner) std::reverse(of_mesh.begin(), of_mesh.end());
+      for (auto triangle : of_mesh) {
+        if (inner) std::swap(triangle[1], triangle[2]);
+        for (auto& v : triangle) {
+          const auto k = static_cast<std::size_t>(std::find(source.begin(), source.end(), v) - source.begin());
+          v = face[inner && k > 0 ? face.size() - k : k];
+        }
+        shell.triangles.push_back(triangle);
       }
-      shell.triangles.push_back(triangle);
     }
-  }
   for (std::size_t f = 2 * count; f < faces.face_count(); ++f) append_triangles(faces, f, shell.triangles);
 }
 
