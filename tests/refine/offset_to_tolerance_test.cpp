@@ -166,6 +166,23 @@ std::size_t largest_split_off(const Polygons& mesh, const Polygons& part, const 
   return most;
 }
 
+/// A cone with so many sides, over one polygon of as many corners.
+Polygons cone(std::uint32_t sides) {
+  constexpr double kPi = 3.14159265358979323846;
+  Polygons mesh;
+  std::vector<std::uint32_t> base;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * kPi * i / sides;
+    mesh.positions.emplace_back(2 * std::cos(angle), 2 * std::sin(angle), -2);
+    base.insert(base.begin(), i);
+  }
+  mesh.positions.emplace_back(0, 0, 2);
+  for (std::uint32_t i = 0; i < sides; ++i) mesh.add_face({i, (i + 1) % sides, sides});
+  mesh.corners.insert(mesh.corners.end(), base.begin(), base.end());
+  mesh.close_face();
+  return mesh;
+}
+
 constexpr int kManyPoints = 100000;
 // Of the tolerance: rounding, and what the prover allows for it.
 constexpr double kRounded = 1 + 1e-9;
@@ -644,6 +661,22 @@ TEST_CASE("tolerance: where a round is done again, as many faces are made as may
   CHECK(certified_of(refined).out_of_faces);
   CHECK(refined.refinement.polygons.face_count() <= kMost);
   CHECK(refined.refinement.polygons.face_count() > 0.8 * kMost);
+}
+
+TEST_CASE("tolerance: as many faces as come of it are enough, of large polygons as well", "[tolerance][no_races]") {
+  const Polygons mesh = cone(24);
+  const OffsetOptions options = options_for(0.1);
+  const RefinedOffset full = offset_to_tolerance(mesh.view(), options, tolerance_of(0.02));
+  CHECK(!certified_of(full).out_of_faces);
+  CHECK(certified_of(full).certified > 0.9999);
+  const std::size_t needed = full.refinement.polygons.face_count();
+  CHECK(needed > 1000);
+  const RefinedOffset just_enough = offset_to_tolerance(mesh.view(), options, tolerance_of(0.02, needed));
+  CHECK(!certified_of(just_enough).out_of_faces);
+  CHECK(just_enough.refinement.polygons.corners == full.refinement.polygons.corners);
+  const RefinedOffset too_few = offset_to_tolerance(mesh.view(), options, tolerance_of(0.02, needed - 1));
+  CHECK(certified_of(too_few).out_of_faces);
+  CHECK(too_few.refinement.polygons.face_count() < needed);
 }
 
 TEST_CASE("tolerance: the same bits for any number of threads", "[tolerance]") {

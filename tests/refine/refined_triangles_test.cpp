@@ -393,7 +393,7 @@ TEST_CASE("refined triangles: faces that repeat one are split as it is, in their
   for (int round = 0; round < 3; ++round) split.split_at_random(0.4, random);
   const Refinement refined = split.refinement();
   require_refinement(mesh, refined);
-  CHECK(split.triangles.face_count(mesh.face_count()) == refined.polygons.face_count());
+  CHECK(split.triangles.face_count(mesh.face_count()).all == refined.polygons.face_count());
   // The pieces by the positions of their corners, from the least one on, for each copy of a face.
   const auto pieces_of = [&](std::uint32_t face, bool is_reversed) {
     std::set<std::array<Vec3d, 3>> pieces;
@@ -454,7 +454,7 @@ TEST_CASE("refined triangles: pieces have corners of their own where vertices ha
   for (int round = 0; round < 4; ++round) {
     const Refinement refined = split.refinement();
     require_refinement(hanging, refined);
-    CHECK(split.triangles.face_count(hanging.face_count()) == refined.polygons.face_count());
+    CHECK(split.triangles.face_count(hanging.face_count()).all == refined.polygons.face_count());
     // Welded again, it is closed, edge to edge.
     Polygons welded = refined.polygons;
     const std::vector<std::uint32_t> first = weld_by_position(welded.view(), {});

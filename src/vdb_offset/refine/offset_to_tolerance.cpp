@@ -186,12 +186,6 @@ class RefinedRun {
     return crossing;
   }
 
-  std::size_t most_corners() const {
-    std::size_t most = 3;
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f) most = std::max(most, mesh_.face(f).size());
-    return most;
-  }
-
   /// Splits the faces, in stages, and makes the offset of what comes of that.
   void refine(const Distances& asked, const OffsetResult& coarse) {
     std::optional<StageTimer> timer(std::in_place, seconds_, Stage::Refine);
@@ -202,8 +196,8 @@ class RefinedRun {
                                       options_.miter_limit, std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
-                    {options_.corners, most_faces(), mesh_.face_count(), most_corners(), tolerance_.precision,
-                     edges_left_out(), crossing_triangles()});
+                    {options_.corners, most_faces(), mesh_.face_count(), tolerance_.precision, edges_left_out(),
+                     crossing_triangles()});
     Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
     const auto tell = [&](double share) {

@@ -208,7 +208,6 @@ struct RefinedTriangles::ByFace {
 RefinedTriangles::ByFace RefinedTriangles::by_face(std::size_t mesh_faces) const {
   ByFace faces{std::vector<std::uint32_t>(mesh_faces + 1, 0), std::vector<std::uint32_t>(triangles_.size()),
                std::vector<std::uint32_t>(mesh_faces, 0), surface_->repeated};
-  const auto face_of = [&](const Triangle& triangle) { return surface_->face[triangle.source]; };
   for (const Triangle& triangle : triangles_) ++faces.begin[face_of(triangle) + 1];
   for (std::size_t f = 0; f < mesh_faces; ++f) faces.begin[f + 1] += faces.begin[f];
   std::vector<std::uint32_t> next(faces.begin.begin(), faces.begin.end() - 1);
@@ -222,10 +221,14 @@ RefinedTriangles::ByFace RefinedTriangles::by_face(std::size_t mesh_faces) const
   return faces;
 }
 
-std::size_t RefinedTriangles::face_count(std::size_t mesh_faces) const {
+RefinedTriangles::FaceCount RefinedTriangles::face_count(std::size_t mesh_faces) const {
   const ByFace faces = by_face(mesh_faces);
-  std::size_t count = 0;
-  for (std::uint32_t f = 0; f < mesh_faces; ++f) count += faces.is_split(f) ? faces.of(f).size() : 1;
+  FaceCount count{0, std::vector<std::uint32_t>(mesh_faces, 1)};
+  for (std::uint32_t f = 0; f < mesh_faces; ++f) {
+    const auto triangles = static_cast<std::uint32_t>(faces.of(f).size());
+    if (!faces.is_split(f)) count.whole[f] = triangles;
+    count.all += faces.is_split(f) ? triangles : 1;
+  }
   return count;
 }
 

@@ -55,8 +55,15 @@ class RefinedTriangles {
   std::vector<std::uint32_t> split(std::span<const Edge> edges, std::span<const SurfacePlace> places,
                                    std::span<const Vec3d> positions, std::vector<std::uint32_t>* split_from = nullptr);
 
-  /// The number of faces of a refinement, of a mesh with so many.
-  std::size_t face_count(std::size_t mesh_faces) const;
+  /// The faces of a refinement.
+  struct FaceCount {
+    std::size_t all = 0;
+    /// Of each face of the mesh: its triangles, if none of them is split; else 1, as one more is for each split.
+    std::vector<std::uint32_t> whole;
+  };
+  /// Of a mesh with so many faces.
+  FaceCount face_count(std::size_t mesh_faces) const;
+  std::uint32_t face_of(const Triangle& triangle) const { return surface_->face[triangle.source]; }
   /// How many faces of the mesh are split as a triangle is: its own, and those that repeat that one.
   std::size_t copies(const Triangle& triangle) const { return copies_.empty() ? 1 : copies_[triangle.source]; }
   /// Which vertices here are which in a refinement.

@@ -143,6 +143,7 @@ bool Refiner::keep_whole(std::span<const std::uint32_t> triangles) {
   }
   if (!any) return false;
   is_undone_ = true;
+  is_cut_short_ = false;  // a round that begins is not
   vertices_.resize(then_.vertices);
   triangles_ = *then_.triangles;
   state_ = then_.state;
@@ -326,29 +327,45 @@ void Refiner::find_whole_edges() {
 
 /// Unmarks the edges that bulge least if there would be too many triangles.
 void Refiner::keep_to_limit(std::vector<std::uint8_t>& marked) {
+  const auto& triangles = triangles_.triangles();
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> beside;  // marked candidates, each with the triangles there
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Candidate* const one = find(edge_between(triangles[t].vertex[k], triangles[t].vertex[(k + 1) % 3]));
+      const auto i = one ? static_cast<std::uint32_t>(one - candidates_.data()) : kNone;
+      if (one && marked[i]) beside.emplace_back(i, t);
+    }
+  tbb::parallel_sort(beside.begin(), beside.end());
+  const RefinedTriangles::FaceCount count = triangles_.face_count(options_.mesh_faces);
+  std::vector<std::uint32_t> whole = count.whole;
+  // How many more faces a split gives: one for each triangle there, and the triangles of a polygon that was whole yet.
+  const auto more = [&](std::uint32_t i) {
+    std::size_t faces = 0;
+    for (auto at = std::lower_bound(beside.begin(), beside.end(), std::pair(i, 0U));
+         at != beside.end() && at->first == i; ++at) {
+      const RefinedTriangles::Triangle& triangle = triangles[at->second];
+      const std::uint32_t of_polygon = std::exchange(whole[triangles_.face_of(triangle)], 1);
+      faces += of_polygon * triangles_.copies(triangle);
+    }
+    return faces;
+  };
   std::vector<std::uint32_t> some;
   for (std::uint32_t i = 0; i < marked.size(); ++i)
     if (marked[i]) some.push_back(i);
-  // An edge gives one more for each triangle there and each copy of its face, which may be a whole polygon yet.
-  std::vector<std::size_t> more(candidates_.size(), 0);
-  std::size_t all_more = 0;
-  for (const RefinedTriangles::Triangle& triangle : triangles_.triangles())
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Candidate* const one = find(edge_between(triangle.vertex[k], triangle.vertex[(k + 1) % 3]));
-      if (!one || !marked[static_cast<std::size_t>(one - candidates_.data())]) continue;
-      const std::size_t here = (options_.most_corners - 2) * triangles_.copies(triangle);
-      more[static_cast<std::size_t>(one - candidates_.data())] += here;
-      all_more += here;
-    }
-  const std::size_t count = triangles_.face_count(options_.mesh_faces);
-  std::size_t room = options_.most_faces > count ? options_.most_faces - count : 0;
+  std::size_t room = options_.most_faces > count.all ? options_.most_faces - count.all : 0, all_more = 0;
+  for (const std::uint32_t i : some) all_more += more(i);
   if (all_more <= room) return;
   is_cut_short_ = true;
+  whole = count.whole;
   std::stable_sort(some.begin(), some.end(), [&](std::uint32_t a, std::uint32_t b) {
     return candidates_[a].vertex.bulge > candidates_[b].vertex.bulge;
   });
   auto one = some.begin();
-  for (; one != some.end() && more[*one] <= room; ++one) room -= more[*one];
+  for (; one != some.end(); ++one) {
+    const std::size_t here = more(*one);
+    if (here > room) break;
+    room -= here;
+  }
   for (; one != some.end(); ++one) marked[*one] = 0;
 }
 

@@ -27,9 +27,8 @@ struct RefinedVertex {
 struct RefinerOptions {
   Corners corners = Corners::Round;
   std::size_t most_faces;  ///< No more are made.
-  std::size_t mesh_faces;  ///< Of the mesh, and the most corners that one of them has.
-  std::size_t most_corners;
-  Rounding precision;  ///< What those of added vertices are rounded to.
+  std::size_t mesh_faces;  ///< Of the mesh.
+  Rounding precision;      ///< What those of added vertices are rounded to.
   /// Edges of faces that the surface has no triangles of, and triangles that cross others in the source, which are not
   /// split: the former could not be, and the latter would cross in all their pieces.
   std::vector<Edge> whole_edges;
