@@ -24,6 +24,9 @@ constexpr double kMostDetour = 0.5;
 constexpr double kAlikeOnTheWay = 0.999, kParallelPlanes = 1 - 1e-10;
 // How far a point between vertices of the offset may be pushed out, in distances. Not measured.
 constexpr double kFarthestPush = 2;
+// Share of the way to a target up to which the first point at the distance may be before it. Not measured: where fronts
+// meet it is half the way or so.
+constexpr double kFirstOnTheWay = 1e-3;
 
 /// The last few planes that a point is to be on, or beyond.
 class NearPlanes {
@@ -191,7 +194,25 @@ VertexTarget InterpolatedTargets::beside(const SurfacePlace& place, const Vec3d&
                                          const Vec3d& between, bool is_by_miter) const {
   const Vec3d& frame = parts_.surface().origin;
   const VertexTarget target = from_between(place, position - frame, asked, between - frame, is_by_miter);
-  return is_before_faces(place, target.displacement, asked) ? target : VertexTarget{};
+  const bool is_own =
+      is_before_faces(place, target.displacement, asked) && is_first_on_the_way(place, position - frame, asked, target);
+  return is_own ? target : VertexTarget{};
+}
+
+/// Whether a vertex that goes straight to its target is at its distance there for the first time. Where it is not, it
+/// has gone past where fronts meet, and is at the distance from the other side.
+bool InterpolatedTargets::is_first_on_the_way(const SurfacePlace& place, const Vec3d& origin, double asked,
+                                              const VertexTarget& target) const {
+  if (!target.is_there || target.is_mitred) return true;
+  const double near = std::abs(asked) * (1 + kReachedTolerance);
+  const std::vector<std::uint32_t> triangles = triangles_at(place);
+  if (std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
+        return parts_.surface().closest_on(t, origin + target.displacement).squared_distance <= near * near;
+      }))
+    return true;
+  const Ray ray = ray_along(place, origin, target.displacement, asked);
+  const VertexTarget first = ray.slope >= kLeastTargetSlope ? at_distance(ray) : VertexTarget{};
+  return first.is_there && first.displacement.length() >= (1 - kFirstOnTheWay) * target.displacement.length();
 }
 
 VertexTarget InterpolatedTargets::from_between(const SurfacePlace& place, const Vec3d& origin, double asked,

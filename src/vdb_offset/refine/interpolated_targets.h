@@ -63,6 +63,8 @@ class InterpolatedTargets {
   std::optional<Vec3d> in_planes(const SurfacePlace& place, const Vec3d& origin, double asked, const Vec3d& between,
                                  const PlaneNormals& held) const;
   bool is_before_faces(const SurfacePlace& place, const Vec3d& displacement, double asked) const;
+  bool is_first_on_the_way(const SurfacePlace& place, const Vec3d& origin, double asked,
+                           const VertexTarget& target) const;
   std::uint32_t hint_at(const SurfacePlace& place) const;
   VertexTarget at_distance(const Ray& ray) const;
   bool is_free(const Ray& ray, double length, double distance) const;
