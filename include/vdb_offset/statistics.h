@@ -149,7 +149,9 @@ struct CertifiedFaces {
   /// certified.
   double worst_left = 0;
   std::size_t source_faces = 0, source_vertices = 0;  ///< Of the mesh before faces were split; 0 if none were to be.
-  bool out_of_faces = false;                          ///< More faces would have been needed than may be made.
+  /// Pairs of triangles that meet in that mesh; LimitStatistics has those of its pieces.
+  std::size_t source_crossings = 0;
+  bool out_of_faces = false;  ///< More faces would have been needed than may be made.
 };
 
 /// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which

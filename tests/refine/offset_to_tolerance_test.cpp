@@ -19,6 +19,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/scene.h"
+#include "vdb_offset/validity/triangle_crossings.h"
 
 using namespace vdb_offset;
 
@@ -200,6 +201,23 @@ Polygons frame(double wall) {
     mesh.add_face({a + 8, b + 8, b + 12, a + 12});  // above
   }
   return triangles_of(mesh);
+}
+
+/// Pairs of faces of a mesh, the lower number first, that meet where its vertices, or those of its pieces, stand.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> faces_that_meet(const Polygons& pieces,
+                                                                     const std::vector<Vec3d>& positions,
+                                                                     const std::vector<std::uint32_t>& parent) {
+  const Surface surface = build_surface(pieces.view(), {});
+  std::vector<Vec3d> moved(surface.vertices.size());
+  for (std::size_t w = 0; w < moved.size(); ++w) moved[w] = positions[surface.representative[w]];
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const auto& [s, t] : CrossingFinder(surface, moved).all()) {
+    const auto [first, second] = std::minmax(parent[surface.face[s]], parent[surface.face[t]]);
+    pairs.emplace_back(first, second);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 constexpr int kManyPoints = 100000;
@@ -715,6 +733,72 @@ TEST_CASE("tolerance: what is added stays on its own side of where fronts meet",
       CHECK(std::count_if(errors.begin(), errors.end(), [](double e) { return e > 0.01; }) < 0.02 * kManyPoints);
     }
   }
+}
+
+TEST_CASE("tolerance: where the source crosses itself, pieces of no more faces meet than without", "[tolerance]") {
+  // Two coarse balls through each other, and a third one that is near.
+  const Polygons ball = scene::icosphere(1, 1);
+  Polygons mesh;
+  for (const Vec3d& at : {Vec3d(0, 0, 0), Vec3d(1.1, 0.3, 0.2), Vec3d(0.4, 2.15, 0)}) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3d& p : ball.positions) mesh.positions.push_back(p + at);
+    for (std::size_t f = 0; f < ball.face_count(); ++f) {
+      for (const auto v : ball.view().face(f)) mesh.corners.push_back(first + v);
+      mesh.close_face();
+    }
+  }
+  std::vector<std::uint32_t> own(mesh.face_count());
+  for (std::uint32_t f = 0; f < own.size(); ++f) own[f] = f;
+  for (const double distance : {0.05, -0.05}) {
+    CAPTURE(distance);
+    const OffsetOptions options = options_for(distance);
+    const OffsetResult coarse = offset(mesh.view(), options);
+    const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance_of(0.01));
+    CHECK(certified_of(refined).source_crossings == coarse.statistics.limit.source_crossings);
+    CHECK(certified_of(refined).certified > 0.5);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> before = faces_that_meet(mesh, mesh.positions, own);
+    REQUIRE(!before.empty());
+    for (const auto& pair : faces_that_meet(mesh, coarse.positions, own)) before.push_back(pair);
+    std::sort(before.begin(), before.end());
+    std::size_t more = 0;
+    for (const auto& pair :
+         faces_that_meet(refined.refinement.polygons, refined.result.positions, refined.refinement.parent))
+      more += !std::binary_search(before.begin(), before.end(), pair);
+    CHECK(more == 0);
+  }
+}
+
+TEST_CASE("tolerance: what crosses by rounding alone is the refined source's, and not the source's", "[tolerance]") {
+  // Two cubes, tilted, with a gap of two units of the last digit.
+  const Polygons cube = triangles_of(scene::box(Vec3d(1), 1, false));
+  const Rounding single(Precision{.kind = Precision::Kind::Single});
+  Polygons mesh;
+  for (const double z : {0.0, 1 + 4e-7}) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3d& p : cube.positions) {
+      const double x = p[0] * std::cos(0.3) - p[1] * std::sin(0.3), y = p[0] * std::sin(0.3) + p[1] * std::cos(0.3),
+                   up = p[2] + z;
+      mesh.positions.push_back(
+          single(Vec3d(x + 3, y * std::cos(0.7) - up * std::sin(0.7) + 3, y * std::sin(0.7) + up * std::cos(0.7) + 3)));
+    }
+    for (std::size_t f = 0; f < cube.face_count(); ++f) {
+      for (const auto v : cube.view().face(f)) mesh.corners.push_back(first + v);
+      mesh.close_face();
+    }
+  }
+  Tolerance tolerance = tolerance_of(0.05);
+  tolerance.precision.kind = Precision::Kind::Single;
+  OffsetOptions options = options_for(0.1);
+  options.precision = tolerance.precision;
+  const auto crossings_of = [](const Polygons& polygons) {
+    const Surface surface = build_surface(polygons.view(), {});
+    return CrossingFinder(surface, surface.vertices).all().size();
+  };
+  REQUIRE(crossings_of(mesh) == 0);
+  const RefinedOffset refined = offset_to_tolerance(mesh.view(), options, tolerance);
+  CHECK(certified_of(refined).source_crossings == 0);
+  CHECK(refined.result.statistics.limit.source_crossings > 0);
+  CHECK(refined.result.statistics.limit.source_crossings == crossings_of(refined.refinement.polygons));
 }
 
 TEST_CASE("tolerance: the same bits for any number of threads", "[tolerance]") {

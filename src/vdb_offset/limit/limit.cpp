@@ -89,7 +89,7 @@ LimitStatistics finish(LimitState& state, WarmStart* starts) {
   std::vector<std::uint8_t> mended(starts ? state.source.size() : 0, 0);
   write_paths(state, mended);
   state.statistics.left = state.faults.count();
-  state.statistics.crossings_near_source = state.faults.crossings_near_source();
+  state.statistics.crossings_near_source = state.faults.crossings_near_source().size();
   if (starts) {
     const std::vector<std::uint8_t> none(state.source.size(), 0);
     *starts = {.distances = state.distances,

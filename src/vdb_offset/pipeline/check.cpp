@@ -310,7 +310,7 @@ void find_faults(FaultFinder& finder, std::span<const Vec3d> in_offset, std::siz
   });
   result.faults = finder.count();
   result.source_crossings = finder.source_crossings().count() - crossing;
-  result.crossings_near_source = finder.crossings_near_source();
+  result.crossings_near_source = finder.crossings_near_source().size();
   result.more_source_crossings = finder.source_crossings().has_more();
 }
 

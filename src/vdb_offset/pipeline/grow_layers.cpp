@@ -173,7 +173,7 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
     round_to_file(mesh, constrained, stack, paths);
   }
   statistics.limit.left = faults->count();
-  statistics.limit.crossings_near_source = faults->crossings_near_source();
+  statistics.limit.crossings_near_source = faults->crossings_near_source().size();
   count_held_back(paths, outer, marched_distances, statistics.limit);
   statistics.miters = marched.miter_facts;
   count_miters(marched.miters, paths.state, statistics.miters);

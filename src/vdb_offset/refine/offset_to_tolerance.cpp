@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -72,7 +73,9 @@ class RefinedRun {
         std::move(make_results(prepared_, asked, prepared_.march(asked.moved, ridges_of(options_))).front());
     prepared_.field() = {};
     seconds_ = coarse.statistics.seconds;
-    crosses_nothing_ = options_.collision == Collision::Limit && coarse.statistics.limit.source_crossings == 0;
+    source_crossings_ = coarse.statistics.limit.source_crossings;
+    crosses_nothing_ = options_.collision == Collision::Limit && source_crossings_ == 0;
+    find_crossings(coarse);
     refine(asked.asked.front(), coarse);
     certify_faces();
     return std::move(refined_);
@@ -166,24 +169,42 @@ class RefinedRun {
     return edges;
   }
 
-  /// Small triangles that cross others in the source.
-  std::vector<std::uint32_t> crossing_triangles() const {
-    Indices crossing;
-    if (crosses_nothing_) return crossing;
+  /// Finds what crosses in the source, and in its offset before faces are split.
+  void find_crossings(const OffsetResult& coarse) {
+    if (crosses_nothing_) return;
     const SelfCrossings found = CrossingFinder(surface(), prepared_.source()).listed();
+    take_met(found.pairs);
     for (const auto& [s, t] : found.pairs)
       for (const auto one : {s, t})
-        if (one < mesh_triangles()) crossing.push_back(one);
+        if (one < mesh_triangles()) crossing_.push_back(one);
     for (std::uint32_t t = 0; t < found.crossed.size() && t < mesh_triangles(); ++t)
-      if (found.crossed[t]) crossing.push_back(t);
-    sort_unique(crossing);
-    // Large ones have much beside what crosses.
-    std::erase_if(crossing, [&](std::uint32_t t) {
+      if (found.crossed[t]) crossing_.push_back(t);
+    sort_unique(crossing_);
+    std::vector<Vec3d> moved = prepared_.source();
+    for (std::uint32_t w = 0; w < moved.size(); ++w)
+      if (const std::uint32_t v = surface().representative[w]; v != kNone) moved[w] = coarse.positions[v];
+    take_met(CrossingFinder(surface(), moved).listed().pairs);
+    std::sort(met_.begin(), met_.end());
+    met_.erase(std::unique(met_.begin(), met_.end()), met_.end());
+  }
+
+  void take_met(std::span<const TrianglePair> pairs) {
+    for (const auto& [s, t] : pairs) {
+      if (s >= mesh_triangles() || t >= mesh_triangles()) continue;
+      const auto [first, second] = std::minmax(surface().face[s], surface().face[t]);
+      met_.emplace_back(first, second);
+    }
+  }
+
+  /// Small triangles that cross others in the source: large ones have much beside what crosses.
+  std::vector<std::uint32_t> small_crossing_triangles() const {
+    std::vector<std::uint32_t> small = crossing_;
+    std::erase_if(small, [&](std::uint32_t t) {
       const auto& [a, b, c] = surface().triangles[t];
       const Vec3d &p = surface().vertices[a], &q = surface().vertices[b], &r = surface().vertices[c];
       return std::max({(q - p).length(), (r - q).length(), (p - r).length()}) > options_.distance.scale();
     });
-    return crossing;
+    return small;
   }
 
   /// Splits the faces, in stages, and makes the offset of what comes of that.
@@ -197,7 +218,7 @@ class RefinedRun {
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
                     {options_.corners, most_faces(), mesh_.face_count(), tolerance_.precision, edges_left_out(),
-                     crossing_triangles()});
+                     small_crossing_triangles()});
     Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
     const auto tell = [&](double share) {
@@ -226,7 +247,7 @@ class RefinedRun {
     // Where the source crosses itself, many faults stay whatever is whole.
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (int attempt = 0; attempt < kMostAttempts && options_.collision == Collision::Limit; ++attempt) {
-      RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_);
+      RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_, met_);
       const std::vector<std::uint32_t> faulty = refined.faulty_triangles(refiner.vertices());
       any_faulty |= !faulty.empty();
       if (faulty.empty() || !refiner.keep_whole(faulty) || !refiner.split()) break;
@@ -239,7 +260,7 @@ class RefinedRun {
   }
 
   void make_valid(const Refiner& refiner) {
-    RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_);
+    RefinedMesh refined(*triangles_, mesh_, options_, tolerance_.precision, threads_, crosses_nothing_, met_);
     refined_.result = refined.offset(refiner.vertices());
     refined_.refinement = refined.take_refinement();
     // Where vertices hung, the refined mesh has no more than equal positions.
@@ -280,6 +301,7 @@ class RefinedRun {
     certified.length = tolerance_.length;
     certified.source_faces = mesh_.face_count();
     certified.source_vertices = mesh_.positions.size();
+    certified.source_crossings = source_crossings_;
     certified.out_of_faces = is_cut_short_;
     result.statistics.certified = certified;
     count_states(result.states, result.statistics);
@@ -307,6 +329,9 @@ class RefinedRun {
   std::vector<RefinedVertex> vertices_;  // of triangles_
   std::vector<std::uint32_t> numbers_;   // of each of them: its vertex in the refinement
   bool is_cut_short_ = false, crosses_nothing_ = false;
+  std::size_t source_crossings_ = 0;     // pairs of the source's triangles that meet
+  std::vector<std::uint32_t> crossing_;  // triangles that cross others in the source
+  std::vector<FacePair> met_;            // faces that do, and faces that do in the offset before any are split; sorted
   RefinedOffset refined_;
 };
 

@@ -11,13 +11,14 @@
 namespace vdb_offset {
 
 RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
-                         const Rounding& precision, int threads, bool crosses_nothing)
+                         const Rounding& precision, int threads, bool crosses_nothing, std::span<const FacePair> met)
     : mesh_(mesh),
       options_(options),
       precision_(precision),
       threads_(threads),
       crosses_nothing_(crosses_nothing),
-      by_corner_(!options.distance.at_corner().empty()) {
+      by_corner_(!options.distance.at_corner().empty()),
+      met_(met) {
   refinement_ = triangles.of_mesh(mesh, numbers_, &triangle_of_face_);
   if (options.only.empty()) return;
   options_.only.clear();
@@ -52,6 +53,12 @@ void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
   marched_.push_back(prepared_->marched_to(asked_->moved.front(), targets));
 }
 
+/// Whether the faces of the mesh have met that two faces are pieces of.
+bool RefinedMesh::has_met(std::uint32_t face, std::uint32_t other) const {
+  const auto [first, second] = std::minmax(refinement_.parent[face], refinement_.parent[other]);
+  return std::binary_search(met_.begin(), met_.end(), FacePair(first, second));
+}
+
 std::vector<std::uint32_t> RefinedMesh::faulty_triangles(const std::vector<RefinedVertex>& vertices) {
   prepare(vertices);
   const Surface& surface = prepared_->surface();
@@ -67,6 +74,12 @@ std::vector<std::uint32_t> RefinedMesh::faulty_triangles(const std::vector<Refin
     take(s);
     take(t);
   });
+  // Where the mesh crosses itself, what crosses has to slide. That is no reason to make more that does.
+  for (const auto& [s, t] : finder.crossings_near_source()) {
+    if (constrained.is_obstacle(s) || constrained.is_obstacle(t) || has_met(surface.face[s], surface.face[t])) continue;
+    take(s);
+    take(t);
+  }
   // Beside a border the side that a vertex is on may be anyone's guess.
   if (prepared_->parts().moving_part.facts.closed())
     for (const std::uint32_t v : finder.misplaced())

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "vdb_offset/mesh/in_metric.h"
@@ -17,14 +19,18 @@
 
 namespace vdb_offset {
 
+/// Two faces of a mesh, the lower number first.
+using FacePair = std::pair<std::uint32_t, std::uint32_t>;
+
 /// A mesh with its faces split, which is offset like any other, with its vertices at their targets.
 class RefinedMesh {
  public:
   /// Keeps a reference to the mesh that the triangles are of. `options` are those of the mesh, `precision` that
   /// which vertices were rounded to when they were added.
   /// \param crosses_nothing the mesh is known not to cross itself
+  /// \param met pairs of the mesh's faces that meet in it, or in its offset without any splits: their pieces may
   RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
-              const Rounding& precision, int threads, bool crosses_nothing);
+              const Rounding& precision, int threads, bool crosses_nothing, std::span<const FacePair> met);
   RefinedMesh(const RefinedMesh&) = delete;
   RefinedMesh& operator=(const RefinedMesh&) = delete;
 
@@ -39,12 +45,14 @@ class RefinedMesh {
 
  private:
   void prepare(const std::vector<RefinedVertex>& vertices);
+  bool has_met(std::uint32_t face, std::uint32_t other) const;
 
   PolygonView mesh_;
   OffsetOptions options_;
   const Rounding precision_;
   int threads_;
   bool crosses_nothing_, by_corner_;
+  std::span<const FacePair> met_;
   RefinedTriangles::Numbers numbers_;
   std::vector<std::uint32_t> triangle_of_face_;
   Refinement refinement_;

@@ -149,13 +149,12 @@ Json achieved_json(const AchievedSummary& achieved) {
 }
 
 Json faces_json(const FaceError& error) {
-  return {
-      {"samples", error.samples},
-      {"mean_error", error.mean},
-      {"error_quantile_99", error.quantile_99},
-      {"worst_error", error.worst},
-      {"share_within_1_percent", error.at_distance},
-      {"causes", {{"held_back", error.held_back}, {"sharp_corners", error.corners}, {"coarse_faces", error.coarse}}}};
+  return {{"samples", error.samples},
+          {"mean_error", error.mean},
+          {"error_quantile_99", error.quantile_99},
+          {"worst_error", error.worst},
+          {"share_within_1_percent", error.at_distance},
+          {"causes", {{"held_back", error.held_back}, {"sharp_corners", error.corners}, {"coarse_faces", error.coarse}}}};
 }
 
 /// `facts` are of the mesh whose faces were judged.
@@ -168,6 +167,7 @@ Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
   if (certified.source_faces > 0) {
     report["source_faces"] = certified.source_faces;
     report["source_vertices"] = certified.source_vertices;
+    report["source_crossings"] = certified.source_crossings;
     report["faces"] = faces_in(facts);
     report["out_of_faces"] = certified.out_of_faces;
   }

@@ -108,9 +108,9 @@ class FaultFinder {
   /// World coordinates of all vertices, as they will be written.
   std::span<const Vec3d> positions() const { return parts_->positions.all(); }
   const SourceCrossings& source_crossings() const { return parts_->pairs.source_crossings(); }
-  /// Number of new pairs near crossings of the source, which have to slide (see source_crossings.h): they are no
-  /// faults. 0 if the source has more crossings than are listed.
-  std::size_t crossings_near_source() { return parts_->pairs.count_near_source(); }
+  /// New pairs near crossings of the source, which have to slide (see source_crossings.h): they are no faults. None if
+  /// the source has more crossings than are listed.
+  std::vector<TrianglePair> crossings_near_source() { return parts_->pairs.near_source(); }
 
  private:
   /// What a trial has done with a vertex.

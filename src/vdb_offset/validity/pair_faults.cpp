@@ -86,16 +86,16 @@ bool PairFaults::still_touches(const TrianglePair& pair) const {
          !finder_->go_through(pair);
 }
 
-std::size_t PairFaults::count_near_source() {
-  if (source_crossings_.has_more()) return 0;
+std::vector<TrianglePair> PairFaults::near_source() {
+  if (source_crossings_.has_more()) return {};
   Indices near;
   for (std::uint32_t t = 0; t < constrained_.surface.triangles.size(); ++t)
     if (!matters(t)) near.push_back(t);
-  if (near.empty()) return 0;
+  if (near.empty()) return {};
   update_finder(near);
-  const std::vector<TrianglePair> pairs = finder_->of_updated();
-  return static_cast<std::size_t>(
-      std::count_if(pairs.begin(), pairs.end(), [&](const TrianglePair& pair) { return is_fault(pair); }));
+  std::vector<TrianglePair> pairs = finder_->of_updated();
+  std::erase_if(pairs, [&](const TrianglePair& pair) { return !is_fault(pair); });
+  return pairs;
 }
 
 }  // namespace vdb_offset

@@ -37,9 +37,9 @@ class PairFaults {
   const SourceCrossings& source_crossings() const { return source_crossings_; }
   /// Finds any triangles that meet where they stand. \pre update() has been called
   const CrossingFinder& finder() const;
-  /// The number of pairs near crossings of the source that would be faults elsewhere; 0 if the source has more
-  /// crossings than are listed.
-  std::size_t count_near_source();
+  /// Pairs near crossings of the source that would be faults elsewhere; none if the source has more crossings than are
+  /// listed.
+  std::vector<TrianglePair> near_source();
 
  private:
   SelfCrossings find_source_crossings();

@@ -170,13 +170,7 @@ void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statis
   else print_orientation(out, statistics.facts, job.options.orient);
   print_room(out, job, statistics.room);
   print_borders(out, statistics.borders);
-  const LimitStatistics& limit = statistics.limit;
-  if (limit.source_crossings > 0)
-    fmt::print(out, "the input crosses itself: {}{} pairs of {} meet, left as they are; {}\n",
-               limit.more_source_crossings ? "more than " : "", limit.source_crossings,
-               job.curves() ? "segments" : "triangles",
-               limit.more_source_crossings ? "what is beside them is not looked at"
-                                           : fmt::format("{} more beside them", limit.crossings_near_source));
+  print_source_crossings(out, job, statistics);
 }
 
 }  // namespace vdb_offset::tool
