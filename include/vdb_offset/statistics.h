@@ -145,9 +145,9 @@ struct CertifiedFaces {
   double share = 0, length = 0;  ///< The tolerance: of the distance, or in world units.
   double certified = 0;          ///< Share of the area every point of which is proven to be within the tolerance.
   double there = 0;              ///< Share of the area of faces whose vertices all get to their distance.
-  /// The largest error that was found on faces whose vertices all get there, relative to the distance; 0 if all are
-  /// certified.
-  double worst_left = 0;
+  /// The largest error beyond the tolerance that was found on faces whose vertices all get there, and on any that move,
+  /// relative to the distance: at points spread over those that are not certified. 0 if there is none.
+  double worst_left = 0, worst = 0;
   std::size_t source_faces = 0, source_vertices = 0;  ///< Of the mesh before faces were split; 0 if none were to be.
   /// Pairs of triangles that meet in that mesh; LimitStatistics has those of its pieces.
   std::size_t source_crossings = 0;

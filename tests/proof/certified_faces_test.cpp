@@ -27,7 +27,7 @@ class FacesOverPlane {
     VertexState state = VertexState::Reached;
   };
   /// A face whose area is half of `width`; `left` is where it begins.
-  FacesOverPlane& add(double left, double width, const std::array<Corner, 3>& corners) {
+  FacesOverPlane& add(double left, double width, const std::array<Corner, 3>& corners, std::uint32_t source = 0) {
     const auto first = static_cast<std::uint32_t>(source_.size());
     for (const Vec3d& p : {Vec3d(left, 0, 0), Vec3d(left + width, 0, 0), Vec3d(left, 1, 0)}) {
       const Corner& corner = corners[source_.size() - first];
@@ -36,7 +36,7 @@ class FacesOverPlane {
       asked_.push_back(corner.asked);
       states_.push_back(corner.state);
     }
-    faces_.push_back({{first, first + 1, first + 2}, 0});
+    faces_.push_back({{first, first + 1, first + 2}, source});
     return *this;
   }
   CertifiedFaces certified(double tolerance, Corners corners = Corners::Round) const {
@@ -81,6 +81,7 @@ TEST_CASE("certified: shares are of the area of the faces that move", "[certifie
     CHECK(result.there == Approx(11 / 15.0).epsilon(1e-12));
     CHECK(result.certified == Approx(9 / 15.0).epsilon(1e-12));
     CHECK(result.worst_left == Approx(0.3).epsilon(1e-12));
+    CHECK(result.worst == result.worst_left);
     const CertifiedFaces loose = faces.certified(0.301);
     CHECK(loose.certified == loose.there);
     CHECK(loose.worst_left == 0);
@@ -90,6 +91,15 @@ TEST_CASE("certified: shares are of the area of the faces that move", "[certifie
     CHECK(mixed.there == Approx(26 / 30.0).epsilon(1e-12));
     CHECK(mixed.certified == Approx(11 / 30.0).epsilon(1e-12));
     CHECK(mixed.worst_left == 0);
+    CHECK(mixed.worst == 0);
+    // The worst of all is that of a face that is short, or of one that the surface has not, however small it is.
+    const FacesOverPlane::Corner half_way{0.5 * side, side * kAsked, VertexState::Limited},
+        far_off{1.7 * side, side * kAsked};
+    faces.add(60, 0.001, {there, half_way, there});
+    CHECK(faces.certified(0.301).worst == Approx(0.5).epsilon(1e-12));
+    faces.add(61, 0.001, {there, far_off, there}, kNone);
+    CHECK(faces.certified(0.301).worst == Approx(0.7).epsilon(1e-12));
+    CHECK(faces.certified(0.301).worst_left == Approx(0.7).epsilon(1e-12));
   }
 }
 

@@ -14,10 +14,11 @@ namespace {
 struct Verdict {
   double area = 0;  // in the source; 0 of a face that stays as a whole
   bool is_there = false, is_proven = false;
-  double error = 0;  // relative to the distance, of one that is there and not proven
+  double error = 0;  // beyond its tolerance, relative to the distance, of one that is not proven; 0: none was found
 };
 
-/// The largest error of a face at points evenly spread over it, relative to the distance.
+/// The largest error of a face that is beyond its tolerance, at points evenly spread over the face, relative to the
+/// distance. 0 if there is none.
 double largest_error(const CertifiedMesh& mesh, const OffsetTriangle& triangle) {
   constexpr int kRows = 12;  // of points; not measured
   double largest = 0;
@@ -26,17 +27,18 @@ double largest_error(const CertifiedMesh& mesh, const OffsetTriangle& triangle) 
     for (int j = 0; i + j <= kRows; ++j) {
       const std::array<int, 3> share{i, j, kRows - i - j};
       Vec3d x(0.0);
-      double asked = 0, over_plane = 0;
+      double asked = 0, tolerance = 0, over_plane = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         x += triangle.corners[k] * (share[k] / static_cast<double>(kRows));
         asked += triangle.asked[k] * share[k] / kRows;
+        tolerance += triangle.tolerance[k] * share[k] / kRows;
         over_plane += triangle.over_plane[k] * share[k] / kRows;
       }
       const Closest closest = mesh.query(x, hint);
       hint = closest.triangle;
       double off = closest.distance - asked;
       if (off > 0 && triangle.may_keep_to_plane) off = std::min(off, std::abs(over_plane - asked));
-      largest = std::max(largest, std::abs(off) / asked);
+      if (std::abs(off) > tolerance) largest = std::max(largest, std::abs(off) / asked);
     }
   return largest;
 }
@@ -51,11 +53,9 @@ Verdict judge(const CertifiedMesh& mesh, const OffsetProver& prover, const Offse
   verdict.area = (mesh.source[face.vertex[1]] - first).cross(mesh.source[face.vertex[2]] - first).length() / 2;
   verdict.is_there = of_corners([&](std::uint32_t v) { return is_there(mesh.states[v]); });
   // Where the side changes no tolerance is told, as the distance is 0 somewhere.
-  if (!verdict.is_there || !of_corners([&](std::uint32_t v) { return mesh.asked[v] * mesh.asked[face.vertex[0]] > 0; }))
-    return verdict;
-  if (face.source == kNone) return verdict;
+  if (!of_corners([&](std::uint32_t v) { return mesh.asked[v] * mesh.asked[face.vertex[0]] > 0; })) return verdict;
   const OffsetTriangle triangle = offset_triangle(mesh, face);
-  verdict.is_proven = prover(triangle).certainty == Certainty::Proven;
+  verdict.is_proven = verdict.is_there && face.source != kNone && prover(triangle).certainty == Certainty::Proven;
   if (!verdict.is_proven) verdict.error = largest_error(mesh, triangle);
   return verdict;
 }
@@ -64,7 +64,7 @@ Verdict judge(const CertifiedMesh& mesh, const OffsetProver& prover, const Offse
 
 OffsetTriangle offset_triangle(const CertifiedMesh& mesh, const OffsetFace& face) {
   OffsetTriangle triangle;
-  const Vec3d& normal = mesh.surface.triangle_normals[face.source];
+  const Vec3d normal = face.source == kNone ? Vec3d(0.0) : mesh.surface.triangle_normals[face.source];
   triangle.may_keep_to_plane = mesh.corners == Corners::Miter && normal.lengthSqr() > 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t v = face.vertex[k];
@@ -94,7 +94,8 @@ CertifiedFaces certify(const CertifiedMesh& mesh, Progress* progress) {
     area += verdict.area;
     if (verdict.is_there) result.there += verdict.area;
     if (verdict.is_proven) result.certified += verdict.area;
-    result.worst_left = std::max(result.worst_left, verdict.error);
+    if (verdict.is_there) result.worst_left = std::max(result.worst_left, verdict.error);
+    result.worst = std::max(result.worst, verdict.error);
   }
   if (!(area > 0)) return result;
   result.there /= area;

@@ -164,6 +164,7 @@ Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
   report["certified"] = certified.certified;
   report["there"] = certified.there;
   report["worst_left"] = certified.worst_left;
+  report["worst"] = certified.worst;
   if (certified.source_faces > 0) {
     report["source_faces"] = certified.source_faces;
     report["source_vertices"] = certified.source_vertices;

@@ -76,10 +76,15 @@ std::string certified_in_words(const CertifiedFaces& certified) {
       certified.share > 0 ? fmt::format("{:.6g} %", 100 * certified.share) : fmt::format("{:.6g}", certified.length);
   std::string words =
       fmt::format("{} % of the area certified within {} at every point", area_percent(certified.certified), within);
-  if (certified.certified == certified.there) return words;
-  words += fmt::format(", of {} % whose vertices are there", area_percent(certified.there));
-  // An error of 0: it was not found, and not ruled out either.
-  return certified.worst_left > 0 ? words + fmt::format(" (up to {:.3g} % off)", 100 * certified.worst_left) : words;
+  if (certified.certified < certified.there) {
+    words += fmt::format(", of {} % whose vertices are there", area_percent(certified.there));
+    // An error of 0: it was not found, and not ruled out either.
+    if (certified.worst_left > 0) words += fmt::format(" (up to {:.3g} % off)", 100 * certified.worst_left);
+  }
+  // The area is that of the source, and what has little there may have much in the offset.
+  if (certified.worst > certified.worst_left)
+    words += fmt::format(", and the worst of all faces up to {:.3g} % off", 100 * certified.worst);
+  return words;
 }
 
 void print_certified(std::FILE* out, const CertifiedFaces& certified, std::size_t faces) {
