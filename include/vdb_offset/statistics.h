@@ -92,10 +92,12 @@ struct FaceError {
   std::size_t samples = 0;  ///< Points that were measured: 40,000, or fewer on a mesh of few triangles.
   double mean = 0, quantile_99 = 0, worst = 0;
   double at_distance = 0;  ///< Share of the area that is off by 1 % or less.
-  /// Shares of the mean that come of faces with a vertex that falls short; else of faces with one at a sharp corner, or
-  /// on an edge of more than two faces, that is not on the face's own plane at the distance; and of all others. All 0
-  /// if the mean is 1 % or less, or not known.
-  double held_back = 0, corners = 0, coarse = 0;
+  /// Shares of the mean, all 0 if that is 1 % or less, or not known. Of faces with a vertex that falls short, whatever
+  /// the distance where none of these moves at all (`stuck`). Of others: what a face that looks the other way takes, as
+  /// in walls and gaps that are narrower than two distances; the rest, if the face has a vertex at a sharp corner, or
+  /// on an edge of more than two faces, that is not in the face's own plane at the distance; and the rest of all
+  /// others.
+  double held_back = 0, stuck = 0, no_room = 0, corners = 0, coarse = 0;
 };
 
 /// What became of the vertices on creases that move, with Corners::Miter. Vertices that are welded count once.

@@ -280,3 +280,75 @@ TEST_CASE("tolerance: options that do not go together, and files that clash", "[
   check_failure(shell, "check sphere.obj sphere.obj --distance-xy 1 --distance-z 1 --tolerance 1%", 1,
                 "--tolerance and --distance-xy exclude each other");
 }
+
+namespace {
+
+/// A box of 6 by 18 by 5.5 with a hole along z, as an OBJ: walls of 0.45 in x and 1.85 in y.
+void write_frame(const std::string& path) {
+  std::ofstream file(path);
+  for (const char* const z : {"0", "5.5"})
+    file << "v 0 0 " << z << "\nv 6 0 " << z << "\nv 6 18 " << z << "\nv 0 18 " << z << "\nv 0.45 1.85 " << z
+         << "\nv 5.55 1.85 " << z << "\nv 5.55 16.15 " << z << "\nv 0.45 16.15 " << z << "\n";
+  for (int i = 1; i <= 4; ++i) {
+    const int a = i, b = i % 4 + 1;
+    file << "f " << a << " " << b << " " << b + 8 << " " << a + 8 << "\nf " << b + 4 << " " << a + 4 << " " << a + 12
+         << " " << b + 12 << "\nf " << b << " " << a << " " << a + 4 << " " << b + 4 << "\nf " << a + 8 << " " << b + 8
+         << " " << b + 12 << " " << a + 12 << "\n";
+  }
+}
+
+}  // namespace
+
+TEST_CASE("faces: where a wall is thinner than two distances, no other option is named", "[command][faces]") {
+  const ShellCommand shell;
+  write_frame(shell.file("frame.obj"));
+  const Run thin = shell("frame.obj out.obj -d -0.25 --corners miter --report r.json");
+  CHECK_THAT(thin.out,
+             Catch::Contains("faces are off mostly where walls or gaps are narrower than two distances: only a "
+                             "smaller distance has room there ("));
+  const auto causes = json_of(shell, "r.json")["faces"]["causes"];
+  // The walls of 0.45 have most of what is off; both of their sides would be off by a fifth in their planes.
+  CHECK(causes["no_room"].get<double>() > 0.5);
+  CHECK(causes["stuck"] == 0.0);
+  double sum = 0;
+  for (const auto& cause : causes) sum += cause.get<double>();
+  CHECK(sum == Approx(1));
+  CHECK_THAT(shell("frame.obj out.obj -d -0.22 --corners miter").out, !Catch::Contains("are off mostly"));
+  // Likewise of curves.
+  std::ofstream(shell.file("frame.txt")) << "0 0\n6 0\n6 18\n0 18\n0 0\n\n0.45 1.85\n0.45 16.15\n5.55 16.15\n"
+                                            "5.55 1.85\n0.45 1.85\n";
+  CHECK_THAT(shell("frame.txt out.txt -d -0.25").out,
+             Catch::Contains("segments are off mostly where walls or gaps are narrower than two distances: only"));
+}
+
+TEST_CASE("faces: beside vertices that cannot move, no smaller distance is named", "[command][faces][obstacles]") {
+  const ShellCommand shell;
+  io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 1, false).view());
+  for (const bool touches : {true, false}) {
+    Polygons above = scene::box(Vec3d(3, 3, 0.2), 1, false);
+    for (Vec3d& p : above.positions) p[2] += 0.6 + (touches ? 0 : 0.05);
+    io::write_mesh(shell.file("above.obj"), above.view());
+    const Run run = shell("box.obj out.obj -d 0.1 --obstacle above.obj");
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out,
+               Catch::Contains(touches ? "beside vertices that have no room at any distance ("
+                                       : "beside vertices that fall short: a smaller distance has more room (") &&
+                   !Catch::Contains(touches ? "a smaller distance" : "at any distance"));
+  }
+}
+
+TEST_CASE("tolerance: how far off the worst of all faces is, is said beside what is certified",
+          "[command][tolerance]") {
+  const ShellCommand shell;
+  // The sides that face each other stop halfway between.
+  io::write_mesh(shell.file("plates.obj"), scene::plates(1, 0.2, 0.06, 4).view());
+  const Run run = shell("plates.obj out.obj -d 0.06 --tolerance 1% --refined-source refined.obj --report r.json");
+  CHECK_THAT(run.out, Catch::Contains(", and the worst of all faces up to "));
+  const auto certified = json_of(shell, "r.json")["certified"];
+  CHECK(certified["worst"].get<double>() >= 0.5);
+  CHECK(certified["worst"].get<double>() >= certified["worst_left"].get<double>());
+  CHECK(certified["source_crossings"] == 0);
+  const Run check = shell("check refined.obj out.obj -d 0.06 --tolerance 1% --report c.json");
+  CHECK_THAT(check.out, Catch::Contains(", and the worst of all faces up to "));
+  CHECK(json_of(shell, "c.json")["certified"]["worst"].get<double>() == Approx(certified["worst"].get<double>()));
+}

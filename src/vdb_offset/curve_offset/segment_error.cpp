@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "vdb_offset/base/assert.h"
@@ -51,6 +52,32 @@ bool is_off_line(const PlaneCurves& curves, std::span<const Vec2d> positions, st
   return std::abs(curves.line().triangle_normals[segment].dot(moved) - asked) > kAtDistance * std::abs(asked);
 }
 
+/// A sample in the polyline's frame, and what is asked there.
+std::pair<Vec3d, double> point_of(const PlaneCurves& curves, std::span<const Vec2d> positions,
+                                  const SegmentSample& sample) {
+  const auto [a, b] = curves.line().segments[sample.segment];
+  return {curves.in_frame(positions[a] * (1 - sample.share) + positions[b] * sample.share),
+          curves.distances[a] * (1 - sample.share) + curves.distances[b] * sample.share};
+}
+
+/// How far a point is over the line that a segment is on in the source.
+double over_line(const PlaneCurves& curves, std::uint32_t segment, const Vec3d& x) {
+  const Polyline& line = curves.line();
+  return line.triangle_normals[segment].dot(x - line.vertices[line.segments[segment][0]]);
+}
+
+/// The part of a sample's error that comes of a lack of room.
+double lack_of_room_at(const PlaneCurves& curves, std::span<const Vec2d> positions, const SegmentSample& sample,
+                       double error) {
+  if (!(error > kAtDistance)) return 0;
+  const auto [x, asked] = point_of(curves, positions, sample);
+  const Vec3d& normal = curves.line().triangle_normals[sample.segment];
+  const Vec3d on_line = x + normal * (asked - over_line(curves, sample.segment, x));
+  const Closest closest = curves.query(on_line, sample.segment);
+  return lack_of_room(on_line, normal, asked, closest, curves.line().pseudonormal(closest.triangle, closest.feature),
+                      error);
+}
+
 /// Sums up which part of all errors comes of which cause. \param errors of the samples, below 0 if not measured
 void find_causes(const PlaneCurves& curves, std::span<const Vec2d> positions, std::span<const SegmentSample> samples,
                  std::span<const double> errors, std::span<const VertexState> states, FaceError& result) {
@@ -59,16 +86,25 @@ void find_causes(const PlaneCurves& curves, std::span<const Vec2d> positions, st
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (errors[i] < 0) continue;
-    bool is_short = false, is_round = false;
+    bool is_short = false, is_stuck = true, is_round = false;
     for (const auto v : line.segments[samples[i].segment]) {
-      is_short |= !states.empty() && falls_short(states[v]);
       is_round |= (at_corner[v] || line.triangles_around(v).size() > 2) &&
                   is_off_line(curves, positions, samples[i].segment, v);
+      if (states.empty() || !falls_short(states[v])) continue;
+      is_short = true;
+      is_stuck &= (positions[v] - curves.source[v]).length() <= kStuck * std::abs(curves.distances[v]);
     }
     sum += errors[i];
-    (is_short ? result.held_back : is_round ? result.corners : result.coarse) += errors[i];
+    if (is_short) {
+      (is_stuck ? result.stuck : result.held_back) += errors[i];
+      continue;
+    }
+    const double no_room = lack_of_room_at(curves, positions, samples[i], errors[i]);
+    result.no_room += no_room;
+    (is_round ? result.corners : result.coarse) += errors[i] - no_room;
   }
-  for (double* const cause : {&result.held_back, &result.corners, &result.coarse}) *cause /= sum;
+  for (double* const cause : {&result.held_back, &result.stuck, &result.no_room, &result.corners, &result.coarse})
+    *cause /= sum;
 }
 
 }  // namespace
@@ -82,13 +118,12 @@ FaceError measure_segments(const PlaneCurves& curves, std::span<const Vec2d> pos
   for_each_index(
       samples.size(),
       [&](std::size_t i) {
-        const auto& [s, share] = samples[i];
-        const auto [a, b] = line.segments[s];
-        const double asked = curves.distances[a] * (1 - share) + curves.distances[b] * share, wanted = std::abs(asked);
+        const std::uint32_t s = samples[i].segment;
+        const auto [x, asked] = point_of(curves, positions, samples[i]);
+        const double wanted = std::abs(asked);
         if (!(wanted > kLeastMeasured * curves.distances.scale())) return;
-        const Vec3d x = curves.in_frame(positions[a] * (1 - share) + positions[b] * share);
         double off = curves.query(x, s).distance - wanted;
-        if (off > 0) off = std::min(off, std::abs(line.triangle_normals[s].dot(x - line.vertices[a]) - asked));
+        if (off > 0) off = std::min(off, std::abs(over_line(curves, s, x) - asked));
         errors[i] = std::abs(off) / wanted;
       },
       64);

@@ -154,7 +154,12 @@ Json faces_json(const FaceError& error) {
           {"error_quantile_99", error.quantile_99},
           {"worst_error", error.worst},
           {"share_within_1_percent", error.at_distance},
-          {"causes", {{"held_back", error.held_back}, {"sharp_corners", error.corners}, {"coarse_faces", error.coarse}}}};
+          {"causes",
+           {{"held_back", error.held_back},
+            {"stuck", error.stuck},
+            {"no_room", error.no_room},
+            {"sharp_corners", error.corners},
+            {"coarse_faces", error.coarse}}}};
 }
 
 /// `facts` are of the mesh whose faces were judged.

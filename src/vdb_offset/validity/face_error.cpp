@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
@@ -126,19 +128,12 @@ class FaceMeter {
     const std::size_t begin = block * kPointsTogether, size = std::min(kPointsTogether, count_ - begin);
     const Vec3d& origin = constrained_.moving_part.surface().origin;
     for (std::size_t i = 0; i < size; ++i) {
-      const std::uint32_t t = triangle_of(begin + i);
-      const auto& corners = surface_.triangles[t];
-      const std::array<double, 3> shares =
-          of_each_triangle_ ? kOnEachTriangle[(begin + i) % kOfEachTriangle] : shares_of(begin + i);
-      Vec3d point(0.0);
-      for (std::size_t k = 0; k < 3; ++k) {
-        point += faces_.positions[corners[k]] * shares[k];
-        asked[i] += asked_at(t, k) * shares[k];
-      }
+      const std::uint32_t t = of_[begin + i] = triangle_of(begin + i);
+      Vec3d point;
+      std::tie(point, asked[i]) = sample(begin + i);
       off_plane[i] = kNotMeasured;
       if (!faces_.source.empty() && surface_.triangle_normals[t].lengthSqr() > 0)
-        off_plane[i] = std::abs(surface_.triangle_normals[t].dot(point - faces_.source[corners[0]]) - asked[i]);
-      of_[begin + i] = t;
+        off_plane[i] = std::abs(over_plane(t, point) - asked[i]);
       points[i] = point - origin;
       hints[i] = constrained_.hint_of_triangle(t);
     }
@@ -152,6 +147,24 @@ class FaceMeter {
       else if (off > 0 && off_plane[i] >= 0) off = std::min(off, off_plane[i]);
       error_[begin + i] = std::abs(off) / wanted;
     }
+  }
+
+  /// A sample of the triangle that is noted for it, and what is asked there.
+  std::pair<Vec3d, double> sample(std::size_t i) const {
+    const auto& corners = surface_.triangles[of_[i]];
+    const std::array<double, 3> shares = of_each_triangle_ ? kOnEachTriangle[i % kOfEachTriangle] : shares_of(i);
+    Vec3d point(0.0);
+    double asked = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      point += faces_.positions[corners[k]] * shares[k];
+      asked += asked_at(of_[i], k) * shares[k];
+    }
+    return {point, asked};
+  }
+
+  /// How far a point is over the plane that a triangle is in in the source.
+  double over_plane(std::uint32_t t, const Vec3d& point) const {
+    return surface_.triangle_normals[t].dot(point - faces_.source[surface_.triangles[t][0]]);
   }
 
   double asked_at(std::uint32_t t, std::size_t k) const {
@@ -182,19 +195,48 @@ class FaceMeter {
 
   void tell_causes(FaceError& result) const {
     const std::vector<std::uint8_t> sharp = vertices_at_corners(constrained_.moving_part.surface());
+    const std::vector<double> no_room = lacks_of_room();
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       if (error_[i] == kNotMeasured) continue;
-      bool is_short = false, at_corner = false;
+      bool is_short = false, is_stuck = true, at_corner = false;
       for (const auto v : surface_.triangles[of_[i]]) {
-        is_short |= !faces_.states.empty() && falls_short(faces_.states[v]);
         const std::uint32_t on_part = constrained_.part_vertex_of(v);
         at_corner |= on_part != kNone && sharp[on_part] && is_off_plane(of_[i], v);
+        if (faces_.states.empty() || !falls_short(faces_.states[v])) continue;
+        is_short = true;
+        is_stuck &= (faces_.positions[v] - faces_.source[v]).length() <= kStuck * std::abs(faces_.distances[v]);
       }
       sum += error_[i];
-      (is_short ? result.held_back : at_corner ? result.corners : result.coarse) += error_[i];
+      if (is_short) {
+        (is_stuck ? result.stuck : result.held_back) += error_[i];
+        continue;
+      }
+      result.no_room += no_room[i];
+      (at_corner ? result.corners : result.coarse) += error_[i] - no_room[i];
     }
-    for (double* const cause : {&result.held_back, &result.corners, &result.coarse}) *cause /= sum;
+    for (double* const cause : {&result.held_back, &result.stuck, &result.no_room, &result.corners, &result.coarse})
+      *cause /= sum;
+  }
+
+  /// For each sample the part of its error that comes of a lack of room.
+  std::vector<double> lacks_of_room() const {
+    std::vector<double> lacks(count_, 0);
+    const Surface& part = constrained_.moving_part.surface();
+    for_each_index(
+        count_,
+        [&](std::size_t i) {
+          const std::uint32_t t = of_[i];
+          const Vec3d& normal = surface_.triangle_normals[t];
+          if (!(error_[i] > kAtDistance) || normal.lengthSqr() == 0) return;
+          const auto [point, asked] = sample(i);
+          const Vec3d in_plane = point + normal * (asked - over_plane(t, point)) - part.origin;
+          const Closest closest = constrained_.moving_part(in_plane, constrained_.hint_of_triangle(t));
+          lacks[i] = lack_of_room(in_plane, normal, asked, closest,
+                                  part.pseudonormal(closest.triangle, closest.feature), error_[i]);
+        },
+        16);
+    return lacks;
   }
 
   const MeasuredFaces& faces_;
@@ -215,6 +257,15 @@ FaceError measure_faces(const MeasuredFaces& faces) { return FaceMeter(faces)();
 
 std::vector<float> measure_each_face(const MeasuredFaces& faces, std::size_t count) {
   return FaceMeter(faces).of_each(count);
+}
+
+double lack_of_room(const Vec3d& in_plane, const Vec3d& normal, double asked, const Closest& closest,
+                    const Vec3d& opposite, double error) {
+  constexpr double kOpposite = -0.5;  // cosine: two faces at 60 degrees or less are a wall or a gap; not measured
+  if (normal.dot(opposite) > kOpposite * opposite.length()) return 0;
+  // Beyond the other face there is no room at all.
+  if (opposite.dot(in_plane - closest.point) * asked < 0) return error;
+  return std::clamp(1 - closest.distance / std::abs(asked), 0.0, error);
 }
 
 FaceError sum_up_errors(std::vector<double> errors) {

@@ -7,6 +7,7 @@
 #include "vdb_offset/distances.h"
 #include "vdb_offset/parts/constrained_surface.h"
 #include "vdb_offset/paths/own_distances.h"
+#include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
@@ -16,6 +17,10 @@ inline constexpr double kWorthTelling = 0.01;
 
 /// The error up to which area counts as being at the distance. Told by name.
 inline constexpr double kAtDistance = 0.01;
+
+/// Share of its distance up to which a vertex that falls short has not moved at all. Not measured: it is 0 where there
+/// is no room.
+inline constexpr double kStuck = 1e-3;
 
 /// What faces are measured against.
 struct MeasuredFaces {
@@ -38,6 +43,13 @@ FaceError measure_faces(const MeasuredFaces& faces);
 /// Measures each of the input's `count` faces by itself: the mean error of a few points of it, as a share of the
 /// distance that is asked there. NaN for faces that are not of the moving part, have no area or are asked to stay.
 std::vector<float> measure_each_face(const MeasuredFaces& faces, std::size_t count);
+
+/// How much of the error of a point comes of a wall or gap that has no room for the distance: how far the point would
+/// be off if it were in its face's own plane at the distance, `in_plane`, where a face that looks the other way is
+/// nearer. Neither a miter nor a finer mesh helps there. \param closest of `in_plane`, where the surface's pseudonormal
+/// is `opposite`
+double lack_of_room(const Vec3d& in_plane, const Vec3d& normal, double asked, const Closest& closest,
+                    const Vec3d& opposite, double error);
 
 /// Sums up errors relative to the distance that was asked, each of the same share of the area or length.
 FaceError sum_up_errors(std::vector<double> errors);

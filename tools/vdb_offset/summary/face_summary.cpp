@@ -124,6 +124,8 @@ void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& s
   std::vector<std::pair<double, std::string>> causes{
       {faces.held_back,
        fmt::format("beside {} that fall short: a smaller distance has more room", curves ? "points" : "vertices")},
+      {faces.stuck, fmt::format("beside {} that have no room at any distance", curves ? "points" : "vertices")},
+      {faces.no_room, "where walls or gaps are narrower than two distances: only a smaller distance has room there"},
       {faces.corners, corners_in_words(job, statistics)},
       {faces.coarse, curves ? "because they are long: more points help"
                      : may_be_split(job, statistics)
