@@ -127,10 +127,12 @@ py::dict hollow_as_dict(const Hollow& hollow, RunFacts facts, const IsoStatistic
 }
 
 /// The mesh and the iso-surface, or two of these, as one solid.
-Hollow hollow_of(PolygonView mesh, double distance, const IsoResult& iso, const IsoResult* inner) {
+Hollow hollow_of(PolygonView mesh, const IsoOptions& options, double distance, const IsoResult& iso,
+                 const IsoResult* inner) {
   const PolygonView skin = iso.polygons.view();
   if (inner) return make_hollow(skin, inner->polygons.view(), Hollow::Source::Neither);
-  return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer) : make_hollow(skin, mesh, Hollow::Source::Inner);
+  return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer, options.weld)
+                      : make_hollow(skin, mesh, Hollow::Source::Inner, options.weld);
 }
 
 }  // namespace
@@ -188,7 +190,7 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
     };
     Made all{at(outward), {}, {}};
     if (inward) all.cavity = at(*inward);
-    all.hollow = hollow_of(source.view(), outward, all.surface, all.cavity ? &*all.cavity : nullptr);
+    all.hollow = hollow_of(source.view(), options, outward, all.surface, all.cavity ? &*all.cavity : nullptr);
     return all;
   });
   return hollow_as_dict(made.hollow, facts_of_run(text, start), made.surface.statistics,

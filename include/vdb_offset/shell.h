@@ -145,11 +145,11 @@ VDB_OFFSET_API Shell make_shell(PolygonView mesh, std::span<const Vec3d> outer, 
                                 std::span<const std::uint8_t> only = {});
 
 /// Makes the shell between a mesh and its offset, or the offset of a part of it: each vertex is at its position in the
-/// mesh on one skin, and at that in the offset on the other. If the offset was made with OffsetOptions::off_source,
-/// junctions of sheets have vertices of their own (see make_junction_shell()). The sides of faces that were turned
-/// round for the offset are on the skins that they belong to, so that all faces of the shell agree about the outside.
-/// \param inner an offset inward that is the inner skin instead of the mesh
-/// \param options those that the offset was made with
+/// mesh on one skin, and at that in the offset on the other. Vertices that count as one are at one position. If the
+/// offset was made with OffsetOptions::off_source, junctions of sheets have vertices of their own (see
+/// make_junction_shell()). The sides of faces that were turned round for the offset are on the skins that they belong
+/// to, so that all faces of the shell agree about the outside. \param inner an offset inward that is the inner skin
+/// instead of the mesh \param options those that the offset was made with
 VDB_OFFSET_API Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options,
                               const OffsetResult* inner = nullptr);
 
@@ -169,7 +169,9 @@ struct Hollow {
 };
 
 /// Puts two surfaces together, one of which lies within the other, both with faces that point outward. The facts are
-/// those of unrounded positions. \throw InvalidInput for meshes that cannot be used, or too many vertices.
-VDB_OFFSET_API Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source);
+/// those of unrounded positions. \param weld vertices of the source that count as one, which are put at one position
+/// \throw InvalidInput for meshes that cannot be used, or too many vertices.
+VDB_OFFSET_API Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source,
+                                  const WeldOptions& weld = {});
 
 }  // namespace vdb_offset

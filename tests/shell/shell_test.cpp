@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <sstream>
@@ -14,6 +15,7 @@
 #include "vdb_offset/base/index_set.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/iso_surface.h"
 #include "vdb_offset/scene.h"
 #include "vdb_offset/validity/rim_crossings.h"
 #include "vdb_offset/validity/triangle_crossings.h"
@@ -737,6 +739,57 @@ TEST_CASE("shell: stl files have a solid for each part, or keep attribute bytes"
   CHECK_THAT(binary.bytes, Catch::StartsWith(start.bytes()) && Catch::EndsWith("tail"));
   CHECK_THAT(binary.lost, Catch::StartsWith("the parts of the shell"));
   CHECK(build_surface(binary.back.polygons.view(), {}).facts.closed());
+}
+
+TEST_CASE("shell: what counts as one vertex is at one position, also where it stays", "[shell]") {
+  // A pipe of strips, closed by a seam that is apart by the rounding of sines, and with lids. In STL, equal coordinates
+  // alone tell that vertices are one.
+  const auto rounded = [](int k, double z) {
+    const double angle = 2 * M_PI * k / 16;
+    return fmt::format("vertex {:.17g} {:.17g} {:.17g}\n", std::cos(angle), std::sin(angle), z);
+  };
+  const auto loop = [](const std::string& a, const std::string& b, const std::string& c) {
+    return "facet normal 0 0 0\nouter loop\n" + a + b + c + "endloop\nendfacet\n";
+  };
+  std::string open = "solid s\n";
+  for (int k = 0; k < 16; ++k)
+    open += loop(rounded(k, 0), rounded(k + 1, 0), rounded(k + 1, 2)) +
+            loop(rounded(k, 0), rounded(k + 1, 2), rounded(k, 2));
+  std::string closed = open;
+  for (int k = 0; k < 16; ++k)
+    closed += loop("vertex 0 0 0\n", rounded(k + 1, 0), rounded(k, 0)) +
+              loop("vertex 0 0 2\n", rounded(k, 2), rounded(k + 1, 2));
+  const Folder folder;
+  for (const std::string& text : {open + "endsolid s\n", closed + "endsolid s\n"}) {
+    const io::MeshFile file = io::read_mesh(folder.write("in.stl", text));
+    REQUIRE(build_surface(file.polygons.view(), {}).facts.boundary_edges > (text.size() > 20000 ? 0u : 32u));
+    for (const double distance : {0.1, -0.1}) {
+      OffsetOptions options;
+      options.distance = distance;
+      options.off_source = true;
+      const Shell shell = shell_of(file.polygons.view(), offset(file.polygons.view(), options), options);
+      CHECK(shell.facts.closed);
+      for (const char* name : {"out.stl", "out.obj", "out.ply"}) {
+        io::write_shell(folder.file(name), file, shell);
+        const io::MeshFile back = io::read_mesh(folder.file(name));
+        CHECK(build_surface(back.polygons.view(), {}).facts.closed());
+      }
+    }
+    // As they were read, if nothing is to count as one that is not.
+    OffsetOptions exact;
+    exact.distance = 0.1;
+    exact.weld = WeldOptions();
+    const Shell shell = shell_of(file.polygons.view(), offset(file.polygons.view(), exact), exact);
+    CHECK(std::equal(file.polygons.positions.begin(), file.polygons.positions.end(), shell.inner().begin()));
+  }
+  const io::MeshFile file = io::read_mesh(folder.write("in.stl", closed + "endsolid s\n"));
+  IsoOptions iso;
+  iso.distance = -0.3;
+  iso.grid.voxel_size = 0.1;
+  const IsoResult cavity = make_iso_surface(file.polygons.view(), iso);
+  const Hollow hollow = make_hollow(file.polygons.view(), cavity.polygons.view(), Hollow::Source::Outer, iso.weld);
+  CHECK(hollow.facts.closed);
+  CHECK_FALSE(make_hollow(file.polygons.view(), cavity.polygons.view(), Hollow::Source::Outer).facts.closed);
 }
 
 TEST_CASE("shell: an off keeps colours of vertices and faces", "[shell]") {

@@ -96,10 +96,11 @@ void require_inside(const IsoResult& result) {
 }
 
 /// The mesh and the iso-surface, or two of these, as one solid.
-Hollow hollow_of(PolygonView mesh, double distance, const IsoResult& iso, const IsoResult* inner) {
-  const PolygonView skin = iso.polygons.view();
+Hollow hollow_of(const Job& job, double distance, const IsoResult& iso, const IsoResult* inner) {
+  const PolygonView mesh = job.source.view(), skin = iso.polygons.view();
   if (inner) return make_hollow(skin, inner->polygons.view(), Hollow::Source::Neither);
-  return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer) : make_hollow(skin, mesh, Hollow::Source::Inner);
+  return distance < 0 ? make_hollow(mesh, skin, Hollow::Source::Outer, job.options.weld)
+                      : make_hollow(skin, mesh, Hollow::Source::Inner, job.options.weld);
 }
 
 void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, IsoResult& iso, const IsoResult* inner,
@@ -150,7 +151,7 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   std::optional<Hollow> hollow;  // for one distance alone
   for (std::size_t i = 0; i < destinations.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
-    if (job.shell) hollow = hollow_of(mesh, job.distances[i][0], results[i], inner_skin);
+    if (job.shell) hollow = hollow_of(job, job.distances[i][0], results[i], inner_skin);
     if (hollow) write_hollow(job, destinations[i], *hollow, results[i], inner_skin, timing.start);
     else write_iso_surface(job, transported, destinations[i], results[i], timing.start);
   }

@@ -7,6 +7,7 @@
 
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh/edge_sides.h"
+#include "vdb_offset/shell/shell_facts.h"
 #include "vdb_offset/surface/surface.h"
 #include "vdb_offset/validity/triangle_crossings.h"
 
@@ -65,12 +66,18 @@ void count_crossings(const Surface& surface, Hollow& hollow) {
 
 }  // namespace
 
-Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source) {
+Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source, const WeldOptions& weld) {
   if (outer.positions.size() + inner.positions.size() >= kNone)
     throw InvalidInput(fmt::format("hollow: expected fewer than 2^32 vertices, got {}",
                                    outer.positions.size() + inner.positions.size()));
   Hollow hollow;
   hollow.polygons = put_together(outer, inner);
+  if (source != Hollow::Source::Neither) {
+    const bool is_outer = source == Hollow::Source::Outer;
+    const std::vector<Vec3d> welded = positions_as_welded(is_outer ? outer : inner, weld);
+    const std::size_t first = is_outer ? 0 : outer.positions.size();
+    std::copy(welded.begin(), welded.end(), hollow.polygons.positions.begin() + static_cast<std::ptrdiff_t>(first));
+  }
   hollow.outer_vertices = outer.positions.size();
   hollow.outer_faces = outer.face_count();
   hollow.source = source;

@@ -222,14 +222,22 @@ Shell junction_shell_of(const Part& part, const TakenFaces& taken, std::span<con
 
 }  // namespace
 
-Shell shell_of(PolygonView mesh, const OffsetResult& result, const OffsetOptions& options, const OffsetResult* inner) {
-  VDB_OFFSET_ASSERT(result.positions.size() == mesh.positions.size());
-  VDB_OFFSET_ASSERT(!inner || inner->positions.size() == mesh.positions.size());
-  std::vector<Vec3d> out(mesh.positions.begin(), mesh.positions.end()), in = out;
-  for (std::size_t v = 0; v < out.size(); ++v) (result.distances[v] < 0 ? in : out)[v] = result.positions[v];
-  if (inner) in = inner->positions;
+Shell shell_of(PolygonView given, const OffsetResult& result, const OffsetOptions& options, const OffsetResult* inner) {
+  VDB_OFFSET_ASSERT(result.positions.size() == given.positions.size());
+  VDB_OFFSET_ASSERT(!inner || inner->positions.size() == given.positions.size());
+  // What has moved is at one position already, where it is one vertex; so is what stays.
+  const std::vector<Vec3d> welded = positions_as_welded(given, options.weld);
+  const PolygonView mesh{welded, given.corners, given.face_begin};
+  std::vector<Vec3d> out = welded, in = out;
+  const auto move = [&](std::vector<Vec3d>& skin, std::size_t v, const Vec3d& to) {
+    if (to != given.positions[v]) skin[v] = to;
+  };
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    move(result.distances[v] < 0 ? in : out, v, result.positions[v]);
+    if (inner) move(in, v, inner->positions[v]);
+  }
   const auto plain = [&] { return make_shell(mesh, out, in, options.weld, options.precision, options.only); };
-  if (!may_need_sides(mesh, result, options)) return plain();
+  if (!may_need_sides(given, result, options)) return plain();
   const Part part(mesh, options.only);
   const TakenFaces taken(part.view(), options);
   if (!needs_sides(result, taken)) return plain();

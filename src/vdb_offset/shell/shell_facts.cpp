@@ -85,6 +85,15 @@ void count_crossings(PolygonView mesh, const WeldOptions& weld, std::span<const 
 
 }  // namespace
 
+std::vector<Vec3d> positions_as_welded(PolygonView mesh, const WeldOptions& weld) {
+  const std::vector<std::uint32_t> first = weld_by_position(mesh, weld);
+  std::vector<Vec3d> positions(mesh.positions.begin(), mesh.positions.end());
+  for_each_index(positions.size(), [&](std::size_t v) {
+    if (first[v] != kNone) positions[v] = mesh.positions[first[v]];
+  });
+  return positions;
+}
+
 std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Rounding& precision) {
   std::vector<Vec3d> written = shell.polygons.positions;
   for (std::uint32_t v = 0; v < written.size(); ++v)

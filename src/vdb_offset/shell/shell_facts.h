@@ -10,6 +10,10 @@
 
 namespace vdb_offset {
 
+/// The positions of a mesh's vertices, with those that count as one at one of them: nothing else tells that they are
+/// one in a file whose vertices are not numbered.
+std::vector<Vec3d> positions_as_welded(PolygonView mesh, const WeldOptions& weld);
+
 /// The positions of a shell's vertices as they will be written. Vertices that have not moved keep their bytes.
 std::vector<Vec3d> written_positions(PolygonView mesh, const Shell& shell, const Rounding& precision);
 
