@@ -135,6 +135,16 @@ Hollow hollow_of(PolygonView mesh, const IsoOptions& options, double distance, c
                       : make_hollow(skin, mesh, Hollow::Source::Inner, options.weld);
 }
 
+/// \throw InvalidResult for skins that meet, which are never handed out
+void require_apart(const Hollow& hollow, const IsoStatistics& outer, const std::string& distance,
+                   Clock::time_point start) {
+  if (hollow.facts.crossings == 0) return;
+  throw InvalidResult("hollow: expected skins that do not meet, got " + std::to_string(hollow.facts.crossings) +
+                          " pairs of triangles that do (a voxel_size of half the distance or less keeps them apart, or "
+                          "inner, if faces lie inside the solid)",
+                      report_json(outer, facts_of_run(distance, start)));
+}
+
 }  // namespace
 
 py::dict iso_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
@@ -171,6 +181,7 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
   require_distance(outward, distance);
   std::optional<double> inward;
   if (!inner.is_none()) inward = cavity_distance(inner, source, outward);
+  options.off_source = true;
   const std::string text = text_of(distance);
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(options);
@@ -191,6 +202,7 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
     Made all{at(outward), {}, {}};
     if (inward) all.cavity = at(*inward);
     all.hollow = hollow_of(source.view(), options, outward, all.surface, all.cavity ? &*all.cavity : nullptr);
+    require_apart(all.hollow, all.surface.statistics, text, start);
     return all;
   });
   return hollow_as_dict(made.hollow, facts_of_run(text, start), made.surface.statistics,

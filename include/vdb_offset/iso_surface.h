@@ -25,6 +25,7 @@ struct VDB_OFFSET_API IsoOptions {
   /// How readily voxels are merged where the surface is nearly flat: from 0, none, to 1. Without a value, triangles are
   /// merged where they are exactly flat, which leaves the surface as it is.
   std::optional<double> adaptivity;
+  bool off_source = false;   ///< By default, voxels are so small that no face reaches the source, as in hollow solids.
   bool keep_specks = false;  ///< Keep pieces that enclose less than a voxel, as knife edges leave them.
   Precision precision;       ///< Of the coordinates in the file that the result is for; validity is checked on these.
   WeldOptions weld = WeldOptions::automatic();

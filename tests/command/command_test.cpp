@@ -735,6 +735,34 @@ TEST_CASE("command: a hollow solid by captured skins", "[command][capture]") {
   check_failure(shell, "sphere.obj out.obj -d -2" + iso, 2, "expected a surface at distance -2");
 }
 
+TEST_CASE("command: skins of a hollow solid that meet are not written", "[command][capture]") {
+  const ShellCommand shell;
+  // A cube with a slot of next to no width: chords between its two sides cut through the cavity's wall.
+  std::ofstream(shell.file("slot.obj")) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1.03 2 0\nv 1.013 0.5 0\nv 1 2 0\nv 0 2 0\n"
+                                           "v 0 0 2\nv 2 0 2\nv 2 2 2\nv 1.03 2 2\nv 1.013 0.5 2\nv 1 2 2\nv 0 2 2\n"
+                                           "f 1 2 9 8\nf 2 3 10 9\nf 3 4 11 10\nf 4 5 12 11\nf 5 6 13 12\n"
+                                           "f 6 7 14 13\nf 7 1 8 14\nf 1 5 2\nf 2 5 4\nf 2 4 3\nf 1 7 6\nf 1 6 5\n"
+                                           "f 8 9 12\nf 9 11 12\nf 9 10 11\nf 8 13 14\nf 8 12 13\n";
+  const std::string run = "slot.obj out.obj -d -0.05 --mode iso --shell ";
+  check_failure(shell, run + "--voxel-size 0.1", 3, "hollow: expected skins that do not meet, got ");
+  const Run fine = shell(run + "--voxel-size 0.025");
+  CHECK(fine.code == 0);
+  CHECK_THAT(fine.out, Catch::Contains("0 pairs of triangles meet"));
+  // What lies inside the solid meets its cavity, however small voxels are.
+  const Polygons box = scene::box(Vec3d(2), 1, true);
+  Polygons both = box;
+  for (const Vec3d& p : box.positions) both.positions.push_back(p + Vec3d(1, 0.1, 0.2));
+  for (std::size_t f = 0; f < box.face_count(); ++f) {
+    for (const auto v : box.view().face(f))
+      both.corners.push_back(v + static_cast<std::uint32_t>(box.positions.size()));
+    both.close_face();
+  }
+  io::write_mesh(shell.file("both.obj"), both.view());
+  check_failure(shell, "both.obj hollow.obj -d -0.1 --mode iso --shell --voxel-size 0.05", 3,
+                "with -d and --inner both skins are new");
+  CHECK(shell("both.obj hollow.obj -d 0.1 --inner 0.1 --mode iso --shell --voxel-size 0.05 -q").code == 0);
+}
+
 TEST_CASE("command: options of captured surfaces that do not go together", "[command][capture]") {
   const ShellCommand shell;
   const std::string iso = "sphere.obj out.obj -d 0.1 --mode iso ";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -55,6 +56,27 @@ IsoOptions options_of(double distance, double voxel_size) {
   options.distance = distance;
   options.grid.voxel_size = voxel_size;
   return options;
+}
+
+/// A square bar of length 1 with a notch along it that is as sharp as 14 degrees, and turned against the axes.
+Polygons notched_bar() {
+  const double side = 0.01, half = 0.0005, depth = 0.004;
+  const double section[7][2] = {
+      {0, 0},   {side, 0}, {side, side}, {side / 2 + half, side}, {side / 2, side - depth}, {side / 2 - half, side},
+      {0, side}};
+  Polygons bar;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : section) {
+      const Vec3d p(x * std::cos(0.3) - y * std::sin(0.3), x * std::sin(0.3) + y * std::cos(0.3), z);
+      bar.positions.emplace_back(p[0], p[1] * std::cos(0.5) - p[2] * std::sin(0.5),
+                                 p[1] * std::sin(0.5) + p[2] * std::cos(0.5));
+    }
+  for (std::uint32_t k = 0; k < 7; ++k) bar.add_face({k, (k + 1) % 7, (k + 1) % 7 + 7, k + 7});
+  for (const auto& [a, b, c] : {std::array<std::uint32_t, 3>{0, 4, 1}, {1, 4, 3}, {1, 3, 2}, {0, 6, 5}, {0, 5, 4}}) {
+    bar.add_face({a, b, c});
+    bar.add_face({a + 7, c + 7, b + 7});
+  }
+  return bar;
 }
 
 /// A triangle of sides along x and y, extruded, with a knife edge of so many degrees, in a frame that is not the
@@ -328,6 +350,48 @@ TEST_CASE("flats: what crosses when it is merged stays as it was, and only that"
   CHECK(static_cast<double>(gone) > 0.8 * static_cast<double>(vertices));
   CHECK(mesh.vertices.size() == vertices - gone);
   CHECK(find_faults(mesh).total() == 0);
+}
+
+TEST_CASE("iso: by default, voxels of hollow solids are so small that no face reaches the source", "[iso]") {
+  const Polygons bar = notched_bar();
+  const double d = 0.001;
+  IsoOptions options;
+  options.distance = -d;
+  options.adaptivity = 0;
+  // As fine as other surfaces are by default, chords cut through the tip of the notch.
+  const IsoPlan coarse = plan_iso_surface(bar.view(), options).plan;
+  CHECK(coarse.voxel_size > d);
+  const IsoResult cutting = make_iso_surface(bar.view(), options);
+  CHECK(make_hollow(bar.view(), cutting.polygons.view(), Hollow::Source::Outer).facts.crossings > 0);
+  options.off_source = true;
+  const IsoPlan plan = plan_iso_surface(bar.view(), options).plan;
+  CHECK(plan.voxel_size == d / 2);
+  const IsoResult cavity = make_iso_surface(bar.view(), options);
+  const Hollow hollow = make_hollow(bar.view(), cavity.polygons.view(), Hollow::Source::Outer);
+  CHECK(hollow.facts.closed);
+  CHECK(hollow.facts.crossings == 0);
+  // The bound that it follows from: no corner of a triangle is farther from another one than three voxels.
+  double longest = 0;
+  for (std::size_t f = 0; f < cavity.polygons.face_count(); ++f) {
+    const auto face = cavity.polygons.view().face(f);
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest,
+                         (cavity.polygons.positions[face[k]] - cavity.polygons.positions[face[(k + 1) % 3]]).length());
+  }
+  CHECK(longest <= 3 * plan.voxel_size);
+  // They are never larger: with less memory than these take, the run is refused, and larger ones have to be asked for.
+  options.max_memory = plan.bytes - 1;
+  CHECK_THROWS_WITH(plan_iso_surface(bar.view(), options),
+                    Catch::Contains("half the distance, so that skins do not meet"));
+  options.grid.voxel_size = d;
+  CHECK(plan_iso_surface(bar.view(), options).plan.voxel_size == d);
+  // Where others are finer anyway, they are as they were.
+  const Polygons box = scene::box({1, 1, 1}, 2, true);
+  IsoOptions wide = options_of(-0.1, 0);
+  wide.grid.voxel_size.reset();
+  const double before = plan_iso_surface(box.view(), wide).plan.voxel_size;
+  wide.off_source = true;
+  CHECK(plan_iso_surface(box.view(), wide).plan.voxel_size == before);
 }
 
 TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", "[iso]") {

@@ -51,6 +51,7 @@ IsoOptions options_of(const Job& job, const Distances& distance, const std::stri
   if (!options.adaptivity && !(attributes.texture.empty() && attributes.colours.empty() && materials.of_face.empty()))
     options.adaptivity = 0;
   options.use_winding = asked.use_winding;
+  options.off_source = job.shell;
   options.keep_specks = asked.keep_specks;
   options.precision = io::precision_of_iso(path, write_options(job.request, path));
   options.weld = given.weld;
@@ -103,6 +104,17 @@ Hollow hollow_of(const Job& job, double distance, const IsoResult& iso, const Is
                       : make_hollow(skin, mesh, Hollow::Source::Inner, job.options.weld);
 }
 
+/// \throw Error for skins that meet, of which no file is to be written.
+void require_apart(const Hollow& hollow, const IsoStatistics& found) {
+  if (hollow.facts.crossings == 0) return;
+  const bool is_buried = hollow.source != Hollow::Source::Neither && found.solid.buried + found.solid.cut > 0;
+  throw Error(fmt::format("hollow: expected skins that do not meet, got {} pairs of triangles that do ({})",
+                          hollow.facts.crossings,
+                          is_buried ? "faces lie inside the solid, where they meet its cavity: with -d and --inner "
+                                      "both skins are new"
+                                    : "a --voxel-size of half the distance or less keeps them apart"));
+}
+
 void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, IsoResult& iso, const IsoResult* inner,
                   Clock::time_point start) {
   const auto writing = Clock::now();
@@ -152,6 +164,7 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   for (std::size_t i = 0; i < destinations.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
     if (job.shell) hollow = hollow_of(job, job.distances[i][0], results[i], inner_skin);
+    if (hollow) require_apart(*hollow, results[i].statistics);
     if (hollow) write_hollow(job, destinations[i], *hollow, results[i], inner_skin, timing.start);
     else write_iso_surface(job, transported, destinations[i], results[i], timing.start);
   }

@@ -16,6 +16,10 @@ namespace {
 
 // Triangles of the iso-surface for each leaf node, for the estimate alone.
 constexpr double kTrianglesPerLeaf = 110;
+// The most voxels a distance for which no face reaches the source. A triangle has its corners in voxels around an edge
+// of the lattice, at most three voxels apart, so that each of its points is within sqrt(3) voxels of a corner, and that
+// one is at the distance.
+constexpr double kOffSource = 0.5;
 // Bytes of the process itself: code, libraries, allocator. For the estimate alone.
 constexpr double kIsoProcessBytes = 64 << 20;
 
@@ -61,20 +65,20 @@ IsoPlan choose_voxels(const Surface& surface, const IsoOptions& options, bool is
   const MeshFacts& facts = surface.facts;
   const double d = std::abs(options.distance), coarsest = facts.diagonal / kCoarsest, finest = facts.diagonal / kFinest;
   const double wanted = std::min(d / kPerDistance, facts.median_edge);
+  const double most = std::min(longest_of(facts, d), options.off_source ? d * kOffSource : HUGE_VAL);
   double h = std::clamp(wanted, finest, coarsest);
   std::string reason = wanted < finest                        ? "diagonal / 512, as the distance or edges are smaller"
                        : wanted > coarsest                    ? "diagonal / 128, the coarsest useful size"
                        : facts.median_edge < d / kPerDistance ? "the median edge"
                                                               : "distance / 4";
+  if (h > most) reason = "distance / 2, as no face may reach the source";
   constexpr double kCoarser = 1.25;  // factor from one tried voxel size to the next. Not measured.
-  const double most = longest_of(facts, d);
-  for (; h < most; h *= kCoarser) {
-    IsoPlan plan = estimate_iso(surface, options.distance, is_signed, h);
+  for (;; h *= kCoarser) {
+    IsoPlan plan = estimate_iso(surface, options.distance, is_signed, std::min(h, most));
     plan.reason = reason;
-    if (fits_budget(plan, options, facts)) return plan;
+    if (h >= most || fits_budget(plan, options, facts)) return plan;
     reason = "the finest that the memory allows";
   }
-  return estimate_iso(surface, options.distance, is_signed, most);
 }
 
 /// Requires coordinates that are rounded by less than kMostVoxels. The corners of the new triangles are a part of a
@@ -108,12 +112,16 @@ IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_s
   }
   require_fine_coordinates(surface.facts, options, plan.voxel_size);
   if (fits_budget(plan, options, surface.facts)) return plan;
+  const bool is_finest = options.off_source && !grid.voxel_size && !grid.voxels_per_distance;
   throw OutOfBudget(
       fmt::format("capture: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
                   "about {:.0f} MiB in {} leaf "
-                  "nodes with voxel size {:.6g} (a larger voxel size needs less)",
+                  "nodes with voxel size {:.6g} ({})",
                   options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
-                  static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size));
+                  static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size,
+                  is_finest ? "half the distance, so that skins do not meet: thicker walls need less, and so does a "
+                              "larger --voxel-size, with which they may meet"
+                            : "a larger voxel size needs less"));
 }
 
 }  // namespace vdb_offset
