@@ -42,6 +42,21 @@ TEST_CASE("units: a length with a unit is that length in the unit of the file", 
   CHECK(shell("check sphere.obj out.obj -d 1mm --unit mm --strict").code == 3);
 }
 
+TEST_CASE("units: a drawing's size and viewBox tell its unit", "[command]") {
+  const ShellCommand shell;
+  std::ofstream(shell.file("a.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' "
+                                        "viewBox='0 0 1000 600'><rect x='50' y='50' width='400' height='300'/></svg>";
+  CHECK(shell("a.svg o.svg -d 0.1mm --corners miter").code == 0);
+  CHECK_THAT(shell.slurp(shell.file("o.svg")), Catch::Contains("M49,49 L451,49 L451,351 L49,351 Z"));
+  CHECK(shell("check a.svg o.svg -d 0.1mm --corners miter --strict").code == 0);
+  const Run other = shell("a.svg o.svg -d 0.1mm --unit mm");
+  CHECK(other.code == 0);
+  CHECK_THAT(other.err, Catch::Contains("its own unit is 0.1 mm, and --unit takes it for 1 mm"));
+  std::ofstream(shell.file("b.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' width='100%' viewBox='0 0 1000 600'>"
+                                        "<rect x='50' y='50' width='400' height='300'/></svg>";
+  check_failure(shell, "b.svg p.svg -d 0.1mm", 1, "--distance: expected --unit as well");
+}
+
 TEST_CASE("units: what cannot be meant is told", "[command]") {
   const ShellCommand shell;
   check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "--distance: expected --unit as well");

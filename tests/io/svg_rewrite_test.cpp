@@ -175,6 +175,50 @@ TEST_CASE("drawings: references and lengths that cannot be followed are told by 
                     Catch::Contains("segments can follow to within 1e-300 (--flatten)"));
 }
 
+TEST_CASE("drawings: the unit is what size, viewBox and preserveAspectRatio make of it", "[curves][io]") {
+  const auto unit = [](const std::string& attributes) {
+    const std::string text = "<svg xmlns='http://www.w3.org/2000/svg' " + attributes + "><path d='M0 0L1 1'/></svg>";
+    return io::parse_curves("t.svg", io::CurveFormat::Svg, text).file.unit_micrometres;
+  };
+  const double pixel = 25400. / 96;
+  // Without a viewBox, a pixel of CSS, whatever the size.
+  for (const char* size : {"", "width='10cm' height='2in'", "width='100%'"}) CHECK(unit(size) == pixel);
+  const std::string view = "viewBox='0 0 1000 500' ";
+  for (const auto& [size, micrometres] : {std::pair<const char*, double>{"100mm", 100},
+                                          {"10cm", 100},
+                                          {" 10in\n", 254},
+                                          {"720pt", 254},
+                                          {"60pc", 254},
+                                          {"400Q", 100},
+                                          {"960px", 254},
+                                          {"960", 254},
+                                          {"1e2mm", 100}}) {
+    INFO(size);
+    // The height follows from the width where it is missing.
+    REQUIRE(unit(view + "width='" + size + "'"));
+    CHECK(*unit(view + "width='" + size + "'") == Approx(micrometres).epsilon(1e-15));
+    CHECK(*unit(view + "height='" + size + "'") == Approx(2 * micrometres).epsilon(1e-15));
+    CHECK(*unit(view + "style='width: 1in; width: " + size + "' width='7mm' height='auto'") ==
+          Approx(micrometres).epsilon(1e-15));
+  }
+  CHECK(unit("viewBox='-3,4 210, 297' width='210mm' height='297mm'") == 1000.0);  // exactly
+  // What does not fit is made smaller, cut off, or stretched: then x and y have units of their own.
+  const std::string square = view + "width='100mm' height='100mm' ";
+  CHECK(unit(square) == 100.0);
+  CHECK(unit(square + "preserveAspectRatio='xMinYMax meet'") == 100.0);
+  CHECK(unit(square + "preserveAspectRatio='xMidYMid slice'") == 200.0);
+  CHECK(unit(square + "preserveAspectRatio='none'") == std::nullopt);
+  CHECK(unit(view + "width='100mm' height='50.01mm' preserveAspectRatio='none'") == 100.0);
+  // Sizes that depend on where the drawing is shown, and what is no size.
+  for (const char* size : {"", "width='100%' height='100%'", "width='100mm' height='50%'", "width='10em'", "width='0'",
+                           "width='-3mm'", "width='calc(1mm + 1mm)'", "width='mm'"}) {
+    INFO(size);
+    CHECK(unit(view + size) == std::nullopt);
+  }
+  for (const char* box : {"", "0 0 10", "0 0 0 10", "0 0 10 -1", "a b c d"})
+    CHECK(unit(std::string("width='1mm' viewBox='") + box + "'") == std::nullopt);
+}
+
 TEST_CASE("drawings: what says that it is not shown is not drawn", "[curves][io]") {
   const auto curves_of = [](const std::string& hidden) {
     return parsed(hidden + "<line x2='1'/>").file.polygons.face_count();

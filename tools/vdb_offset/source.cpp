@@ -135,6 +135,16 @@ void require_same_unit(const Source& source, const std::string& option, const io
                                    option, *own / kMicrometresInMm, *file.unit_micrometres / kMicrometresInMm));
 }
 
+/// Takes the unit that the user says, which counts more than that of the file, and remarks where they differ.
+void use_unit(const Request& request, io::MeshFile& file) {
+  if (request.unit.empty()) return;
+  const double given = *micrometres_of(request.unit);
+  if (file.unit_micrometres && *file.unit_micrometres != given)
+    file.remarks.push_back(fmt::format("its own unit is {:.6g} mm, and --unit takes it for {:g} mm",
+                                       *file.unit_micrometres / kMicrometresInMm, given / kMicrometresInMm));
+  file.unit_micrometres = given;
+}
+
 }  // namespace
 
 Source read_source(const Request& request, bool curves) {
@@ -142,6 +152,7 @@ Source read_source(const Request& request, bool curves) {
   Source source;
   if (curves) {
     source.curves = io::read_curves(request.input, curve_reading(request));
+    use_unit(request, source.curves->file);
     if (!request.quiet) tell_remarks(source.curves->file);
     if (request.close) close_curves(request, source);
     return source;
@@ -150,8 +161,7 @@ Source read_source(const Request& request, bool curves) {
   if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request));
   else if (!source.scene->mesh_path.empty())
     source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request)});
-  // What the user says counts more than what the file does.
-  if (source.file && !request.unit.empty()) source.file->unit_micrometres = micrometres_of(request.unit);
+  if (source.file) use_unit(request, *source.file);
   if (source.file && !request.quiet) tell_remarks(*source.file);
   for (const std::string& path : request.obstacles) {
     const io::MeshFile obstacle = io::read_mesh(path, reading_of(path, request));

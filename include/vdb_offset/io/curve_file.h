@@ -54,7 +54,8 @@ struct CurveFile {
 VDB_OFFSET_API bool holds_curves(const std::string& path);
 
 /// The length of the unit of a file's coordinates in micrometres, if it is a drawing that tells it: a DXF file with a
-/// unit in its header, which is all that is read. \throw ReadError, InvalidInput as read_curves()
+/// unit in its header, which is all that is read, or an SVG drawing by its width, height and viewBox. \throw ReadError,
+/// InvalidInput as read_curves()
 VDB_OFFSET_API std::optional<double> unit_of_curves(const std::string& path);
 
 /// Reads curves. Text: a first line that is not two or three numbers is a title; behind # is a comment. A curve is

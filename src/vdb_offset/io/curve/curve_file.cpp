@@ -297,10 +297,12 @@ bool holds_curves(const std::string& path) {
 }
 
 std::optional<double> unit_of_curves(const std::string& path) {
-  if (curve_format_of(path) != CurveFormat::Dxf) return std::nullopt;
+  const auto format = curve_format_of(path);
+  if (format != CurveFormat::Dxf && format != CurveFormat::Svg) return std::nullopt;
   MeshFile file;
   file.path = path;
   file.bytes = FileBytes::open(path);
+  if (format == CurveFormat::Svg) return svg_unit_micrometres(SvgDocument(file.path, file.text()));
   use_line_feeds(file);
   return unit_of_dxf(DxfText(file.path, file.text()));
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <exception>
 #include <memory>
 #include <new>
@@ -23,7 +24,7 @@ struct KnownElement {
   SvgKind kind;
   std::string_view geometry;
 };
-constexpr KnownElement kKnownElements[] = {{"svg", SvgKind::Drawing, ""},
+constexpr KnownElement kKnownElements[] = {{"svg", SvgKind::Drawing, "width height viewBox preserveAspectRatio"},
                                            {"defs", SvgKind::Hidden, ""},
                                            {"clipPath", SvgKind::Hidden, ""},
                                            {"mask", SvgKind::Hidden, ""},
@@ -200,6 +201,66 @@ const SvgElement* SvgDocument::with_id(const std::string& id) const {
 
 void SvgDocument::fail_at(std::uint64_t at, const std::string& expected, const std::string& found) const {
   Scanner(path_, text_).fail_with(expected, found, std::min<std::size_t>(at, text_.size()));
+}
+
+namespace {
+
+/// A property of the outermost element. What a style declares goes before an attribute.
+std::string_view property_of(const SvgElement& svg, std::string_view name) {
+  if (const auto* const style = svg.value("style"))
+    if (const auto declared = declared_in(*style, name)) return declared->value;
+  const std::string* const value = svg.value(name);
+  return value ? std::string_view(*value) : std::string_view();
+}
+
+/// A width or height in micrometres: 0 for one that follows from the other one, none for one that cannot be known.
+std::optional<double> size_in_micrometres(std::string_view text) {
+  while (!text.empty() && is_svg_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_svg_space(text.back())) text.remove_suffix(1);
+  if (text.empty() || text == "auto") return 0;
+  std::size_t digits = text.size();
+  while (digits > 0 && (std::isalpha(static_cast<unsigned char>(text[digits - 1])) != 0 || text[digits - 1] == '%'))
+    --digits;
+  const std::string_view name = digits == text.size() ? std::string_view("px") : text.substr(digits);
+  double number = 0;
+  if (!parse_double(text.substr(0, digits), number) || !(number > 0)) return std::nullopt;
+  for (const SvgUnit& unit : kSvgUnits)
+    if (name == unit.name) return number * unit.micrometres;
+  return std::nullopt;
+}
+
+/// The width and height of a viewBox; none for what is no four numbers, or has no extent.
+std::optional<Vec2d> extent_of_view(std::string_view text) {
+  double numbers[4] = {};
+  for (double& number : numbers) {
+    while (!text.empty() && (is_svg_space(text.front()) || text.front() == ',')) text.remove_prefix(1);
+    std::size_t end = 0;
+    while (end < text.size() && !is_svg_space(text[end]) && text[end] != ',') ++end;
+    if (!parse_double(text.substr(0, end), number)) return std::nullopt;
+    text.remove_prefix(end);
+  }
+  if (!(numbers[2] > 0 && numbers[3] > 0)) return std::nullopt;
+  return Vec2d(numbers[2], numbers[3]);
+}
+
+}  // namespace
+
+std::optional<double> svg_unit_micrometres(const SvgDocument& document) {
+  const SvgElement& svg = document.elements().front();
+  if (!svg.value("viewBox")) return kSvgUnits[0].micrometres;
+  const std::optional<Vec2d> extent = extent_of_view(*svg.value("viewBox"));
+  const std::optional<double> width = size_in_micrometres(property_of(svg, "width")),
+                              height = size_in_micrometres(property_of(svg, "height"));
+  if (!extent || !width || !height || *width + *height == 0) return std::nullopt;
+  const double x = *width / (*extent)[0], y = *height / (*extent)[1], smaller = std::min(x, y), larger = std::max(x, y);
+  if (smaller == 0) return larger;
+  const bool is_stretched = std::any_of(svg.attributes.begin(), svg.attributes.end(), [](const auto& each) {
+    return each.name == "preserveAspectRatio" && each.value.starts_with("none");
+  });
+  constexpr double kAlike = 1e-3;  // sizes are often written with three or four digits
+  if (is_stretched) return larger - smaller <= kAlike * larger ? std::optional(x) : std::nullopt;
+  const std::string* const fit = svg.value("preserveAspectRatio");
+  return fit && fit->find("slice") != std::string::npos ? larger : smaller;
 }
 
 std::vector<SvgElement> SvgDocument::take_elements() && {

@@ -4,6 +4,7 @@
 // The elements of an SVG drawing, in the order of the file, and where they stand there.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -42,8 +43,8 @@ struct SvgElement {
   std::uint32_t parent = 0, subtree_end = 0;  ///< Elements; those in it are the ones from its own number up to the end.
   std::uint64_t begin = 0, tag_end = 0;       ///< Bytes of its start tag.
   std::uint64_t end_tag = 0, end = 0;         ///< Bytes of its end tag; of an empty element both are tag_end.
-  /// Those that svg_geometry() names, and `id`, `transform`, `style`, `display`, `fill` and `stroke`; both kinds of
-  /// `href` under this name.
+  /// Those that svg_geometry() names (of the outermost element its size and viewBox), and `id`, `transform`, `style`,
+  /// `display`, `fill` and `stroke`; both kinds of `href` under this name.
   std::vector<Attribute> attributes;
 
   /// The value of an attribute; none if it is missing or "none".
@@ -60,6 +61,13 @@ struct SvgTagAttribute {
 
 /// The attributes of the start tag of an element, which has to stand in the text itself; none if an entity has it.
 std::vector<SvgTagAttribute> svg_tag_attributes(std::string_view text, const SvgElement& element);
+
+class SvgDocument;
+
+/// The length of a drawing's unit in micrometres, as the `width`, `height`, `viewBox` and `preserveAspectRatio` of its
+/// outermost element give it: that of a pixel of CSS, 1/96 in, without a viewBox. None where it depends on what the
+/// drawing is shown in (percent, units of a font, no size at all), and where x and y have different ones.
+std::optional<double> svg_unit_micrometres(const SvgDocument& document);
 
 /// The elements of a drawing. Keeps references to the path, which is for messages, and the text.
 class SvgDocument {

@@ -155,6 +155,7 @@ void parse_svg(CurveFile& file, const CurveReading& how) {
     document.fail_at(document.text().size(), "a path or another shape with two points", "none in the drawing");
   file.flattened_to = file.flattened_shapes > 0 ? tolerance : 0;
   file.planar = true;
+  file.file.unit_micrometres = svg_unit_micrometres(document);
   drawing->elements = std::move(document).take_elements();
   file.svg = std::move(drawing);
 }

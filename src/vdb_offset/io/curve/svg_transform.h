@@ -33,9 +33,15 @@ bool has_inverse(const SvgMatrix& m);
 Vec3d transformed(const SvgMatrix& m, const Vec2d& p);
 Vec2d transformed_back(const SvgMatrix& m, const Vec3d& p);
 
-/// Absolute units of CSS in units of the drawing, of which 96 are an inch.
-inline constexpr std::pair<std::string_view, double> kSvgUnits[] = {
-    {"px", 1}, {"in", 96}, {"cm", 96 / 2.54}, {"mm", 96 / 25.4}, {"pt", 96. / 72}, {"pc", 16}, {"Q", 96 / 101.6}};
+/// An absolute unit of CSS.
+struct SvgUnit {
+  std::string_view name;
+  double pixels;       ///< 96 are an inch. In a drawing, its units.
+  double micrometres;  ///< Beside the pixels, so that whole ones are exact.
+};
+inline constexpr SvgUnit kSvgUnits[] = {
+    {"px", 1, 25400. / 96},        {"in", 96, 25400},      {"cm", 96 / 2.54, 10000}, {"mm", 96 / 25.4, 1000},
+    {"pt", 96. / 72, 25400. / 72}, {"pc", 16, 25400. / 6}, {"Q", 96 / 101.6, 250}};
 
 /// Whether a character is white space in XML and in attributes of SVG.
 inline bool is_svg_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
@@ -82,8 +88,8 @@ class SvgValueScanner {
     std::string_view unit = value_.substr(at_);
     while (!unit.empty() && is_svg_space(unit.back())) unit.remove_suffix(1);
     if (unit.empty()) return number;
-    for (const auto& [name, size] : kSvgUnits)
-      if (unit == name) return number * size;
+    for (const SvgUnit& each : kSvgUnits)
+      if (unit == each.name) return number * each.pixels;
     fail_("a number, alone or with px, mm, cm, in, pt, pc or Q behind it", fmt::format("'{}'", whole.substr(0, 20)));
     std::terminate();  // fail_ has thrown
   }
