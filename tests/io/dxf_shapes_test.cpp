@@ -9,6 +9,7 @@
 #include <random>
 
 #include "support/dxf_text.h"
+#include "support/folder.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
 
@@ -317,6 +318,33 @@ TEST_CASE("dxf: what is no curve or not shown stays out, and is told", "[curves]
   REQUIRE(file.file.remarks.size() == 2);
   CHECK(file.file.remarks[0] == "what is no curve stays as it is: 1 POINT, 1 POLYLINE, 2 TEXT");
   CHECK_THAT(file.file.remarks[1], Catch::Contains("6 in paper space, invisible, or on a layer that is off or frozen"));
+}
+
+TEST_CASE("dxf: curves of paper space are taken where model space has none", "[curves][io][dxf]") {
+  const std::string paper = "0|LINE 8|0 67|1 10|1 20|2 11|5 21|2 0|CIRCLE 8|0 67|1 10|3 20|4 40|1 0|INSERT 67|1 2|b ",
+                    block = "0|BLOCK 2|b 0|LINE 8|0 10|7 11|8 0|ENDBLK", text = "0|TEXT 8|0 1|a 0|VIEWPORT 67|1 8|0 ";
+  const io::CurveFile file = read(dxf_text::file(text + paper, "", block));
+  REQUIRE(file.file.polygons.face_count() == 3);
+  CHECK(points_of(file) == std::vector<Vec3d>{{1, 2, 0}, {5, 2, 0}});
+  CHECK(points_of(file, 2) == std::vector<Vec3d>{{7, 0, 0}, {8, 0, 0}});
+  REQUIRE(file.file.remarks.size() == 3);
+  CHECK(file.file.remarks[0] == "its curves are those of paper space, as model space has none");
+  CHECK(file.file.remarks[1] == "what is no curve stays as it is: 1 VIEWPORT");
+  // Written, they stay in paper space.
+  std::vector<Vec3d> up = file.file.polygons.positions;
+  for (Vec3d& p : up) p[1] += 1;
+  const Folder folder;
+  io::write_curves(folder.file("up.dxf"), file, up);
+  const io::CurveFile again = io::read_curves(folder.file("up.dxf"));
+  CHECK(again.file.polygons.positions == up);
+  CHECK(again.file.remarks[0] == file.file.remarks[0]);
+  // One curve in model space, and they stay out; one that is hidden there, and nothing is guessed.
+  const std::string model = "0|LINE 8|0 11|9 ";
+  const io::CurveFile beside = read(dxf_text::file(paper + model, "", block));
+  CHECK(beside.file.polygons.face_count() == 1);
+  CHECK_THAT(beside.file.remarks[0], Catch::Contains("3 in paper space"));
+  CHECK_THAT(refusal(dxf_text::file(paper + model + "60|1", "", block)),
+             Catch::Contains("expected a curve that is shown, got 1 entities that are invisible"));
 }
 
 TEST_CASE("dxf: a file tells its unit, or does not", "[curves][io][dxf]") {

@@ -15,22 +15,36 @@
 namespace vdb_offset::io {
 namespace {
 
-/// What a layer hides.
-enum class Sight : std::uint8_t { Shown, LayerOff, Hidden };
+/// Whether an entity is seen, and why not.
+enum class Sight : std::uint8_t { Shown, LayerOff, Hidden, OtherSpace };
 
 class InsertResolver {
  public:
   InsertResolver(const DxfText& text, DxfDocument document) : text_(text) { drawing_.document = std::move(document); }
 
+  /// Takes what is in paper space if model space has no curve, not even one that is hidden.
   DxfDrawing run(std::vector<std::string>& remarks) {
-    const DxfDocument& document = drawing_.document;
-    for (std::uint32_t e = document.first_drawn; e < document.end_drawn; ++e)
-      visit(e, {}, DxfDrawing::kNone, Sight::Shown);
+    visit_all();
+    if (drawing_.shapes.empty() && hidden_curves_ == 0) {
+      others_.clear(), drawing_.inserts.clear();
+      hidden_ = visited_ = 0;
+      is_paper_ = true;
+      visit_all();
+    }
+    if (drawing_.shapes.empty() && hidden_curves_ > 0)
+      text_.fail_at(text_.text().size(), "a curve that is shown",
+                    fmt::format("{} entities that are invisible, or on a layer that is off or frozen", hidden_curves_));
     tell(remarks);
     return std::move(drawing_);
   }
 
  private:
+  void visit_all() {
+    const DxfDocument& document = drawing_.document;
+    for (std::uint32_t e = document.first_drawn; e < document.end_drawn; ++e)
+      visit(e, {}, DxfDrawing::kNone, Sight::Shown);
+  }
+
   static constexpr std::size_t kMostEntities = 1000000, kDeepest = 100;
 
   /// Draws an entity. `outer` is what hides the INSERT that shows it: what is on the layer 0 of a block is on that of
@@ -43,6 +57,7 @@ class InsertResolver {
       if (shown_by != DxfDrawing::kNone) mark_other(shown_by, entity.begin);
       if (is_shown) ++others_[name_of(entity)];
       else ++hidden_;
+      hidden_curves_ += !is_shown && sight != Sight::OtherSpace && entity.kind != DxfKind::Other;
       return;
     }
     if (entity.kind == DxfKind::Insert) {
@@ -55,12 +70,13 @@ class InsertResolver {
 
   Sight sight_of(const DxfEntity& entity, Sight outer, std::uint32_t shown_by) const {
     std::string_view layer;
-    bool is_hidden = false;
+    bool is_hidden = false, is_paper = false;
     text_.for_each_own(entity.begin, entity.body_end, [&](const DxfGroup& group) {
       if (group.code == 8) layer = group.value;
-      else if (group.code == 60 || (group.code == 67 && shown_by == DxfDrawing::kNone))
-        is_hidden = is_hidden || text_.integer(group) == 1;
+      else if (group.code == 60) is_hidden = is_hidden || text_.integer(group) == 1;
+      else if (group.code == 67) is_paper = is_paper || text_.integer(group) == 1;
     });
+    if (shown_by == DxfDrawing::kNone && is_paper != is_paper_) return Sight::OtherSpace;
     if (is_hidden) return Sight::Hidden;
     if (layer == "0" && shown_by != DxfDrawing::kNone) return outer;
     const auto found = drawing_.document.layers.find(dxf_key(layer));
@@ -141,6 +157,8 @@ class InsertResolver {
 
   void tell(std::vector<std::string>& remarks) const {
     constexpr std::size_t kMostNames = 8;
+    if (is_paper_ && !drawing_.shapes.empty())
+      remarks.emplace_back("its curves are those of paper space, as model space has none");
     if (!others_.empty()) {
       std::string names;
       std::size_t told = 0, left = 0;
@@ -153,15 +171,16 @@ class InsertResolver {
     }
     if (hidden_ > 0)
       remarks.push_back(fmt::format(
-          "what is not shown stays as it is: {} in paper space, invisible, or on a layer that is off or frozen",
-          hidden_));
+          "what is not shown stays as it is: {} in {} space, invisible, or on a layer that is off or frozen", hidden_,
+          is_paper_ ? "model" : "paper"));
   }
 
   const DxfText& text_;
   DxfDrawing drawing_;
   std::vector<std::uint32_t> active_;
   std::map<std::string, std::size_t> others_;
-  std::size_t hidden_ = 0, visited_ = 0;
+  std::size_t hidden_ = 0, hidden_curves_ = 0, visited_ = 0;
+  bool is_paper_ = false;  // whether paper space is gone through, not model space
   MemoryWatch held_{text_.path(), sizeof(DxfDrawing::Shape)};
 };
 
