@@ -113,6 +113,34 @@ void print_curve_ends(std::FILE* out, const Source& source) {
              open.size(), plural(open.size()), open.front().gap, open.front().length);
 }
 
+/// Whether coordinates are kept to the last bit of a double.
+bool has_all_digits(const Job& job) {
+  return !job.source.file || job.source.file->precision.kind == Precision::Kind::Double;
+}
+
+/// Says where the input crosses itself, or the refined source does. What added vertices are rounded to is all that
+/// makes the latter cross where the former does not.
+void print_source_crossings(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
+  const LimitStatistics& limit = statistics.limit;
+  if (limit.source_crossings == 0) return;
+  const char* const what = job.curves() ? "segments" : "triangles";
+  const std::string pairs = fmt::format("{}{} pairs of {} meet", limit.more_source_crossings ? "more than " : "",
+                                        limit.source_crossings, what);
+  const std::string beside = limit.more_source_crossings
+                                 ? "what is beside them is not looked at"
+                                 : fmt::format("{} more beside them", limit.crossings_near_source);
+  const bool is_refined = statistics.certified && statistics.certified->source_faces > 0;
+  if (!is_refined) fmt::print(out, "the input crosses itself: {}, left as they are; {}\n", pairs, beside);
+  else if (const std::size_t own = statistics.certified->source_crossings; own > 0)
+    fmt::print(out,
+               "the input crosses itself: {} pairs of {} meet, left as they are; of the refined source {}, and {}\n",
+               own, what, pairs, beside);
+  else
+    fmt::print(out,
+               "the refined source crosses itself, and the input does not, as what is added is rounded: {}; {}{}\n",
+               pairs, beside, has_all_digits(job) ? "" : " (a copy of the input as OBJ has more digits)");
+}
+
 }  // namespace
 
 std::string planes_in_words(std::span<const SymmetryPlane> planes) {

@@ -32,11 +32,6 @@ bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
          !job.shell && job.outputs.size() == 1;
 }
 
-/// Whether coordinates are kept to the last bit of a double.
-bool has_all_digits(const Job& job) {
-  return !job.source.file || job.source.file->precision.kind == Precision::Kind::Double;
-}
-
 /// Which corners faces are off beside, and what helps. Where more than two faces meet at an edge, nothing does.
 std::string corners_in_words(const Job& job, const OffsetStatistics& statistics) {
   const char *const faces = job.curves() ? "segments" : "faces", *const branches =
@@ -138,27 +133,6 @@ void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& s
   words.reserve(causes.size());
   for (const auto& [share, text] : causes) words.push_back(fmt::format("{} ({:.0f} % of it)", text, 100 * share));
   fmt::print(out, "{} are off mostly {}\n", curves ? "segments" : "faces", fmt::join(words, ", and "));
-}
-
-void print_source_crossings(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
-  const LimitStatistics& limit = statistics.limit;
-  if (limit.source_crossings == 0) return;
-  const char* const what = job.curves() ? "segments" : "triangles";
-  const std::string pairs = fmt::format("{}{} pairs of {} meet", limit.more_source_crossings ? "more than " : "",
-                                        limit.source_crossings, what);
-  const std::string beside = limit.more_source_crossings
-                                 ? "what is beside them is not looked at"
-                                 : fmt::format("{} more beside them", limit.crossings_near_source);
-  const bool is_refined = statistics.certified && statistics.certified->source_faces > 0;
-  if (!is_refined) fmt::print(out, "the input crosses itself: {}, left as they are; {}\n", pairs, beside);
-  else if (const std::size_t own = statistics.certified->source_crossings; own > 0)
-    fmt::print(out,
-               "the input crosses itself: {} pairs of {} meet, left as they are; of the refined source {}, and {}\n",
-               own, what, pairs, beside);
-  else
-    fmt::print(out,
-               "the refined source crosses itself, and the input does not, as what is added is rounded: {}; {}{}\n",
-               pairs, beside, has_all_digits(job) ? "" : " (a copy of the input as OBJ has more digits)");
 }
 
 bool are_within(const FaceError& faces, double bound, const std::string& offset) {

@@ -59,10 +59,6 @@ void print_iso_cause(std::FILE* out, const FaceError& faces);
 /// Why faces are off their distance, and what helps: a line with all causes that make up a quarter of it or more.
 void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics);
 
-/// Says where the input crosses itself, or the refined source does. What added vertices are rounded to is all that
-/// makes the latter cross where the former does not.
-void print_source_crossings(std::FILE* out, const Job& job, const OffsetStatistics& statistics);
-
 /// Whether 99 % of the faces of an offset, by area, are within a bound, in percent of the distance. Says so if not.
 bool are_within(const FaceError& faces, double percent, const std::string& offset);
 
