@@ -29,9 +29,11 @@ TEST_CASE("command: of a CAD model that is written, no faces of a mesh are told"
 
 TEST_CASE("command: beside what stays, a CAD model's vertices are measured from what moves", "[command][cad]") {
   const ShellCommand shell;
+  // The bottom, which ends in a fillet, and an end: the rim goes up the fillet, and has corners in which both move.
   const Run run =
-      shell(test::scenes_path() + "/bracket.step top.obj -d -0.2 --only face=7 --only face=8 --report top.json");
+      shell(test::scenes_path() + "/bracket.step higher.obj -d -0.2 --only face=7 --only face=8 --report higher.json");
   CHECK(run.code == 0);
-  const auto facts = nlohmann::json::parse(shell.slurp(shell.file("top.json")))["cad_faces"];
+  CHECK_THAT(run.out, Catch::Contains("from the faces of the CAD model, "));
+  const auto facts = nlohmann::json::parse(shell.slurp(shell.file("higher.json")))["cad_faces"];
   CHECK(facts["worst_error"].get<double>() < 1e-9);
 }

@@ -18,6 +18,13 @@ bool is_on_sharp_edge(const Surface& surface, const ExactCorners& exact, std::ui
   return exact.is_sharp(corners[e]) && exact.is_sharp(corners[(e + 1) % 3]);
 }
 
+/// Whether the way from an edge of the part goes along its normal, as far as flat triangles tell. Where it does not, as
+/// over a face beside the part that leaves it at another angle, its end is at the distance from the edge alone.
+bool is_across(const Vec3d& normal, const Vec3d& way) {
+  constexpr double kLeastCosine = 0.97;  // 14 degrees: normals of neighbours differ by 15
+  return std::abs(normal.dot(way)) >= kLeastCosine * way.length();
+}
+
 /// Points of a result, and where on the model each belongs.
 struct Measured {
   std::vector<std::uint32_t> of;  // vertices, or faces of the mesh
@@ -51,8 +58,11 @@ ExactFacts measure_exactness(const PreparedMesh& mesh, const PreparedMesh::March
     const bool is_at_rim = !mesh.parts().at_border.empty() && mesh.parts().at_border[w];
     if (is_at_rim || !marched.mitred.is_miter(w, marched.paths.displacement[w])) {
       const std::uint32_t t = marched.paths.closest[w];
-      const TrianglePoint foot = part.closest_on(t, result.positions[v] - part.origin);
+      const Vec3d point = result.positions[v] - part.origin;
+      const TrianglePoint foot = part.closest_on(t, point);
       if (is_on_sharp_edge(part, exact, t, foot.feature)) continue;
+      if (is_at_rim && foot.feature != Feature::Face && !is_across(part.triangle_normals[t], point - foot.point))
+        continue;
       to = &near;
       near.feet.push_back(foot.point + part.origin);
       near.of.push_back(exact.face_of(t));
