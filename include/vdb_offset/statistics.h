@@ -156,8 +156,8 @@ struct CertifiedFaces {
   bool out_of_faces = false;  ///< More faces would have been needed than may be made.
 };
 
-/// How much of an open surface, or of open curves, has room for a distance on either side: the file alone decides which
-/// side the faces point to, and is often wrong.
+/// How much of an open surface, of open curves, or of the wall of layers has room for a distance on either side: the
+/// file alone decides which side the faces point to, and is often wrong.
 struct VDB_OFFSET_API SideRoom {
   bool known = false;          ///< It is looked for where little has reached its distance.
   double here = 1, there = 1;  ///< Shares of the vertices: on the side that was asked for, and on the other one.

@@ -680,6 +680,27 @@ TEST_CASE("command: options of layers that do not go together", "[command][layer
     check_failure(shell, std::string("sphere.obj ") + arguments, 1, message);
 }
 
+TEST_CASE("command: where layers have no room, the side that has is named", "[command][layers]") {
+  const ShellCommand shell;
+  // An open curve that runs clockwise, so that layers of far more than its width go into it: not one cell is left.
+  std::ofstream(shell.file("open.txt")) << "0 0\n0 0.02\n0.02 0.02\n0.02 0\n0.0004 0\n";
+  const std::string run = "open.txt out.su2 --layers 5 --total-thickness 3";
+  check_failure(shell, run, 2, "open.txt: expected room for one cell at least, got none (1 open curve");
+  check_failure(shell, run, 2, "(--close joins them); there is room for that on this side of 0 % of the curves");
+  check_failure(shell, run, 2, "--total-thickness -3 goes there");
+  CHECK(shell(run + " --close -q").code == 0);
+  // A closed plate whose faces point into it, as hulls of buildings come.
+  std::ofstream(shell.file("plate.obj")) << "v 0 0 0\nv 10 0 0\nv 0 8 0\nv 10 8 0\nv 0 0 0.1\nv 10 0 0.1\nv 0 8 0.1\n"
+                                            "v 10 8 0.1\nf 2 4 3 1\nf 7 8 6 5\nf 5 6 2 1\nf 4 8 7 3\nf 3 7 5 1\n"
+                                            "f 6 8 4 2\n";
+  const Run inward = shell("plate.obj in.vtu --layers 3 --total-thickness 0.2");
+  CHECK(inward.code == 0);
+  CHECK_THAT(inward.out, Catch::Contains("on this side of 0 % of the surface, on the other side of 100 %: if faces "
+                                         "point the wrong way, --total-thickness -0.2 goes there"));
+  const Run outward = shell("plate.obj out.vtu --layers 3 --total-thickness=-0.2");
+  CHECK_THAT(outward.out, Catch::Contains("full on 100.0 %") && !Catch::Contains("there is room for that"));
+}
+
 TEST_CASE("command: a captured surface, its report and what comes along", "[command][capture]") {
   const ShellCommand shell;
   std::ofstream(shell.file("square.obj")) << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "page/run_pages.h"
 #include "run_files.h"
@@ -104,6 +106,15 @@ void write_cells(const Job& job, Grown& grown) {
   else write_surfaces(job, grown.layers);
 }
 
+/// \throw InvalidInput where nothing grows, with what may be the reason
+void require_cells(const Job& job, const Grown& grown) {
+  if (!is_volume(job.request.output) || grown.report.all.cells > 0) return;
+  std::vector<std::string> hints = side_hints(job, grown.layers.statistics.room);
+  if (hints.empty()) hints.emplace_back("thinner layers have more room");
+  throw InvalidInput(
+      fmt::format("{}: expected room for one cell at least, got none ({})", job.request.input, fmt::join(hints, "; ")));
+}
+
 bool are_valid(const LayerReport& report) {
   return report.all.inverted_cells == 0 && report.inverted_block_cells == 0 &&
          (!report.foam || report.foam->wrong_faces == 0);
@@ -164,6 +175,7 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   Grown grown;
   grow(job, grown);
   LayersResult& layers = grown.layers;
+  require_cells(job, grown);
   bar.show(Stage::Write, 0);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
   const PolygonView mesh = source.view();

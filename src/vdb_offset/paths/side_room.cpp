@@ -16,6 +16,10 @@ constexpr std::size_t kSamples = 2000;
 // measured.
 constexpr double kHasRoom = 0.98, kLeastSlopeSeen = 0.2;
 
+// How often the distance is halved, to look on the way as well: beyond a wall that is nearer there is room again. A
+// wall at a height w is seen from w / 2 up to w / (1 - kHasRoom * slope), 1.2 w at least.
+constexpr int kHalvings = 10;
+
 // The other side is suggested if less than this share of the vertices has room on the side asked for, and more on the
 // other by at least that share. Not measured.
 constexpr double kRoomEnough = 0.9, kMoreRoom = 0.2;
@@ -30,9 +34,14 @@ SideRoom measure(const Query& query, const Distances& distances) {
     const StartDirection start = start_of(surface, v);
     const double distance = distances[v];
     if (distance == 0 || surface.triangles_around(v).empty() || !(start.slope > kLeastSlopeSeen)) continue;
-    const auto has_room = [&](double length) {
-      const Vec3d x = surface.vertices[v] + start.direction * length;
-      return query(x, surface.triangles_around(v).front()).distance >= kHasRoom * start.slope * std::abs(length);
+    const auto has_room = [&](double distance_there) {
+      double length = distance_there;
+      for (int k = 0; k <= kHalvings; ++k, length /= 2) {
+        const Vec3d x = surface.vertices[v] + start.direction * length;
+        if (!(query(x, surface.triangles_around(v).front()).distance >= kHasRoom * start.slope * std::abs(length)))
+          return false;
+      }
+      return true;
     };
     ++asked;
     here += has_room(distance);

@@ -12,7 +12,8 @@
 namespace vdb_offset {
 
 /// Measures on which side there is room for the distances: at some of the vertices, evenly taken, whether the position
-/// straight above is at the distance. One query for each vertex and side.
+/// straight above is at the distance, and so are those halfway, a quarter of the way, and on. Up to eleven queries for
+/// each vertex and side.
 SideRoom room_on_sides(const ClosestQuery& query, const Distances& distances);
 SideRoom room_on_sides(const CurveQuery& query, const Distances& distances);
 

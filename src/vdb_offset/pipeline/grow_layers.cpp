@@ -178,7 +178,7 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   statistics.miters = marched.miter_facts;
   count_miters(marched.miters, paths.state, statistics.miters);
   statistics.borders = mesh.borders(paths);
-  statistics.room = mesh.room(paths, outer);
+  statistics.room = mesh.room(paths, outer, true);  // what a flow is inside of is often meshed as a solid
   if (mesh.surroundings()) statistics.limit.source_crossings -= mesh.surroundings()->crossing();
   measure_surfaces(mesh, constrained, asked.of_all, paths, stack, statistics);
   return hand_over(mesh, std::move(statistics), *columns, paths, std::move(stack), asked.of_all);

@@ -117,11 +117,12 @@ void hand_out_paths(const Input& input, const Paths& paths, OffsetResult& result
   });
 }
 
-/// How much room an open Shape has on either side, where so many vertices are short that it may be the wrong one; else
-/// nothing is known. `distances()` are those of the Shape's vertices, and only then asked for.
+/// How much room a Shape has on either side, where so many vertices are short that it may be the wrong one; else
+/// nothing is known, as of a Shape whose side is `sure`. `distances()` are those of the Shape's vertices, and only then
+/// asked for.
 template <ShapeQuery Query, std::invocable GetDistances>
-SideRoom room_beside(const Query& query, bool closed, std::span<const VertexState> states, GetDistances&& distances) {
-  if (closed || !falls_short(states)) return {};
+SideRoom room_beside(const Query& query, bool sure, std::span<const VertexState> states, GetDistances&& distances) {
+  if (sure || !falls_short(states)) return {};
   return room_on_sides(query, distances());
 }
 

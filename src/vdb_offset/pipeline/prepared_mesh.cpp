@@ -261,8 +261,8 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
   return constrained;
 }
 
-SideRoom PreparedMesh::room(const Paths& paths, const Distances& distances) const {
-  return room_beside(*query_, parts_.moving_part.facts.closed(), paths.state,
+SideRoom PreparedMesh::room(const Paths& paths, const Distances& distances, bool closed_too) const {
+  return room_beside(*query_, !closed_too && parts_.moving_part.facts.closed(), paths.state,
                      [&] { return distances_of_part(parts_, distances); });
 }
 

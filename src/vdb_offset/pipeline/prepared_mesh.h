@@ -88,8 +88,9 @@ class PreparedMesh {
   /// What must stay valid where vertices have these paths. Refers to this and to `marched`.
   ConstrainedSurface constrained(const Marched& marched, bool off_source, std::size_t resting_faces = 0) const;
 
-  /// Room on either side of an open part where much falls short. Paths and distances are those of all vertices.
-  SideRoom room(const Paths& paths, const Distances& distances) const;
+  /// Room on either side of a part where much falls short. Paths and distances are those of all vertices. With
+  /// `closed_too` of a closed part as well, whose inside often has less room because it is thin.
+  SideRoom room(const Paths& paths, const Distances& distances, bool closed_too = false) const;
   /// What became of borders. Paths are those of all vertices.
   BorderFacts borders(const Paths& paths) const;
 

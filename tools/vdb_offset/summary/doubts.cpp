@@ -89,28 +89,11 @@ std::string option_for_other_side(const Job& job) {
   return fmt::format("{} {}", option, turned_round(asked->text));
 }
 
-void print_room(std::FILE* out, const Job& job, const SideRoom& room) {
-  if (!room.suggests_other()) return;
-  fmt::print(
-      out,
-      "there is room for that on this side of {:.0f} % of the {}, on the other side of {:.0f} %: if {} the wrong "
-      "way, {} goes there\n",
-      100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
-      job.curves() ? "curves run" : "faces point", option_for_other_side(job));
-}
-
-void print_curve_ends(std::FILE* out, const Source& source) {
+void print_made_straight(std::FILE* out, const Source& source) {
   if (const std::size_t flattened = source.curves->flattened_shapes; flattened > 0)
     fmt::print(out, "{} curved shape{} flattened to within {:.3g} (--flatten)\n", flattened, plural(flattened),
                source.curves->flattened_to);
   for (const OpenCurve& closed : source.closed) fmt::print(out, "closed by a straight segment of {:.6g}\n", closed.gap);
-  std::vector<OpenCurve> open = open_curves(source.view());
-  std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
-  if (open.empty()) return;
-  fmt::print(out,
-             "{} open curve{} with ends near each other ({:.6g} apart, of a length of {:.6g}): nothing lies between "
-             "these, nor beyond them (--close joins them)\n",
-             open.size(), plural(open.size()), open.front().gap, open.front().length);
 }
 
 /// Whether coordinates are kept to the last bit of a double.
@@ -190,13 +173,32 @@ void print_seams(std::FILE* out, const SeamFacts& seams, double distance) {
                seams.near_vertices, seams.widest_near, MeshFacts::tolerance_above(seams.widest_near));
 }
 
+std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
+  std::vector<std::string> hints;
+  std::vector<OpenCurve> open;
+  if (job.curves()) open = open_curves(job.source.view());
+  std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
+  if (!open.empty())
+    hints.push_back(
+        fmt::format("{} open curve{} with ends near each other ({:.6g} apart, of a length of {:.6g}): nothing lies "
+                    "between these, nor beyond them (--close joins them)",
+                    open.size(), plural(open.size()), open.front().gap, open.front().length));
+  if (room.suggests_other())
+    hints.push_back(
+        fmt::format("there is room for that on this side of {:.0f} % of the {}, on the other side of {:.0f} %: if {} "
+                    "the wrong way, {} goes there",
+                    100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
+                    job.curves() ? "curves run" : "faces point", option_for_other_side(job)));
+  return hints;
+}
+
 void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances) {
   print_seams(out, statistics.facts.seams, std::abs(distances.farthest()));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
   if (in(VertexState::Limited) + in(VertexState::Collision) > 0) print_slivers(out, statistics.facts);
-  if (job.curves()) print_curve_ends(out, job.source);
+  if (job.curves()) print_made_straight(out, job.source);
   else print_orientation(out, statistics.facts, job.options.orient);
-  print_room(out, job, statistics.room);
+  for (const std::string& hint : side_hints(job, statistics.room)) fmt::print(out, "{}\n", hint);
   print_borders(out, statistics.borders);
   print_source_crossings(out, job, statistics);
 }

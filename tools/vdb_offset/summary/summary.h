@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "job.h"
 #include "outputs.h"
@@ -61,6 +62,9 @@ void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& s
 
 /// Whether 99 % of the faces of an offset, by area, are within a bound, in percent of the distance. Says so if not.
 bool are_within(const FaceError& faces, double percent, const std::string& offset);
+
+/// Where the input may not have the side that is meant, and the options that settle it: a line each, without its end.
+std::vector<std::string> side_hints(const Job& job, const SideRoom& room);
 
 /// What --dry-run prints with --mode iso.
 void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance);
