@@ -18,7 +18,7 @@ constexpr double kHasRoom = 0.98, kLeastSlopeSeen = 0.2;
 
 // How often the distance is halved, to look on the way as well: beyond a wall that is nearer there is room again. A
 // wall at a height w is seen from w / 2 up to w / (1 - kHasRoom * slope), 1.2 w at least.
-constexpr int kHalvings = 10;
+constexpr int kRoomHalvings = 10;
 
 // The other side is suggested if less than this share of the vertices has room on the side asked for, and more on the
 // other by at least that share. Not measured.
@@ -36,7 +36,7 @@ SideRoom measure(const Query& query, const Distances& distances) {
     if (distance == 0 || surface.triangles_around(v).empty() || !(start.slope > kLeastSlopeSeen)) continue;
     const auto has_room = [&](double distance_there) {
       double length = distance_there;
-      for (int k = 0; k <= kHalvings; ++k, length /= 2) {
+      for (int k = 0; k <= kRoomHalvings; ++k, length /= 2) {
         const Vec3d x = surface.vertices[v] + start.direction * length;
         if (!(query(x, surface.triangles_around(v).front()).distance >= kHasRoom * start.slope * std::abs(length)))
           return false;
