@@ -15,9 +15,13 @@ namespace vdb_offset::io {
 namespace {
 
 constexpr double kOneDegree = std::numbers::pi / 180;
-// The largest bend between facets of one curved surface. Reasoned: a cylinder of eight facets bends by 45 degrees, a
-// hexagonal socket by 60.
+// The largest bend between facets of one ring, and the fewest of these. Reasoned: a cylinder of eight facets bends by
+// 45 degrees, a hexagonal socket by 60.
 constexpr double kMostBend = 50 * kOneDegree;
+constexpr std::size_t kFewestSides = 8;
+// The largest bend that makes a facet of no ring part of a curved surface. Reasoned: far above the bends of fillets,
+// below those of chamfers, whose faces are flat.
+constexpr double kMostCurved = 29 * kOneDegree;
 // Sine between faces of one facet: far above the rounding of seven digits, far below the bends of curved surfaces.
 constexpr double kOneFacet = 1e-3;
 // Sine between the axes that three facets at a time tell, which rounding disturbs; and how far the angles between the
@@ -55,7 +59,7 @@ Vec3d twice_area_of(PolygonView mesh, std::size_t f) {
   return sum;
 }
 
-Vec3d unit_or_zero(const Vec3d& v) { return v.lengthSqr() > 0 ? v.unit() : v; }
+Vec3d direction_of(const Vec3d& v) { return v.lengthSqr() > 0 ? v.unit() : v; }
 
 /// x with squares * x = right, in the sense of least squares where directions are left open.
 Vec3d solve(const openvdb::math::Mat3d& squares, const Vec3d& right) {
@@ -110,7 +114,7 @@ void FaceShapes::find_facets() {
     return f;
   };
   for (const Edge& edge : edges_) {
-    const Vec3d a = unit_or_zero(area_[edge.left]), b = unit_or_zero(area_[edge.right]);
+    const Vec3d a = direction_of(area_[edge.left]), b = direction_of(area_[edge.right]);
     // A face without an area is of the facet beside it.
     if (a.lengthSqr() > 0 && b.lengthSqr() > 0 && (a.dot(b) < 0 || a.cross(b).length() > kOneFacet)) continue;
     const std::uint32_t left = root_of(edge.left), right = root_of(edge.right);
@@ -128,7 +132,7 @@ void FaceShapes::find_facets() {
     faces_[facet_[f]].push_back(f);
     normal_[facet_[f]] += area_[f];
   }
-  for (Vec3d& normal : normal_) normal = unit_or_zero(normal);
+  for (Vec3d& normal : normal_) normal = direction_of(normal);
 }
 
 void FaceShapes::find_neighbours() {
@@ -158,7 +162,8 @@ std::vector<std::uint8_t> FaceShapes::facing(int side) const {
 std::vector<std::uint8_t> FaceShapes::curved(int side) const {
   std::vector<double> bend(normal_.size(), 0.0);
   for (std::size_t facet = 0; facet < bend.size(); ++facet)
-    for (const Neighbour& other : beside_[facet]) bend[facet] += other.bend * other.length;
+    for (const Neighbour& other : beside_[facet])
+      if (std::abs(other.bend) < kMostCurved) bend[facet] += other.bend * other.length;
   for (const int each : {1, -1})
     for (const Ring& ring : rings(each))
       for (const auto facet : ring) bend[facet] = each;
@@ -243,7 +248,7 @@ Vec3d FaceShapes::axis_of(const Ring& ring) const {
 
 /// Whether the normals of a ring make one angle with its axis, and go around it once.
 bool FaceShapes::is_round(const Ring& ring) const {
-  if (ring.size() < 3) return false;
+  if (ring.size() < kFewestSides) return false;
   const Vec3d axis = axis_of(ring);
   const double height = axis.dot(normal_[ring[0]]);
   double turned = 0;

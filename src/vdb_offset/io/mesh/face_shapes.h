@@ -19,7 +19,7 @@ struct RoundHole {
 /// What the faces of a mesh are by their own shape and that of the faces around them. Vertices at one position count as
 /// one, and faces in one plane that share an edge as one facet.
 ///
-/// Facets that bend from each other by less than 50 degrees are of one curved surface. A ring is a closed sequence of
+/// A ring is a closed sequence of
 /// facets that bend to one side around one axis, with which all of their normals make one angle: a cylinder or a cone,
 /// from eight facets on.
 class FaceShapes {
