@@ -27,17 +27,19 @@ constexpr double kMaxVoxelsAcross = 8388608;
 // Bytes for a leaf node: phi, closest triangle and direction of each voxel; the three leaf nodes themselves; and what
 // the allocator keeps of the sweep's closest points. Measured in all: 12,400.
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 1700;
-// Bytes for a triangle and a vertex: input and output mesh, surface with adjacency and normals, box tree, and the
-// rasteriser's pairs.
-constexpr std::size_t kTriangleBytes = 256, kVertexBytes = 355;
+// Bytes for a triangle and a vertex of a surface: adjacency and normals, box tree, the rasteriser's pairs, paths. And
+// for a vertex of the input: its positions before and after, and what becomes of it. With kLimitBytes, measured in all:
+// 660 to 880 for a vertex and its two triangles; 32 for each further vertex at one position, as in STL.
+constexpr std::size_t kTriangleBytes = 170, kVertexBytes = 250, kInputVertexBytes = 60;
 // Bytes that a layer takes for a vertex: its position, the position of the cells' point, numbers of points. And for a
 // face: what its cells have beside corners.
 constexpr std::size_t kLayerVertexBytes = 24 + 24 + 5 * 4 + 24, kLayerFaceBytes = 1 + 8 + 5 * 4;
 // Bytes that each further result takes for a vertex: positions, paths, states and what a warm start of a nearer one
 // needs; and while it is made valid.
 constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 95;
-// Bytes for the process itself: code, libraries, allocator. Not measured on other machines.
-constexpr double kProcessBytes = 57 << 20;
+// Bytes for the process itself: code, libraries, allocator, and a module for what is written. Measured with two
+// threads: 8 to 10 MiB, 22 with the module of VTK or CGNS, 42 with that of OpenVDB. Not measured on other machines.
+constexpr double kProcessBytes = 48 << 20;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles. Only the estimate that is shown uses
 // them.
 constexpr double kLeafSeconds = 8e-5, kTriangleSeconds = 2e-6, kVertexSeconds = 1.8e-5;
@@ -154,7 +156,7 @@ GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int t
   const double leaves = count_leaf_nodes(surface, plan.reach, 8 * h, context.slab);
   const double vertices = static_cast<double>(surface.facts.vertices),
                triangles = static_cast<double>(surface.triangles.size());
-  const double bytes = kProcessBytes + leaves * kLeafBytes + triangles * kTriangleBytes + vertices * kVertexBytes +
+  const double bytes = kProcessBytes + leaves * kLeafBytes + static_cast<double>(surface_bytes(surface)) +
                        static_cast<double>(context.bytes_beside);
   if (bytes > 0x1p62) {  // such a plan is refused; the casts below must not overflow
     plan.bytes = plan.leaf_nodes = plan.voxels = std::size_t{1} << 62;
@@ -277,7 +279,8 @@ GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOpti
 }
 
 std::size_t surface_bytes(const Surface& surface) {
-  return kTriangleBytes * surface.triangles.size() + kVertexBytes * surface.facts.vertices;
+  return kTriangleBytes * surface.triangles.size() + kVertexBytes * surface.vertices.size() +
+         kInputVertexBytes * surface.facts.vertices;
 }
 
 std::size_t layers_bytes(PolygonView mesh, std::size_t layers) {

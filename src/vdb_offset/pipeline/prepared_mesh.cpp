@@ -19,8 +19,9 @@
 namespace vdb_offset {
 namespace {
 
-// Bytes that a vertex takes while a result in which much is held back is made valid; measured: up to 430.
-constexpr std::size_t kLimitBytes = 500;
+// Bytes that a vertex of the surface takes while a result in which much is held back is made valid (see
+// kVertexBytes).
+constexpr std::size_t kLimitBytes = 350;
 // And where the exact surface is known: a miter, the path that it stands for, and normals of six triangles' corners.
 constexpr std::size_t kExactBytes = 500;
 
@@ -65,7 +66,7 @@ GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthes
   for (const auto* surface : {&parts.whole, &parts.rest, &parts.obstacles})
     if (*surface) beside += surface_bytes(**surface);
   if (options.collision == Collision::Limit || options.corners == Corners::Miter)
-    beside += kLimitBytes * mesh.positions.size();
+    beside += kLimitBytes * parts.surface().vertices.size();
   if (options.exact) beside += kExactBytes * mesh.positions.size();
   if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
   return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads, {beside});
