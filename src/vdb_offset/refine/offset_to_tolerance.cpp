@@ -302,7 +302,7 @@ class RefinedRun {
     certified.source_faces = mesh_.face_count();
     certified.source_vertices = mesh_.positions.size();
     certified.source_crossings = source_crossings_;
-    certified.out_of_faces = is_cut_short_;
+    certified.out_of_faces = is_cut_short_ && certified.certified < certified.there;
     result.statistics.certified = certified;
     count_states(result.states, result.statistics);
   }
