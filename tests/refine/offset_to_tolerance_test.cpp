@@ -777,7 +777,8 @@ TEST_CASE("tolerance: what crosses by rounding alone is the refined source's, an
   Polygons mesh;
   for (const double z : {0.0, 1 + 4e-7}) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const Vec3d& p : cube.positions) {
+    for (const Vec3d& at : cube.positions) {
+      const Vec3d p = at + Vec3d(0.5);
       const double x = p[0] * std::cos(0.3) - p[1] * std::sin(0.3), y = p[0] * std::sin(0.3) + p[1] * std::cos(0.3),
                    up = p[2] + z;
       mesh.positions.push_back(
