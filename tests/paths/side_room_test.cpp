@@ -50,8 +50,13 @@ TEST_CASE("room: layers into a tube that its faces point to the inside of are to
   CHECK_FALSE(room_of(round_tube(true), 0.3).known);
 }
 
-TEST_CASE("room: what is closed has an outside of its own", "[room]") {
-  CHECK_FALSE(room_of(scene::icosphere(1, 2), -1.5).known);
+TEST_CASE("room: what is closed has an outside of its own, but for walls of layers", "[room]") {
+  const Polygons ball = scene::icosphere(1, 2);
+  OffsetOptions options;
+  options.distance = -1.5;
+  CHECK_FALSE(offset(ball.view(), options).statistics.room.known);
+  CHECK(room_of(ball, -1.5).suggests_other());
+  CHECK_FALSE(room_of(ball, 1.5).known);
 }
 
 TEST_CASE("room: of an open curve", "[room][curves]") {

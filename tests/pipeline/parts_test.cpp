@@ -93,9 +93,12 @@ Polygons chamfered_box(double slope) {
 
 /// Whether check_offset() finds every vertex of a part's offset in the state that it was given, and no fault.
 bool is_confirmed(const Polygons& mesh, const OffsetResult& result, const OffsetOptions& options) {
-  const CheckResult check = check_offset(
-      mesh.view(), result.positions,
-      {.distance = options.distance, .only = options.only, .border = options.border, .corners = options.corners});
+  const CheckResult check = check_offset(mesh.view(), result.positions,
+                                         {.distance = options.distance,
+                                          .only = options.only,
+                                          .border = options.border,
+                                          .symmetry = options.symmetry,
+                                          .corners = options.corners});
   return check.states == result.states && check.faults.total() == 0 && check.beyond == 0;
 }
 
@@ -322,22 +325,24 @@ TEST_CASE("part: a chamfer moves to where its planes meet the faces beside it, a
 TEST_CASE("part: its edge meets the faces that stay in a plane of symmetry, too", "[part][symmetry]") {
   // Half a hole under half a cone, open where the other half would be.
   const Countersink whole(16, 90);
-  Polygons half;
-  half.positions = whole.mesh.positions;
+  Polygons halved;
+  halved.positions = whole.mesh.positions;
   OffsetOptions options;
   options.distance = -0.25;
+  // Of the part alone, a straight border of facets does not tell it.
+  options.symmetry.planes = {{Vec3d(0, 1, 0), 0}};
   for (std::size_t f = 0; f < whole.mesh.face_count(); ++f) {
     const auto face = whole.mesh.view().face(f);
     if (std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return whole.mesh.positions[v][1] < -1e-9; }))
       continue;
-    half.corners.insert(half.corners.end(), face.begin(), face.end());
-    half.close_face();
+    halved.corners.insert(halved.corners.end(), face.begin(), face.end());
+    halved.close_face();
     options.only.push_back(whole.wall[f]);
   }
-  const OffsetResult result = offset(half.view(), options);
+  const OffsetResult result = offset(halved.view(), options);
   for (std::uint32_t i = 0; i <= 8; ++i)
     CHECK((result.positions[2 * 16 + i] - whole.at(i, 3.25, 6.25)).length() < 1e-8);
-  CHECK(is_confirmed(half, result, options));
+  CHECK(is_confirmed(halved, result, options));
 }
 
 TEST_CASE("part: a border that is fixed stays, one that is free goes with the part", "[part]") {
