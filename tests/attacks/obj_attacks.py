@@ -29,7 +29,7 @@ FILES = {
     'cut in a normal': (OBJ + 'vn 0 0', 'line 9', 'three numbers of a normal', END),
     'face of two': (OBJ + 'f 1 2\n', 'line 9', 'at least 3 corners', '2'),
     'a repeated corner': (OBJ + 'f 1 1 2\n', 4),
-    'all corners repeated': (OBJ_VERTICES + 'f 1 1 1\n', None, 'expected a mesh with an extent'),
+    'all corners repeated': (OBJ_VERTICES + 'f 1 1 1\n', None, 'expected a face with an area'),
     'a number of 400 digits': ('v 0 0 0\nv 1 ' + '1' * 400 + ' 0\n' + OBJ_FACES, 'line 2', 'of at most 330', 'of 400'),
     'coordinates whose square is no number': (OBJ.replace('v 1 0 0', 'v 1e200 0 0'), None,
                                               'expected a bounding box with a finite diagonal'),

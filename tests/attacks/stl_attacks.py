@@ -57,7 +57,7 @@ BINARY = {
     'not a number': (with_coordinate(0x7fc00000), 'byte 96', 'a finite coordinate', 'nan'),
     'endless': (with_coordinate(0xff800000), 'byte 96', 'a finite coordinate', '-inf'),
     'the largest of numbers': (with_coordinate(0x7f7fffff), None, 'expected'),
-    'without area': (STL[:80] + struct.pack('<I', 1) + stl_facet((1, 1, 1)), None, 'expected a mesh with an extent'),
+    'without area': (STL[:80] + struct.pack('<I', 1) + stl_facet((1, 1, 1)), None, 'expected a face with an area'),
     'an OBJ file': (OBJ, 'byte 0', "'solid' or a binary STL header", '64 bytes'),
     'bytes of all kinds': (bytes(range(256)) * 4, 'byte 80', 'facets, which take', '1024 bytes'),
 }

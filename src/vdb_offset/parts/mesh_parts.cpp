@@ -113,11 +113,13 @@ MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options) {
   return parts;
 }
 
-void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach) {
+void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach,
+                    PartEdges edges) {
   to_local_frame(parts.moving_part, voxel_size);
   for (std::optional<Surface>* other : {&parts.whole, &parts.rest, &parts.obstacles})
     if (*other) to_frame(**other, parts.moving_part.origin);
-  hold_in_planes(parts.moving_part, symmetry, reach, parts.rest ? beyond_part(parts) : LeadsOn());
+  const bool follow = parts.rest && edges == PartEdges::FollowFaces;
+  hold_in_planes(parts.moving_part, symmetry, reach, follow ? beyond_part(parts) : LeadsOn());
   if (!parts.obstacles) return;
   append(*parts.whole, *parts.obstacles);
   parts.part_vertex.resize(parts.whole->vertices.size(), kNone);

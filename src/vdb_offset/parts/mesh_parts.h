@@ -49,11 +49,16 @@ std::vector<std::uint32_t> vertices_of_whole(const MeshParts& parts);
 /// \throw InvalidInput as build_surface(), and if `only` has not one mark for each face or marks no face
 MeshParts build_mesh_parts(PolygonView mesh, const MeshPartsOptions& options);
 
+/// What becomes of the moving part's edges in planes that the faces which stay lead out of: they follow those faces, or
+/// keep to the planes, as the sides of layers do.
+enum class PartEdges : std::uint8_t { FollowFaces, KeepPlanes };
+
 /// Puts all parts into the moving part's frame (see to_local_frame()), appends the obstacles to the whole, and finds
 /// which vertices of the moving part stay in planes, none of which goes farther than `reach` (world units). To be
 /// called once, before distances are made for surface(), and before any ConstrainedSurface. \throw InvalidInput as
 /// hold_in_planes()
-void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach);
+void to_local_frame(MeshParts& parts, double voxel_size, const SymmetryOptions& symmetry, double reach,
+                    PartEdges edges = PartEdges::FollowFaces);
 
 /// The distances of the vertices of surface(): the mean of those of the input's vertices at one position, which are
 /// moved as one; 0 for vertices that stay. `disagreeing` grows by the number of vertices with another distance than the

@@ -20,6 +20,9 @@ namespace {
 
 // Miters that are proven together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kMitersTogether = 64;
+// How far from a vertex, in distances, what is nearer to the end of its miter than its own faces still belongs to its
+// corner. See docs/dev/tuning.md.
+constexpr double kDetail = 1;
 // Most steps back from the end of a miter. Reasoned: of one of four distances, the longest by default, each step takes
 // a fifth of what is left or more.
 constexpr int kMostStepsBack = 64;
@@ -105,6 +108,29 @@ bool is_above_face(const Shape& shape, std::uint32_t vertex, const Vec3d& end, i
     const Vec3d& normal = exact ? exact->normal(t, vertex) : shape.triangle_normals[t];
     const double height = normal.dot(end);
     return std::abs(height - 1) <= kReachedTolerance && holds_foot(shape, t, vertex, (end - normal * height) * side);
+  });
+}
+
+std::uint32_t corner_of(const Surface& surface, std::uint32_t triangle) { return surface.triangles[triangle][0]; }
+std::uint32_t corner_of(const Polyline& line, std::uint32_t segment) { return line.segments[segment][0]; }
+
+/// Whether what is closest is a detail of a vertex's corner, for a distance.
+template <class Shape>
+bool is_detail(const Shape& shape, std::uint32_t vertex, const Closest& closest, double distance) {
+  return shape.component[corner_of(shape, closest.triangle)] == shape.component[vertex] &&
+         (closest.point - shape.vertices[vertex]).length() <= kDetail * distance;
+}
+
+/// Whether a triangle of the vertex's component goes on in the plane of one of those around the vertex.
+template <class Shape>
+bool goes_on(const Shape& shape, std::uint32_t vertex, const Closest& closest) {
+  if (shape.component[corner_of(shape, closest.triangle)] != shape.component[vertex]) return false;
+  const Vec3d &normal = shape.triangle_normals[closest.triangle], away = closest.point - shape.vertices[vertex];
+  const auto around = shape.triangles_around(vertex);
+  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Vec3d& own = shape.triangle_normals[t];
+    return own.lengthSqr() > 0 && (own - normal).lengthSqr() < kOnePlaneSine * kOnePlaneSine &&
+           std::abs(own.dot(away)) <= kOnePlaneSine * away.length();
   });
 }
 
@@ -226,7 +252,7 @@ std::pair<Vec3d, bool> MiterFinder<Query>::end_of(const UnitMiter& miter, double
 }
 
 template <class Query>
-bool MiterFinder<Query>::is_proven(const Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
+bool MiterFinder<Query>::is_proven(Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
                                    const Asked& from) const {
   const auto& shape = query_.surface();
   const Vec3d& start = shape.vertices[miter.vertex];
@@ -237,7 +263,11 @@ bool MiterFinder<Query>::is_proven(const Miter& miter, const UnitMiter& unit, co
     return closest.distance >= asked - exact_->deflection() &&
            exact_->is_own(miter.vertex, end, distance < 0 ? -asked : asked, closest.triangle, closest.point) &&
            (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
-  return is_way_free(query_, miter.vertex, end, closest, asked) &&
+  const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
+                      is_detail(shape, miter.vertex, closest, asked) || goes_on(shape, miter.vertex, closest);
+  miter.gives_way = !is_own;
+  return (is_own || is_way_free(query_, miter.vertex, end, closest, asked)) &&
+         closest.distance >= asked * (1 - kReachedTolerance) &&
          (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
 }
 

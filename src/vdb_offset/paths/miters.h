@@ -31,6 +31,9 @@ struct Miter {
   std::uint32_t closest;  ///< The triangle of the surface that is closest there.
   VertexState state;      ///< Reached, where the end is at the distance as well; Mitred; or Cut.
   double excess;          ///< By how much more than its distance a plane is moved, as a share of the distance.
+  /// What is closest there is neither of the vertex's corner nor goes on in its planes: of miters that get into each
+  /// other's way those do not stay.
+  bool gives_way = false;
 };
 
 /// Planes through a vertex at the edge of what is offset that its miter has to lie in: those of the faces beside it
@@ -105,7 +108,7 @@ class MiterFinder {
                                                                  const Asked& asked) const;
   void prove(std::span<const UnitMiter> some, const Asked& asked, std::span<Miter> miters,
              std::span<std::uint8_t> proven) const;
-  bool is_proven(const Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
+  bool is_proven(Miter& miter, const UnitMiter& unit, const Vec3d& end, const Closest& closest,
                  const Asked& asked) const;
   void bring_to_exact(std::span<const UnitMiter> units, const Asked& asked, std::span<Miter> miters) const;
   std::vector<UnitMiter> unit_miters_of(const Asked& asked) const;
@@ -157,6 +160,8 @@ class MitredPaths {
   Indices take_back(const Indices& vertices, Paths& paths) { return exchange(vertices, paths, true); }
   /// Gives those of some vertices whose miters have been taken back these again, and returns them.
   Indices miter_again(const Indices& vertices, Paths& paths) { return exchange(vertices, paths, false); }
+  /// Leaves out some vertices whose miters have been taken back: they are not to have these again.
+  void forget(const Indices& vertices);
 
  private:
   /// The other path of a vertex: that before it was mitred, or where that has been given back, the miter.

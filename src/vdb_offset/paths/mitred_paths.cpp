@@ -72,6 +72,12 @@ Indices MitredPaths::taken_back() const {
   return vertices;
 }
 
+void MitredPaths::forget(const Indices& vertices) {
+  std::erase_if(others_, [&](const Other& other) {
+    return !other.is_mitred && std::binary_search(vertices.begin(), vertices.end(), other.vertex);
+  });
+}
+
 Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitred) {
   Indices exchanged;
   for (const auto v : vertices) {

@@ -31,7 +31,10 @@ constexpr double kAround = 2;
 class MiterJudge {
  public:
   MiterJudge(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched)
-      : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {}
+      : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {
+    for (const Miter& miter : marched.miters)
+      if (miter.gives_way) giving_way_.push_back(miter.vertex);
+  }
 
   /// Takes all miters back within a length, along edges, of faults that do not come of miters. They are not tried
   /// again.
@@ -46,6 +49,17 @@ class MiterJudge {
   void take_faulty_back() {
     for (Indices back = faulty_miters(); !back.empty(); back = faulty_miters())
       faults_.move_to_ends(paths_, mitred_.take_back(back, paths_));
+  }
+
+  /// Takes back those that give way, for others to have room first.
+  void set_aside() { faults_.move_to_ends(paths_, mitred_.take_back(giving_way_, paths_)); }
+
+  void try_those_set_aside() {
+    Indices some;
+    std::set_difference(giving_way_.begin(), giving_way_.end(), given_up_.begin(), given_up_.end(),
+                        std::back_inserter(some));
+    try_again(some);
+    mitred_.forget(giving_way_);  // those that have come back: they would take the room of others later
   }
 
   void try_all_again() {
@@ -94,6 +108,8 @@ class MiterJudge {
     return within;
   }
 
+  bool gives_way(std::uint32_t v) const { return std::binary_search(giving_way_.begin(), giving_way_.end(), v); }
+
   /// The mitred vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
   Indices faulty_miters() const {
     Indices vertices;
@@ -124,6 +140,7 @@ class MiterJudge {
     Indices some;
     std::set_difference(taken_back.begin(), taken_back.end(), given_up_.begin(), given_up_.end(),
                         std::back_inserter(some));
+    std::erase_if(some, [&](std::uint32_t v) { return gives_way(v); });
     return some;
   }
 
@@ -145,7 +162,8 @@ class MiterJudge {
   const Surface& surface_;
   MitredPaths& mitred_;
   Paths& paths_;
-  Indices given_up_;  // vertices that are not to be mitred again; sorted
+  Indices given_up_;    // vertices that are not to be mitred again; sorted
+  Indices giving_way_;  // mitred vertices that do; sorted
 };
 
 }  // namespace
@@ -154,9 +172,11 @@ void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, Corner
                              PreparedMesh::Marched& marched) {
   if (marched.mitred.empty()) return;
   MiterJudge judge(faults, surface, marched);
+  judge.set_aside();
   judge.take_faulty_back();
   if (corners == Corners::Round) judge.give_up_around_faults(kAround * distance);
   judge.try_all_again();
+  judge.try_those_set_aside();
 }
 
 }  // namespace vdb_offset

@@ -89,7 +89,8 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     statistics_.threads = threads;
     if (moves) {
       plan = plan_run(parts_, mesh_, farthest, options, threads, yield);
-      to_local_frame(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside));
+      to_local_frame(parts_, plan.voxel_size, options.symmetry, std::max(farthest.inside, farthest.outside),
+                     yield.layers > 0 ? PartEdges::KeepPlanes : PartEdges::FollowFaces);
     } else if (parts_.obstacles) {
       to_local_frame(parts_, frame_voxel_size(parts_.moving_part.facts), options.symmetry, 0);
     }
