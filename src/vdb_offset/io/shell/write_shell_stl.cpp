@@ -6,6 +6,7 @@
 #include "vdb_offset/io/base/scanner.h"
 #include "vdb_offset/io/mesh/stl_layout.h"
 #include "vdb_offset/io/shell/shell_writers.h"
+#include "vdb_offset/mesh/triangulate.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -18,9 +19,12 @@ struct RimFacet {
 
 std::vector<RimFacet> split_rim(const Shell& shell) {
   std::vector<RimFacet> facets;
-  const PolygonView faces = shell.view();
-  for (std::size_t f = 2 * shell.skin_faces(); f < faces.face_count(); ++f)
-    for (const auto& triangle : faces.triangles_of(f)) facets.push_back({triangle, shell.source_face(f)});
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t f = 2 * shell.skin_faces(); f < shell.polygons.face_count(); ++f) {
+    triangles.clear();
+    append_triangles(shell.view(), f, triangles);
+    for (const auto& triangle : triangles) facets.push_back({triangle, shell.source_face(f)});
+  }
   return facets;
 }
 
