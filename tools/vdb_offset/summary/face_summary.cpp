@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is told of the error of faces, of what is proven of it, and of where sources cross themselves.
+// Reports the error of faces, what is proven of it, and why faces are off.
 #include <fmt/format.h>
 
 #include <algorithm>
