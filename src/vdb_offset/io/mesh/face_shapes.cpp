@@ -9,7 +9,11 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <tuple>
+#include <utility>
+
+#include "vdb_offset/mesh/edge_sides.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -81,27 +85,18 @@ void add_square(const Vec3d& v, openvdb::math::Mat3d& squares) {
 }  // namespace
 
 FaceShapes::FaceShapes(PolygonView mesh) : mesh_(mesh) {
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) area_.push_back(twice_area_of(mesh, f));
   const std::vector<std::uint32_t> first = first_at_positions(mesh);
-  struct Side {
-    std::uint32_t low, high, face;
-    bool is_reversed;
+  const auto face_of = [&](const EdgeSide& side) {
+    const auto next = std::upper_bound(mesh.face_begin.begin(), mesh.face_begin.end(), side.corner);
+    return static_cast<std::uint32_t>(next - mesh.face_begin.begin() - 1);
   };
-  std::vector<Side> sides;
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    area_.push_back(twice_area_of(mesh, f));
-    const auto face = mesh.face(f);
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const std::uint32_t from = first[face[k]], to = first[face[(k + 1) % face.size()]];
-      if (from != to) sides.push_back({std::min(from, to), std::max(from, to), f, from > to});
-    }
-  }
-  const auto key = [](const Side& side) { return std::tuple(side.low, side.high, side.is_reversed, side.face); };
-  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return key(a) < key(b); });
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
-    if (end - begin == 2 && !sides[begin].is_reversed && sides[begin + 1].is_reversed)
-      edges_.push_back({sides[begin].low, sides[begin].high, sides[begin].face, sides[begin + 1].face});
-  }
+  visit_edges(mesh, first, [&](std::uint32_t low, std::span<const EdgeSide> sides) {
+    const auto runs_up = [&](const EdgeSide& side) { return first[mesh.corners[side.corner]] == low; };
+    if (sides.size() != 2 || runs_up(sides[0]) == runs_up(sides[1])) return;
+    const std::size_t up = runs_up(sides[0]) ? 0 : 1;
+    edges_.push_back({low, sides[0].larger_end, face_of(sides[up]), face_of(sides[1 - up])});
+  });
   find_facets();
   find_neighbours();
 }
@@ -144,12 +139,17 @@ void FaceShapes::find_neighbours() {
     const double bend = std::atan2(across.length(), normal_[left].dot(normal_[right]));
     if (left == right || !(bend > kOneFacet) || bend > kMostBend) continue;
     const double signed_bend = across.dot(along) > 0 ? bend : -bend;
-    for (const auto& [facet, other] : {std::pair(left, right), {right, left}}) {
-      const auto known = std::find_if(beside_[facet].begin(), beside_[facet].end(),
-                                      [other = other](const Neighbour& each) { return each.facet == other; });
-      if (known != beside_[facet].end()) known->length += along.length();
-      else beside_[facet].push_back({other, signed_bend, along.length()});
-    }
+    beside_[left].push_back({right, signed_bend, along.length()});
+    beside_[right].push_back({left, signed_bend, along.length()});
+  }
+  for (std::vector<Neighbour>& beside : beside_) {
+    std::stable_sort(beside.begin(), beside.end(),
+                     [](const Neighbour& a, const Neighbour& b) { return a.facet < b.facet; });
+    std::vector<Neighbour> each;
+    for (const Neighbour& one : beside)
+      if (!each.empty() && each.back().facet == one.facet) each.back().length += one.length;
+      else each.push_back(one);
+    beside = std::move(each);
   }
 }
 
