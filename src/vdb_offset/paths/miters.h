@@ -52,8 +52,9 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex);
 /// a point on all of them, or beyond (see miter_point()); if that moves a plane much too far, or is not proven, with
 /// Corners::Miter that on the planes of most of the area (see prevailing_point()); at a border, of those that keep to
 /// it, or to walls. A miter is proven by exact distances: the surface is no nearer to its end than the distance, and
-/// what is nearest there is one of the faces around the vertex; or no surface stands between, as is found by going back
-/// from the end to where the vertex's faces are nearest. Vertices whose miter is not proven have none, nor have those
+/// what is nearest there is one of the faces around the vertex, goes on in the plane of one, or is a detail of the
+/// corner; or no surface stands between, as is found by going back from the end to where the vertex's faces are nearest
+/// (Miter::gives_way). Vertices whose miter is not proven have none, nor have those
 /// on edges of more than two faces. With Corners::Round, miters are those whose ends are at the distance themselves, as
 /// inward at convex edges: of all positions that are, the one with the faces at the distance, too.
 ///
